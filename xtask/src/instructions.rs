@@ -94,12 +94,12 @@ fn count(work: &str) -> Result<f64> {
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null", "--toggle-collect=*counted_work*asked*"])
         .arg(program)
         .arg(work);
-    let told = valgrind.output().context("cannot start valgrind")?;
-    let (said, log) = (String::from_utf8_lossy(&told.stdout), String::from_utf8_lossy(&told.stderr));
+    let reported = valgrind.output().context("cannot start valgrind")?;
+    let (said, log) = (String::from_utf8_lossy(&reported.stdout), String::from_utf8_lossy(&reported.stderr));
     let rays = said.split_whitespace().next().and_then(|word| word.parse::<f64>().ok());
     let instructions = collected(&log);
     match (rays, instructions) {
-        (Some(rays), Some(instructions)) if told.status.success() && rays > 0.0 && instructions > 0.0 => {
+        (Some(rays), Some(instructions)) if reported.status.success() && rays > 0.0 && instructions > 0.0 => {
             Ok(instructions / rays)
         }
         _ => bail!("{work} could not be counted:\n{said}{log}"),

@@ -187,7 +187,7 @@ mod tests {
     use std::sync::Arc;
 
     /// The warnings for a camera at this position, with a ball of this material at the origin.
-    fn told(material: Spec, position: [f32; 3]) -> Vec<String> {
+    fn reported(material: Spec, position: [f32; 3]) -> Vec<String> {
         let mut scene = SceneBuilder::default();
         let material = scene.add_material(material);
         scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), material));
@@ -201,9 +201,9 @@ mod tests {
     #[test]
     fn a_camera_that_sees_only_back_faces_gets_a_warning() {
         let shell = || Spec::new("shell", "diffuse").with("visible_sides", "front");
-        assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("single-sided"));
-        assert!(told(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
-        assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
+        assert!(reported(shell(), [0.1, 0.2, 0.0])[0].contains("single-sided"));
+        assert!(reported(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
+        assert!(reported(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
     }
 
     #[test]
@@ -222,6 +222,9 @@ mod tests {
             let warnings = |orbit: &str| {
                 let mut user = Parameters::default();
                 user.set("orbit", Value::from(orbit));
+                // Otherwise `auto` would turn the first card round.
+                user.set("up", "y");
+                user.set("front", "z");
                 let job = Job::new(&scene, &user).unwrap();
                 job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("")
             };
@@ -252,13 +255,13 @@ mod tests {
     #[test]
     fn only_a_camera_inside_glass_gets_the_warning() {
         let glass = || Spec::new("glass", "dielectric");
-        assert!(told(glass(), [0.1, 0.2, 0.0])[0].contains("inside a transparent object"));
-        assert!(told(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");
-        assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "a room");
+        assert!(reported(glass(), [0.1, 0.2, 0.0])[0].contains("inside a transparent object"));
+        assert!(reported(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");
+        assert!(reported(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "a room");
     }
 
     /// The warnings for a ball in the studio, with these settings.
-    fn told_of_ground(settings: &[(&str, &str)], lights: Vec<Spec>) -> String {
+    fn warnings_of_ground(settings: &[(&str, &str)], lights: Vec<Spec>) -> String {
         let mut scene = SceneBuilder { environment_unspecified: true, lights, ..SceneBuilder::default() };
         let clay = scene.add_material(Spec::new("", "diffuse"));
         scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), clay));
@@ -271,25 +274,25 @@ mod tests {
     #[test]
     fn a_ground_that_is_seen_from_below_is_left_out_with_a_warning() {
         for ground in ["shadow", "mirror"] {
-            let from = |orbit| told_of_ground(&[("ground", ground), ("orbit", orbit)], Vec::new());
-            assert!(from("30,-20").contains("there is no ground, since the camera looks up"), "{ground}");
+            let from = |orbit| warnings_of_ground(&[("ground", ground), ("orbit", orbit)], Vec::new());
+            assert!(from("30,-20").contains("--ground has no effect"), "{ground}");
             assert_eq!(from("30,20"), "", "{ground}, from above");
         }
-        assert_eq!(told_of_ground(&[("ground", "none"), ("orbit", "30,-20")], Vec::new()), "");
-        assert_eq!(told_of_ground(&[("orbit", "30,-20")], Vec::new()), "", "nobody asked for a ground");
+        assert_eq!(warnings_of_ground(&[("ground", "none"), ("orbit", "30,-20")], Vec::new()), "");
+        assert_eq!(warnings_of_ground(&[("orbit", "30,-20")], Vec::new()), "", "nobody asked for a ground");
     }
 
     #[test]
     fn a_ground_that_hides_the_background_gets_a_warning() {
         let transparent =
-            |ground| told_of_ground(&[("ground", ground), ("background", "transparent")], Vec::new());
-        assert!(transparent("mirror").contains("--ground shadow lets it through"));
+            |ground| warnings_of_ground(&[("ground", ground), ("background", "transparent")], Vec::new());
+        assert!(transparent("mirror").contains("use --ground shadow"));
         assert_eq!(transparent("shadow"), "");
         let picture = || {
             let light = Spec::new("", "environment").with("radiance", 0.5f32);
             vec![light.with("backdrop", true), Spec::new("", "environment")]
         };
-        assert!(told_of_ground(&[("ground", "mirror")], picture()).contains("leave --ground out"));
-        assert_eq!(told_of_ground(&[], picture()), "");
+        assert!(warnings_of_ground(&[("ground", "mirror")], picture()).contains("leave --ground out"));
+        assert_eq!(warnings_of_ground(&[], picture()), "");
     }
 }

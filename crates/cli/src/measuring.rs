@@ -76,7 +76,7 @@ pub struct Bench {
     /// `render`: the built-in scenes to use [default: all]
     #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
     pub gallery: Vec<String>,
-    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]; auto:WAYS restricts `auto` to one of its
+    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]; auto:TECHNIQUES restricts `auto` to one of its
     /// strategies, such as auto:path-photons
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,

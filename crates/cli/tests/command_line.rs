@@ -367,8 +367,8 @@ fn one_broken_scene_does_not_stop_the_others() {
     std::fs::write(folder.path().join("broken.obj"), "v 1 2\nf 1 2 3\n").unwrap();
     let both = ["render", "broken.obj", "pots.asc", "-o", "{stem}.png", "--size", "16x16", "--spp", "1"];
     let output = bilux(folder.path()).args(both).assert().code(1).stdout("");
-    let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-    assert!(told.contains("broken.obj:1") && told.contains("1 of 2 scenes"), "{told}");
+    let reported = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+    assert!(reported.contains("broken.obj:1") && reported.contains("1 of 2 scenes"), "{reported}");
     assert!(folder.path().join("pots.png").is_file() && !folder.path().join("broken.png").exists());
 }
 
@@ -447,9 +447,9 @@ fn a_picture_of_the_surroundings_lights_a_bare_model() {
     assert!(pixels.iter().all(|p| p.g == 0.0 && p.b == 0.0) && pixels.iter().any(|p| p.r > 0.5));
     assert!(lit != std::fs::read(path.join("studio.pfm")).unwrap());
     let missing = ["render", "pots.asc", "-o", "x.png", "--env", "nowhere.hdr"];
-    let told = bilux(path).args(missing).assert().code(1);
-    let told = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
-    assert!(told.contains("--env") && told.contains("nowhere.hdr"), "{told}");
+    let reported = bilux(path).args(missing).assert().code(1);
+    let reported = String::from_utf8_lossy(&reported.get_output().stderr).into_owned();
+    assert!(reported.contains("--env") && reported.contains("nowhere.hdr"), "{reported}");
 }
 
 /// A figure with an arm to its left and a nose in front, written with other axes, looks the same once these are named.
@@ -501,9 +501,9 @@ fn up_and_front_turn_a_model() {
     {
         assert!(apart(&picture("y.obj", &axes).0) > 0.02, "{axes:?}");
     }
-    let told = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "y", "--front", "-y"]);
-    assert!(told.contains("up and front are along one axis"), "{told}");
-    let told = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "w"]);
-    assert!(told.contains("-z"), "{told}");
+    let reported = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "y", "--front", "-y"]);
+    assert!(reported.contains("up and front lie on the same axis"), "{reported}");
+    let reported = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "w"]);
+    assert!(reported.contains("-z"), "{reported}");
     assert!(!path.join("b.pfm").exists());
 }

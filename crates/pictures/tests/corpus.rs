@@ -34,10 +34,10 @@ fn every_seed_is_recognised_by_its_first_bytes() {
         for seed in std::fs::read_dir(corpus.join(format!("picture_{}", row.entry.name))).unwrap() {
             let path = seed.unwrap().path();
             let bytes = std::fs::read(&path).unwrap();
-            let told = PICTURE_FORMATS.iter().find(|row| (row.sniff)(&bytes)).map(|row| row.entry.name);
+            let reported = PICTURE_FORMATS.iter().find(|row| (row.sniff)(&bytes)).map(|row| row.entry.name);
             // TGA has no signature, and no other format claims its files.
             let expected = Some(row.entry.name).filter(|&name| name != "tga");
-            assert_eq!(told, expected, "{}", path.display());
+            assert_eq!(reported, expected, "{}", path.display());
             let extension = path.extension().unwrap().to_string_lossy();
             assert_eq!(format_named(&extension).map(|row| row.entry.name), Some(row.entry.name));
         }

@@ -129,11 +129,11 @@ fn a_bare_model_gets_clay_and_a_floor() {
     // The rising part is the wall behind the model.
     let away = |p: &Vec3| Vec2::new(p.x - 0.5, p.z).dot(Vec2::new(-0.447, -0.894));
     assert!(floor.iter().all(|p| p.y == lowest || away(p) > 2.0));
-    let mut told = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-    told.materials[0] = Spec::new("mine", "phong").with("kd", 0.1f32);
-    let mine = told.materials[0].clone();
-    complete(&mut told, &Studio::default());
-    assert_eq!(told.materials[0], mine);
+    let mut reported = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    reported.materials[0] = Spec::new("mine", "phong").with("kd", 0.1f32);
+    let mine = reported.materials[0].clone();
+    complete(&mut reported, &Studio::default());
+    assert_eq!(reported.materials[0], mine);
 }
 
 #[test]

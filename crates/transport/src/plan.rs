@@ -28,7 +28,7 @@ pub struct Choice {
 pub struct Candidate {
     /// Its name.
     pub name: &'static str,
-    /// Its value of the parameter `ways` of `auto`.
+    /// Its value of the parameter `techniques` of `auto`.
     pub techniques: &'static str,
     /// Expected relative variance of one sample of a pixel.
     pub error: f64,

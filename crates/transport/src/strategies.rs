@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Edges of the longest paths whose techniques have pictures.
-pub const LONGEST: u32 = 8;
+pub const MAX_EDGES: u32 = 8;
 
 /// A technique for paths of one length. Ordered by length, then connections before merging, then by vertices from the
 /// light.
@@ -241,7 +241,7 @@ impl<'a> Layers<'a> {
 impl Tally<1> for Layers<'_> {
     fn here(&mut self, technique: Technique, found: &Contribution) {
         let (strategy, [x, y, _]) = (Strategy::of(technique), self.place);
-        let Some(index) = self.window.index(x, y).filter(|_| strategy.edges <= LONGEST) else { return };
+        let Some(index) = self.window.index(x, y).filter(|_| strategy.edges <= MAX_EDGES) else { return };
         let pixels = self.window.pixels();
         let light = &mut self.here.entry(strategy).or_insert_with(|| vec![[Rgb::BLACK; 2]; pixels])[index];
         light[0] += found.weighted();
@@ -250,7 +250,7 @@ impl Tally<1> for Layers<'_> {
 
     fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
         let strategy = Strategy::of(technique);
-        if strategy.edges > LONGEST {
+        if strategy.edges > MAX_EDGES {
             return;
         }
         let (settings, [x, y, sample]) = (self.settings, self.place);

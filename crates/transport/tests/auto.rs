@@ -29,8 +29,8 @@ const SETS: [&str; 8] =
     ["path", "path-light", "bdpt", "path-few", "path-photons", "path-light-few", "path-light-photons", "vcm"];
 
 /// `auto` with a prescribed set, whatever its pilot predicts.
-fn told(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
-    let spec = auto().with("ways", techniques).with("radius", RADIUS).with("alpha", 1.0f32);
+fn reported(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
+    let spec = auto().with("techniques", techniques).with("radius", RADIUS).with("alpha", 1.0f32);
     integrators::build(&spec.with("aim", aim)).unwrap()
 }
 
@@ -75,7 +75,7 @@ fn the_noise_of_every_set_is_predicted() {
         }
     }
     for (set, foreseen) in SETS.into_iter().zip(foreseen) {
-        let measured = measured(&scene, &*told(set, false), 60);
+        let measured = measured(&scene, &*reported(set, false), 60);
         let ratio = foreseen / measured;
         assert!((0.8..1.25).contains(&ratio), "{set}: foreseen {foreseen}, measured {measured}");
     }
@@ -150,13 +150,15 @@ fn aimed_light_paths_find_the_same_light_with_less_noise() {
     for light in ["rect", "sphere", "point", "spot", "sun", "sky"] {
         let scene = built(&lit_by(light));
         // `path` is no reference for what only light subpaths find.
-        let p =
-            agreement(&blocks(&scene, &*told("bdpt", false), 0), &blocks(&scene, &*told("bdpt", true), 100));
+        let p = agreement(
+            &blocks(&scene, &*reported("bdpt", false), 0),
+            &blocks(&scene, &*reported("bdpt", true), 100),
+        );
         assert!(p > 1e-4, "{light}: p = {p}");
         if ["sphere", "spot"].contains(&light) {
             continue;
         }
-        let [plain, aimed] = [false, true].map(|aim| measured(&scene, &*told("path-light", aim), 24));
+        let [plain, aimed] = [false, true].map(|aim| measured(&scene, &*reported("path-light", aim), 24));
         // A sky has no caustics that camera subpaths would not find with less noise.
         let bound = if light == "sky" { 2.0 } else { 1.05 };
         assert!(aimed < bound * plain, "{light}: {aimed} with aim, {plain} without");
@@ -179,9 +181,9 @@ fn light_that_path_cannot_find_is_not_lost() {
 #[test]
 fn merging_sets_are_refused_when_merging_is_off() {
     let spec = auto().with("merge", "never");
-    let error = integrators::build(&spec.clone().with("ways", "path-few")).err().unwrap().to_string();
+    let error = integrators::build(&spec.clone().with("techniques", "path-few")).err().unwrap().to_string();
     assert!(error.contains("'path-few' merges"), "{error}");
-    assert!(integrators::build(&spec.with("ways", "bdpt")).is_ok());
+    assert!(integrators::build(&spec.with("techniques", "bdpt")).is_ok());
 }
 
 #[test]
@@ -192,7 +194,7 @@ fn a_camera_that_sees_nothing_gets_a_black_picture() {
     look(&mut builder, Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.1), 40.0);
     let scene = built(&builder);
     for techniques in ["auto", "path-photons", "vcm"] {
-        let auto = integrators::build(&auto().with("ways", techniques)).unwrap();
+        let auto = integrators::build(&auto().with("techniques", techniques)).unwrap();
         let film = shoot(&scene, &*auto, &RenderSettings::new(16, 8, 2)).film;
         assert!(film.to_rgb().iter().all(|pixel| pixel.is_black()), "{techniques}");
     }

@@ -83,7 +83,7 @@ fn a_surface_that_is_near_is_the_same_to_the_bit() {
 }
 
 /// Squared noise in every texel.
-fn grain(seed: u64, number: impl Fn(f32) -> f32, is_data: bool) -> Arc<Texture> {
+fn noise(seed: u64, number: impl Fn(f32) -> f32, is_data: bool) -> Arc<Texture> {
     let noise = |i: usize| unit_f32(hash_words([seed, i as u64]) as u32);
     let texel = |i: usize| Rgb::grey(number(noise(i) * noise(i)));
     Arc::new(Texture::new("", 64, 64, (0..64 * 64).map(texel).collect(), is_data))
@@ -93,9 +93,9 @@ fn grain(seed: u64, number: impl Fn(f32) -> f32, is_data: bool) -> Arc<Texture> 
 /// is clear, so that the width of the filter shows in the mean; their roughness varies as finely.
 fn fine_noise() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
-    builder.textures.push(grain(1, |x| x, false));
-    builder.textures.push(grain(1, |x| 1.0 - x, false));
-    builder.textures.push(grain(2, |x| 0.2 + 0.8 * x, true));
+    builder.textures.push(noise(1, |x| x, false));
+    builder.textures.push(noise(1, |x| 1.0 - x, false));
+    builder.textures.push(noise(2, |x| 0.2 + 0.8 * x, true));
     let material = Spec::new("", "principled")
         .with("base_color", Value::Texture(0))
         .with("coat_weight", 1.0f32)
@@ -115,7 +115,7 @@ fn fine_noise() -> SceneBuilder {
 #[test]
 fn filtered_textures_look_the_same_from_both_ends() {
     let [_, filtered] = both(&fine_noise(), 16);
-    assert_like_path("fine grain", &filtered, &["light", "bdpt", "vcm", "auto"]);
+    assert_like_path("fine noise", &filtered, &["light", "bdpt", "vcm", "auto"]);
 }
 
 /// A planted bug: a footprint as seen from the light, where a light subpath comes from.

@@ -126,10 +126,11 @@ fn runs_of_one_sequence_are_not_independent() {
     let ((scene, truth), path) = (&*KNOWN, integrator("path"));
     let (mut held, mut all) = (0, 0);
     for seed in 0..SEEDS {
-        let told = as_if_independent(scene, &*path, seed);
-        for (window, told) in Window::whole(SIDE, SIDE).tiles(4).iter().zip(told) {
-            if told.half_width > 1e-5 * told.mean {
-                held += u32::from((told.mean - truth.luminance(window).mean).abs() <= told.half_width);
+        let reported = as_if_independent(scene, &*path, seed);
+        for (window, reported) in Window::whole(SIDE, SIDE).tiles(4).iter().zip(reported) {
+            if reported.half_width > 1e-5 * reported.mean {
+                held +=
+                    u32::from((reported.mean - truth.luminance(window).mean).abs() <= reported.half_width);
                 all += 1;
             }
         }
@@ -160,8 +161,11 @@ fn intervals_are_the_same_whatever_threads_tiles_and_parts() {
         assert!(joined == all.film, "{name}");
         // The mean is that of the picture.
         let (x, y) = window.position(31);
-        let (told, shown) = (interval.channel(&Window::pixel((x, y)), 1).mean, all.film.pixel(x, y).g);
-        assert!((told - f64::from(shown)).abs() <= 1e-5 * told && told > 0.0, "{name}: {told} {shown}");
+        let (reported, shown) = (interval.channel(&Window::pixel((x, y)), 1).mean, all.film.pixel(x, y).g);
+        assert!(
+            (reported - f64::from(shown)).abs() <= 1e-5 * reported && reported > 0.0,
+            "{name}: {reported} {shown}"
+        );
     }
 }
 

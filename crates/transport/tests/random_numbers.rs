@@ -13,9 +13,9 @@ use common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
 /// which a path continues.
 fn two_coloured(builder: &mut SceneBuilder) -> Spec {
     let mirror = Spec::new("", "mirror").with("reflectance", Rgb::new(0.9, 0.2, 0.4));
-    let matt = Spec::new("", "diffuse").with("reflectance", Rgb::new(0.1, 0.5, 0.2));
-    let (mirror, matt) = (builder.add_material(mirror), builder.add_material(matt));
-    let mix = Spec::new("", "mix").with("a", Value::Material(mirror)).with("b", Value::Material(matt));
+    let diffuse = Spec::new("", "diffuse").with("reflectance", Rgb::new(0.1, 0.5, 0.2));
+    let (mirror, diffuse) = (builder.add_material(mirror), builder.add_material(diffuse));
+    let mix = Spec::new("", "mix").with("a", Value::Material(mirror)).with("b", Value::Material(diffuse));
     mix.with("amount", 0.5f32)
 }
 

@@ -135,7 +135,7 @@ fn one_surface(builder: &mut SceneBuilder, material: &Spec) {
 /// direct light too. Its own radius would be a tenth of the scene with so few pixels, and blur the light at the sheet's
 /// foot.
 fn merging(radius: f32) -> Spec {
-    Spec::new("", "auto").with("ways", "vcm").with("radius", radius)
+    Spec::new("", "auto").with("techniques", "vcm").with("radius", radius)
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn of(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Strategies
 
 /// Diffuse bodies that do not touch, so that no two vertices come close and the variance of each technique is finite; a
 /// large panel, seen through a large lens.
-fn matt() -> SceneBuilder {
+fn diffuse_scene() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.8, 0.6, 0.5)));
     let wall = quad(Vec3::new(-2.0, 0.6, -2.2), Vec3::X * 4.0, Vec3::Y * 2.0);
@@ -83,7 +83,8 @@ fn spoilt(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
 
 #[test]
 fn all_strategies_find_the_same_light() {
-    let (scene, bdpt) = (built(&matt()), Spec::new("", "bdpt").with("roulette_depth", Value::Integer(1)));
+    let (scene, bdpt) =
+        (built(&diffuse_scene()), Spec::new("", "bdpt").with("roulette_depth", Value::Integer(1)));
     let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, 256) };
     let [all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &bdpt, seed, &settings)));
     // Paths of 2 to 4 edges, by 3 to 5 techniques each.
@@ -104,7 +105,7 @@ fn all_strategies_find_the_same_light() {
 
 #[test]
 fn merging_finds_the_same_light_with_a_small_radius() {
-    let scene = built(&matt());
+    let scene = built(&diffuse_scene());
     let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, 128) };
     let vcm = Spec::new("", "vcm").with("radius", 0.02f32).with("alpha", 1.0f32);
     let [mut all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &vcm, seed, &settings)));
@@ -145,7 +146,7 @@ fn weighted_strategies_add_up_to_the_picture() {
 #[test]
 fn light_paths_of_a_part_of_the_pixels_are_weighted_as_in_the_picture() {
     // There the photons are connected with the camera; here every pixel has a light subpath of its own.
-    let scene = built(&matt());
+    let scene = built(&diffuse_scene());
     let vcm = Spec::new("", "vcm")
         .with("joins", false)
         .with("light_paths", Value::Integer(90))
@@ -178,12 +179,12 @@ fn the_same_for_any_number_of_threads() {
     };
     let (one, three) = (pictures(1), pictures(3));
     assert!(one == three && one.windows(2).all(|pair| pair[0].strategy < pair[1].strategy));
-    assert!(one.iter().all(|picture| picture.strategy.edges <= bilux_transport::strategies::LONGEST));
+    assert!(one.iter().all(|picture| picture.strategy.edges <= bilux_transport::strategies::MAX_EDGES));
 }
 
 #[test]
 fn those_without_strategies_say_so() {
-    let mut builder = matt();
+    let mut builder = diffuse_scene();
     builder.cameras.clear();
     look(&mut builder, Vec3::new(0.0, 1.8, 4.2), Vec3::Y, 50.0);
     let scene = built(&builder);

@@ -11,7 +11,7 @@
 //! disagrees.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
-use bilux_validation::agreement::{Comparison, Evidence, Stage, Technique, shipped, stages, ways};
+use bilux_validation::agreement::{Comparison, Evidence, Stage, Technique, shipped, stages, techniques};
 use bilux_validation::statistics::{bars, evenness, histogram};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -71,26 +71,27 @@ fn line(pair: &str, found: &Comparison, more: &str) {
 
 /// Compares all pairs of techniques on one stage: whether all agree, and the number of decided cells.
 fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<(bool, usize), Box<dyn Error>> {
-    let ways: Vec<Technique> = ways();
+    let techniques: Vec<Technique> = techniques();
     let mut rendered = Vec::new();
-    for (i, way) in ways.iter().enumerate() {
-        let is_wanted = ways.iter().any(|other| other.name != way.name && stage.compares(way, other));
+    for (i, technique) in techniques.iter().enumerate() {
+        let is_wanted =
+            techniques.iter().any(|other| other.name != technique.name && stage.compares(technique, other));
         let seed = (arguments.seed << 16) + ((i as u64) << 12);
-        rendered.push(is_wanted.then(|| stage.render_for(way, arguments.seconds, seed)).transpose()?);
+        rendered.push(is_wanted.then(|| stage.render_for(technique, arguments.seconds, seed)).transpose()?);
     }
-    let samples = |(way, of): (&Technique, &Option<Evidence>)| {
-        of.as_ref().map(|of| format!("{} {}", way.name, of.spp * of.cells[0].len() as u32))
+    let samples = |(technique, of): (&Technique, &Option<Evidence>)| {
+        of.as_ref().map(|of| format!("{} {}", technique.name, of.spp * of.cells[0].len() as u32))
     };
-    let samples: Vec<String> = ways.iter().zip(&rendered).filter_map(samples).collect();
+    let samples: Vec<String> = techniques.iter().zip(&rendered).filter_map(samples).collect();
     println!("{} (samples a pixel: {})", stage.name, samples.join(", "));
     let (mut agrees, mut decided) = (true, 0);
-    for (i, a) in ways.iter().enumerate() {
+    for (i, a) in techniques.iter().enumerate() {
         let Some(of_a) = &rendered[i] else { continue };
         let itself = stage.against_itself(of_a);
         let name = format!("{0} {0}", a.name);
         line(&name, &itself, "");
         all.entry(name).or_default().extend(itself.green);
-        for (k, b) in ways.iter().enumerate().skip(i + 1).filter(|(_, b)| stage.compares(a, b)) {
+        for (k, b) in techniques.iter().enumerate().skip(i + 1).filter(|(_, b)| stage.compares(a, b)) {
             let Some(of_b) = &rendered[k] else { continue };
             let name = format!("{} {}", a.name, b.name);
             let found = stage.compare((a, of_a), (b, of_b));
@@ -100,8 +101,9 @@ fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<(bool, u
             } else {
                 line(&name, &found, "  once more:");
                 let seed = (arguments.seed << 16) + (1 << 15);
-                let again = [(a, 0), (b, 1 << 10)]
-                    .map(|(way, offset)| stage.render_for(way, 4.0 * arguments.seconds, seed + offset));
+                let again = [(a, 0), (b, 1 << 10)].map(|(technique, offset)| {
+                    stage.render_for(technique, 4.0 * arguments.seconds, seed + offset)
+                });
                 let [of_a, of_b] = again;
                 let again = stage.compare((a, &of_a?), (b, &of_b?));
                 let differs = again.least() < UNLIKELY;

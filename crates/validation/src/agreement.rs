@@ -52,15 +52,15 @@ pub struct Technique {
 }
 
 /// All unbiased techniques.
-pub fn ways() -> Vec<Technique> {
-    let way =
+pub fn techniques() -> Vec<Technique> {
+    let technique =
         |name, spec, finds_points, finds_mirrored| Technique { name, spec, finds_points, finds_mirrored };
     vec![
-        way("path", Spec::new("", "path"), false, true),
-        way("light", Spec::new("", "light"), true, false),
-        way("bdpt", Spec::new("", "bdpt"), true, true),
-        way("vcm", Spec::new("", "vcm").with("radius", 0.0f32), true, true),
-        way("auto", Spec::new("", "auto").with("merge", "never"), false, true),
+        technique("path", Spec::new("", "path"), false, true),
+        technique("light", Spec::new("", "light"), true, false),
+        technique("bdpt", Spec::new("", "bdpt"), true, true),
+        technique("vcm", Spec::new("", "vcm").with("radius", 0.0f32), true, true),
+        technique("auto", Spec::new("", "auto").with("merge", "never"), false, true),
     ]
 }
 
@@ -242,8 +242,13 @@ impl Stage {
     ///
     /// # Errors
     /// As [`Stage::render`].
-    pub fn render_for(&self, way: &Technique, seconds: f64, first_seed: u64) -> Result<Evidence, Error> {
-        let integrator = integrators::build(&way.spec)?;
+    pub fn render_for(
+        &self,
+        technique: &Technique,
+        seconds: f64,
+        first_seed: u64,
+    ) -> Result<Evidence, Error> {
+        let integrator = integrators::build(&technique.spec)?;
         let mut spp = 1;
         loop {
             let begun = Instant::now();

@@ -4,7 +4,7 @@
 use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
 use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
-use bilux_validation::agreement::{Evidence, Stage, Technique, stages, ways};
+use bilux_validation::agreement::{Evidence, Stage, Technique, stages, techniques};
 use bilux_validation::statistics::{evenness, histogram};
 
 /// A p-value below this means a bug, not chance.
@@ -16,9 +16,9 @@ fn pictures(stage: &Stage, integrator: &dyn PixelIntegrator, spp: u32, seed: u64
     stage.render(integrator, spp, seed, PICTURES).unwrap()
 }
 
-fn of_way(stage: &Stage, way: &Technique, seed: u64) -> Evidence {
-    let spp = if way.name == "light" { 64 } else { 16 };
-    pictures(stage, &*integrators::build(&way.spec).unwrap(), spp, seed)
+fn of_way(stage: &Stage, technique: &Technique, seed: u64) -> Evidence {
+    let spp = if technique.name == "light" { 64 } else { 16 };
+    pictures(stage, &*integrators::build(&technique.spec).unwrap(), spp, seed)
 }
 
 /// Scenes whose light is found quickly: diffuse surfaces, mirrors and glass, lights, a sun and a sky.
@@ -34,18 +34,19 @@ fn scenes() -> Vec<(&'static str, SceneBuilder)> {
 
 #[test]
 fn all_unbiased_integrators_agree_block_by_block() {
-    let (ways, mut by_chance, mut decided) = (ways(), Vec::new(), 0);
+    let (techniques, mut by_chance, mut decided) = (techniques(), Vec::new(), 0);
     for (name, scene) in scenes() {
         for stage in stages(name, &scene, [32, 24]).unwrap() {
-            let compared =
-                |way: &Technique| ways.iter().any(|b| b.name != way.name && stage.compares(way, b));
-            let found: Vec<Option<Evidence>> = (ways.iter().enumerate())
-                .map(|(i, way)| compared(way).then(|| of_way(&stage, way, 1000 * i as u64)))
+            let compared = |technique: &Technique| {
+                techniques.iter().any(|b| b.name != technique.name && stage.compares(technique, b))
+            };
+            let found: Vec<Option<Evidence>> = (techniques.iter().enumerate())
+                .map(|(i, technique)| compared(technique).then(|| of_way(&stage, technique, 1000 * i as u64)))
                 .collect();
-            for (i, a) in ways.iter().enumerate() {
+            for (i, a) in techniques.iter().enumerate() {
                 let Some(of_a) = &found[i] else { continue };
                 by_chance.extend(stage.against_itself(of_a).green);
-                for (b, of_b) in ways.iter().zip(&found).skip(i + 1) {
+                for (b, of_b) in techniques.iter().zip(&found).skip(i + 1) {
                     let Some(of_b) = of_b else { continue };
                     if stage.compares(a, b) {
                         let comparison = stage.compare((a, of_a), (b, of_b));
@@ -84,10 +85,10 @@ impl PixelIntegrator for Buggy {
 
 #[test]
 fn a_biased_integrator_is_detected() {
-    let ways = ways();
+    let techniques = techniques();
     let cornell = bilux::generate(&Spec::new("", "cornell")).unwrap();
     let stage = &stages("cornell", &cornell, [32, 24]).unwrap()[0];
-    let (path, bdpt) = (&ways[0], &ways[2]);
+    let (path, bdpt) = (&techniques[0], &techniques[2]);
     let of_path = of_way(stage, path, 0);
     let least = |camera_paths, forgets_splats| {
         let integrator = integrators::build(&bdpt.spec).unwrap();

@@ -19,14 +19,14 @@ impl Measured {
     /// Compares a row with that of `auto` within the same budget.
     pub(super) fn compared(&self, row: &Row) -> Compared {
         let Some(auto) = find(self, "auto", row.seconds) else { return Compared::default() };
-        let ways = match row.integrator.split_once(':') {
-            Some((_, ways)) => ways,
+        let techniques = match row.integrator.split_once(':') {
+            Some((_, techniques)) => techniques,
             None => &row.integrator,
         };
         let foreseen = auto.choice.as_ref().and_then(|choice| {
             let best = choice.best();
-            let candidate = choice.candidates.iter().find(|candidate| candidate.techniques == ways);
-            let candidate = if ways == "auto" { Some(best) } else { candidate };
+            let candidate = choice.candidates.iter().find(|candidate| candidate.techniques == techniques);
+            let candidate = if techniques == "auto" { Some(best) } else { candidate };
             candidate.map(|candidate| candidate.time_to_error() / best.time_to_error())
         });
         let time = row.took / auto.took;

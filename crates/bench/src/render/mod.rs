@@ -64,7 +64,7 @@ pub struct Options {
     pub read: ReadOptions,
     /// The CPU seconds that each of the two integrators spends on the reference of a file.
     pub reference_seconds: f64,
-    /// Names of integrators, `auto:WAYS` for one set of techniques of `auto`; if empty, the default ones.
+    /// Names of integrators, `auto:TECHNIQUES` for one set of techniques of `auto`; if empty, the default ones.
     pub integrators: Vec<String>,
     /// CPU seconds per picture, summed over all threads.
     pub seconds: Vec<f64>,
@@ -297,10 +297,10 @@ fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<Shot, Error> {
 
 fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {
     let mut settings = Parameters::default();
-    let (name, ways) = integrator.split_once(':').unwrap_or((integrator, ""));
+    let (name, techniques) = integrator.split_once(':').unwrap_or((integrator, ""));
     settings.set("integrator", name);
-    if !ways.is_empty() {
-        settings.set("ways", ways);
+    if !techniques.is_empty() {
+        settings.set("techniques", techniques);
     }
     settings.set("size", Setting::Text(format!("{}x{}", SIZE.0, SIZE.1)));
     settings.set("spp", Setting::Integer(i64::from(samples)));

@@ -199,12 +199,12 @@ impl Witness {
         let pixels = a.iter().zip(&b).map(|(a, b)| (*a * of_a as f32 + *b * of_b as f32).map(shortened));
         let pixels: Vec<Rgb> = pixels.collect();
         let [e, f] = [self, other].map(|w| w.error_relative_to(&pixels));
-        let told = |w: &Witness| {
+        let reported = |w: &Witness| {
             format!("{} {} samples a pixel", w.name, u64::from(w.samples) * w.parts.len() as u64)
         };
         Reference {
             relmse: of_a * of_a * e + of_b * of_b * f,
-            origin: format!("{} and {}", told(self), told(other)),
+            origin: format!("{} and {}", reported(self), reported(other)),
             pixels,
         }
     }

@@ -373,9 +373,13 @@ mod tests {
         user.set("integrator", Value::Text("path".to_owned()));
         user.set("roulette_depth", Value::Integer(3));
         assert!(Settings::resolve(&user).unwrap().unused_settings(&user).is_empty());
-        user.set("ways", Value::Text("vcm".to_owned()));
-        let told = Settings::resolve(&user).unwrap().unused_settings(&user);
-        assert_eq!(told.len(), 1);
-        assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
+        user.set("techniques", Value::Text("vcm".to_owned()));
+        let reported = Settings::resolve(&user).unwrap().unused_settings(&user);
+        assert_eq!(reported.len(), 1);
+        assert!(
+            reported[0].message.contains("'techniques'") && reported[0].message.contains("'auto'"),
+            "{}",
+            reported[0]
+        );
     }
 }

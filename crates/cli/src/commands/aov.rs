@@ -11,7 +11,7 @@ use bilux::pictures::formats::format_of_path;
 use bilux::scene::SceneError;
 use bilux::strategies::{Light, picture, sheet};
 use bilux::transport::aovs::{self, AOVS, Aov};
-use bilux::transport::{Interval, Strategies, integrators, strategies::LONGEST};
+use bilux::transport::{Interval, Strategies, integrators, strategies::MAX_EDGES};
 use bilux::{Job, Outcome};
 use std::path::{Path, PathBuf};
 
@@ -85,7 +85,7 @@ pub fn write(
     write_strategies(&strategies, &folder, &job.write_options()?)?;
     if !common.quiet {
         output::say(format_args!(
-            "{}: {} strategies for paths of up to {LONGEST} edges, {seconds:.2} s{}",
+            "{}: {} strategies for paths of up to {MAX_EDGES} edges, {seconds:.2} s{}",
             folder.display(),
             strategies.pictures.len(),
             longer(&strategies, outcome),

@@ -18,45 +18,45 @@ pub(crate) fn assemble(
     reading: &mut Reading,
     source: &Source,
     place: &dyn Fn(u64) -> Span,
-    mut soup: IndexedFaces,
+    mut indexed: IndexedFaces,
     mut materials: HashMap<String, usize>,
     scene: &mut SceneBuilder,
     oddities: &mut Oddities,
 ) -> Result<(), FormatError> {
-    check_indices(&mut soup, place, oddities)?;
-    add_normals(reading, source, &mut soup)?;
-    reading.budget.take_bytes((soup.positions.len() * size_of::<Slot>()) as u64, source.name)?;
+    check_indices(&mut indexed, place, oddities)?;
+    add_normals(reading, source, &mut indexed)?;
+    reading.budget.take_bytes((indexed.positions.len() * size_of::<Slot>()) as u64, source.name)?;
     // A polygon has two triangles fewer than it has corners.
-    let triangles = soup.faces.corner_count() - 2 * soup.faces.len();
+    let triangles = indexed.faces.corner_count() - 2 * indexed.faces.len();
     reading.budget.take::<[u32; 3]>(triangles, source.name)?;
-    let faces = std::mem::take(&mut soup.faces);
-    let mut welder = Welder::new(soup.positions.len());
+    let faces = std::mem::take(&mut indexed.faces);
+    let mut welder = Welder::new(indexed.positions.len());
     let mut triangulator = Triangulator::default();
-    let mut rooms = rooms(&soup, &faces).into_iter();
-    let mut piece = Piece::new(&soup, rooms.next());
+    let mut rooms = rooms(&indexed, &faces).into_iter();
+    let mut piece = Piece::new(&indexed, rooms.next());
     let mut run = 0;
     let mut finish = |piece: Piece, run: &Run, oddities: &mut Oddities| {
         let name = if run.name.is_empty() { source.stem() } else { run.name.clone() };
         let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, oddities) };
-        let material = material_of(run, &soup, &mut materials, place, scene, oddities);
+        let material = material_of(run, &indexed, &mut materials, place, scene, oddities);
         scene.objects.push(Object::new(&name, Arc::new(mesh), material));
     };
     // Corners are freed as triangles are made from them: holding both would be the peak of memory.
     faces.consume(|face, corners| {
-        if soup.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
-            let done = std::mem::replace(&mut piece, Piece::new(&soup, rooms.next()));
-            finish(done, &soup.runs[run], oddities);
+        if indexed.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
+            let done = std::mem::replace(&mut piece, Piece::new(&indexed, rooms.next()));
+            finish(done, &indexed.runs[run], oddities);
             (run, welder.run) = (run + 1, welder.run + 1);
         }
         let made = piece.made.len();
         if piece.add_face(corners, &mut welder, &mut triangulator).is_none() {
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
-            oddities.note(what, || place(soup.places.at(face)));
+            oddities.note(what, || place(indexed.places.at(face)));
         }
         reading.budget.take::<Vertex>(piece.made.len() - made, source.name)
     })?;
-    if let Some(last) = soup.runs.get(run) {
+    if let Some(last) = indexed.runs.get(run) {
         finish(piece, last, oddities);
     }
     Ok(())
@@ -69,11 +69,11 @@ struct Room {
     faces: usize,
 }
 
-fn rooms(soup: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
-    let mut rooms = vec![Room::default(); soup.runs.len()];
+fn rooms(indexed: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
+    let mut rooms = vec![Room::default(); indexed.runs.len()];
     let mut run = 0;
     for (face, corners) in faces.iter().enumerate() {
-        run += usize::from(soup.runs.get(run + 1).is_some_and(|next| next.first_face <= face));
+        run += usize::from(indexed.runs.get(run + 1).is_some_and(|next| next.first_face <= face));
         rooms[run].corners += corners.len();
         rooms[run].faces += 1;
     }
@@ -84,15 +84,15 @@ fn rooms(soup: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
 ///
 /// A corner without a position is invalid; one without the rest is not.
 fn check_indices(
-    soup: &mut IndexedFaces,
+    indexed: &mut IndexedFaces,
     place: &dyn Fn(u64) -> Span,
     oddities: &mut Oddities,
 ) -> Result<(), FormatError> {
     let mut first_fault = None;
-    let counts = [soup.positions.len(), soup.uvs.len(), soup.normals.len()].map(|n| n as u32);
-    let places = &soup.places;
+    let counts = [indexed.positions.len(), indexed.uvs.len(), indexed.normals.len()].map(|n| n as u32);
+    let places = &indexed.places;
     let mut left_out: Vec<usize> = Vec::new();
-    for (face, corner) in soup.faces.corners_mut() {
+    for (face, corner) in indexed.faces.corners_mut() {
         if corner[0] >= counts[0] {
             let is_first = left_out.last() != Some(&face);
             if is_first {
@@ -102,11 +102,11 @@ fn check_indices(
             if corner[0] == NONE {
                 continue;
             }
-            let (named, count) = (u64::from(corner[0]) + u64::from(soup.first_vertex), counts[0]);
-            let from = if soup.first_vertex == 0 { ", counted from 0" } else { "" };
+            let (named, count) = (u64::from(corner[0]) + u64::from(indexed.first_vertex), counts[0]);
+            let from = if indexed.first_vertex == 0 { ", counted from 0" } else { "" };
             let message = format!("this face refers to vertex {named}, but the file has only {count}{from}");
             let at = || place(places.at(face));
-            if !soup.leaves_out || count == 0 {
+            if !indexed.leaves_out || count == 0 {
                 return Err(FormatError::malformed(message, at()));
             }
             if is_first {
@@ -123,12 +123,12 @@ fn check_indices(
             }
         }
     }
-    if left_out.len() == soup.faces.len() {
-        return soup.first_fault.take().or(first_fault).map_or(Ok(()), Err);
+    if left_out.len() == indexed.faces.len() {
+        return indexed.first_fault.take().or(first_fault).map_or(Ok(()), Err);
     }
     // A face whose corners coincide has no area.
     let mut left_out = left_out.into_iter().peekable();
-    for (face, corner) in soup.faces.corners_mut() {
+    for (face, corner) in indexed.faces.corners_mut() {
         while left_out.next_if(|&gone| gone < face).is_some() {}
         if left_out.peek() == Some(&face) {
             corner[0] = 0;
@@ -138,46 +138,51 @@ fn check_indices(
 }
 
 /// Computes normals for corners without one, by smoothing groups or the crease angle.
-fn add_normals(reading: &mut Reading, source: &Source, soup: &mut IndexedFaces) -> Result<(), FormatError> {
-    let lacking = soup.faces.iter().flatten().any(|corner| corner[2] == NONE);
-    let mixed = lacking && !soup.normals.is_empty();
+fn add_normals(
+    reading: &mut Reading,
+    source: &Source,
+    indexed: &mut IndexedFaces,
+) -> Result<(), FormatError> {
+    let lacking = indexed.faces.iter().flatten().any(|corner| corner[2] == NONE);
+    let mixed = lacking && !indexed.normals.is_empty();
     let angle = reading.crease_angle;
     if !lacking || (angle <= 0.0 && !mixed) {
         return Ok(());
     }
     if angle <= 0.0 {
-        soup.smoothing = vec![(0, FLAT)];
+        indexed.smoothing = vec![(0, FLAT)];
     }
     // Each corner takes its position, its neighbours' entry, its face and at most one normal; each face its own
     // normal, and each position its neighbours.
-    let needed = 24 * soup.faces.corner_count() + 24 * (soup.faces.len() + soup.positions.len());
+    let needed = 24 * indexed.faces.corner_count() + 24 * (indexed.faces.len() + indexed.positions.len());
     reading.budget.take_bytes(needed as u64, source.name)?;
-    let mut corners = Vec::with_capacity(soup.faces.corner_count());
-    corners.extend(soup.faces.iter().flatten().map(|corner| corner[0]));
+    let mut corners = Vec::with_capacity(indexed.faces.corner_count());
+    corners.extend(indexed.faces.iter().flatten().map(|corner| corner[0]));
     let mut ends = Vec::new();
-    if soup.faces.iter().any(|corners| corners.len() != 3) {
+    if indexed.faces.iter().any(|corners| corners.len() != 3) {
         let mut end = 0;
-        ends.extend(soup.faces.iter().map(|corners| {
+        ends.extend(indexed.faces.iter().map(|corners| {
             end += corners.len() as u32;
             end
         }));
     }
-    let faces = Faces { positions: &soup.positions, corners, ends, smoothing: soup.smoothing_of_each() };
+    let faces =
+        Faces { positions: &indexed.positions, corners, ends, smoothing: indexed.smoothing_of_each() };
     let found = if mixed { Some(faces.all_corner_normals(angle)) } else { faces.corner_normals(angle) };
     let Some(found) = found else { return Ok(()) };
-    let given = soup.normals.len() as u32;
-    let corners = soup.faces.corners_mut().map(|(_, corner)| corner);
+    let given = indexed.normals.len() as u32;
+    let corners = indexed.faces.corners_mut().map(|(_, corner)| corner);
     for (corner, index) in corners.zip(found.of_corner).filter(|(corner, _)| corner[2] == NONE) {
         corner[2] = given + index;
     }
-    soup.normals.extend(found.normals);
+    indexed.normals.extend(found.normals);
     Ok(())
 }
 
 /// The material of a run: one that was read, or a plain one in its place.
 pub(crate) fn material_of(
     run: &Run,
-    soup: &IndexedFaces,
+    indexed: &IndexedFaces,
     materials: &mut HashMap<String, usize>,
     place: &dyn Fn(u64) -> Span,
     scene: &mut SceneBuilder,
@@ -197,7 +202,7 @@ pub(crate) fn material_of(
         );
         oddities.note(&what, || place(offset));
     }
-    let mut spec = plain_material(!soup.colours.is_empty(), !soup.specular.is_empty());
+    let mut spec = plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty());
     if offset.is_some() {
         name.clone_into(&mut spec.name);
     }
@@ -230,7 +235,7 @@ impl Welder {
 
 /// A mesh under construction.
 struct Piece<'s> {
-    soup: &'s IndexedFaces,
+    indexed: &'s IndexedFaces,
     mesh: Mesh,
     /// For each vertex its uv, its normal, and the next vertex at the same position.
     made: Vec<[u32; 3]>,
@@ -241,22 +246,22 @@ struct Piece<'s> {
 
 impl<'s> Piece<'s> {
     /// Reserves memory for all triangles and the likely number of vertices; unused memory costs nothing.
-    fn new(soup: &'s IndexedFaces, room: Option<Room>) -> Piece<'s> {
+    fn new(indexed: &'s IndexedFaces, room: Option<Room>) -> Piece<'s> {
         let Room { corners, faces } = room.unwrap_or_default();
-        let longest = soup.positions.len().max(soup.uvs.len()).max(soup.normals.len());
+        let longest = indexed.positions.len().max(indexed.uvs.len()).max(indexed.normals.len());
         let vertices = corners.min(longest);
         let of = |wanted: bool| if wanted { vertices } else { 0 };
         let mesh = Mesh {
             positions: Vec::with_capacity(vertices),
-            uvs: Vec::with_capacity(of(!soup.uvs.is_empty())),
-            normals: Vec::with_capacity(of(!soup.normals.is_empty())),
-            vertex_kd: Vec::with_capacity(of(!soup.colours.is_empty())),
-            vertex_ks: Vec::with_capacity(of(!soup.specular.is_empty())),
+            uvs: Vec::with_capacity(of(!indexed.uvs.is_empty())),
+            normals: Vec::with_capacity(of(!indexed.normals.is_empty())),
+            vertex_kd: Vec::with_capacity(of(!indexed.colours.is_empty())),
+            vertex_ks: Vec::with_capacity(of(!indexed.specular.is_empty())),
             triangles: Vec::with_capacity(corners - 2 * faces),
             ..Mesh::default()
         };
         let made = Vec::with_capacity(vertices);
-        Piece { soup, mesh, made, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
+        Piece { indexed, mesh, made, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
     }
 
     /// Returns `None` if a polygon could not be triangulated properly.
@@ -302,22 +307,22 @@ impl<'s> Piece<'s> {
     }
 
     fn push_attributes(&mut self, [position, uv, normal]: Corner) {
-        let (soup, mesh) = (self.soup, &mut self.mesh);
-        mesh.positions.push(soup.positions[position as usize]);
-        if !soup.uvs.is_empty() {
-            let given = soup.uvs.get(uv as usize);
+        let (indexed, mesh) = (self.indexed, &mut self.mesh);
+        mesh.positions.push(indexed.positions[position as usize]);
+        if !indexed.uvs.is_empty() {
+            let given = indexed.uvs.get(uv as usize);
             self.has_uvs |= given.is_some();
             self.lacks_uvs |= given.is_none();
             mesh.uvs.push(given.copied().unwrap_or(Vec2::ZERO));
         }
-        if !soup.normals.is_empty() {
-            mesh.normals.push(soup.normals.get(normal as usize).copied().unwrap_or(Vec3::ZERO));
+        if !indexed.normals.is_empty() {
+            mesh.normals.push(indexed.normals.get(normal as usize).copied().unwrap_or(Vec3::ZERO));
         }
-        if !soup.colours.is_empty() {
-            mesh.vertex_kd.push(soup.colours.get(position as usize).copied().unwrap_or(Rgb::WHITE));
+        if !indexed.colours.is_empty() {
+            mesh.vertex_kd.push(indexed.colours.get(position as usize).copied().unwrap_or(Rgb::WHITE));
         }
-        if !soup.specular.is_empty() {
-            mesh.vertex_ks.push(soup.specular.get(position as usize).copied().unwrap_or(Rgb::WHITE));
+        if !indexed.specular.is_empty() {
+            mesh.vertex_ks.push(indexed.specular.get(position as usize).copied().unwrap_or(Rgb::WHITE));
         }
     }
 
@@ -327,7 +332,7 @@ impl<'s> Piece<'s> {
             self.mesh.uvs = Vec::new();
         } else if self.lacks_uvs {
             let what = "some corners of an object have no texture coordinates; they are set to 0";
-            oddities.note(what, || place(self.soup.places.at(run.first_face)));
+            oddities.note(what, || place(self.indexed.places.at(run.first_face)));
         }
         let mesh = &mut self.mesh;
         mesh.positions.shrink_to_fit();

@@ -38,7 +38,7 @@ fn read_in_blocks(
         reading,
         source,
         lines: 0,
-        soup: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
+        indexed: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
         scene: SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
@@ -57,7 +57,7 @@ struct Obj<'a, 'o, 'r> {
     source: &'a Source<'a>,
     /// The number of lines before the block that is being joined.
     lines: u32,
-    soup: IndexedFaces,
+    indexed: IndexedFaces,
     scene: SceneBuilder,
     /// The index of each material by name.
     materials: HashMap<String, usize>,
@@ -108,13 +108,13 @@ impl Obj<'_, '_, '_> {
         self.resolve_backward_indices(block, text);
         self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
-        let before = self.soup.positions.len();
-        let soup = &mut self.soup;
-        soup.positions.append(&mut block.positions);
-        soup.uvs.append(&mut block.uvs);
-        soup.normals.append(&mut block.normals);
-        let corners = soup.faces.corner_count() + block.corners.len();
-        let most = [soup.positions.len(), soup.uvs.len(), soup.normals.len(), corners];
+        let before = self.indexed.positions.len();
+        let indexed = &mut self.indexed;
+        indexed.positions.append(&mut block.positions);
+        indexed.uvs.append(&mut block.uvs);
+        indexed.normals.append(&mut block.normals);
+        let corners = indexed.faces.corner_count() + block.corners.len();
+        let most = [indexed.positions.len(), indexed.uvs.len(), indexed.normals.len(), corners];
         self.add_faces(block, before)?;
         let end = TextPosition { line: 1, column: 1 }.after(self.lines).after(block.lines);
         self.lines = self.lines.saturating_add(block.lines);
@@ -139,14 +139,14 @@ impl Obj<'_, '_, '_> {
             FormatError::Malformed { at, .. } => at.line,
             _ => 0,
         };
-        if self.soup.first_fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
-            self.soup.first_fault = Some(fault);
+        if self.indexed.first_fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
+            self.indexed.first_fault = Some(fault);
         }
     }
 
     /// Resolves the corners with indices that count backwards.
     fn resolve_backward_indices(&mut self, block: &mut Block, text: &[u8]) {
-        let before = [self.soup.positions.len(), self.soup.uvs.len(), self.soup.normals.len()];
+        let before = [self.indexed.positions.len(), self.indexed.uvs.len(), self.indexed.normals.len()];
         let mut is_first = true;
         for backward in &block.backward {
             let index = before[backward.part as usize] as i64 + backward.index;
@@ -175,13 +175,13 @@ impl Obj<'_, '_, '_> {
 
     /// If one vertex has a colour, all vertices have one.
     fn add_colours(&mut self, block: &Block) -> Result<(), FormatError> {
-        let soup = &mut self.soup;
-        if !block.colours.is_empty() || !soup.colours.is_empty() {
-            let count = soup.positions.len() + block.positions.len();
-            self.reading.budget.take::<Rgb>(count - soup.colours.len(), self.source.name)?;
-            soup.colours.resize(soup.positions.len(), Rgb::WHITE);
-            soup.colours.extend_from_slice(&block.colours);
-            soup.colours.resize(count, Rgb::WHITE);
+        let indexed = &mut self.indexed;
+        if !block.colours.is_empty() || !indexed.colours.is_empty() {
+            let count = indexed.positions.len() + block.positions.len();
+            self.reading.budget.take::<Rgb>(count - indexed.colours.len(), self.source.name)?;
+            indexed.colours.resize(indexed.positions.len(), Rgb::WHITE);
+            indexed.colours.extend_from_slice(&block.colours);
+            indexed.colours.resize(count, Rgb::WHITE);
         }
         Ok(())
     }
@@ -230,27 +230,27 @@ impl Obj<'_, '_, '_> {
         }
         let start = if first == 0 { 0 } else { block.ends[first - 1] };
         let ends = &block.ends[first..end];
-        self.soup.smooth(self.smoothing);
+        self.indexed.smooth(self.smoothing);
         let corners = &block.corners[start as usize..block.ends[end - 1] as usize];
-        self.soup.faces.append(corners, ends.iter().map(|end| end - start));
+        self.indexed.faces.append(corners, ends.iter().map(|end| end - start));
         block.places[first..end]
             .iter()
-            .for_each(|place| self.soup.places.push(place.after(self.lines).key()));
+            .for_each(|place| self.indexed.places.push(place.after(self.lines).key()));
         Ok(())
     }
 
     fn begin_run(&mut self) -> Result<(), FormatError> {
         self.in_run = true;
-        let first_face = self.soup.faces.len();
+        let first_face = self.indexed.faces.len();
         let run = Run { first_face, name: self.name.clone(), material: self.material.clone() };
         let same = |last: &Run| last.name == run.name && last.material_name() == run.material_name();
-        if self.soup.runs.last().is_some_and(same) {
+        if self.indexed.runs.last().is_some_and(same) {
             return Ok(());
         }
         let text = run.name.len() + run.material.as_ref().map_or(0, |(name, _)| name.len());
         self.reading.budget.take::<(Run, Object, Mesh)>(1, self.source.name)?;
         self.reading.budget.take::<u8>(2 * text, self.source.name)?;
-        self.soup.runs.push(run);
+        self.indexed.runs.push(run);
         Ok(())
     }
 
@@ -284,26 +284,27 @@ impl Obj<'_, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, mut materials, mut oddities, mut soup, mut strokes, .. } = self;
-        if let Some(fault) = soup.first_fault.take_if(|_| soup.faces.is_empty() && strokes.is_empty()) {
+        let Obj { reading, source, mut scene, mut materials, mut oddities, mut indexed, mut strokes, .. } =
+            self;
+        if let Some(fault) = indexed.first_fault.take_if(|_| indexed.faces.is_empty() && strokes.is_empty()) {
             return Err(fault);
         }
-        if soup.positions.is_empty() {
+        if indexed.positions.is_empty() {
             let message = "the file has no faces and no vertices: is this an OBJ file?";
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
-        if soup.faces.is_empty() && strokes.is_empty() {
+        if indexed.faces.is_empty() && strokes.is_empty() {
             // A file of vertices only is a point cloud.
-            reading.budget.take::<u32>(soup.positions.len(), source.name)?;
-            strokes.add_all(soup.positions.len(), source.stem());
+            reading.budget.take::<u32>(indexed.positions.len(), source.name)?;
+            strokes.add_all(indexed.positions.len(), source.stem());
         }
         let place = |key: u64| TextPosition::of_key(key).in_file(source.name);
-        strokes.into_objects(reading, source, &place, &soup, &mut materials, &mut scene, &mut oddities)?;
-        if soup.faces.is_empty() {
+        strokes.into_objects(reading, source, &place, &indexed, &mut materials, &mut scene, &mut oddities)?;
+        if indexed.faces.is_empty() {
             oddities.into_warnings(&mut scene);
             return Ok(scene);
         }
-        assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
+        assemble(reading, source, &place, indexed, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }

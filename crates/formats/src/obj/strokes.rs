@@ -131,7 +131,7 @@ impl Strokes {
         reading: &mut Reading,
         source: &Source,
         place: &dyn Fn(u64) -> Span,
-        soup: &IndexedFaces,
+        indexed: &IndexedFaces,
         materials: &mut HashMap<String, usize>,
         scene: &mut SceneBuilder,
         oddities: &mut Oddities,
@@ -139,8 +139,8 @@ impl Strokes {
         if self.groups.is_empty() {
             return Ok(());
         }
-        reading.budget.take_bytes(soup.positions.len() as u64 * 4, source.name)?;
-        let mut places = vec![NONE; soup.positions.len()];
+        reading.budget.take_bytes(indexed.positions.len() as u64 * 4, source.name)?;
+        let mut places = vec![NONE; indexed.positions.len()];
         for mut group in self.groups {
             let mut mesh = Mesh::default();
             let mut used = Vec::new();
@@ -158,21 +158,21 @@ impl Strokes {
                 *vertex = *slot;
             }
             if let Some(vertex) = failure {
-                let (named, count) = (u64::from(vertex) + 1, soup.positions.len());
+                let (named, count) = (u64::from(vertex) + 1, indexed.positions.len());
                 let message =
                     format!("a point or line refers to vertex {named}, but the file has only {count}");
                 return Err(FormatError::malformed(message, place(group.place)));
             }
             reading.budget.take::<(Vec3, Rgb)>(used.len(), source.name)?;
-            mesh.positions = used.iter().map(|&i| soup.positions[i as usize]).collect();
-            if !soup.colours.is_empty() {
-                mesh.vertex_kd = used.iter().map(|&i| soup.colours[i as usize]).collect();
+            mesh.positions = used.iter().map(|&i| indexed.positions[i as usize]).collect();
+            if !indexed.colours.is_empty() {
+                mesh.vertex_kd = used.iter().map(|&i| indexed.colours[i as usize]).collect();
             }
             used.iter().for_each(|&i| places[i as usize] = NONE);
             (mesh.points, mesh.lines) = (group.points, group.lines);
             let name = if group.run.name.is_empty() { source.stem() } else { group.run.name.clone() };
             mesh.name.clone_from(&name);
-            let material = material_of(&group.run, soup, materials, place, scene, oddities);
+            let material = material_of(&group.run, indexed, materials, place, scene, oddities);
             scene.objects.push(Object::new(&name, Arc::new(mesh), material));
         }
         Ok(())

@@ -19,7 +19,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         places: &places,
         cursor: Cursor::new(source.bytes),
-        soup: IndexedFaces::default(),
+        indexed: IndexedFaces::default(),
         smoothing: BY_ANGLE,
         oddities: Oddities::default(),
     };
@@ -63,7 +63,7 @@ struct Off<'a, 'o, 'r> {
     source: &'a Source<'a>,
     places: &'a Places<'a>,
     cursor: Cursor<'a>,
-    soup: IndexedFaces,
+    indexed: IndexedFaces,
     /// The smoothing of faces without normals.
     smoothing: Smoothing,
     oddities: Oddities,
@@ -127,23 +127,23 @@ impl<'a> Off<'a, '_, '_> {
             };
             let opacity = usize::from(columns.colours && extra == 1);
             let (position, mut rest) = row.numbers.split_at(3);
-            self.soup.positions.push(Vec3::from_slice(position));
+            self.indexed.positions.push(Vec3::from_slice(position));
             if columns.normals {
-                self.soup.normals.push(Vec3::from_slice(rest));
+                self.indexed.normals.push(Vec3::from_slice(rest));
                 rest = &rest[3..];
             }
             if columns.colours {
                 bytes |= rest[..3].iter().any(|&c| c > 1.0);
-                self.soup.colours.push(Rgb::new(rest[0], rest[1], rest[2]));
+                self.indexed.colours.push(Rgb::new(rest[0], rest[1], rest[2]));
                 rest = &rest[3 + opacity..];
             }
             if columns.uvs {
-                self.soup.uvs.push(Vec2::from_slice(rest));
+                self.indexed.uvs.push(Vec2::from_slice(rest));
             }
             self.note_odd(&row, extra > opacity);
         }
         if bytes {
-            self.soup.colours.iter_mut().for_each(|kd| *kd = kd.map(|c| srgb_decode(c / 255.0)));
+            self.indexed.colours.iter_mut().for_each(|kd| *kd = kd.map(|c| srgb_decode(c / 255.0)));
         }
         Ok(())
     }
@@ -183,31 +183,31 @@ impl<'a> Off<'a, '_, '_> {
     }
 
     fn end_face(&mut self, corners: &[Corner], start: usize) -> Result<(), FormatError> {
-        let (soup, places) = (&mut self.soup, self.places);
+        let (indexed, places) = (&mut self.indexed, self.places);
         if corners.len() < 3 {
             self.oddities.note("a face has fewer than 3 corners and is left out", || places.at(start));
             return Ok(());
         }
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
+        if (indexed.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
             let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, places.at(start)));
         }
-        soup.smooth(self.smoothing);
-        soup.faces.push(corners);
-        soup.places.push(start as u64);
+        indexed.smooth(self.smoothing);
+        indexed.faces.push(corners);
+        indexed.places.push(start as u64);
         Ok(())
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Off { reading, source, places, mut soup, mut oddities, .. } = self;
-        if soup.faces.is_empty() {
+        let Off { reading, source, places, mut indexed, mut oddities, .. } = self;
+        if indexed.faces.is_empty() {
             return Err(FormatError::malformed("it contains no faces", places.whole()));
         }
-        soup.runs.push(Run { first_face: 0, name: source.stem(), material: None });
+        indexed.runs.push(Run { first_face: 0, name: source.stem(), material: None });
         let mut scene = SceneBuilder::default();
         let place = |offset: u64| places.at(offset as usize);
-        assemble(reading, source, &place, soup, HashMap::new(), &mut scene, &mut oddities)?;
+        assemble(reading, source, &place, indexed, HashMap::new(), &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }

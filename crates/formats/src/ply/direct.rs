@@ -22,7 +22,7 @@ impl Ply<'_, '_, '_> {
     /// Reads the faces of an element as triangles.
     pub(super) fn triangles_of(&mut self, element: &Element) -> Result<Vec<[u32; 3]>, FormatError> {
         let (list, file) = (&element.properties[0], self.source.name);
-        let known = self.soup.positions.len() as u64;
+        let known = self.indexed.positions.len() as u64;
         let mut triangles = Vec::new();
         // There are no more rows than bytes, so the size of the file bounds this.
         self.reading.budget.take_bytes(element.count * size_of::<[u32; 3]>() as u64, file)?;
@@ -57,7 +57,7 @@ impl Ply<'_, '_, '_> {
                 self.oddities.note(what, || places.at(start));
                 continue;
             }
-            let points = corners.iter().map(|&i| self.soup.positions[i as usize]);
+            let points = corners.iter().map(|&i| self.indexed.positions[i as usize]);
             let cut = triangulator.triangulate(points, |t| triangles.push(t.map(|i| corners[i as usize])));
             if cut.is_none() {
                 let what =
@@ -80,18 +80,18 @@ impl Ply<'_, '_, '_> {
         if let Some((file, offset)) = texture {
             self.texture(&file, offset, &mut scene, &mut materials)?;
         }
-        let soup = std::mem::take(&mut self.soup);
+        let indexed = std::mem::take(&mut self.indexed);
         let material = materials.get("").copied().unwrap_or_else(|| {
-            scene.add_material(plain_material(!soup.colours.is_empty(), !soup.specular.is_empty()))
+            scene.add_material(plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty()))
         });
-        self.reading.budget.take_bytes(soup.positions.len() as u64 * 5, self.source.name)?;
+        self.reading.budget.take_bytes(indexed.positions.len() as u64 * 5, self.source.name)?;
         let mesh = without_unused(Mesh {
             name: self.source.stem(),
-            positions: soup.positions,
-            normals: soup.normals,
-            uvs: soup.uvs,
-            vertex_kd: soup.colours,
-            vertex_ks: soup.specular,
+            positions: indexed.positions,
+            normals: indexed.normals,
+            uvs: indexed.uvs,
+            vertex_kd: indexed.colours,
+            vertex_ks: indexed.specular,
             triangles,
             ..Mesh::default()
         });

@@ -23,7 +23,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         places: &places,
         body: Body::new(source, &places, header.encoding, header.body),
-        soup: IndexedFaces::default(),
+        indexed: IndexedFaces::default(),
         vertices: Slots::default(),
         triangles: None,
         edges: Vec::new(),
@@ -55,7 +55,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) source: &'a Source<'a>,
     pub(super) places: &'a Places<'a>,
     pub(super) body: Body<'a>,
-    pub(super) soup: IndexedFaces,
+    pub(super) indexed: IndexedFaces,
     /// All triangles, if nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
     /// Edges, as pairs of vertices.
@@ -160,33 +160,33 @@ impl Ply<'_, '_, '_> {
     }
 
     fn make_room(&mut self, slots: &Slots, count: usize) {
-        let soup = &mut self.soup;
+        let indexed = &mut self.indexed;
         let room = |wanted: bool| if wanted { count } else { 0 };
-        soup.positions.reserve_exact(count);
-        soup.normals.reserve_exact(room(slots.normals));
-        soup.uvs.reserve_exact(room(slots.uvs));
-        soup.colours.reserve_exact(room(slots.kd));
-        soup.specular.reserve_exact(room(slots.ks));
+        indexed.positions.reserve_exact(count);
+        indexed.normals.reserve_exact(room(slots.normals));
+        indexed.uvs.reserve_exact(room(slots.uvs));
+        indexed.colours.reserve_exact(room(slots.kd));
+        indexed.specular.reserve_exact(room(slots.ks));
     }
 
     fn push_vertex(&mut self, values: &[f32; MEANINGS.len()], slots: &Slots, start: usize) {
-        let soup = &mut self.soup;
-        soup.positions.push(Vec3::from_slice(&values[0..3]));
+        let indexed = &mut self.indexed;
+        indexed.positions.push(Vec3::from_slice(&values[0..3]));
         if slots.normals {
-            soup.normals.push(Vec3::from_slice(&values[3..6]));
+            indexed.normals.push(Vec3::from_slice(&values[3..6]));
         }
         if slots.uvs {
-            soup.uvs.push(Vec2::from_slice(&values[6..8]));
+            indexed.uvs.push(Vec2::from_slice(&values[6..8]));
         }
         let colour = |first: usize, scale: Option<f32>| {
             let stored = Rgb::new(values[first], values[first + 1], values[first + 2]);
             scale.map_or(stored, |one| stored.map(|c| srgb_decode(c / one)))
         };
         if slots.kd {
-            soup.colours.push(colour(8, slots.colour[0]));
+            indexed.colours.push(colour(8, slots.colour[0]));
         }
         if slots.ks {
-            soup.specular.push(colour(11, slots.colour[1]));
+            indexed.specular.push(colour(11, slots.colour[1]));
         }
         if values.iter().any(|x| !x.is_finite()) {
             let places = self.places;
@@ -271,16 +271,16 @@ impl Ply<'_, '_, '_> {
         if corners.is_empty() {
             return Ok(());
         }
-        let soup = &mut self.soup;
+        let indexed = &mut self.indexed;
         self.reading.budget.take::<Corner>(corners.len(), self.source.name)?;
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
+        if (indexed.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
             let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, self.places.at(start)));
         }
-        soup.smooth(self.smoothing);
-        soup.faces.push(corners);
-        soup.places.push(start as u64);
+        indexed.smooth(self.smoothing);
+        indexed.faces.push(corners);
+        indexed.places.push(start as u64);
         corners.clear();
         Ok(())
     }
@@ -324,7 +324,7 @@ impl Ply<'_, '_, '_> {
         if let Some(triangles) = self.triangles.take().filter(|triangles| !triangles.is_empty()) {
             return self.finish_triangles(texture, scene, triangles);
         }
-        if self.soup.faces.is_empty() {
+        if self.indexed.faces.is_empty() {
             return self.finish_strokes(scene);
         }
         if !self.edges.is_empty() {
@@ -335,21 +335,21 @@ impl Ply<'_, '_, '_> {
         let wedges = std::mem::take(&mut self.wedge_uvs);
         let uvs = uvs && wedges.is_empty();
         if !wedges.is_empty() {
-            self.soup.uvs = wedges;
+            self.indexed.uvs = wedges;
         }
-        for (_, corner) in self.soup.faces.corners_mut() {
+        for (_, corner) in self.indexed.faces.corners_mut() {
             let of_vertex = |given: bool| if given { corner[0] } else { NONE };
             *corner =
                 [corner[0], if corner[1] == NONE { of_vertex(uvs) } else { corner[1] }, of_vertex(normals)];
         }
-        self.soup.runs.push(Run { first_face: 0, name: self.source.stem(), material: None });
+        self.indexed.runs.push(Run { first_face: 0, name: self.source.stem(), material: None });
         let mut materials = HashMap::new();
         if let Some((file, offset)) = texture {
             self.texture(&file, offset, &mut scene, &mut materials)?;
         }
-        let Ply { reading, source, places, soup, mut oddities, .. } = self;
+        let Ply { reading, source, places, indexed, mut oddities, .. } = self;
         let place = |offset: u64| places.at(offset as usize);
-        assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
+        assemble(reading, source, &place, indexed, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }
@@ -365,7 +365,7 @@ impl Ply<'_, '_, '_> {
         let at = self.places.at(offset);
         match self.reading.texture(self.source.folder, file, Texels::Colours, &at) {
             Ok(texture) => {
-                let mut spec = plain_material(false, !self.soup.specular.is_empty());
+                let mut spec = plain_material(false, !self.indexed.specular.is_empty());
                 spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);
                 scene.textures.push(texture);
                 let index = scene.add_material(spec);

@@ -40,8 +40,8 @@ impl Ply<'_, '_, '_> {
 
     /// Builds a scene without faces: lines if there are edges, else a point cloud.
     pub(super) fn finish_strokes(mut self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
-        let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
-        let known = soup.positions.len();
+        let (indexed, mut lines) = (std::mem::take(&mut self.indexed), std::mem::take(&mut self.edges));
+        let known = indexed.positions.len();
         if known == 0 {
             return Err(FormatError::malformed("it contains no faces and no vertices", self.places.whole()));
         }
@@ -55,13 +55,13 @@ impl Ply<'_, '_, '_> {
         self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;
         let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
         let material =
-            scene.add_material(plain_material(!soup.colours.is_empty(), !soup.specular.is_empty()));
+            scene.add_material(plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty()));
         let mesh = Mesh {
             name: self.source.stem(),
-            positions: soup.positions,
-            uvs: soup.uvs,
-            vertex_kd: soup.colours,
-            vertex_ks: soup.specular,
+            positions: indexed.positions,
+            uvs: indexed.uvs,
+            vertex_kd: indexed.colours,
+            vertex_ks: indexed.specular,
             points,
             lines,
             ..Mesh::default()

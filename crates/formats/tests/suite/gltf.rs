@@ -228,10 +228,10 @@ fn what_is_broken_is_refused_with_its_pointer() {
 #[test]
 fn what_is_not_understood_is_told_where_it_stands() {
     let text = TRIANGLE.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"extensions":{"EXT_odd":{}}}"#);
-    let told = warnings(&read(&text));
+    let reported = warnings(&read(&text));
     assert!(
-        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not supported"),
-        "{told}"
+        reported.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not supported"),
+        "{reported}"
     );
 }
 
@@ -278,10 +278,11 @@ fn materials_are_in_the_terms_of_principled() {
     assert_eq!(value("base_color"), Rgb::new(0.5, 0.25, 1.0).into());
     assert_eq!((value("base_metalness"), value("specular_ior")), (0.5f32.into(), 1.25f32.into()));
     assert_eq!(value("specular_roughness"), 1.0f32.into());
-    let told = warnings(&scene);
+    let reported = warnings(&scene);
     assert!(
-        told.contains("#/materials/0/pbrMetallicRoughness: specular_roughness of a material is out of range"),
-        "{told}"
+        reported
+            .contains("#/materials/0/pbrMetallicRoughness: specular_roughness of a material is out of range"),
+        "{reported}"
     );
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
 }
@@ -445,8 +446,8 @@ fn textures_lie_beside_the_scene_and_missing_ones_are_seen() {
     assert_eq!(base.at(Vec2::new(0.1, 0.5)), Rgb::WHITE, "shifted by half");
     assert_eq!(base.at(Vec2::new(0.9, 0.5)), Rgb::WHITE, "held at the edge");
     assert_eq!(scene.textures[1].width(), 8);
-    let told = warnings(&scene);
-    assert!(told.contains("#/images/1: a texture is replaced by a magenta checker"), "{told}");
+    let reported = warnings(&scene);
+    assert!(reported.contains("#/images/1: a texture is replaced by a magenta checker"), "{reported}");
     let climbing = with_material(material, &more.replace("gone.png", "../gone.png"));
     std::fs::write(folder.path().join("gone.png"), b"x").unwrap();
     std::fs::write(&path, climbing).unwrap();

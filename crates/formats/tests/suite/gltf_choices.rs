@@ -120,8 +120,8 @@ fn textures_are_looked_up_by_two_sets_of_coordinates() {
     assert_eq!(warnings(&scene), "");
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
     let without = text.replace(r#""TEXCOORD_0":1,"#, "");
-    let told = warnings(&read(&without, &ReadOptions::default()));
-    assert!(told.contains("texture coordinates that its mesh does not have"), "{told}");
+    let reported = warnings(&read(&without, &ReadOptions::default()));
+    assert!(reported.contains("texture coordinates that its mesh does not have"), "{reported}");
 }
 
 #[test]

@@ -81,15 +81,15 @@ fn broken_files_are_refused_or_told_of() {
     for path in found("broken") {
         let report = std::fs::read_to_string(format!("{}.report.json", path.display())).unwrap_or_default();
         let report = serde_json::from_str(&report).unwrap_or_default();
-        let told: Vec<String> = match read(&path, &options) {
+        let reported: Vec<String> = match read(&path, &options) {
             Ok(scene) => scene.warnings.iter().map(ToString::to_string).collect(),
             Err(error) => vec![error.to_string()],
         };
-        println!("{}: {told:?}", path.display());
-        let told = told.iter().any(|what| !what.contains("there is nothing to render"));
+        println!("{}: {reported:?}", path.display());
+        let reported = reported.iter().any(|what| !what.contains("there is nothing to render"));
         let seen = errors(&report).into_iter().find(|code| !HARMLESS.contains(&code.as_str()));
         if let Some(code) = &seen {
-            assert!(told, "{}: {code} is not told", path.display());
+            assert!(reported, "{}: {code} is not told", path.display());
         }
         count += 1;
         broken += usize::from(seen.is_some());

@@ -91,11 +91,12 @@ fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Ve
     };
     scene.objects.push(Object::new("m", Arc::new(mesh), material));
     let folder = tempfile::tempdir().unwrap();
-    let told = write(&folder.path().join(format!("m.{format}")), &scene, &WriteOptions::default()).unwrap();
+    let reported =
+        write(&folder.path().join(format!("m.{format}")), &scene, &WriteOptions::default()).unwrap();
     let read = |path: &Path| std::fs::read(path).unwrap();
     let files = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap());
     let files = files.map(|entry| (entry.file_name().to_string_lossy().into_owned(), read(&entry.path())));
-    (files.collect(), told.into_iter().map(|warning| warning.message).collect())
+    (files.collect(), reported.into_iter().map(|warning| warning.message).collect())
 }
 
 /// The parameters of a spec that a format drops without a warning.
@@ -111,7 +112,7 @@ fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
         let beside = beside(parameter.name).filter(|(key, _)| has(key));
         let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
         let (plain, told_of_plain) = written(base.clone(), put, format);
-        let (changed, told) = written(base.with(parameter.name, value.clone()), put, format);
+        let (changed, reported) = written(base.with(parameter.name, value.clone()), put, format);
         // If the parameter or its whole layer is left out in any case, no further warning is needed.
         let layer = |message: &String| {
             let of = message.split('\'').nth(1).unwrap_or_default();
@@ -119,7 +120,7 @@ fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
             [parameter.name, entry.name].contains(&of)
                 || stem.is_some_and(|stem| !stem.is_empty() && parameter.name.starts_with(stem))
         };
-        plain == changed && told == told_of_plain && !told.iter().any(layer)
+        plain == changed && reported == told_of_plain && !reported.iter().any(layer)
     });
     lost.map(|(parameter, value)| format!("{} = {value:?}", parameter.name)).collect()
 }

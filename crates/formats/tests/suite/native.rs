@@ -396,8 +396,8 @@ fn pictures_lie_as_they_are_said_to_and_come_back() {
     ] {
         let scene = read_with(says).unwrap();
         let path = folder.path().join("back.toml");
-        let told = bilux_formats::write(&path, &scene, &Default::default()).unwrap();
-        assert!(told.is_empty(), "{says}: {told:?}");
+        let reported = bilux_formats::write(&path, &scene, &Default::default()).unwrap();
+        assert!(reported.is_empty(), "{says}: {reported:?}");
         let back = read(&path, &ReadOptions::default()).unwrap();
         for (one, other) in scene.textures.iter().zip(&back.textures) {
             for i in 0..100 {
@@ -430,11 +430,11 @@ fn glass_has_a_name_or_numbers_and_not_both() {
         let glass = format!(
             "[[material]]\nname = \"m\"\nkind = \"dielectric\"\n{lines}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n"
         );
-        let told = match read_text("toml", &glass) {
+        let reported = match read_text("toml", &glass) {
             Ok(scene) => scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap_err().to_string(),
             Err(error) => error.to_string(),
         };
-        assert!(told.contains(wanted), "{lines}: {told}");
+        assert!(reported.contains(wanted), "{lines}: {reported}");
     }
 }
 

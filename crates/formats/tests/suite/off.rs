@@ -51,8 +51,8 @@ fn what_is_odd_but_can_be_drawn_is_a_warning() {
         (SQUARE.replace("1 1 0", "1 nan 0"), "scene.off:5:1: a vertex has numbers that are infinite"),
     ];
     for (text, part) in cases {
-        let told = warnings(&read_text("off", &text).unwrap());
-        assert!(told.contains(part), "{text:?}: {told}");
+        let reported = warnings(&read_text("off", &text).unwrap());
+        assert!(reported.contains(part), "{text:?}: {reported}");
     }
 }
 

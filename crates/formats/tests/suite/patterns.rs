@@ -95,8 +95,8 @@ fn what_is_wrong_has_its_place() {
         ("reflectance = { colour = 1 }", "colour"),
         ("reflectance = {}", "texture (a file), or kind (checker, ramp, noise, mix, scale)"),
     ] {
-        let told = refusal("toml", material(lines));
-        assert!(told.contains(wanted), "{lines}: {told}");
+        let reported = refusal("toml", material(lines));
+        assert!(reported.contains(wanted), "{lines}: {reported}");
     }
     // A missing texture inside another one gives a warning, and is visible.
     let folder = tempfile::tempdir().unwrap();
@@ -113,9 +113,9 @@ fn what_is_wrong_has_its_place() {
 
 fn written(scene: &SceneBuilder, folder: &Path, extension: &str) -> (String, SceneBuilder) {
     let path = folder.join(format!("out.{extension}"));
-    let told = write(&path, scene, &WriteOptions::default()).unwrap();
-    let told = told.into_iter().map(|warning| warning.message + "\n").collect();
-    (told, read(&path, &ReadOptions::default()).unwrap())
+    let reported = write(&path, scene, &WriteOptions::default()).unwrap();
+    let reported = reported.into_iter().map(|warning| warning.message + "\n").collect();
+    (reported, read(&path, &ReadOptions::default()).unwrap())
 }
 
 #[test]
@@ -124,23 +124,24 @@ fn formats_without_procedural_textures_get_images() {
     let board =
         "reflectance = { kind = \"checker\", a = [1, 0, 0], b = [0, 0, 1], u_scale = 3, v_offset = 0.5 }";
     let clouds = "reflectance = { kind = \"noise\", octaves = 2 }";
-    let is_told = |told: &str| told.contains("cannot store procedural textures");
+    let is_told = |reported: &str| reported.contains("cannot store procedural textures");
     for (extension, key) in [("pbrt", "reflectance"), ("glb", "base_color"), ("obj", "kd")] {
         let scene = read_text("toml", material(board)).unwrap();
-        let (told, back) = written(&scene, folder.path(), extension);
+        let (reported, back) = written(&scene, folder.path(), extension);
         // If textures can have a placement, a checkerboard needs two texels by two; all else is written as many
         // texels.
-        assert_eq!(is_told(&told), extension == "obj", "{extension}: {told}");
+        assert_eq!(is_told(&reported), extension == "obj", "{extension}: {reported}");
         let (before, after) = (texture(&scene, "reflectance"), texture(&back, key));
         if extension != "obj" {
             let off = |uv| (before.at(uv) - after.at(uv)).map(f32::abs).max_channel();
             assert!(places().all(|uv| off(uv) < 1e-5), "{extension}");
         }
         let scene = read_text("toml", material(clouds)).unwrap();
-        let (told, back) = written(&scene, folder.path(), extension);
+        let (reported, back) = written(&scene, folder.path(), extension);
         assert!(
-            is_told(&told) && told.contains("'noise' is written as a repeating picture of 1024 x 1024"),
-            "{told}"
+            is_told(&reported)
+                && reported.contains("'noise' is written as a repeating picture of 1024 x 1024"),
+            "{reported}"
         );
         let (before, after) = (texture(&scene, "reflectance"), texture(&back, key));
         let within = places().filter(|uv| uv.min_element() > 0.01 && uv.max_element() < 0.99);
@@ -149,11 +150,11 @@ fn formats_without_procedural_textures_get_images() {
     }
     // A checkerboard next to another texture needs many texels too, since both may have to share one image.
     let two = format!("{board}\nroughness = {{ kind = \"checker\" }}");
-    let (told, _) = written(&read_text("toml", material(&two)).unwrap(), folder.path(), "glb");
-    assert!(is_told(&told), "{told}");
+    let (reported, _) = written(&read_text("toml", material(&two)).unwrap(), folder.path(), "glb");
+    assert!(is_told(&reported), "{reported}");
     // Formats without textures do not warn about them.
-    let (told, _) = written(&read_text("toml", material(clouds)).unwrap(), folder.path(), "ply");
-    assert!(!is_told(&told), "{told}");
+    let (reported, _) = written(&read_text("toml", material(clouds)).unwrap(), folder.path(), "ply");
+    assert!(!is_told(&reported), "{reported}");
 }
 
 #[test]

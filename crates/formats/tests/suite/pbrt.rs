@@ -413,9 +413,9 @@ fn what_is_wrong_is_told_with_its_place() {
         ),
         ("WorldBegin MediumInterface \"x\" Shape \"sphere\"", "there is no medium 'x', nor any other"),
     ] {
-        let told = refusal("pbrt", text);
-        if !told.contains(wanted) || !told.contains("scene.pbrt") {
-            missed.push(format!("{text}\n{told}\n{wanted}"));
+        let reported = refusal("pbrt", text);
+        if !reported.contains(wanted) || !reported.contains("scene.pbrt") {
+            missed.push(format!("{text}\n{reported}\n{wanted}"));
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n\n"));
@@ -471,8 +471,8 @@ fn what_cannot_be_shown_is_told() {
         ("Scale 0 1 1 Shape \"sphere\"", "objects with a scale of zero are not rendered"),
         ("Shape \"cone\" Shape \"sphere\"", "the pbrt-v3 shape 'cone' is left out"),
     ] {
-        let told = warnings(&world(text));
-        assert!(told.contains(wanted), "{text}\n{told}\n{wanted}");
+        let reported = warnings(&world(text));
+        assert!(reported.contains(wanted), "{text}\n{reported}\n{wanted}");
     }
 }
 
@@ -600,8 +600,11 @@ fn a_missing_sky_is_grey_and_so_is_any_light() {
     ] {
         let (_folder, scene) = in_folder(&[("a.pbrt", format!("WorldBegin\n{light}").as_bytes())]);
         let scene = scene.unwrap();
-        let told = warnings(&scene);
-        assert!(told.contains("a texture is replaced by a uniform grey of 0.5: there is no file"), "{told}");
+        let reported = warnings(&scene);
+        assert!(
+            reported.contains("a texture is replaced by a uniform grey of 0.5: there is no file"),
+            "{reported}"
+        );
         let parameters = &scene.lights[0].parameters;
         let is_grey = |c: Rgb| c.r == c.g && c.g == c.b && c.r > 0.0;
         match parameters.find("radiance") {
@@ -635,18 +638,18 @@ fn files_are_looked_for_in_the_working_folder_too() {
     let options = ReadOptions { working_folder, ..ReadOptions::default() };
     let scene = read(&folder.path().join("work/scenes/a.pbrt"), &options).unwrap();
     assert_eq!(scene.objects.len(), 3);
-    let told = |name: &str, options: &ReadOptions| {
+    let reported = |name: &str, options: &ReadOptions| {
         read(&folder.path().join("work/scenes").join(name), options).unwrap_err().to_string()
     };
-    assert!(told("a.pbrt", &ReadOptions::default()).contains("there is no file 'models/t.ply'"));
-    assert!(told("secret.pbrt", &options).contains("lies outside the scene's folder"));
+    assert!(reported("a.pbrt", &ReadOptions::default()).contains("there is no file 'models/t.ply'"));
+    assert!(reported("secret.pbrt", &options).contains("lies outside the scene's folder"));
 }
 
 #[test]
 fn a_missing_include_of_the_scene_s_own_name_is_missing() {
     let (_folder, scene) = in_folder(&[("main.pbrt", b"Include \"geometry/main.pbrt\"")]);
-    let told = scene.unwrap_err().to_string();
-    assert!(told.contains("main.pbrt:1:9: there is no file 'geometry/main.pbrt'"), "{told}");
+    let reported = scene.unwrap_err().to_string();
+    assert!(reported.contains("main.pbrt:1:9: there is no file 'geometry/main.pbrt'"), "{reported}");
 }
 
 /// Gold from a file, as in scenes of version 3: its red is above 1 in sRGB.
@@ -669,18 +672,18 @@ fn gold_by_its_spectra_is_gold() {
 #[test]
 fn files_that_would_hurt_are_refused() {
     let refused = |files: &[(&str, &[u8])]| in_folder(files).1.map(|_| ()).unwrap_err().to_string();
-    let told = refused(&[("a.pbrt", b"Include \"b.pbrt\""), ("b.pbrt", b"\nInclude \"a.pbrt\"")]);
-    assert!(told.contains("b.pbrt:2:9: 'a.pbrt' includes itself"), "{told}");
-    let told = refused(&[("a.pbrt", b"Include \"/etc/passwd\"")]);
-    assert!(told.contains("a.pbrt:1:9: '/etc/passwd' lies outside the scene's folder"), "{told}");
-    let told = refused(&[("a.pbrt", b"Include \"nowhere.pbrt\"")]);
-    assert!(told.contains("there is no file 'nowhere.pbrt'"), "{told}");
+    let reported = refused(&[("a.pbrt", b"Include \"b.pbrt\""), ("b.pbrt", b"\nInclude \"a.pbrt\"")]);
+    assert!(reported.contains("b.pbrt:2:9: 'a.pbrt' includes itself"), "{reported}");
+    let reported = refused(&[("a.pbrt", b"Include \"/etc/passwd\"")]);
+    assert!(reported.contains("a.pbrt:1:9: '/etc/passwd' lies outside the scene's folder"), "{reported}");
+    let reported = refused(&[("a.pbrt", b"Include \"nowhere.pbrt\"")]);
+    assert!(reported.contains("there is no file 'nowhere.pbrt'"), "{reported}");
     let bomb = packed(&vec![b' '; 200 << 20]);
     assert!(bomb.len() < 1 << 20);
-    let told = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &bomb)]);
-    assert!(told.contains("takes more than the"), "{told}");
-    let told = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &packed(b"Shape")[..20])]);
-    assert!(told.contains("a.pbrt:1:20: ") && told.contains("cannot be decompressed"), "{told}");
+    let reported = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &bomb)]);
+    assert!(reported.contains("takes more than the"), "{reported}");
+    let reported = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &packed(b"Shape")[..20])]);
+    assert!(reported.contains("a.pbrt:1:20: ") && reported.contains("cannot be decompressed"), "{reported}");
     // Each file includes the next one twice: 2^40 inclusions in all, but for the limit on the chain.
     let names: Vec<String> = (0..41).map(|i| format!("{i}.pbrt")).collect();
     let texts: Vec<String> = (1..42).map(|i| format!("Include \"{i}.pbrt\" Include \"{i}.pbrt\"")).collect();
@@ -698,8 +701,8 @@ fn texts_that_would_take_for_ever_are_refused_soon() {
         .map(|i| format!("Texture \"{}\" \"float\" \"scale\" \"texture tex\" \"{i}\"\n", i + 1))
         .collect();
     let user = "Material \"diffuse\" \"texture reflectance\" \"20000\" Shape \"disk\"";
-    let told = refusal("pbrt", format!("WorldBegin\n{chain}{user}"));
-    assert!(told.contains("more than 32 levels deep"), "{told}");
+    let reported = refusal("pbrt", format!("WorldBegin\n{chain}{user}"));
+    assert!(reported.contains("more than 32 levels deep"), "{reported}");
     let many = "Attribute \"shape\" \"float radius\" 1\n".repeat(2000);
     assert!(
         refusal("pbrt", format!("WorldBegin\n{many}"))
@@ -711,8 +714,9 @@ fn texts_that_would_take_for_ever_are_refused_soon() {
     let materials: String = (0..2000)
         .map(|i| format!("MakeNamedMaterial \"{i}{}\" \"string type\" \"diffuse\"\n", &long[..90]))
         .collect();
-    let told = refusal("pbrt", format!("WorldBegin\n{materials}\nNamedMaterial \"{long}\" Shape \"disk\""));
-    assert!(told.len() < 20_000, "{}", told.len());
+    let reported =
+        refusal("pbrt", format!("WorldBegin\n{materials}\nNamedMaterial \"{long}\" Shape \"disk\""));
+    assert!(reported.len() < 20_000, "{}", reported.len());
 }
 
 #[test]

@@ -9,9 +9,9 @@ use std::path::Path;
 /// Writes a scene and reads it back; returns the warnings and the scene.
 fn there_and_back(scene: &SceneBuilder, folder: &Path) -> (Vec<String>, SceneBuilder) {
     let path = folder.join("a scene.pbrt");
-    let told = write(&path, scene, &WriteOptions::default()).unwrap();
+    let reported = write(&path, scene, &WriteOptions::default()).unwrap();
     let back = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
-    (told.into_iter().map(|warning| warning.message).collect(), back)
+    (reported.into_iter().map(|warning| warning.message).collect(), back)
 }
 
 fn scene(toml: &str) -> SceneBuilder {
@@ -31,8 +31,8 @@ fn there(toml: &str) -> (Vec<String>, SceneBuilder) {
 fn material(toml: &str) -> (Vec<String>, Spec) {
     let text =
         format!("[[material]]\nname = \"m\"\n{toml}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n");
-    let (told, back) = there(&text);
-    (told, back.materials[back.objects[0].material].clone())
+    let (reported, back) = there(&text);
+    (reported, back.materials[back.objects[0].material].clone())
 }
 
 fn value(spec: &Spec, key: &str) -> Value {
@@ -58,11 +58,11 @@ fn assert_near(spec: &Spec, key: &str, wanted: &[f32]) {
 #[test]
 fn cameras_come_back_as_they_stood() {
     for (size, mirrored) in [("640x480", false), ("300x500", false), ("400x400", true)] {
-        let (told, back) = there(&format!(
+        let (reported, back) = there(&format!(
             "[render]\nsize = \"{size}\"\nspp = 8\nseed = 3\nmax_depth = 7\nfilter = \"tent\"\n[camera]\nposition = [1, 2, 6]\n\
              look_at = [0, 0.5, 0]\nfov = 33\naperture = 0.05\nmirrored = {mirrored}\n[[model]]\nshape = \"floor\"\n"
         ));
-        assert!(told.is_empty(), "{told:?}");
+        assert!(reported.is_empty(), "{reported:?}");
         let spec = &back.cameras[0].spec;
         assert_near(spec, "fov", &[33.0]);
         assert_near(spec, "aperture", &[0.05]);
@@ -83,7 +83,7 @@ fn cameras_come_back_as_they_stood() {
 
 #[test]
 fn lights_come_back() {
-    let (told, back) = there(
+    let (reported, back) = there(
         "[[light]]\nkind = \"point\"\nposition = [1, 2, 3]\nintensity = [4, 5, 6]\n\
          [[light]]\nkind = \"spot\"\nposition = [0, 4, 0]\nlook_at = [0, 0, 1]\nintensity = 9\nangle = 25\ninner_angle = 20\n\
          [[light]]\nkind = \"directional\"\ndirection = [0, -2, 0]\nirradiance = [1, 2, 3]\n\
@@ -92,7 +92,7 @@ fn lights_come_back() {
          [[light]]\nkind = \"rect\"\nposition = [0, 5, 0]\nedge_u = [2, 0, 0]\nedge_v = [0, 0, 1]\nintensity = 6\nsides = \"front\"\n\
          [[light]]\nkind = \"ambient\"\n",
     );
-    assert_eq!(told, ["pbrt files cannot store lights of kind 'ambient': left out"]);
+    assert_eq!(reported, ["pbrt files cannot store lights of kind 'ambient': left out"]);
     let of =
         |kind: &str| back.lights.iter().find(|light| light.kind == kind).unwrap_or_else(|| panic!("{kind}"));
     assert_near(of("point"), "intensity", &[4.0, 5.0, 6.0]);
@@ -114,8 +114,8 @@ fn lights_come_back() {
 #[test]
 fn materials_come_back() {
     let quiet = |toml: &str| {
-        let (told, spec) = material(toml);
-        assert!(told.is_empty(), "{toml}: {told:?}");
+        let (reported, spec) = material(toml);
+        assert!(reported.is_empty(), "{toml}: {reported:?}");
         spec
     };
     let spec = quiet("kind = \"diffuse\"\nreflectance = [0.1, 0.2, 0.3]");
@@ -148,19 +148,19 @@ fn materials_come_back() {
     let spec = quiet("kind = \"dielectric\"\nglass = \"sf11\"");
     assert_near(&spec, "eta", &[1.7847]);
     assert_near(&spec, "dispersion", &[20.0 / 25.68]);
-    let (told, spec) = material("kind = \"dielectric\"\nglass = \"diamond\"");
+    let (reported, spec) = material("kind = \"dielectric\"\nglass = \"diamond\"");
     assert_near(&spec, "eta", &[2.4175]);
-    assert_eq!(told, ["pbrt files cannot store 'dispersion' of a dielectric material: left out"]);
-    let (told, _) = material("kind = \"diffuse\"\nroughness = 0.5");
-    assert_eq!(told, ["pbrt files cannot store 'roughness' of a diffuse material: left out"]);
-    let (told, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");
-    assert_eq!((told.len(), &*spec.kind), (2, "principled"), "{told:?}");
+    assert_eq!(reported, ["pbrt files cannot store 'dispersion' of a dielectric material: left out"]);
+    let (reported, _) = material("kind = \"diffuse\"\nroughness = 0.5");
+    assert_eq!(reported, ["pbrt files cannot store 'roughness' of a diffuse material: left out"]);
+    let (reported, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");
+    assert_eq!((reported.len(), &*spec.kind), (2, "principled"), "{reported:?}");
 }
 
 #[test]
 fn mixtures_come_back() {
-    let (told, spec) = material("kind = \"principled\"\nbase_metalness = 0.25\ncoat_weight = 0");
-    assert_eq!((&*spec.kind, told.len()), ("mix", 1), "{told:?}");
+    let (reported, spec) = material("kind = \"principled\"\nbase_metalness = 0.25\ncoat_weight = 0");
+    assert_eq!((&*spec.kind, reported.len()), ("mix", 1), "{reported:?}");
     assert_near(&spec, "amount", &[0.25]);
 }
 
@@ -175,8 +175,8 @@ fn textures_come_back_as_they_were() {
         opacity = { texture = \"t.png\", channel = \"b\" }\n[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n";
     std::fs::write(folder.path().join("s.toml"), toml).unwrap();
     let original = read(&folder.path().join("s.toml"), &ReadOptions::default()).unwrap();
-    let (told, back) = there_and_back(&original, folder.path());
-    assert!(told.is_empty(), "{told:?}");
+    let (reported, back) = there_and_back(&original, folder.path());
+    assert!(reported.is_empty(), "{reported:?}");
     let texture = |scene: &SceneBuilder, key: &str| {
         let spec = &scene.materials[scene.objects[0].material];
         match value(spec, key) {
@@ -211,10 +211,10 @@ fn the_environment_map_round_trips_with_its_orientation() {
 
 #[test]
 fn what_stands_there_often_is_one_object() {
-    let (told, back) = there(
+    let (reported, back) = there(
         "[[model]]\nshape = \"sphere\"\nname = \"a\"\n[[model]]\nshape = \"box\"\ntranslate = [3, 0, 0]\nscale = [1, 2, 1]\n",
     );
-    assert!(told.is_empty() && back.objects.len() == 2, "{told:?}");
+    assert!(reported.is_empty() && back.objects.len() == 2, "{reported:?}");
     let mut scene = scene("[[model]]\nshape = \"sphere\"\n");
     for i in 1..5 {
         let place = bilux_math::DMat4::from_translation(bilux_math::DVec3::new(f64::from(i), 0.0, 0.0));

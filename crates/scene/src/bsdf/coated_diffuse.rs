@@ -56,7 +56,7 @@ pub struct CoatedDiffuse {
     /// The reflectance of the boundary.
     boundary: Albedo,
     cover: Coating,
-    grain: Option<RoughDiffuse>,
+    rough_diffuse: Option<RoughDiffuse>,
 }
 
 /// Gauss-Legendre nodes and weights on 0..=1.
@@ -89,13 +89,19 @@ impl CoatedDiffuse {
             GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * gets_in(t * t)).sum()
         };
         let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
-        CoatedDiffuse { scale: reflected * scale, through: passed * scale, boundary, cover, grain: None }
+        CoatedDiffuse {
+            scale: reflected * scale,
+            through: passed * scale,
+            boundary,
+            cover,
+            rough_diffuse: None,
+        }
     }
 
     /// The same lobe with a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
     pub fn rough(self, roughness: f32, colour: Rgb) -> CoatedDiffuse {
-        let grain = RoughDiffuse::new(roughness, colour, |cos| self.passed(cos));
-        CoatedDiffuse { grain: (roughness > 0.0).then_some(grain), ..self }
+        let rough_diffuse = RoughDiffuse::new(roughness, colour, |cos| self.passed(cos));
+        CoatedDiffuse { rough_diffuse: (roughness > 0.0).then_some(rough_diffuse), ..self }
     }
 
     /// The probability of sampling a direction on the other side.
@@ -122,7 +128,8 @@ impl CoatedDiffuse {
     #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
         let scale = if wo.z * wi.z > 0.0 {
-            self.grain.map_or(self.scale, |grain| self.scale * grain.over_lambert(wo, wi))
+            self.rough_diffuse
+                .map_or(self.scale, |rough_diffuse| self.scale * rough_diffuse.over_lambert(wo, wi))
         } else if wo.z * wi.z < 0.0 {
             self.through
         } else {
@@ -139,7 +146,7 @@ impl CoatedDiffuse {
         if wo.z * wi.z <= 0.0 {
             return through * cosine;
         }
-        let even = self.grain.map_or(0.0, |grain| grain.uniform_probability(wo));
+        let even = self.rough_diffuse.map_or(0.0, |rough_diffuse| rough_diffuse.uniform_probability(wo));
         (1.0 - through) * (cosine + (0.5 * FRAC_1_PI - cosine) * even)
     }
 
@@ -152,7 +159,8 @@ impl CoatedDiffuse {
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let through = self.share_through();
         let transmits = u_choice < through;
-        let even = self.grain.map_or(0.0, |grain| grain.uniform_probability(wo)) * (1.0 - through);
+        let even = self.rough_diffuse.map_or(0.0, |rough_diffuse| rough_diffuse.uniform_probability(wo))
+            * (1.0 - through);
         let is_even = !transmits && u_choice - through < even;
         let mut wi = if is_even { warp::sample_cone(u, 0.0) } else { warp::sample_cosine_hemisphere(u) };
         wi.z *= 1f32.copysign(if transmits { -wo.z } else { wo.z });

@@ -56,10 +56,10 @@ const MILLIMETRE: f32 = 0.001;
 /// Floor, ceiling, three walls, the light and the camera; also returns the index of the white wall material.
 fn empty_room() -> (SceneBuilder, usize) {
     let mut room = SceneBuilder::default();
-    let matt = |name: &str, colour: Rgb| Spec::new(name, "diffuse").with("reflectance", colour);
-    let white = room.add_material(matt("white", Rgb::new(0.725, 0.71, 0.68)));
-    let red = room.add_material(matt("red", Rgb::new(0.63, 0.065, 0.05)));
-    let green = room.add_material(matt("green", Rgb::new(0.14, 0.45, 0.091)));
+    let diffuse = |name: &str, colour: Rgb| Spec::new(name, "diffuse").with("reflectance", colour);
+    let white = room.add_material(diffuse("white", Rgb::new(0.725, 0.71, 0.68)));
+    let red = room.add_material(diffuse("red", Rgb::new(0.63, 0.065, 0.05)));
+    let green = room.add_material(diffuse("green", Rgb::new(0.14, 0.45, 0.091)));
     let (w, h, d) = (552.8, 548.8, 559.2);
     let walls = [
         ("floor", [[w, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, d], [549.6, 0.0, d]], white),

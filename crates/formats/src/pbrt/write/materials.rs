@@ -29,7 +29,7 @@ impl Document<'_> {
         HOLDS.tell(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
-            "diffuse" => self.matt(spec, "reflectance", 0.7, writing)?,
+            "diffuse" => self.diffuse(spec, "reflectance", 0.7, writing)?,
             "mirror" => {
                 writing.warn("mirrors are written as metal, which reflects more at grazing angles");
                 let reflectance = self.colour_of(spec, "reflectance", 0.95, AS_IT_IS, writing)?;
@@ -82,7 +82,7 @@ impl Document<'_> {
         Ok(rgb("x", (change.of)(colour(spec, key).unwrap_or(Rgb::grey(default)))))
     }
 
-    fn matt(
+    fn diffuse(
         &mut self,
         spec: &Spec,
         key: &str,
@@ -256,7 +256,7 @@ impl Document<'_> {
             ));
         }
         if weight <= 0.0 {
-            return self.matt(spec, "base_color", 0.8, writing);
+            return self.diffuse(spec, "base_color", 0.8, writing);
         }
         // The reflectance at normal incidence is multiplied by the weight.
         let index = number(spec, "specular_ior").unwrap_or(1.5);
@@ -322,7 +322,7 @@ impl Document<'_> {
         }
         let (kd, ks) = (strongest("kd", 0.7), strongest("ks", 0.3));
         if ks <= 0.0 {
-            return self.matt(spec, "kd", 0.7, writing);
+            return self.diffuse(spec, "kd", 0.7, writing);
         }
         writing.warn("highlights of 'phong' are written as metal of the same highlight width and weight");
         let share = (ks / (kd + ks)).clamp(0.01, 0.99);
@@ -332,13 +332,13 @@ impl Document<'_> {
         let below = self.colour_of(spec, "kd", 0.7, Change { name: "the rest", of: &rest }, writing)?;
         let above = self.colour_of(spec, "ks", 0.3, Change { name: "a share", of: &part }, writing)?;
         let alpha = (2.0 / (number(spec, "exponent").unwrap_or(32.0) + 2.0)).sqrt();
-        let matt = format!(" \"string type\" \"diffuse\"{}", renamed(&below, "reflectance"));
+        let diffuse = format!(" \"string type\" \"diffuse\"{}", renamed(&below, "reflectance"));
         let metal = format!(
             " \"string type\" \"conductor\"{}{}{AS_ALPHA}",
             renamed(&above, "reflectance"),
             float("roughness", alpha)
         );
-        let first = self.named(spec, &format!("{} below", spec.name), &matt, writing)?;
+        let first = self.named(spec, &format!("{} below", spec.name), &diffuse, writing)?;
         let second = self.named(spec, &format!("{} above", spec.name), &metal, writing)?;
         let amount = float("amount", share);
         Ok(format!(" \"string type\" \"mix\" \"string materials\" [ \"{first}\" \"{second}\" ]{amount}"))

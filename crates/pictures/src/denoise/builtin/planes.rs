@@ -100,14 +100,14 @@ impl Light {
         let by = |i: usize| albedo.map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
-        let told = |i: usize| match &layer.variance {
+        let variance = |i: usize| match &layer.variance {
             Some(variance) => {
                 let (variance, by) = (variance[i], by(i));
                 mean(variance / (by * by))
             }
             None => guessed[i],
         };
-        let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), told(i))).collect();
+        let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), variance(i))).collect();
         drop((layer, guessed));
         let pixels = outliers::without(size, &pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.

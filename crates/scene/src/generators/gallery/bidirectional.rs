@@ -30,16 +30,16 @@ fn build() -> SceneBuilder {
     stage.put("table", round_table(), wood);
     let glass = stage.glass("glass", [0.6, 0.25, 0.3]);
     stage.put("egg", egg(), glass);
-    let cloth = stage.matt("cloth", [0.22, 0.30, 0.50]);
+    let cloth = stage.diffuse("cloth", [0.22, 0.30, 0.50]);
     stage.put("armchair", placed(&furniture::armchair(2), (Vec3::Y, -38.0), [1.15, 0.0, -0.75]), cloth);
     stage.put("feet", placed(&furniture::feet(2), (Vec3::Y, -38.0), [1.15, 0.0, -0.75]), wood);
     stage.seen([0.35, 1.55, 3.2], [0.0, 0.93, -0.4], 40.0)
 }
 
 fn room(stage: &mut Stage) {
-    let plaster = stage.matt("plaster", [0.68, 0.66, 0.60]);
-    let warm = stage.matt("side wall", [0.62, 0.40, 0.28]);
-    let floor = stage.matt("floor", [0.45, 0.36, 0.27]);
+    let plaster = stage.diffuse("plaster", [0.68, 0.66, 0.60]);
+    let warm = stage.diffuse("side wall", [0.62, 0.40, 0.28]);
+    let floor = stage.diffuse("floor", [0.45, 0.36, 0.27]);
     stage.put(
         "walls",
         boxes(&[
@@ -59,7 +59,7 @@ fn stand(stage: &mut Stage) {
     let brass = stage.glossy("brass", [0.30, 0.20, 0.07], 0.4, 70.0);
     let at = [-1.35, 0.0, -1.1];
     stage.put("stand", moved(&furniture::lamp_stand(2), at), brass);
-    let paint = stage.matt("shade", [0.58, 0.50, 0.38]);
+    let paint = stage.diffuse("shade", [0.58, 0.50, 0.38]);
     let up = [at[0], 1.60, at[2]];
     stage.put("shade", moved(&furniture::shade(2), up), paint);
     let cover = [[0.0, -0.085], [0.15, -0.085], [0.155, -0.09], [0.15, -0.095], [0.0, -0.095]];
@@ -70,7 +70,7 @@ fn stand(stage: &mut Stage) {
 
 /// Two tubes on the ceiling rail: one lights the wall, the other shines down at the egg.
 fn spot(stage: &mut Stage) {
-    let black = stage.matt("black", [0.04, 0.04, 0.045]);
+    let black = stage.diffuse("black", [0.04, 0.04, 0.045]);
     let tube = tube();
     let lamp = stage.glowing("spot", [900.0, 830.0, 720.0]);
     let disc = shapes::disc(Vec3::new(0.0, -0.02, 0.0), 0.042, 24);

@@ -17,7 +17,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 fn build() -> SceneBuilder {
     let mut stage = Stage::new(0.7);
     stage.deep(16);
-    let plaster = stage.matt("plaster", [0.72, 0.66, 0.57]);
+    let plaster = stage.diffuse("plaster", [0.72, 0.66, 0.57]);
     stage.put("backdrop", backdrop(), plaster);
     let clear = stage.glass("clear glass", [0.8, 0.3, 0.4]);
     let blue = stage.glass("blue glass", [9.0, 3.2, 0.5]);

@@ -19,10 +19,10 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 
 fn build() -> SceneBuilder {
     let mut stage = Stage::new(0.2);
-    let grass = stage.matt("grass", [0.15, 0.22, 0.06]);
+    let grass = stage.diffuse("grass", [0.15, 0.22, 0.06]);
     stage.put("meadow", shapes::floor(Vec3::new(0.0, -0.3, 0.0), 400.0), grass);
-    let marble = stage.matt("marble", [0.72, 0.68, 0.60]);
-    let clay = stage.matt("clay", [0.58, 0.21, 0.10]);
+    let marble = stage.diffuse("marble", [0.72, 0.68, 0.60]);
+    let clay = stage.diffuse("clay", [0.58, 0.21, 0.10]);
     stage.put("steps", steps(), marble);
     paving(&mut stage);
     stage.put("columns", columns(), marble);
@@ -37,7 +37,7 @@ fn build() -> SceneBuilder {
     );
     let pot = Teapot { tessellation: 14, height: 1.75, bottom: true }.mesh();
     stage.put("teapot", placed(&pot, (Vec3::Y, -28.0), [0.0, 1.08, 0.0]), clay);
-    let leaf = stage.matt("cypress", [0.07, 0.14, 0.05]);
+    let leaf = stage.diffuse("cypress", [0.07, 0.14, 0.05]);
     for (k, [x, z, size]) in [
         [-8.5, -9.0, 1.0],
         [-6.0, -13.0, 1.25],
@@ -75,7 +75,7 @@ fn steps() -> Mesh {
 
 /// The floor within the steps, in two shades of stone.
 fn paving(stage: &mut Stage) {
-    let ground = stage.matt("joints", [0.30, 0.27, 0.23]);
+    let ground = stage.diffuse("joints", [0.30, 0.27, 0.23]);
     stage.put("ground", shapes::disc(Vec3::new(0.0, -0.004, 0.0), 4.75, 96), ground);
     let tiles = Tiles {
         corner: [-3.3, 0.0, 3.3],
@@ -87,7 +87,7 @@ fn paving(stage: &mut Stage) {
     let (shades, _) = tiles.meshes::<3>();
     for (mesh, colour) in shades.into_iter().zip([[0.60, 0.54, 0.45], [0.50, 0.44, 0.36], [0.56, 0.47, 0.37]])
     {
-        let stone = stage.matt("paving", colour);
+        let stone = stage.diffuse("paving", colour);
         stage.put("paving", mesh, stone);
     }
 }

@@ -35,8 +35,8 @@ fn build() -> SceneBuilder {
 
 /// Two rooms with one wall between them.
 fn rooms(stage: &mut Stage) {
-    let plaster = stage.matt("plaster", [0.70, 0.69, 0.68]);
-    let bright = stage.matt("bright plaster", [0.78, 0.72, 0.60]);
+    let plaster = stage.diffuse("plaster", [0.70, 0.69, 0.68]);
+    let bright = stage.diffuse("bright plaster", [0.78, 0.72, 0.60]);
     let [front, back] = WALL;
     let [left, right] = DOOR;
     let (x, top) = (2.2, 2.55);
@@ -110,10 +110,10 @@ fn floor(stage: &mut Stage) {
     };
     let (shades, ground) = tiles.meshes::<2>();
     for (mesh, colour) in shades.into_iter().zip([[0.42, 0.27, 0.18], [0.34, 0.21, 0.14]]) {
-        let material = stage.matt("tiles", colour);
+        let material = stage.diffuse("tiles", colour);
         stage.put("tiles", mesh, material);
     }
-    let joints = stage.matt("joints", [0.25, 0.2, 0.16]);
+    let joints = stage.diffuse("joints", [0.25, 0.2, 0.16]);
     stage.put("joints", ground, joints);
 }
 
@@ -132,7 +132,7 @@ fn table(stage: &mut Stage) {
     stage.put("copper teapot", placed(&pot, (Vec3::Y, -25.0), [-0.12, 0.745, -0.45]), copper);
     stage.put("china teapot", placed(&pot, (Vec3::Y, 20.0), [0.42, 0.745, -0.58]), china);
     stage.put("glazed teapot", placed(&pot, (Vec3::Y, 200.0), [0.93, 0.745, -0.38]), glaze);
-    let canvas = stage.matt("canvas", [0.62, 0.34, 0.14]);
+    let canvas = stage.diffuse("canvas", [0.62, 0.34, 0.14]);
     stage.put("picture", boxes(&[[[0.38, 1.25, WALL[0]], [1.18, 1.85, WALL[0] + 0.02]]]), canvas);
     stage.put("picture", frame(), wood);
 }

@@ -21,12 +21,12 @@ fn build() -> SceneBuilder {
     stage.put("uplighter", moved(&uplighter(), lamp), brass);
     let bulb = stage.glowing("bulb", [210.0, 172.0, 128.0]);
     stage.put("bulb", shapes::disc(Vec3::new(lamp[0], 1.80, lamp[2]), 0.14, 24), bulb);
-    let velvet = stage.matt("velvet", [0.06, 0.26, 0.27]);
+    let velvet = stage.diffuse("velvet", [0.06, 0.26, 0.27]);
     stage.put("armchair", placed(&furniture::armchair(2), (Vec3::Y, 32.0), [-0.25, 0.0, -0.55]), velvet);
     let wood = stage.glossy("walnut", [0.19, 0.10, 0.055], 0.06, 80.0);
     stage.put("feet", placed(&furniture::feet(2), (Vec3::Y, 32.0), [-0.25, 0.0, -0.55]), wood);
     stage.put("side table", side_table(), wood);
-    let ochre = stage.matt("cushion", [0.72, 0.40, 0.08]);
+    let ochre = stage.diffuse("cushion", [0.72, 0.40, 0.08]);
     let cushion = rounded(between([-0.2, -0.2, -0.055], [0.2, 0.2, 0.055]), 0.05, 6);
     let cushion = placed(&cushion, (Vec3::X, -20.0), [0.0; 3]);
     stage.put("cushion", placed(&cushion, (Vec3::Y, 36.0), [-0.33, 0.66, -0.64]), ochre);
@@ -37,8 +37,8 @@ fn build() -> SceneBuilder {
 
 /// Walls, floor, ceiling, rug and skirting; closed behind the camera.
 fn room(stage: &mut Stage) {
-    let plaster = stage.matt("plaster", [0.70, 0.62, 0.53]);
-    let white = stage.matt("ceiling", [0.84, 0.82, 0.78]);
+    let plaster = stage.diffuse("plaster", [0.70, 0.62, 0.53]);
+    let white = stage.diffuse("ceiling", [0.84, 0.82, 0.78]);
     let boards = stage.glossy("boards", [0.36, 0.22, 0.12], 0.05, 60.0);
     let walls = [
         [[-2.1, 0.0, -2.0], [2.1, 2.6, -1.9]],
@@ -58,7 +58,7 @@ fn room(stage: &mut Stage) {
         ]),
         white,
     );
-    let wool = stage.matt("wool", [0.52, 0.13, 0.09]);
+    let wool = stage.diffuse("wool", [0.52, 0.13, 0.09]);
     stage.put("rug", placed(&soft::rug(1), (Vec3::Y, 8.0), [0.15, 0.0, 0.1]), wool);
 }
 
@@ -98,8 +98,8 @@ fn side_table() -> Mesh {
 /// A vase with leaves, a cup, and books left on the table.
 fn table_things(stage: &mut Stage) {
     let glaze = stage.glossy("glaze", [0.08, 0.20, 0.34], 0.10, 200.0);
-    let leaf = stage.matt("leaf", [0.20, 0.40, 0.10]);
-    let pot = stage.matt("terracotta", [0.58, 0.26, 0.14]);
+    let leaf = stage.diffuse("leaf", [0.20, 0.40, 0.10]);
+    let pot = stage.diffuse("terracotta", [0.58, 0.26, 0.14]);
     stage.put("cup", placed(&tableware::cup(3), (Vec3::Y, -60.0), [0.84, 0.55, -0.28]), glaze);
     stage.put("pot", moved(&tableware::pot(2), [1.55, 0.0, -1.42]), pot);
     stage.put("leaves", moved(&soft::leaves(1), [1.55, 0.0, -1.42]), leaf);
@@ -108,7 +108,7 @@ fn table_things(stage: &mut Stage) {
             .into_iter()
             .enumerate()
     {
-        let cloth = stage.matt("cloth", colour);
+        let cloth = stage.diffuse("cloth", colour);
         let book = rounded(between([-size, 0.0, -0.75 * size], [size, 0.028, 0.75 * size]), 0.004, 2);
         let place = [0.62, 0.55 + 0.0285 * k as f32, -0.40];
         stage.put("book", placed(&book, (Vec3::Y, 15.0 - 21.0 * k as f32), place), cloth);
@@ -117,11 +117,11 @@ fn table_things(stage: &mut Stage) {
 
 /// Two framed pictures on the wall.
 fn pictures(stage: &mut Stage) {
-    let oak = stage.matt("oak", [0.40, 0.25, 0.13]);
+    let oak = stage.diffuse("oak", [0.40, 0.25, 0.13]);
     let spots =
         [([0.62, 0.34, 0.12], [0.28, 1.55], [0.32, 0.24]), ([0.16, 0.27, 0.33], [1.0, 1.62], [0.2, 0.26])];
     for (colour, [x, y], [w, h]) in spots {
-        let canvas = stage.matt("canvas", colour);
+        let canvas = stage.diffuse("canvas", colour);
         stage.put("picture", boxes(&[[[x - w, y - h, -1.9], [x + w, y + h, -1.885]]]), canvas);
         let bar = |low: [f32; 2], high: [f32; 2]| [[low[0], low[1], -1.9], [high[0], high[1], -1.865]];
         let (l, r, b, t) = (x - w, x + w, y - h, y + h);

@@ -27,9 +27,9 @@ fn build() -> SceneBuilder {
 }
 
 fn room(stage: &mut Stage) {
-    let wall = stage.matt("wall", [0.20, 0.38, 0.40]);
-    let white = stage.matt("ceiling", [0.78, 0.76, 0.72]);
-    let wood = stage.matt("panels", [0.32, 0.18, 0.10]);
+    let wall = stage.diffuse("wall", [0.20, 0.38, 0.40]);
+    let white = stage.diffuse("ceiling", [0.78, 0.76, 0.72]);
+    let wood = stage.diffuse("panels", [0.32, 0.18, 0.10]);
     stage.put(
         "walls",
         boxes(&[
@@ -108,7 +108,7 @@ fn cord() -> Mesh {
 
 fn table(stage: &mut Stage) {
     let oak = stage.glossy("oak", [0.40, 0.24, 0.12], 0.05, 60.0);
-    let linen = stage.matt("linen", [0.76, 0.72, 0.64]);
+    let linen = stage.diffuse("linen", [0.76, 0.72, 0.64]);
     let china = stage.glossy("china", [0.72, 0.70, 0.66], 0.08, 200.0);
     let glaze = stage.glossy("glaze", [0.45, 0.10, 0.06], 0.10, 200.0);
     let orange = stage.glossy("orange", [0.85, 0.36, 0.04], 0.04, 30.0);

@@ -35,7 +35,7 @@ fn build() -> SceneBuilder {
 }
 
 fn ground(stage: &mut Stage) {
-    let grass = stage.matt("grass", [0.14, 0.20, 0.07]);
+    let grass = stage.diffuse("grass", [0.14, 0.20, 0.07]);
     stage.put("grass", shapes::floor(Vec3::new(0.0, -0.05, 0.0), 400.0), grass);
     let tiles = Tiles {
         corner: [-3.6, 0.0, 4.8],
@@ -47,16 +47,16 @@ fn ground(stage: &mut Stage) {
     let (shades, joints) = tiles.meshes::<3>();
     for (mesh, colour) in shades.into_iter().zip([[0.48, 0.45, 0.42], [0.40, 0.38, 0.36], [0.54, 0.49, 0.44]])
     {
-        let stone = stage.matt("flags", colour);
+        let stone = stage.diffuse("flags", colour);
         stage.put("flags", mesh, stone);
     }
-    let moss = stage.matt("moss", [0.10, 0.12, 0.06]);
+    let moss = stage.diffuse("moss", [0.10, 0.12, 0.06]);
     stage.put("joints", joints, moss);
 }
 
 /// Cords between two beams on posts, with a bulb every few inches; most are warm, a few are coloured.
 fn bulbs(stage: &mut Stage) {
-    let wood = stage.matt("posts", [0.24, 0.15, 0.09]);
+    let wood = stage.diffuse("posts", [0.24, 0.15, 0.09]);
     stage.put(
         "posts",
         boxes(&[
@@ -69,7 +69,7 @@ fn bulbs(stage: &mut Stage) {
         ]),
         wood,
     );
-    let black = stage.matt("cord", [0.03, 0.03, 0.03]);
+    let black = stage.diffuse("cord", [0.03, 0.03, 0.03]);
     let colours = [
         [22.0, 15.5, 8.5],
         [20.0, 13.0, 6.5],
@@ -114,7 +114,7 @@ fn piece(a: Vec3, b: Vec3) -> Mesh {
 /// A long table, laid, with chairs around it.
 fn supper(stage: &mut Stage) {
     let oak = stage.glossy("oak", [0.38, 0.23, 0.12], 0.05, 60.0);
-    let linen = stage.matt("linen", [0.74, 0.72, 0.68]);
+    let linen = stage.diffuse("linen", [0.74, 0.72, 0.68]);
     let china = stage.glossy("china", [0.66, 0.68, 0.72], 0.08, 200.0);
     let orange = stage.glossy("orange", [0.85, 0.36, 0.04], 0.04, 30.0);
     let tables = [-0.98, 0.98].map(|x| moved(&furniture::table(1), [x, 0.0, 0.3]));
@@ -143,8 +143,8 @@ fn supper(stage: &mut Stage) {
 
 /// Dark round trees in the background.
 fn trees(stage: &mut Stage) {
-    let leaf = stage.matt("leaves", [0.09, 0.17, 0.05]);
-    let bark = stage.matt("bark", [0.16, 0.10, 0.07]);
+    let leaf = stage.diffuse("leaves", [0.09, 0.17, 0.05]);
+    let bark = stage.diffuse("bark", [0.16, 0.10, 0.07]);
     for (k, [x, z, size]) in [
         [-4.6, -5.0, 1.3],
         [-1.9, -6.4, 1.5],

@@ -49,7 +49,7 @@ impl Stage {
         self.scene.add_material(spec)
     }
 
-    fn matt(&mut self, name: &str, colour: [f32; 3]) -> usize {
+    fn diffuse(&mut self, name: &str, colour: [f32; 3]) -> usize {
         self.material(Spec::new(name, "diffuse").with("reflectance", Rgb::from_array(colour)))
     }
 

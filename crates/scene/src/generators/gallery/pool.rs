@@ -79,17 +79,17 @@ fn basin(stage: &mut Stage) {
         joints.push(ground);
     }
     for (tiles, colour) in shades.into_iter().zip(colours) {
-        let material = stage.matt("tiles", colour);
+        let material = stage.diffuse("tiles", colour);
         stage.put("tiles", joined(tiles), material);
     }
-    let white = stage.matt("joints", [0.70, 0.70, 0.66]);
+    let white = stage.diffuse("joints", [0.70, 0.70, 0.66]);
     stage.put("joints", joined(joints), white);
 }
 
 /// The deck around, a low wall, and the grass beyond.
 fn surroundings(stage: &mut Stage) {
     let [x, z] = HALF;
-    let stone = stage.matt("stone", [0.62, 0.56, 0.46]);
+    let stone = stage.diffuse("stone", [0.62, 0.56, 0.46]);
     let edge = [
         [[-x - 0.35, -DEPTH - 0.2, -z], [-x - 0.005, 0.02, z]],
         [[x + 0.005, -DEPTH - 0.2, -z], [x + 0.35, 0.02, z]],
@@ -97,7 +97,7 @@ fn surroundings(stage: &mut Stage) {
         [[-x - 0.35, -DEPTH - 0.2, z + 0.005], [x + 0.35, 0.02, z + 0.35]],
     ];
     stage.put("coping", boxes(&edge), stone);
-    let wood = stage.matt("deck", [0.40, 0.26, 0.15]);
+    let wood = stage.diffuse("deck", [0.40, 0.26, 0.15]);
     let planks = (0..44).flat_map(|k| {
         let near = -7.0 + 0.25 * k as f32;
         let plank = |from: f32, to: f32| [[from, -0.06, near], [to, -0.01, near + 0.235]];
@@ -105,7 +105,7 @@ fn surroundings(stage: &mut Stage) {
         if beside { vec![plank(-7.0, 7.0)] } else { vec![plank(-7.0, -x - 0.36), plank(x + 0.36, 7.0)] }
     });
     stage.put("deck", boxes(&planks.collect::<Vec<_>>()), wood);
-    let plaster = stage.matt("wall", [0.74, 0.66, 0.55]);
+    let plaster = stage.diffuse("wall", [0.74, 0.66, 0.55]);
     stage.put(
         "wall",
         boxes(&[[[-7.0, -0.1, -5.4], [7.0, 1.9, -5.1]], [[-5.4, -0.1, -5.4], [-5.1, 1.9, 5.0]]]),

@@ -64,11 +64,11 @@ impl Point {
             }
             // What a film reflects at its brightest colour is withheld from the base at every colour.
             let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
-            let matt = CoatedDiffuse::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
+            let coated = CoatedDiffuse::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
             Lobe::CoatedDiffuse(if self.base_roughness > 0.0 {
-                matt.rough(self.base_roughness, self.base_color)
+                coated.rough(self.base_roughness, self.base_color)
             } else {
-                matt
+                coated
             })
         });
         let clear = (!clear.is_black()).then(|| {

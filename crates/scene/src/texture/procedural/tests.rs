@@ -183,13 +183,13 @@ fn errors_are_reported() {
     let falling = Value::List(vec![stop(0.5, [0.0; 3]), stop(0.2, [1.0; 3])]);
     for stops in [falling, Value::List(Vec::new()), number(1.0), Value::List(vec![stop(f32::NAN, [0.0; 3])])]
     {
-        let told = refusal("ramp", &[("stops", stops)]);
-        assert!(told.contains("whose positions never decrease"), "{told}");
+        let reported = refusal("ramp", &[("stops", stops)]);
+        assert!(reported.contains("whose positions never decrease"), "{reported}");
     }
     // A texture that contains itself twice, again and again, would take hours.
     let mut doubled = texture("checker", &[], &[]);
     let twice = [("a", Value::Texture(0)), ("b", Value::Texture(0))];
-    let told = (0..20).find_map(|_| {
+    let reported = (0..20).find_map(|_| {
         let parts = vec![Arc::new(doubled.clone()), Arc::new(doubled.clone())];
         let given = [twice[0].clone(), ("b", Value::Texture(1))];
         match Texture::by_formula(Spec { span: Span::default(), ..spec("scale", &given) }, parts, false) {
@@ -200,5 +200,5 @@ fn errors_are_reported() {
             Err(error) => Some(error.to_string()),
         }
     });
-    assert!(told.unwrap().contains("more than 256"));
+    assert!(reported.unwrap().contains("more than 256"));
 }

@@ -40,10 +40,10 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
                 default: "auto",
             },
             Parameter {
-                name: "ways",
+                name: "techniques",
                 summary: "always use this set of techniques, whatever the pilot render suggests",
                 unit: "",
-                kind: ParameterKind::Choice(&WAYS),
+                kind: ParameterKind::Choice(&TECHNIQUES),
                 default: "auto",
             },
             super::ROULETTE_DEPTH,
@@ -69,12 +69,12 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     classic: false,
     default_spp: 64,
     build: |reader| {
-        let (may_merge, techniques) = (reader.text("merge") == "auto", reader.text("ways"));
+        let (may_merge, techniques) = (reader.text("merge") == "auto", reader.text("techniques"));
         let given = SETS.iter().position(|set| set.techniques == techniques);
         if !may_merge && given.is_some_and(|set| SETS[set].merges()) {
             let message =
                 format!("'{techniques}' needs vertex merging, but 'merge' is 'never': set it to auto");
-            return Err(SceneError::invalid(message, reader.span("ways")));
+            return Err(SceneError::invalid(message, reader.span("techniques")));
         }
         Ok(Box::new(Auto {
             aims: reader.bool("aim"),
@@ -152,8 +152,8 @@ impl Set {
     }
 }
 
-/// All values of the parameter `ways`.
-const WAYS: [&str; 1 + SETS.len()] = {
+/// All values of the parameter `techniques`.
+const TECHNIQUES: [&str; 1 + SETS.len()] = {
     let mut techniques = ["auto"; 1 + SETS.len()];
     let mut i = 0;
     while i < SETS.len() {
