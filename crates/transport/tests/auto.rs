@@ -182,7 +182,7 @@ fn light_that_path_cannot_find_is_not_lost() {
 fn merging_sets_are_refused_when_merging_is_off() {
     let spec = auto().with("merge", "never");
     let error = integrators::build(&spec.clone().with("techniques", "path-few")).err().unwrap().to_string();
-    assert!(error.contains("'path-few' merges"), "{error}");
+    assert!(error.contains("'path-few' needs vertex merging"), "{error}");
     assert!(integrators::build(&spec.with("techniques", "bdpt")).is_ok());
 }
 
