@@ -479,7 +479,7 @@ fn up_and_front_turn_a_model() {
     let picture = |scene: &str, axes: &[&str]| {
         let mut run = std::process::Command::new(assert_cmd::cargo::cargo_bin("bilux"));
         run.current_dir(path)
-            .args(["render", scene, "-o", "a.pfm", "--size", "32x32", "--spp", "4", "-i", "path"]);
+            .args(["render", scene, "-o", "a.pfm", "--size", "32x32", "--spp", "4", "-i", "path", "-v"]);
         let output = run.args(axes).output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{said}");
