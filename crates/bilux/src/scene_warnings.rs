@@ -222,7 +222,9 @@ mod tests {
                 let mut user = Parameters::default();
                 user.set("orbit", Value::from(orbit));
                 // Otherwise `auto` would turn the cards round, and the ground would hide one that lies on it.
-                [("up", "y"), ("front", "z"), ("ground", "none")].map(|(key, value)| user.set(key, value));
+                for (key, value) in [("up", "y"), ("front", "z"), ("ground", "none")] {
+                    user.set(key, value);
+                }
                 let job = Job::new(&scene, &user).unwrap();
                 job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("")
             };
