@@ -27,7 +27,7 @@ pub trait Accelerator: Send + Sync {
     fn all_hits(&self, ray: &Ray, query: &Query) -> Vec<Hit> {
         let found = Mutex::new(Vec::new());
         let note = |hit: &Hit| {
-            if query.keeps(hit) {
+            if query.accepts(hit) {
                 found.lock().unwrap_or_else(PoisonError::into_inner).push(hit.with_positive_zeros());
             }
             // Never accept a hit, so that the search goes on to the end of the ray.

@@ -186,8 +186,8 @@ impl Traverse for TwoLevel {
                 return ControlFlow::Continue(t_max);
             }
             let local = self.local_ray(index, ray, t_max);
-            let keeps = |hit: &Hit| query.keeps(&Hit { instance: index, ..*hit });
-            let query = &Query { filter: query.filter.and(Some(&keeps)), ..*query };
+            let accepts = |hit: &Hit| query.accepts(&Hit { instance: index, ..*hit });
+            let query = &Query { filter: query.filter.and(Some(&accepts)), ..*query };
             let hit = match count.counters() {
                 Some(counters) => {
                     uncounted_ray(counters, |c| accelerator.closest_hit_counted(&local, query, c))
@@ -219,8 +219,8 @@ impl Traverse for TwoLevel {
                 return ControlFlow::Continue(ray.t_max);
             }
             let local = self.local_ray(index, ray, ray.t_max);
-            let keeps = |hit: &Hit| query.keeps(&Hit { instance: index, ..*hit });
-            let query = &Query { filter: query.filter.and(Some(&keeps)), ..*query };
+            let accepts = |hit: &Hit| query.accepts(&Hit { instance: index, ..*hit });
+            let query = &Query { filter: query.filter.and(Some(&accepts)), ..*query };
             found = match count.counters() {
                 Some(counters) => uncounted_ray(counters, |c| accelerator.any_hit_counted(&local, query, c)),
                 None => accelerator.any_hit(&local, query),

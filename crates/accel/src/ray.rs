@@ -144,7 +144,7 @@ impl Query<'_> {
 
     /// True when the filter accepts a hit.
     #[inline(always)]
-    pub(crate) fn keeps(&self, hit: &Hit) -> bool {
+    pub(crate) fn accepts(&self, hit: &Hit) -> bool {
         self.filter.is_none_or(|filter| filter(hit))
     }
 }

@@ -124,7 +124,7 @@ mod tests {
 
     const CUBE: [[f32; 3]; 2] = [[-1.0; 3], [1.0; 3]];
 
-    fn meets(ray: &SlabRay) -> bool {
+    fn hits(ray: &SlabRay) -> bool {
         let [enter, leave] = ray.span(&CUBE);
         enter <= leave && leave >= ray.nearest
     }
@@ -143,15 +143,15 @@ mod tests {
             [([1.0, 0.0, 0.0], 0.0f32), ([1.0, -0.0, 0.0], -0.0), ([1e-42, 0.0, -0.0], 0.0)]
         {
             let ray = SlabRay::new([-3.0, 1.0, zero], direction, 0.0, 1e-6);
-            assert!(meets(&ray), "{direction:?}");
-            assert!(!meets(&SlabRay::new([-3.0, 1.001, zero], direction, 0.0, 1e-6)));
+            assert!(hits(&ray), "{direction:?}");
+            assert!(!hits(&SlabRay::new([-3.0, 1.001, zero], direction, 0.0, 1e-6)));
         }
     }
 
     #[test]
     fn an_overflowing_pad_hits_every_box() {
         for pad in [f32::INFINITY, f32::NAN, f32::MAX] {
-            assert!(meets(&SlabRay::new([3e38, -3e38, 5.0], [1.0, 1.0, 0.0], -f32::INFINITY, pad)));
+            assert!(hits(&SlabRay::new([3e38, -3e38, 5.0], [1.0, 1.0, 0.0], -f32::INFINITY, pad)));
         }
     }
 

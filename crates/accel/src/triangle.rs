@@ -164,7 +164,7 @@ impl Nearest {
             Some(hit) => found.t < hit.t || primitive < hit.primitive,
             None => true,
         };
-        if wins && query.keeps(&found) {
+        if wins && query.accepts(&found) {
             (self.t, self.hit) = (found.t, Some(found));
         }
     }
@@ -181,7 +181,7 @@ impl Nearest {
 pub fn hits(ray: &PreparedRay, query: &Query, triangle: &[[f32; 3]; 3], primitive: u32) -> bool {
     ray.cross(triangle)
         .and_then(|crossing| counts(ray, query, &crossing, primitive, ray.ray.t_max))
-        .is_some_and(|hit| query.keeps(&hit))
+        .is_some_and(|hit| query.accepts(&hit))
 }
 
 /// The hit, if a crossing is between the ray's ends, and on a side that counts. The filter is not evaluated.

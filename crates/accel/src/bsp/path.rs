@@ -112,8 +112,8 @@ impl Path {
 fn slack(ray: &PreparedRay, bounds: &Aabb) -> f32 {
     let pad = ray.pad(bounds);
     let reach = ray.ray.direction.iter().fold(0f32, |reach, d| reach.max(d.abs()));
-    let tame = pad < LARGE && reach < LARGE && reach > 1.0 / LARGE;
-    if tame { pad + reach.max(1.0) * f32::MIN_POSITIVE } else { f32::INFINITY }
+    let is_regular = pad < LARGE && reach < LARGE && reach > 1.0 / LARGE;
+    if is_regular { pad + reach.max(1.0) * f32::MIN_POSITIVE } else { f32::INFINITY }
 }
 
 /// 2¹⁰⁰.

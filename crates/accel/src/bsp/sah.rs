@@ -70,13 +70,13 @@ impl BspTree {
         let bounds = mesh.bounds();
         let low = bounds.min.as_dvec3() - space.centre.as_dvec3() - margin;
         let high = bounds.max.as_dvec3() - space.centre.as_dvec3() + margin;
-        let root = grower.grow(pieces, Room::Box(low, high), GROWTH, 0);
+        let root = grower.grow(pieces, PartitionCell::Box(low, high), GROWTH, 0);
         BspTree::new(mesh, &space, &root, false)
     }
 }
 
 /// The cell that a partition occupies.
-enum Room {
+enum PartitionCell {
     /// The box between two corners.
     Box(DVec3, DVec3),
     /// A box cut by planes that are not axis-aligned.
@@ -103,8 +103,8 @@ struct Grower<'a> {
 }
 
 impl Grower<'_> {
-    fn grow(&self, pieces: Pieces, room: Room, growth: f64, depth: usize) -> Branch {
-        let choice = if depth < self.deepest { self.choose(&pieces, &room, growth) } else { None };
+    fn grow(&self, pieces: Pieces, cell: PartitionCell, growth: f64, depth: usize) -> Branch {
+        let choice = if depth < self.deepest { self.choose(&pieces, &cell, growth) } else { None };
         let Some(Choice { plane, on_left, .. }) = choice else {
             return Branch::Leaf(pieces.into_triangles());
         };
@@ -117,28 +117,28 @@ impl Grower<'_> {
             right.append(&on)
         }
         let growth = growth * before as f64 / (left.len() + right.len()) as f64;
-        let [left_room, right_room] = room.split(&plane, self.space.tolerance);
-        let grow_left = || self.grow(left, left_room, growth, depth + 1);
-        let grow_right = || self.grow(right, right_room, growth, depth + 1);
+        let [left_cell, right_cell] = cell.split(&plane, self.space.tolerance);
+        let grow_left = || self.grow(left, left_cell, growth, depth + 1);
+        let grow_right = || self.grow(right, right_cell, growth, depth + 1);
         let (left, right) =
             if before > PARALLEL { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
         Branch::Fork { plane, on: Vec::new(), children: Box::new([left, right]) }
     }
 
     /// The cheapest plane; `None` where a leaf is cheaper.
-    fn choose(&self, pieces: &Pieces, room: &Room, growth: f64) -> Option<Choice> {
+    fn choose(&self, pieces: &Pieces, cell: &PartitionCell, growth: f64) -> Option<Choice> {
         let leaf = pieces.len() as f64;
         let most = (leaf * growth) as usize;
         if pieces.is_empty() {
             return None;
         }
-        if let (Room::Box(low, high), true) = (room, pieces.len() > self.few) {
+        if let (PartitionCell::Box(low, high), true) = (cell, pieces.len() > self.few) {
             let best = sweep::cheapest(pieces, *low, *high, self.space.tolerance, most);
             if best.is_some_and(|best| best.cost < leaf) {
                 return best;
             }
         }
-        let cell = room.cell();
+        let cell = cell.cell();
         let mut best = None;
         let mut cost = leaf;
         let samples = if pieces.len() > self.few { self.few / 2 } else { pieces.len() };
@@ -209,22 +209,22 @@ impl Choice {
     }
 }
 
-impl Room {
+impl PartitionCell {
     fn cell(&self) -> Cell {
         match self {
-            Room::Box(low, high) => Cell::of_box(*low, *high),
-            Room::Polyhedron(cell) => cell.clone(),
+            PartitionCell::Box(low, high) => Cell::of_box(*low, *high),
+            PartitionCell::Polyhedron(cell) => cell.clone(),
         }
     }
 
-    fn split(&self, plane: &Plane, tolerance: f64) -> [Room; 2] {
-        if let (Room::Box(low, high), Some(axis)) = (self, plane.axis()) {
+    fn split(&self, plane: &Plane, tolerance: f64) -> [PartitionCell; 2] {
+        if let (PartitionCell::Box(low, high), Some(axis)) = (self, plane.axis()) {
             let at = f64::from(plane.coefficients().1);
             let (mut middle_low, mut middle_high) = (*low, *high);
             middle_low[axis] = low[axis].max(at - tolerance);
             middle_high[axis] = high[axis].min(at + tolerance);
-            return [Room::Box(*low, middle_high), Room::Box(middle_low, *high)];
+            return [PartitionCell::Box(*low, middle_high), PartitionCell::Box(middle_low, *high)];
         }
-        self.cell().split(plane, tolerance).map(Room::Polyhedron)
+        self.cell().split(plane, tolerance).map(PartitionCell::Polyhedron)
     }
 }

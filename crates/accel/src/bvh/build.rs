@@ -43,24 +43,24 @@ pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, V
         return (Tree { root: BvhNode::default(), pairs: Vec::new() }, Vec::new());
     }
     let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
-    let mut room = vec![Pair::default(); items.len() - 1];
+    let mut pairs = vec![Pair::default(); items.len() - 1];
     let root =
-        subtree(Task { items: &mut items, first_item: 0, room: &mut room, first_pair: 0, depth: 1 }, planes);
+        subtree(Task { items: &mut items, first_item: 0, pairs: &mut pairs, first_pair: 0, depth: 1 }, planes);
     let order = items.iter().map(|item| item.index).collect();
-    (compact(root, room), order)
+    (compact(root, pairs), order)
 }
 
 /// Items to put under one node, and space for the pairs below it: one fewer than there are items.
 struct Task<'a> {
     items: &'a mut [Item],
     first_item: u32,
-    room: &'a mut [Pair],
+    pairs: &'a mut [Pair],
     first_pair: u32,
     depth: usize,
 }
 
 fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
-    let Task { items, first_item, room, first_pair, depth } = task;
+    let Task { items, first_item, pairs, first_pair, depth } = task;
     let leaf = BvhNode { planes, first: first_item, count: items.len() as u32 };
     if items.len() == 1 {
         return leaf;
@@ -74,15 +74,15 @@ fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
         Some(split) => (partition(items, &split), split.halves),
         None => halve(items),
     };
-    let Some((pair, room)) = room.split_first_mut() else { return leaf };
+    let Some((pair, pairs)) = pairs.split_first_mut() else { return leaf };
     let (left_items, right_items) = items.split_at_mut(middle);
-    let (left_room, right_room) = room.split_at_mut(middle - 1);
+    let (left_pairs, right_pairs) = pairs.split_at_mut(middle - 1);
     let left =
-        Task { items: left_items, first_item, room: left_room, first_pair: first_pair + 1, depth: depth + 1 };
+        Task { items: left_items, first_item, pairs: left_pairs, first_pair: first_pair + 1, depth: depth + 1 };
     let right = Task {
         items: right_items,
         first_item: first_item + middle as u32,
-        room: right_room,
+        pairs: right_pairs,
         first_pair: first_pair + middle as u32,
         depth: depth + 1,
     };

@@ -193,9 +193,9 @@ impl Tree {
 }
 
 #[inline(always)]
-fn count_early_outs<C: Count>(count: &mut C, meets: [bool; 2], visits: [bool; 2]) {
+fn count_early_outs<C: Count>(count: &mut C, hits: [bool; 2], visits: [bool; 2]) {
     for side in 0..2 {
-        if meets[side] && !visits[side] {
+        if hits[side] && !visits[side] {
             count.early_out();
         }
     }

@@ -51,7 +51,7 @@ impl Bvh8 {
             } else {
                 for block in self.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS) {
                     for (corners, primitive) in layout::triangles(block) {
-                        best.offer(at, corners.map(|p| DVec3::from(p.map(f64::from))), primitive);
+                        best.update(at, corners.map(|p| DVec3::from(p.map(f64::from))), primitive);
                     }
                 }
             }
@@ -72,7 +72,7 @@ struct Best {
 }
 
 impl Best {
-    fn offer(&mut self, at: DVec3, triangle: [DVec3; 3], primitive: u32) {
+    fn update(&mut self, at: DVec3, triangle: [DVec3; 3], primitive: u32) {
         let (weights, point) = nearest_of_triangle(at, triangle);
         let squared = at.distance_squared(point);
         let lower = self.at.is_none_or(|(.., best)| primitive < best);

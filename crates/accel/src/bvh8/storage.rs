@@ -150,10 +150,10 @@ impl Header {
 }
 
 /// Reads until the buffer is full or nothing is left; returns the number of bytes read.
-fn fill(from: &mut impl Read, room: &mut [u8]) -> io::Result<usize> {
+fn fill(from: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
     let mut found = 0;
-    while found < room.len() {
-        match from.read(&mut room[found..]) {
+    while found < buffer.len() {
+        match from.read(&mut buffer[found..]) {
             Ok(0) => break,
             Ok(n) => found += n,
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}

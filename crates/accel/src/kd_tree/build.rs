@@ -104,7 +104,7 @@ impl Builder<'_> {
         let split = best_split(&task.references, &task.cell, task.spare)?;
         let (mut low, mut high) = (task.cell, task.cell);
         (low[1][split.axis], high[0][split.axis]) = (split.plane, split.plane);
-        let [below, above] = self.sort_out(&task.references, &split);
+        let [below, above] = self.distribute(&task.references, &split);
         let made = below.len() + above.len();
         // Bins only estimate, so the actual numbers are checked.
         let stands_still = below.len() >= task.references.len() && above.len() >= task.references.len();
@@ -122,7 +122,7 @@ impl Builder<'_> {
     }
 
     /// References below and above a plane, those on both sides clipped.
-    fn sort_out(&self, references: &[Reference], split: &Split) -> [Vec<Reference>; 2] {
+    fn distribute(&self, references: &[Reference], split: &Split) -> [Vec<Reference>; 2] {
         let of = |references: &[Reference]| {
             let (mut below, mut above) = (Vec::new(), Vec::new());
             for reference in references {

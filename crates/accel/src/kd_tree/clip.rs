@@ -13,8 +13,8 @@ pub(super) fn clipped_bounds(triangle: &[[f32; 3]; 3], region: &Planes) -> Optio
     let margin = f64::from(reach) / (1u64 << 48) as f64;
     let mut polygon = Polygon::new(triangle);
     for (axis, (&low, &high)) in region[0].iter().zip(&region[1]).enumerate() {
-        polygon.keep(axis, 1.0, f64::from(low) - margin);
-        polygon.keep(axis, -1.0, -f64::from(high) - margin);
+        polygon.clip(axis, 1.0, f64::from(low) - margin);
+        polygon.clip(axis, -1.0, -f64::from(high) - margin);
     }
     let mut bounds = *region;
     for axis in 0..3 {
@@ -46,7 +46,7 @@ impl Polygon {
     }
 
     /// Keeps the part with `sign * coordinate >= least`.
-    fn keep(&mut self, axis: usize, sign: f64, least: f64) {
+    fn clip(&mut self, axis: usize, sign: f64, least: f64) {
         let depth = |p: &[f64; 3]| sign * p[axis] - least;
         if self.corners[..self.len].iter().all(|p| depth(p) >= 0.0) {
             return;

@@ -62,7 +62,7 @@ impl<P: Primitives> Traverse for PrimitiveTree<P> {
             for &index in &self.order[leaf] {
                 self.hits(index, ray, query, |hit| {
                     let wins = |best: &Hit| hit.t < best.t || (hit.t == best.t && index < best.primitive);
-                    if nearest.as_ref().is_none_or(wins) && query.keeps(&hit) {
+                    if nearest.as_ref().is_none_or(wins) && query.accepts(&hit) {
                         nearest = Some(hit);
                     }
                 });
@@ -80,7 +80,7 @@ impl<P: Primitives> Traverse for PrimitiveTree<P> {
         let Some(slabs) = self.slabs(ray) else { return false };
         self.tree.find(&slabs, slabs.limit(ray.t_max), count, |slot| {
             let mut found = false;
-            self.hits(self.order[slot], ray, query, |hit| found = found || query.keeps(&hit));
+            self.hits(self.order[slot], ray, query, |hit| found = found || query.accepts(&hit));
             found
         })
     }

@@ -157,7 +157,7 @@ impl Tree {
             let candidates = candidates(pieces.len(), tree.nodes.len());
             let (plane, thickness) = fewest_splits(&pieces, &candidates, mesh, slack);
             let node = tree.add(place, plane, thickness, slack);
-            let sides = tree.deal(pieces, slack, counts);
+            let sides = tree.distribute(pieces, slack, counts);
             waiting.push((SubtreeSlot::Front(node), sides.front));
             waiting.push((SubtreeSlot::Back(node), sides.back));
         }
@@ -187,7 +187,7 @@ impl Tree {
     }
 
     /// Distributes pieces over the three regions of the last node.
-    pub(super) fn deal(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
+    pub(super) fn distribute(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
         let index = self.nodes.len() as u32 - 1;
         let PartitionNode { plane, half, .. } = self.nodes[index as usize];
         // A hit is at most a radius away from its polygon.

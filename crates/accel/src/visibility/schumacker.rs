@@ -107,7 +107,7 @@ impl Clusters {
                 },
             };
             let node = scene.tree.add(place, plane, thickness, slack);
-            let sides = sets.into_iter().map(|set| scene.tree.deal(set, slack, counts));
+            let sides = sets.into_iter().map(|set| scene.tree.distribute(set, slack, counts));
             let (front, back) = sides.map(|sides| (sides.front, sides.back)).unzip();
             waiting.push((SubtreeSlot::Front(node), front));
             waiting.push((SubtreeSlot::Back(node), back));

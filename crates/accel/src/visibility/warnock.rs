@@ -38,7 +38,7 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
     while let Some((rect, parent)) = windows.pop() {
         canvas.counts.windows += 1;
         let window = Window::new(rect, &screen);
-        let mut inside = window.sort_out(&parent, &candidates);
+        let mut inside = window.classify(&parent, &candidates);
         window.drop_hidden(&mut inside, &candidates, &screen, &mut canvas);
         match inside.as_slice() {
             [] => {}
@@ -164,7 +164,7 @@ impl Window {
     }
 
     /// Those of the parent's triangles that may be visible here, and how they cover the window.
-    fn sort_out(&self, parent: &[(u32, Cover)], candidates: &[Candidate]) -> Vec<(u32, Cover)> {
+    fn classify(&self, parent: &[(u32, Cover)], candidates: &[Candidate]) -> Vec<(u32, Cover)> {
         let look = |&(index, cover): &(u32, Cover)| match cover {
             Cover::Whole => Some((index, cover)),
             Cover::Partly => Some((index, self.cover(&candidates[index as usize])?)),

@@ -80,16 +80,16 @@ pub(super) struct Binary {
 impl Binary {
     /// Sorts items into a tree whose leaves hold at most one block, each a range of the new order. Only the items of
     /// a leaf need be contiguous, not those below an inner node. With a cutter, triangles may be cut, and there may
-    /// be up to `room` more items in the end.
+    /// be up to `spare` more items in the end.
     pub(super) fn over(items: &mut Vec<Item>, cutter: Option<(&Cutter<'_>, usize)>) -> Binary {
         let (bounds, centres, count) = (Bounds::of(items), around(items), items.len());
-        if let Some((_, room)) = cutter {
-            items.resize(count + room, items[0]);
+        if let Some((_, spare)) = cutter {
+            items.resize(count + spare, items[0]);
         }
         let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
         let task = Task { items, count, first_item: 0, depth: 1 };
-        let room = Room { nodes: &mut nodes, first_pair: 0 };
-        let (root, _) = subtree(task, room, &bounds, &centres, cutter.map(|(cutter, _)| cutter));
+        let pairs = NodePairs { nodes: &mut nodes, first_pair: 0 };
+        let (root, _) = subtree(task, pairs, &bounds, &centres, cutter.map(|(cutter, _)| cutter));
         Binary { root, nodes, has_pieces: root.count() > count, in_order: cutter.is_none() }
     }
 
@@ -113,21 +113,21 @@ struct Task<'a> {
 }
 
 /// Space for pairs of nodes: one fewer than there may be items.
-pub(super) struct Room<'a> {
+pub(super) struct NodePairs<'a> {
     pub(super) nodes: &'a mut [[f32; 16]],
     pub(super) first_pair: u32,
 }
 
-impl<'a> Room<'a> {
+impl<'a> NodePairs<'a> {
     /// The first `pairs` pairs, and the rest.
-    pub(super) fn split(self, pairs: usize) -> (Room<'a>, Room<'a>) {
+    pub(super) fn split(self, pairs: usize) -> (NodePairs<'a>, NodePairs<'a>) {
         let (front, back) = self.nodes.split_at_mut(2 * pairs);
         let first_pair = self.first_pair;
-        (Room { nodes: front, first_pair }, Room { nodes: back, first_pair: first_pair + pairs as u32 })
+        (NodePairs { nodes: front, first_pair }, NodePairs { nodes: back, first_pair: first_pair + pairs as u32 })
     }
 
-    pub(super) fn lend(&mut self) -> Room<'_> {
-        Room { nodes: self.nodes, first_pair: self.first_pair }
+    pub(super) fn lend(&mut self) -> NodePairs<'_> {
+        NodePairs { nodes: self.nodes, first_pair: self.first_pair }
     }
 }
 
@@ -156,8 +156,8 @@ impl<'a> Task<'a> {
         // Items that share one centre, as copies of a triangle do, are halved: otherwise they would be cut again and
         // again.
         if let (Some(cutter), Some(split)) = (cutter, &split) {
-            let room = self.items.len() - self.count;
-            let cut = cutter.best(items, bounds, (&split.bounds, split.cost), room);
+            let spare = self.items.len() - self.count;
+            let cut = cutter.best(items, bounds, (&split.bounds, split.cost), spare);
             let cut = cut.filter(|cut| depth_allows(depth, cut.counts));
             if let Some((halves, count)) = cut.and_then(|cut| cutter.apply(self.items, self.count, &cut)) {
                 self.count = count;
@@ -175,7 +175,7 @@ impl<'a> Task<'a> {
 /// Returns the node, and how many pairs of the space were used, counted from its front.
 fn subtree(
     mut task: Task<'_>,
-    room: Room<'_>,
+    pairs: NodePairs<'_>,
     bounds: &Bounds,
     centres: &Bounds,
     cutter: Option<&Cutter<'_>>,
@@ -185,15 +185,15 @@ fn subtree(
         return (BinaryNode::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds)), 0);
     }
     let Halves { middle, bounds: halves, centres } = task.halve(bounds, centres, cutter);
-    let (count, first_pair) = (task.count, room.first_pair);
+    let (count, first_pair) = (task.count, pairs.first_pair);
     let [left, right] = task.in_two(middle);
-    let (pair, mut rest) = room.split(1);
+    let (pair, mut rest) = pairs.split(1);
     let (a, b, used) = if count >= PARALLEL {
-        let (left_room, right_room) = rest.split(left.items.len() - 1);
-        let used = left_room.nodes.len() / 2 + right_room.nodes.len() / 2;
+        let (left_pairs, right_pairs) = rest.split(left.items.len() - 1);
+        let used = left_pairs.nodes.len() / 2 + right_pairs.nodes.len() / 2;
         let (a, b) = rayon::join(
-            || subtree(left, left_room, &halves[0], &centres[0], cutter),
-            || subtree(right, right_room, &halves[1], &centres[1], cutter),
+            || subtree(left, left_pairs, &halves[0], &centres[0], cutter),
+            || subtree(right, right_pairs, &halves[1], &centres[1], cutter),
         );
         (a.0, b.0, used)
     } else {

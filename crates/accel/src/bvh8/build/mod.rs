@@ -41,8 +41,8 @@ pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, Buil
         Quality::Best => {
             let cutter = Cutter::new(mesh.triangles(), &Bounds::of(&items));
             // Cuts may double the number of items; few scenes come halfway.
-            let room = items.len();
-            reinsert::improve(Binary::over(&mut items, Some((&cutter, room))))
+            let spare = items.len();
+            reinsert::improve(Binary::over(&mut items, Some((&cutter, spare))))
         }
     };
     let (units, root) = emit::emit(&binary, &items, mesh)?;

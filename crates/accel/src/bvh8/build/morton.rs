@@ -1,6 +1,6 @@
 //! The fast builder: items in space-filling-curve order, split where the highest bits change [Lauterbach 2009].
 
-use super::binary::{Binary, BinaryNode, PARALLEL, Room, depth_allows};
+use super::binary::{Binary, BinaryNode, PARALLEL, NodePairs, depth_allows};
 use super::collapse::{costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
 use super::split::around;
@@ -16,7 +16,7 @@ const BITS: u32 = 20;
 const FEW: usize = 4 * LANES;
 
 /// The position of a centre on the curve, and its item.
-type UnitStorage = (u64, u32);
+type PlaceCode = (u64, u32);
 
 /// Sorts items into a tree whose leaves hold at most one block, each a range of the new order.
 pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
@@ -30,12 +30,12 @@ pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
         let spread = |x: f32| spread((x as u32).min((1 << BITS) - 1));
         (spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z), k as u32)
     };
-    let mut places: Vec<UnitStorage> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
+    let mut places: Vec<PlaceCode> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
     places.par_sort_unstable();
     *items = places.par_iter().with_min_len(4096).map(|&(_, k)| items[k as usize]).collect();
     let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
-    let room = Room { nodes: &mut nodes, first_pair: 0 };
-    let (_, root, _) = subtree(items, &places, 0, room, 1);
+    let pairs = NodePairs { nodes: &mut nodes, first_pair: 0 };
+    let (_, root, _) = subtree(items, &places, 0, pairs, 1);
     Binary { root, nodes, has_pieces: false, in_order: true }
 }
 
@@ -57,9 +57,9 @@ fn spread(x: u32) -> u64 {
 /// Returns the box, the node, and how many pairs of the space were used, counted from its front.
 fn subtree(
     items: &[Item],
-    places: &[UnitStorage],
+    places: &[PlaceCode],
     first: u32,
-    room: Room<'_>,
+    pairs: NodePairs<'_>,
     depth: usize,
 ) -> (Bounds, BinaryNode, usize) {
     let count = items.len();
@@ -73,15 +73,15 @@ fn subtree(
     }
     let middle = middle_of(places, depth);
     let (left, right) = (items.split_at(middle), places.split_at(middle));
-    let first_pair = room.first_pair;
-    let (pair, mut rest) = room.split(1);
+    let first_pair = pairs.first_pair;
+    let (pair, mut rest) = pairs.split(1);
     let next = first + middle as u32;
     let (a, b, used) = if count >= PARALLEL {
-        let (left_room, right_room) = rest.split(middle - 1);
+        let (left_pairs, right_pairs) = rest.split(middle - 1);
         let used = count - 2;
         let (a, b) = rayon::join(
-            || subtree(left.0, right.0, first, left_room, depth + 1),
-            || subtree(left.1, right.1, next, right_room, depth + 1),
+            || subtree(left.0, right.0, first, left_pairs, depth + 1),
+            || subtree(left.1, right.1, next, right_pairs, depth + 1),
         );
         (a, b, used)
     } else {
@@ -99,7 +99,7 @@ fn subtree(
 
 /// Where the highest bit that is not the same in all of them changes; by count if none does, or if the tree is too
 /// deep.
-fn middle_of(places: &[UnitStorage], depth: usize) -> usize {
+fn middle_of(places: &[PlaceCode], depth: usize) -> usize {
     let count = places.len();
     let (low, high) = (places[0].0, places[count - 1].0);
     if low == high {

@@ -96,13 +96,13 @@ impl<'a> Cutter<'a> {
         Cutter { triangles, least_overlap: MIN_OVERLAP * bounds.half_area() }
     }
 
-    /// The cheapest cut, if it beats halves of a given cost and adds no more than `room` items.
+    /// The cheapest cut, if it beats halves of a given cost and adds no more than `spare` items.
     pub(super) fn best(
         &self,
         items: &[Item],
         bounds: &Bounds,
         (halves, cost): (&[Bounds; 2], f32),
-        room: usize,
+        spare: usize,
     ) -> Option<Cut> {
         if halves[0].shared_half_area(&halves[1]) <= self.least_overlap {
             return None;
@@ -118,7 +118,7 @@ impl<'a> Cutter<'a> {
         let mut best: Option<Cut> = None;
         for axis in (0..3).filter(|&axis| grid.inverse[axis] > 0.0) {
             let least = best.as_ref().map_or(least, |cut| cut.cost);
-            best = sweep(&bins[axis], grid, axis, items.len() + room, least).or(best);
+            best = sweep(&bins[axis], grid, axis, items.len() + spare, least).or(best);
         }
         best
     }

@@ -39,7 +39,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
             } else {
                 let ready = packet.prepare::<L>(chunk, &view);
                 if !packet::each::<L, ANY>(view, (&mut packet, &ready), chunk, query, &mut answer) {
-                    wild::<ANY>(view, (ready.wild, chunk), query, &mut answer);
+                    irregular::<ANY>(view, (ready.irregular, chunk), query, &mut answer);
                     if query.is_plain() {
                         stream::each::<L, ANY, true>(view, (&packet, &ready), chunk, query, &mut answer);
                     } else {
@@ -66,9 +66,9 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: TreeView<'_>, ray: &Ray, que
     }
 }
 
-/// Answers those rays of a mask that are not tame.
+/// Answers those rays of a mask that are not regular.
 #[inline(always)]
-fn wild<const ANY: bool>(
+fn irregular<const ANY: bool>(
     view: TreeView<'_>,
     (mask, rays): (u64, &[Ray]),
     query: &Query,

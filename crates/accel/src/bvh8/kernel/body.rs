@@ -2,7 +2,7 @@
 
 use super::level::{Boxes, Level, lanes};
 use super::node_format::NodeFormat;
-use super::stack::{Room, Stack};
+use super::stack::{StackStorage, Stack};
 use super::{TreeView, leaf, plain};
 use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
@@ -78,22 +78,22 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
 ) -> Option<Hit> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        match L::tame(ray, &view) {
-            Some(tame) => search::<L, F, C, PLAIN>(view, (ray, &tame, 0), query, count),
+        match L::prepare(ray, &view) {
+            Some(lane_ray) => search::<L, F, C, PLAIN>(view, (ray, &lane_ray, 0), query, count),
             None => plain::closest::<F, C>(view, ray, query, count),
         }
     }
 }
 
-/// The nearest hit of a ray that is prepared for boxes. `met` says which children of the root it hits; 0 means that
+/// The nearest hit of a ray that is prepared for boxes. `root_hits` says which children of the root it hits; 0 means that
 /// this is unknown.
 ///
 /// # Safety
-/// As for [`closest`]; the ray must be tame.
+/// As for [`closest`]; the ray must be regular.
 #[inline(always)]
 pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     view: TreeView<'_>,
-    (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
+    (ray, lane_ray, root_hits): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
@@ -101,17 +101,17 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
-        let mut room = Room::uninit();
-        let mut stack = Stack::new(&mut room);
-        let mut current = start::<F>(base, view.outline.root, met);
-        let mut limit_bits = tame.limit_bits(nearest.t);
+        let mut storage = StackStorage::uninit();
+        let mut stack = Stack::new(&mut storage);
+        let mut current = start::<F>(base, view.outline.root, root_hits);
+        let mut limit_bits = lane_ray.limit_bits(nearest.t);
         let mut limit = L::splat(limit_bits);
         loop {
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, enter) = L::meet::<F, _>(tame, place, limit);
-                count_early_outs::<L, F, C>(tame, place, mask, count);
+                let (mask, enter) = L::intersect_children::<F, _>(lane_ray, place, limit);
+                count_early_outs::<L, F, C>(lane_ray, place, mask, count);
                 if mask != 0 {
                     current = choose::<L, F>(base, place, mask, enter, &mut stack);
                     continue;
@@ -121,7 +121,7 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
                 let before = nearest.t;
                 leaf::closest::<L, F, PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
                 if (PLAIN || query.early_out) && nearest.t < before {
-                    limit_bits = tame.limit_bits(nearest.t);
+                    limit_bits = lane_ray.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
                 }
             }
@@ -145,10 +145,10 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
 /// # Safety
 /// `root` must be a root.
 #[inline(always)]
-pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, met: u32) -> Ref {
-    if met != 0 && met & (met - 1) == 0 {
+pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, root_hits: u32) -> Ref {
+    if root_hits != 0 && root_hits & (root_hits - 1) == 0 {
         // SAFETY: hits are known only for nodes.
-        return unsafe { reference::<F>(base.add(root.byte()), met.trailing_zeros() as usize) };
+        return unsafe { reference::<F>(base.add(root.byte()), root_hits.trailing_zeros() as usize) };
     }
     root
 }
@@ -161,15 +161,15 @@ pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, met: u32) 
 pub(super) unsafe fn start_any<L: Level, F: NodeFormat>(
     base: *const u8,
     root: Ref,
-    met: u32,
+    root_hits: u32,
     stack: &mut Stack,
 ) -> Ref {
-    if met == 0 {
+    if root_hits == 0 {
         return root;
     }
     // SAFETY: as above.
     unsafe {
-        L::push::<F>(base.add(root.byte()), met, stack);
+        L::push::<F>(base.add(root.byte()), root_hits, stack);
         stack.take_reference()
     }
 }
@@ -187,36 +187,36 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
 ) -> bool {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        match L::tame(ray, &view) {
-            Some(tame) => search_any::<L, F, C, PLAIN>(view, (ray, &tame, 0), query, count),
+        match L::prepare(ray, &view) {
+            Some(lane_ray) => search_any::<L, F, C, PLAIN>(view, (ray, &lane_ray, 0), query, count),
             None => plain::any::<F, C>(view, ray, query, count),
         }
     }
 }
 
-/// Whether a ray that is prepared for boxes hits anything; `met` is as in [`search`].
+/// Whether a ray that is prepared for boxes hits anything; `root_hits` is as in [`search`].
 ///
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
 pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     view: TreeView<'_>,
-    (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
+    (ray, lane_ray, root_hits): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
 ) -> bool {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();
-        let mut room = Room::uninit();
-        let mut stack = Stack::new(&mut room);
-        let mut current = start_any::<L, F>(base, view.outline.root, met, &mut stack);
-        let limit = L::splat(tame.limit_bits(ray.t_max));
+        let mut storage = StackStorage::uninit();
+        let mut stack = Stack::new(&mut storage);
+        let mut current = start_any::<L, F>(base, view.outline.root, root_hits, &mut stack);
+        let limit = L::splat(lane_ray.limit_bits(ray.t_max));
         loop {
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, _) = L::meet::<F, _>(tame, place, limit);
+                let (mask, _) = L::intersect_children::<F, _>(lane_ray, place, limit);
                 if mask != 0 {
                     L::push::<F>(place, mask, &mut stack);
                     current = stack.take_reference();
@@ -249,7 +249,7 @@ unsafe fn count_early_outs<L: Level, F: NodeFormat, C: Count>(
 ) {
     if count.counters().is_some() {
         // SAFETY: as the caller promises.
-        let (all, _) = unsafe { L::meet::<F, _>(boxes, node, L::splat(f32::INFINITY.to_bits())) };
+        let (all, _) = unsafe { L::intersect_children::<F, _>(boxes, node, L::splat(f32::INFINITY.to_bits())) };
         for _ in 0..(all & !mask).count_ones() {
             count.early_out();
         }

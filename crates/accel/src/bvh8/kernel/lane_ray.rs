@@ -10,8 +10,8 @@
 //! Distances are measured in `t`, so that no step waits for the length of the direction: the chain of dependent steps
 //! before a ray's first node should be as short as possible.
 //!
-//! # Tame rays
-//! For a tame ray, all of this is finite and no distance that counts is negative. So no NaN can occur, and distances
+//! # Regular rays
+//! For a regular ray, all of this is finite and no distance that counts is negative. So no NaN can occur, and distances
 //! compare like integers of the same bits, which takes a quarter of the time.
 
 use super::TreeView;
@@ -50,7 +50,7 @@ pub(super) const SIZES: [u32; 8] =
     [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
 impl LaneRay {
-    /// `None` for rays that are not tame, or can hit nothing.
+    /// `None` for rays that are not regular, or can hit nothing.
     ///
     /// # Safety
     /// The machine must have AVX2 and FMA.
@@ -109,7 +109,7 @@ macro_rules! of_eight {
 
         // SAFETY: as the trait demands.
         #[inline(always)]
-        unsafe fn tame(ray: &$crate::Ray, view: &super::TreeView<'_>) -> Option<Self::LaneRay> {
+        unsafe fn prepare(ray: &$crate::Ray, view: &super::TreeView<'_>) -> Option<Self::LaneRay> {
             // SAFETY: as the trait demands.
             unsafe { super::lane_ray::LaneRay::new(ray, view) }
         }
@@ -168,7 +168,7 @@ impl Boxes for LaneRay {
 
     #[inline(always)]
     fn limit_bits(&self, t: f32) -> u32 {
-        // SAFETY: a tame ray exists only where there is FMA.
+        // SAFETY: a regular ray exists only where there is FMA.
         unsafe {
             let t = _mm_fmadd_ss(_mm_set_ss(t), _mm_set_ss(1.0 + 2.0 * SLACK), _mm_set_ss(MIN));
             _mm_extract_ps::<0>(t) as u32

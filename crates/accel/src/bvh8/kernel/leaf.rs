@@ -21,7 +21,7 @@ pub(super) const fn block_bytes<F: NodeFormat>() -> usize {
 /// hit.
 ///
 /// # Safety
-/// The machine must have the level, the ray must be tame, and the leaf must be one.
+/// The machine must have the level, the ray must be regular, and the leaf must be one.
 #[inline(always)]
 pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,
@@ -52,7 +52,7 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
                     *nearest = Hit { t, u: u[lane], v: v[lane], primitive, instance: 0 };
                 }
             } else {
-                keep::<F, PLAIN>(block, &crossings, query, nearest);
+                update_nearest::<F, PLAIN>(block, &crossings, query, nearest);
             }
         }
     }
@@ -61,7 +61,7 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn keep<F: NodeFormat, const PLAIN: bool>(
+unsafe fn update_nearest<F: NodeFormat, const PLAIN: bool>(
     block: *const u8,
     crossings: &Crossings,
     query: &Query,
@@ -78,7 +78,7 @@ unsafe fn keep<F: NodeFormat, const PLAIN: bool>(
             if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
                 let hit =
                     Hit { t: t[lane], u: weights[0][lane], v: weights[1][lane], primitive, instance: 0 };
-                if PLAIN || query.keeps(&hit) {
+                if PLAIN || query.accepts(&hit) {
                     *nearest = hit;
                 }
             }
@@ -107,7 +107,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
             let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, ray.t_max), culling);
-            if crossings.mask() != 0 && (PLAIN || keeps_any::<F>(block, &crossings, query)) {
+            if crossings.mask() != 0 && (PLAIN || accepts_any::<F>(block, &crossings, query)) {
                 return true;
             }
         }
@@ -120,13 +120,13 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(never)]
-unsafe fn keeps_any<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+unsafe fn accepts_any<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
     // SAFETY: as the caller promises.
     let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
     (0..LANES).filter(|lane| mask >> lane & 1 == 1).any(|lane| {
         // SAFETY: as above.
         let primitive = unsafe { primitive::<F>(block, lane) };
-        query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
+        query.accepts(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
     })
 }
 

@@ -23,8 +23,8 @@ pub(in crate::bvh8) trait Level {
     /// A number for each triangle of a block, for the exact stage.
     type Doubles: Doubles;
     // SAFETY: as the trait says.
-    /// `None` for rays that are not tame, or can hit nothing.
-    unsafe fn tame(ray: &Ray, view: &TreeView<'_>) -> Option<Self::LaneRay>;
+    /// `None` for rays that are not regular, or can hit nothing.
+    unsafe fn prepare(ray: &Ray, view: &TreeView<'_>) -> Option<Self::LaneRay>;
     /// The same distance in all lanes.
     unsafe fn splat(bits: u32) -> Self::Eight;
     /// A bit for each lane where the first is less than or equal to the second.
@@ -34,7 +34,7 @@ pub(in crate::bvh8) trait Level {
     unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
     /// A bit for each child whose box the ray hits up to the limit, and the distances at which it enters them.
     #[inline(always)]
-    unsafe fn meet<F: NodeFormat, B: Boxes<Eight = Self::Eight>>(
+    unsafe fn intersect_children<F: NodeFormat, B: Boxes<Eight = Self::Eight>>(
         ray: &B,
         node: *const u8,
         limit: Self::Eight,

@@ -96,7 +96,7 @@ impl NodeFormat for Wide {
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     unsafe fn occupied(_: *const u8) -> u32 {
-        // No tame ray hits an empty box.
+        // No regular ray hits an empty box.
         u32::MAX
     }
 

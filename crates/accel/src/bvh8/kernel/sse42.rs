@@ -38,7 +38,7 @@ impl Level for Sse42 {
 
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn tame(ray: &Ray, view: &TreeView<'_>) -> Option<LaneRay> {
+    unsafe fn prepare(ray: &Ray, view: &TreeView<'_>) -> Option<LaneRay> {
         // SAFETY: as the trait demands.
         unsafe { LaneRay::new(ray, view) }
     }

@@ -5,11 +5,11 @@ use crate::bvh8::layout::{Ref, WIDTH};
 use std::mem::MaybeUninit;
 
 /// Every node on the way down leaves at most seven others on the stack; a whole vector is written at the top.
-const ROOM: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
+const CAPACITY: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
 /// Memory of a stack: first the references, then the distances at which the ray enters each. It is not initialised,
 /// because clearing it would take as long as a short ray.
-pub(super) type Room = MaybeUninit<[u32; 2 * ROOM]>;
+pub(super) type StackStorage = MaybeUninit<[u32; 2 * CAPACITY]>;
 
 /// References still to be visited, and the bits of the entry distances, whose last three bits have no meaning.
 #[derive(Clone, Copy)]
@@ -21,8 +21,8 @@ pub(in crate::bvh8) struct Stack {
 impl Stack {
     /// An empty stack, which must not outlive its memory.
     #[inline(always)]
-    pub(super) fn new(room: &mut Room) -> Stack {
-        let base = room.as_mut_ptr().cast();
+    pub(super) fn new(storage: &mut StackStorage) -> Stack {
+        let base = storage.as_mut_ptr().cast();
         Stack { base, top: base }
     }
 
@@ -46,7 +46,7 @@ impl Stack {
     /// Where the distance of the next reference goes.
     #[inline(always)]
     pub(super) fn distances(&self) -> *mut u32 {
-        self.top.wrapping_add(ROOM)
+        self.top.wrapping_add(CAPACITY)
     }
 
     /// Takes what was written above the top into the stack.

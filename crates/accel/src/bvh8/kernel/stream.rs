@@ -9,19 +9,19 @@ use super::body::{self, choose, prefetch, start, start_any};
 use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
 use super::packet::{Lane, Packet, Ready};
-use super::stack::{Room, Stack};
+use super::stack::{StackStorage, Stack};
 use super::{TreeView, leaf};
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
 /// Rays in traversal at once.
-const WAYS: usize = 8;
+const RAYS_IN_FLIGHT: usize = 8;
 
 /// Units of a tree that fit into the near caches: a megabyte and a half.
 const NEAR_UNITS: usize = 3 << 14;
 
-/// Answers the rays of a packet that are tame.
+/// Answers the rays of a packet that are regular.
 ///
 /// # Safety
 /// The machine must have the level, the view must be sound, and the packet must be prepared.
@@ -34,13 +34,13 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
     let base = view.units.as_ptr().cast::<u8>();
-    let mut left = ready.tame & ready.asked;
+    let mut left = ready.regular & ready.asked;
     let mut children = [0; WIDTH];
     // SAFETY: as the caller promises.
     unsafe {
         if view.outline.root.is_node() {
             // The root, with all of them at once.
-            children = packet.meet_children::<L::Wide>(base.add(view.outline.root.byte()), ready);
+            children = packet.intersect_all_children::<L::Wide>(base.add(view.outline.root.byte()), ready);
             let [a, b, c, d, e, f, g, h] = children;
             let mut misses = left & !(a | b | c | d | e | f | g | h);
             left &= !misses;
@@ -58,13 +58,13 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         if view.units.len() > NEAR_UNITS {
             return interleaved::<L, ANY, PLAIN>(view, &mut next, query, answer);
         }
-        while let Some((index, ray, (lane, met))) = next() {
+        while let Some((index, ray, (lane, root_hits))) = next() {
             answer(
                 index,
                 if ANY {
                     let found = body::search_any::<L, Wide, NoCounters, PLAIN>(
                         view,
-                        (ray, &lane, met),
+                        (ray, &lane, root_hits),
                         query,
                         &mut NoCounters,
                     );
@@ -72,7 +72,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
                 } else {
                     body::search::<L, Wide, NoCounters, PLAIN>(
                         view,
-                        (ray, &lane, met),
+                        (ray, &lane, root_hits),
                         query,
                         &mut NoCounters,
                     )
@@ -92,22 +92,22 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
     let base = view.units.as_ptr().cast::<u8>();
-    let mut rooms = [const { Room::uninit() }; WAYS];
-    let mut walks = [const { None::<Walk<'_>> }; WAYS];
+    let mut storages = [const { StackStorage::uninit() }; RAYS_IN_FLIGHT];
+    let mut walks = [const { None::<Walk<'_>> }; RAYS_IN_FLIGHT];
     let mut active = 0;
-    for room in &mut rooms {
+    for storage in &mut storages {
         let Some(ray) = next() else { break };
         // SAFETY: as the caller promises.
-        walks[active] = Some(unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, Stack::new(room)) });
+        walks[active] = Some(unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, Stack::new(storage)) });
         active += 1;
     }
-    let mut way = 0;
+    let mut slot = 0;
     while active > 0 {
-        way = if way < active { way } else { 0 };
-        let Some(walk) = &mut walks[way] else { return };
+        slot = if slot < active { slot } else { 0 };
+        let Some(walk) = &mut walks[slot] else { return };
         // SAFETY: as the caller promises.
         if unsafe { walk.step::<L, ANY, PLAIN>(base, query) } {
-            way += 1;
+            slot += 1;
             continue;
         }
         answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
@@ -116,7 +116,7 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
             Some(ray) => *walk = unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, walk.stack.cleared()) },
             None => {
                 active -= 1;
-                walks.swap(way, active);
+                walks.swap(slot, active);
             }
         }
     }
@@ -143,7 +143,7 @@ impl<'r> Walk<'r> {
     #[inline(always)]
     unsafe fn new<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         view: &TreeView<'_>,
-        (index, ray, (lane, met)): Next<'r>,
+        (index, ray, (lane, root_hits)): Next<'r>,
         mut stack: Stack,
     ) -> Walk<'r> {
         let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
@@ -152,9 +152,9 @@ impl<'r> Walk<'r> {
         let current = unsafe {
             let base = view.units.as_ptr().cast::<u8>();
             if ANY {
-                start_any::<L, Wide>(base, view.outline.root, met, &mut stack)
+                start_any::<L, Wide>(base, view.outline.root, root_hits, &mut stack)
             } else {
-                start::<Wide>(base, view.outline.root, met)
+                start::<Wide>(base, view.outline.root, root_hits)
             }
         };
         Walk { index, ray, lane, nearest, limit_bits, current, stack }
@@ -174,7 +174,7 @@ impl<'r> Walk<'r> {
         unsafe {
             let place = base.add(self.current.byte());
             if self.current.is_node() {
-                let (mask, enter) = L::meet::<Wide, _>(&self.lane, place, L::splat(self.limit_bits));
+                let (mask, enter) = L::intersect_children::<Wide, _>(&self.lane, place, L::splat(self.limit_bits));
                 if mask != 0 {
                     self.current = if ANY {
                         L::push::<Wide>(place, mask, &mut self.stack);

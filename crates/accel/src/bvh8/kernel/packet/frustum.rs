@@ -31,7 +31,7 @@ const WIDEST: f32 = 0.1;
 
 /// The signs of a ray's direction, and its steepest axis, the last one of a tie.
 #[inline(always)]
-fn way(ray: &Ray) -> ([bool; 3], usize) {
+fn direction_class(ray: &Ray) -> ([bool; 3], usize) {
     let [x, y, z] = ray.direction.map(f32::abs);
     let steep = if z >= x && z >= y { 2 } else { usize::from(y >= x) };
     (ray.direction.map(f32::is_sign_negative), steep)
@@ -39,9 +39,9 @@ fn way(ray: &Ray) -> ([bool; 3], usize) {
 
 /// A quick check of three of the rays.
 #[inline(always)]
-pub(super) fn alike(rays: &[Ray]) -> bool {
-    let first = way(&rays[0]);
-    way(&rays[rays.len() - 1]) == first && way(&rays[rays.len() / 2]) == first
+pub(super) fn look_coherent(rays: &[Ray]) -> bool {
+    let first = direction_class(&rays[0]);
+    direction_class(&rays[rays.len() - 1]) == first && direction_class(&rays[rays.len() / 2]) == first
 }
 
 /// The quantities gathered over the groups of a packet.
@@ -56,7 +56,7 @@ struct Extremes<W> {
 }
 
 impl Frustum {
-    /// `None` where some ray is not tame, differs from the first in direction signs, or is too far from the others.
+    /// `None` where some ray is not regular, differs from the first in direction signs, or is too far from the others.
     ///
     /// # Safety
     /// The machine must have the level, and the packet must be prepared.
@@ -67,9 +67,9 @@ impl Frustum {
         first: &Ray,
         view: &TreeView<'_>,
     ) -> Option<Frustum> {
-        let (down, steep) = way(first);
+        let (down, steep) = direction_class(first);
         let same = |k: usize| ready.down[k] == if down[k] { ready.used } else { 0 };
-        if ready.wild != 0 || !same(0) || !same(1) || !same(2) {
+        if ready.irregular != 0 || !same(0) || !same(1) || !same(2) {
             return None;
         }
         let axes = [(steep + 1) % 3, (steep + 2) % 3, steep];
@@ -113,7 +113,7 @@ impl Frustum {
     /// # Safety
     /// The machine must have the level, and `node` must point to a node.
     #[inline(always)]
-    pub(super) unsafe fn meet<L: BatchLevel>(&self, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+    pub(super) unsafe fn intersect_children<L: BatchLevel>(&self, node: *const u8, limit: __m256i) -> (u32, __m256i) {
         // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
         unsafe {
             let enter = |k: usize| {

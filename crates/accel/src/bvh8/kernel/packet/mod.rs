@@ -24,7 +24,7 @@ use super::body::{prefetch, reference};
 use super::leaf::block_bytes;
 use super::level::BatchLevel;
 use super::node_format;
-use super::stack::{Room, Stack};
+use super::stack::{StackStorage, Stack};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
@@ -53,7 +53,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) -> bool {
-    if !view.outline.root.is_node() || !frustum::alike(rays) {
+    if !view.outline.root.is_node() || !frustum::look_coherent(rays) {
         return false;
     }
     // SAFETY: as the caller promises.
@@ -84,15 +84,15 @@ impl Walk<'_> {
     #[inline(always)]
     unsafe fn run<L: BatchLevel, const ANY: bool>(&mut self, view: &TreeView<'_>) {
         let base = view.units.as_ptr().cast::<u8>();
-        let mut room = Room::uninit();
-        let mut stack = Stack::new(&mut room);
+        let mut storage = StackStorage::uninit();
+        let mut stack = Stack::new(&mut storage);
         let mut current = view.outline.root;
         let mut limit_bits = self.frustum.limit.to_bits();
         // SAFETY: as the caller promises; references lead to whole nodes and leaves.
         unsafe {
             loop {
                 let node = base.add(current.byte());
-                let (mut mask, enter) = self.frustum.meet::<L>(node, L::splat(limit_bits));
+                let (mut mask, enter) = self.frustum.intersect_children::<L>(node, L::splat(limit_bits));
                 if mask != 0 {
                     L::push_children(current, mask, enter, &mut stack);
                 }
@@ -144,7 +144,7 @@ impl Walk<'_> {
 
     /// The rays of a group that are still searching.
     #[inline(always)]
-    fn looking<W: Wide>(&self, from: usize) -> u32 {
+    fn active<W: Wide>(&self, from: usize) -> u32 {
         (!self.done >> from) as u32 & ((1 << W::LANES) - 1)
     }
 
@@ -155,8 +155,8 @@ impl Walk<'_> {
         let mut from = 0;
         while from < self.lanes {
             // SAFETY: as the caller promises.
-            let mask = unsafe { self.packet.meet::<W>(from, &self.frustum, node, child) };
-            if mask & self.looking::<W>(from) != 0 {
+            let mask = unsafe { self.packet.intersect_child::<W>(from, &self.frustum, node, child) };
+            if mask & self.active::<W>(from) != 0 {
                 return true;
             }
             from += W::LANES;
@@ -182,7 +182,7 @@ impl Walk<'_> {
             // SAFETY: as the caller promises.
             unsafe {
                 let mut mask =
-                    self.packet.meet::<W>(from, &self.frustum, node, child) & self.looking::<W>(from);
+                    self.packet.intersect_child::<W>(from, &self.frustum, node, child) & self.active::<W>(from);
                 if mask == 0 {
                     continue;
                 }

@@ -99,7 +99,7 @@ impl Packet {
     /// # Safety
     /// The machine must have the level; the group must have been prepared, and `node` must point to a node.
     #[inline(always)]
-    pub(super) unsafe fn meet<W: Wide>(
+    pub(super) unsafe fn intersect_child<W: Wide>(
         &self,
         from: usize,
         frustum: &Frustum,
@@ -126,7 +126,7 @@ impl Packet {
     /// After hits: how far the rays of a group still search.
     ///
     /// # Safety
-    /// As for [`Packet::meet`].
+    /// As for [`Packet::intersect_child`].
     #[inline(always)]
     pub(super) unsafe fn set_limits<W: Wide>(&mut self, from: usize) {
         // SAFETY: as the caller promises.

@@ -22,9 +22,9 @@ pub(in crate::bvh8::kernel) struct Ready {
     pub(super) used: u64,
     /// Those that get an answer.
     pub(in crate::bvh8::kernel) asked: u64,
-    pub(in crate::bvh8::kernel) tame: u64,
-    /// Those that are not tame.
-    pub(in crate::bvh8::kernel) wild: u64,
+    pub(in crate::bvh8::kernel) regular: u64,
+    /// Those that are not regular.
+    pub(in crate::bvh8::kernel) irregular: u64,
     /// Those whose direction is negative along each axis.
     pub(super) down: [u64; 3],
 }
@@ -53,12 +53,12 @@ impl Packet {
         unsafe { self.fill(rays, lanes) };
         let used = u64::MAX >> (64 - lanes);
         let asked = u64::MAX >> (64 - rays.len());
-        let mut ready = Ready { lanes, used, asked, tame: 0, wild: 0, down: [0; 3] };
+        let mut ready = Ready { lanes, used, asked, regular: 0, irregular: 0, down: [0; 3] };
         for number in 0..lanes / L::Wide::LANES {
             // SAFETY: as the caller promises.
             unsafe { group::<L::Wide>(self, number * L::Wide::LANES, view, &mut ready) };
         }
-        ready.wild = !ready.tame & asked;
+        ready.irregular = !ready.regular & asked;
         ready
     }
 
@@ -67,7 +67,7 @@ impl Packet {
     /// # Safety
     /// The machine must have the level, the packet must be prepared, and `node` must point to a node.
     #[inline(always)]
-    pub(in crate::bvh8::kernel) unsafe fn meet_children<W: Wide>(
+    pub(in crate::bvh8::kernel) unsafe fn intersect_all_children<W: Wide>(
         &self,
         node: *const u8,
         ready: &Ready,
@@ -170,7 +170,7 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &TreeView<'_>, 
             bias[1].store(packet.leave_bias[k].at_mut(from));
             ready.down[k] |= u64::from(direction[k].signs()) << from;
         }
-        ready.tame |= u64::from(good) << from;
+        ready.regular |= u64::from(good) << from;
         pace.store(packet.pace.at_mut(from));
         let s = t_min.mul(pace);
         let least = pace.max(W::splat(1.0)).mul(W::splat(f32::MIN_POSITIVE));

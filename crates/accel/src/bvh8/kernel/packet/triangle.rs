@@ -138,7 +138,7 @@ impl<'p, W: Wide> Group<'p, W> {
                 mask &= if self.frustum.down[steep] { below } else { !below };
             }
             if mask != 0 && self.query.filter.is_some() {
-                mask = self.sift(primitive, t, v.div(det).narrow(), w.div(det).narrow(), mask);
+                mask = self.apply_filter(primitive, t, v.div(det).narrow(), w.div(det).narrow(), mask);
             }
             if ANY || mask == 0 {
                 return mask;
@@ -164,7 +164,7 @@ impl<'p, W: Wide> Group<'p, W> {
     /// # Safety
     /// As for [`Group::test`].
     #[inline(never)]
-    unsafe fn sift(&self, primitive: u32, t: Float<W>, u: Float<W>, v: Float<W>, mask: u32) -> u32 {
+    unsafe fn apply_filter(&self, primitive: u32, t: Float<W>, u: Float<W>, v: Float<W>, mask: u32) -> u32 {
         let (mut ts, mut us, mut vs) = ([0.0; RAYS], [0.0; RAYS], [0.0; RAYS]);
         // SAFETY: as the caller promises; a group is no larger than a packet.
         unsafe {
@@ -172,11 +172,11 @@ impl<'p, W: Wide> Group<'p, W> {
             u.store(us.as_mut_ptr());
             v.store(vs.as_mut_ptr());
         }
-        let keeps = |ray: usize| {
-            self.query.keeps(&Hit { t: ts[ray], u: us[ray], v: vs[ray], primitive, instance: 0 })
+        let accepts = |ray: usize| {
+            self.query.accepts(&Hit { t: ts[ray], u: us[ray], v: vs[ray], primitive, instance: 0 })
         };
         (0..W::LANES / 2)
-            .filter(|&ray| mask >> ray & 1 == 1 && keeps(ray))
+            .filter(|&ray| mask >> ray & 1 == 1 && accepts(ray))
             .fold(0, |kept, ray| kept | 1 << ray)
     }
 
