@@ -24,7 +24,7 @@ pub(crate) fn with_pictures<'a>(
     for (index, texture) in textures.iter_mut().enumerate() {
         // A texture with its own placement cannot be packed with the other textures of its material.
         let may_move = can("moved textures") && materials.iter().all(|spec| is_only_texture(spec, index));
-        let Some((picture, is_same)) = texture.pictured(may_move) else { continue };
+        let Some((picture, is_same)) = texture.baked(may_move) else { continue };
         if !is_same {
             let (name, width, height) = (&texture.name, picture.width(), picture.height());
             writing.warn(format!(

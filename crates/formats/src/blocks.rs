@@ -51,7 +51,7 @@ impl<'r> Blocks<'r> {
     }
 
     /// Returns a finished block for reuse.
-    pub(crate) fn give_back(&mut self, block: Vec<u8>) {
+    pub(crate) fn recycle(&mut self, block: Vec<u8>) {
         self.spare.push(block);
     }
 }
@@ -83,7 +83,7 @@ mod tests {
         let mut all = Vec::new();
         while let Some(block) = blocks.next(u64::MAX).unwrap() {
             all.push(String::from_utf8(block.clone()).unwrap());
-            blocks.give_back(block);
+            blocks.recycle(block);
         }
         all
     }

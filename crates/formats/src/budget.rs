@@ -43,7 +43,7 @@ impl Budget {
     }
 
     /// Returns bytes that are no longer held.
-    pub(crate) fn give_back(&mut self, bytes: u64) {
+    pub(crate) fn release(&mut self, bytes: u64) {
         self.spent = self.spent.saturating_sub(bytes);
     }
 }

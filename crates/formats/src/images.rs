@@ -6,7 +6,7 @@ use bilux_scene::texture::{Image, Texels};
 
 /// How to interpret the samples of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Means {
+pub(crate) enum SampleMeaning {
     /// Colours, encoded as the file states.
     Colours,
     /// Colours with the sRGB curve, whatever the file states.
@@ -19,7 +19,7 @@ pub(crate) enum Means {
 pub(crate) fn decoded(
     bytes: &[u8],
     hint: Option<&str>,
-    means: Means,
+    means: SampleMeaning,
     limits: &Limits,
 ) -> Result<Option<Image>, PictureError> {
     if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, hint, limits)? {
@@ -29,9 +29,9 @@ pub(crate) fn decoded(
 }
 
 /// The texels of a picture, as bytes if it was 8-bit; `None` if it has no colour channels.
-fn image_of(mut picture: Picture, means: Means) -> Option<Image> {
-    let is_data = means == Means::Numbers;
-    if means == Means::SrgbColours && matches!(picture.colour_space, ColourSpace::Gamma(_)) {
+fn image_of(mut picture: Picture, means: SampleMeaning) -> Option<Image> {
+    let is_data = means == SampleMeaning::Numbers;
+    if means == SampleMeaning::SrgbColours && matches!(picture.colour_space, ColourSpace::Gamma(_)) {
         picture.colour_space = ColourSpace::Srgb;
     }
     let (width, height) = (picture.width(), picture.height());
@@ -96,7 +96,7 @@ mod tests {
                 let limits = Limits::default();
                 let is_bytes = read_rgba8(&bytes, None, &limits).unwrap().is_some();
                 assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
-                for means in [Means::Colours, Means::SrgbColours, Means::Numbers] {
+                for means in [SampleMeaning::Colours, SampleMeaning::SrgbColours, SampleMeaning::Numbers] {
                     let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), means).unwrap();
                     let at_once = decoded(&bytes, None, means, &limits).unwrap().unwrap();
                     assert_eq!(
@@ -121,7 +121,7 @@ mod tests {
         for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
             let options = WriteOptions { bit_depth, ..WriteOptions::default() };
             let bytes = write_bytes("png", &picture, &options).unwrap();
-            let image = decoded(&bytes, None, Means::Colours, &Limits::default()).unwrap().unwrap();
+            let image = decoded(&bytes, None, SampleMeaning::Colours, &Limits::default()).unwrap().unwrap();
             let texture = bilux_scene::Texture::of("", std::sync::Arc::new(image), false);
             assert!((texture.texel(0, 0).r - 1.0).abs() < 1e-4, "{bit_depth:?}: {:?}", texture.texel(0, 0));
         }

@@ -76,7 +76,7 @@ impl Faces<'_> {
         let crease = Crease { whole: cos(angle), half: cos(0.5 * angle) };
         let face_of = self.face_of();
         let facing = self.facing();
-        let around = Around::of(&self.corners, self.positions.len());
+        let around = CornersByPosition::of(&self.corners, self.positions.len());
         let mut all = CornerNormals { normals: Vec::new(), of_corner: std::mem::take(&mut self.corners) };
         let mut any_smooth = false;
         // Works in batches, to hold few intermediate results.
@@ -194,14 +194,14 @@ impl Faces<'_> {
 }
 
 /// The corners at each position.
-struct Around {
+struct CornersByPosition {
     /// The start of each position's corners.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
 
-impl Around {
-    fn of(position_of: &[u32], positions: usize) -> Around {
+impl CornersByPosition {
+    fn of(position_of: &[u32], positions: usize) -> CornersByPosition {
         let mut starts = vec![0u32; positions + 2];
         for &position in position_of {
             starts[position as usize + 2] += 1;
@@ -215,7 +215,7 @@ impl Around {
             corners[*slot as usize] = corner as u32;
             *slot += 1;
         }
-        Around { starts, corners }
+        CornersByPosition { starts, corners }
     }
 
     fn corners_at(&self, position: usize) -> &[u32] {

@@ -1,7 +1,7 @@
 //! The shared state of one read: the options, the memory used, and the files involved.
 
 use crate::budget::Budget;
-use crate::images::{Means, decoded};
+use crate::images::{SampleMeaning, decoded};
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
@@ -98,11 +98,11 @@ impl<'o> Reading<'o> {
         }
         held += (scene.materials.len() * size_of::<[Spec; 4]>()) as u64;
         let now = spent_before.saturating_add(held);
-        self.budget.give_back(self.budget.spent().saturating_sub(now));
+        self.budget.release(self.budget.spent().saturating_sub(now));
     }
 
     /// Charges memory for texels, for good.
-    pub(crate) fn hold_image(&mut self, image: &Image, file: &str) -> Result<(), FormatError> {
+    pub(crate) fn charge_image(&mut self, image: &Image, file: &str) -> Result<(), FormatError> {
         self.budget.take_bytes(image.size(), file)?;
         self.texture_bytes += image.size();
         Ok(())
@@ -113,7 +113,7 @@ impl<'o> Reading<'o> {
         &mut self,
         bytes: &[u8],
         hint: Option<&str>,
-        means: Means,
+        means: SampleMeaning,
         (name, at): (&str, &Span),
     ) -> Result<Image, FormatError> {
         // The decoder's planes and the texels exist at the same time for a moment.
@@ -127,7 +127,7 @@ impl<'o> Reading<'o> {
                 at.clone(),
             )
         })?;
-        self.hold_image(&image, name)?;
+        self.charge_image(&image, name)?;
         Ok(image)
     }
 
@@ -230,7 +230,7 @@ impl<'o> Reading<'o> {
 
     /// Releases the bytes of a loaded file.
     pub(crate) fn release(&mut self, bytes: Vec<u8>) {
-        self.budget.give_back(bytes.len() as u64);
+        self.budget.release(bytes.len() as u64);
     }
 
     /// A picture as a texture, decoded only once.
@@ -248,7 +248,7 @@ impl<'o> Reading<'o> {
         let bytes = self.load(&path)?;
         let hint = path.extension().and_then(|e| e.to_str());
         let is_data = holds != Texels::Colours;
-        let means = if is_data { Means::Numbers } else { Means::Colours };
+        let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::Colours };
         let image = self.decode(&bytes, hint, means, (name, at))?;
         self.release(bytes);
         let channel = if let Texels::Numbers(channel) = holds { channel } else { None };

@@ -70,15 +70,15 @@ fn append(mesh: &mut Mesh, mut more: Mesh) {
 
 /// Spheres at the given vertices and tubes between the given pairs, with the vertex attributes of `bare`.
 fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
-    let mut made = Made { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
+    let mut solid = SolidStrokes { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
     let ball = if balls.len() > FEW_SPHERES { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
     for &vertex in balls {
-        made.ball(vertex, &ball);
+        solid.ball(vertex, &ball);
     }
     for &ends in tubes {
-        made.tube(ends);
+        solid.tube(ends);
     }
-    made.mesh
+    solid.mesh
 }
 
 /// The coarsest sphere.
@@ -99,13 +99,13 @@ fn octahedron() -> Mesh {
     }
 }
 
-struct Made<'m> {
+struct SolidStrokes<'m> {
     bare: &'m Mesh,
     mesh: Mesh,
     radius: f32,
 }
 
-impl Made<'_> {
+impl SolidStrokes<'_> {
     /// Adds a vertex at the radius around a vertex of `bare`, in this direction.
     fn push(&mut self, vertex: u32, direction: Vec3) {
         fn again<T: Copy>(from: &[T], to: &mut Vec<T>, vertex: u32) {

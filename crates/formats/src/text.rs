@@ -68,7 +68,7 @@ impl<'a> Cursor<'a> {
         self.pos
     }
 
-    /// The position of an offset on the current line; not valid after [`Cursor::go_to`].
+    /// The position of an offset on the current line; not valid after [`Cursor::seek`].
     pub(crate) fn place(&self, offset: usize) -> TextPosition {
         let (lines, start) = self.line;
         let column = u32::try_from(offset - start + 1).unwrap_or(u32::MAX);
@@ -85,7 +85,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Moves to an offset.
-    pub(crate) fn go_to(&mut self, offset: usize) {
+    pub(crate) fn seek(&mut self, offset: usize) {
         self.pos = offset.min(self.bytes.len());
     }
 

@@ -46,19 +46,19 @@ pub(crate) struct MaterialSupport<'a> {
     /// The parameters that every kind has.
     pub(crate) of_any: &'a [&'a str],
     /// The parameters that may be textures; `None` if that is reported elsewhere.
-    pub(crate) pictured: Option<&'a [&'a str]>,
+    pub(crate) textured: Option<&'a [&'a str]>,
 }
 
 impl MaterialSupport<'_> {
     /// Warns about parameters of a material that the format does not support.
-    pub(crate) fn tell(&self, spec: &Spec, writing: &mut Writing) {
-        let MaterialSupport { format, of_kinds, of_any, pictured } = self;
+    pub(crate) fn warn_unsupported(&self, spec: &Spec, writing: &mut Writing) {
+        let MaterialSupport { format, of_kinds, of_any, textured } = self;
         let Some((kind, of_kind)) = of_kinds.iter().find(|(kind, _)| *kind == spec.kind) else { return };
         let Some(row) = MATERIALS.iter().find(|row| row.entry.name == *kind) else { return };
         for key in spec.differing(&row.entry) {
             if !of_kind.contains(&key) && !of_any.contains(&key) {
                 writing.warn(format!("{format} files cannot store '{key}' of a {kind} material: left out"));
-            } else if texture(spec, key).is_some() && pictured.is_some_and(|held| !held.contains(&key)) {
+            } else if texture(spec, key).is_some() && textured.is_some_and(|held| !held.contains(&key)) {
                 writing.warn(format!("{format} files cannot store a texture of '{key}': left out"));
             }
         }

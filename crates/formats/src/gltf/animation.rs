@@ -13,12 +13,12 @@ use std::collections::{HashMap, HashSet};
 /// The animated values of nodes, which replace those of the rest pose.
 #[derive(Default)]
 pub(super) struct Pose {
-    moved: HashMap<(usize, Moves), Vec<f64>>,
+    moved: HashMap<(usize, AnimatedProperty), Vec<f64>>,
 }
 
 /// The property of a node that a channel animates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Moves {
+pub(super) enum AnimatedProperty {
     Translation,
     Rotation,
     Scale,
@@ -27,7 +27,7 @@ pub(super) enum Moves {
 
 /// How a sampler interpolates between keys.
 #[derive(Clone, Copy, PartialEq)]
-enum Between {
+enum Interpolation {
     Step,
     Linear,
     Cubic,
@@ -35,13 +35,13 @@ enum Between {
 
 impl Pose {
     /// Three or four numbers of a node, if they are animated.
-    pub(super) fn numbers<const N: usize>(&self, node: usize, moves: Moves) -> Option<[f64; N]> {
-        self.moved.get(&(node, moves))?.as_slice().try_into().ok()
+    pub(super) fn numbers<const N: usize>(&self, node: usize, property: AnimatedProperty) -> Option<[f64; N]> {
+        self.moved.get(&(node, property))?.as_slice().try_into().ok()
     }
 
     /// The weights of a node's morph targets, if they are animated.
     pub(super) fn weights(&self, node: usize) -> Option<&[f64]> {
-        self.moved.get(&(node, Moves::Weights)).map(Vec::as_slice)
+        self.moved.get(&(node, AnimatedProperty::Weights)).map(Vec::as_slice)
     }
 }
 
@@ -83,7 +83,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let samplers = animation.list("samplers")?;
         let mut end = 0f32;
         for channel in animation.list("channels")? {
-            let Some((node, moves)) = target(&channel) else {
+            let Some((node, property)) = target(&channel) else {
                 if channel.get("target").is_some_and(|target| {
                     target.get("node").is_some() || target.extension("KHR_animation_pointer").is_some()
                 }) {
@@ -96,11 +96,11 @@ impl<'d> Gltf<'d, '_, '_> {
             let Some(&sampler) = samplers.get(index.as_count()?) else {
                 return Err(index.error(format!("there are {} samplers in this animation", samplers.len())));
             };
-            match self.sample(sampler, node, moves) {
+            match self.sample(sampler, node, property) {
                 Ok((values, last)) => {
                     end = end.max(last);
                     if plays {
-                        self.pose.moved.insert((node, moves), values);
+                        self.pose.moved.insert((node, property), values);
                     }
                 }
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
@@ -118,7 +118,7 @@ impl<'d> Gltf<'d, '_, '_> {
         &mut self,
         sampler: JsonNode<'d>,
         node: usize,
-        moves: Moves,
+        property: AnimatedProperty,
     ) -> Result<(Vec<f64>, f32), FormatError> {
         let budget = &mut self.reading.budget;
         let spent = budget.spent();
@@ -126,10 +126,10 @@ impl<'d> Gltf<'d, '_, '_> {
         let times = input.numbers(budget)?;
         let output = Accessor::named(self.document, sampler.need("output")?, budget)?;
         let values = output.numbers(budget)?;
-        let between = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
-            "STEP" => Between::Step,
-            "LINEAR" => Between::Linear,
-            "CUBICSPLINE" => Between::Cubic,
+        let interpolation = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
+            "STEP" => Interpolation::Step,
+            "LINEAR" => Interpolation::Linear,
+            "CUBICSPLINE" => Interpolation::Cubic,
             other => {
                 return Err(sampler
                     .error(format!("'{other}' is not an interpolation: use STEP, LINEAR or CUBICSPLINE")));
@@ -139,11 +139,11 @@ impl<'d> Gltf<'d, '_, '_> {
         let Some(&last) = times.last().filter(|_| input.width() == 1 && rises) else {
             return Err(input.node.error("the times of an animation must be numbers that increase"));
         };
-        let parts = if between == Between::Cubic { 3 } else { 1 };
-        let width = match moves {
-            Moves::Rotation => 4,
-            Moves::Translation | Moves::Scale => 3,
-            Moves::Weights => values.len() / (parts * times.len()),
+        let parts = if interpolation == Interpolation::Cubic { 3 } else { 1 };
+        let width = match property {
+            AnimatedProperty::Rotation => 4,
+            AnimatedProperty::Translation | AnimatedProperty::Scale => 3,
+            AnimatedProperty::Weights => values.len() / (parts * times.len()),
         };
         if width == 0 || values.len() != width * parts * times.len() {
             let message =
@@ -153,10 +153,10 @@ impl<'d> Gltf<'d, '_, '_> {
         if !values.iter().all(|x| x.is_finite()) {
             return Err(output.node.error("an animation has numbers that are infinite or not numbers (NaN)"));
         }
-        let keys = Keys { times: &times, values: &values, width, between, turns: moves == Moves::Rotation };
+        let keys = Keys { times: &times, values: &values, width, interpolation, turns: property == AnimatedProperty::Rotation };
         let value = keys.at(f64::from(self.time));
-        self.reading.budget.give_back(self.reading.budget.spent() - spent);
-        if moves == Moves::Rotation && value.iter().all(|x| *x == 0.0) {
+        self.reading.budget.release(self.reading.budget.spent() - spent);
+        if property == AnimatedProperty::Rotation && value.iter().all(|x| *x == 0.0) {
             return Err(output.node.error(format!("the rotation of node {node} is zero and has no effect")));
         }
         Ok((value, last))
@@ -164,16 +164,16 @@ impl<'d> Gltf<'d, '_, '_> {
 }
 
 /// The target of a channel; `None` if this reader does not animate it.
-fn target(channel: &JsonNode) -> Option<(usize, Moves)> {
+fn target(channel: &JsonNode) -> Option<(usize, AnimatedProperty)> {
     let target = channel.get("target")?;
-    let moves = match target.get("path")?.as_text().ok()? {
-        "translation" => Moves::Translation,
-        "rotation" => Moves::Rotation,
-        "scale" => Moves::Scale,
-        "weights" => Moves::Weights,
+    let property = match target.get("path")?.as_text().ok()? {
+        "translation" => AnimatedProperty::Translation,
+        "rotation" => AnimatedProperty::Rotation,
+        "scale" => AnimatedProperty::Scale,
+        "weights" => AnimatedProperty::Weights,
         _ => return None,
     };
-    Some((target.get("node")?.as_count().ok()?, moves))
+    Some((target.get("node")?.as_count().ok()?, property))
 }
 
 /// The index of an item that the user selected by name or by number, from 0.
@@ -200,7 +200,7 @@ struct Keys<'a> {
     times: &'a [f32],
     values: &'a [f32],
     width: usize,
-    between: Between,
+    interpolation: Interpolation,
     /// True if the values are quaternions.
     turns: bool,
 }
@@ -210,12 +210,12 @@ impl Keys<'_> {
     fn at(&self, time: f64) -> Vec<f64> {
         let next = self.times.partition_point(|&t| f64::from(t) <= time);
         let Some(key) = next.checked_sub(1) else { return self.value(0) };
-        if next == self.times.len() || self.between == Between::Step {
+        if next == self.times.len() || self.interpolation == Interpolation::Step {
             return self.value(key);
         }
         let (from, to) = (f64::from(self.times[key]), f64::from(self.times[next]));
         let (span, t) = (to - from, (time - from) / (to - from));
-        if self.between == Between::Cubic {
+        if self.interpolation == Interpolation::Cubic {
             return self.hermite(key, span, t);
         }
         let (a, b) = (self.value(key), self.value(next));
@@ -239,7 +239,7 @@ impl Keys<'_> {
 
     /// For a cubic key, its in-tangent (0), value (1) or out-tangent (2); for others, the value.
     fn part(&self, key: usize, part: usize) -> &[f32] {
-        let index = if self.between == Between::Cubic { 3 * key + part } else { key };
+        let index = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
         &self.values[index * self.width..][..self.width]
     }
 }
@@ -262,20 +262,20 @@ fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn keys<'a>(times: &'a [f32], values: &'a [f32], width: usize, between: Between) -> Keys<'a> {
-        Keys { times, values, width, between, turns: false }
+    fn keys<'a>(times: &'a [f32], values: &'a [f32], width: usize, interpolation: Interpolation) -> Keys<'a> {
+        Keys { times, values, width, interpolation, turns: false }
     }
 
     #[test]
     fn steps_lines_and_splines_are_what_the_formulas_say() {
         let times = [1.0, 3.0];
-        let step = keys(&times, &[5.0, 9.0], 1, Between::Step);
+        let step = keys(&times, &[5.0, 9.0], 1, Interpolation::Step);
         assert_eq!([0.0, 1.0, 2.9, 3.0, 7.0].map(|t| step.at(t)[0]), [5.0, 5.0, 5.0, 9.0, 9.0]);
-        let line = keys(&times, &[5.0, 9.0], 1, Between::Linear);
+        let line = keys(&times, &[5.0, 9.0], 1, Interpolation::Linear);
         assert_eq!([0.0, 1.5, 2.0, 3.0].map(|t| line.at(t)[0]), [5.0, 6.0, 7.0, 9.0]);
         // Each key is in-tangent, value, out-tangent; the keys are two seconds apart, and midway (5 + 9) / 2 + 2
         // (1/8 · 3 - 1/8 · (-1)) = 8.
-        let cubic = keys(&times, &[0.0, 5.0, 3.0, -1.0, 9.0, 0.0], 1, Between::Cubic);
+        let cubic = keys(&times, &[0.0, 5.0, 3.0, -1.0, 9.0, 0.0], 1, Interpolation::Cubic);
         assert_eq!([0.0, 1.0, 2.0, 3.0].map(|t| cubic.at(t)[0]), [5.0, 5.0, 8.0, 9.0]);
     }
 

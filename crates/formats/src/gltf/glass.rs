@@ -29,7 +29,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 let edges = (mesh.triangles.len() * 3 * 24 + mesh.positions.len() * 24) as u64;
                 self.reading.budget.take_bytes(edges, &self.file)?;
                 let is_closed = is_closed(mesh);
-                self.reading.budget.give_back(edges);
+                self.reading.budget.release(edges);
                 if is_closed {
                     let what = "a transmissive material without a thickness, on a closed mesh, is shown as solid glass; \
                                 --glass thin shows it as a thin wall";

@@ -1,6 +1,6 @@
 //! Node transforms: a matrix, or translation, rotation and scale.
 
-use super::animation::{Moves, Pose};
+use super::animation::{AnimatedProperty, Pose};
 use super::json::JsonNode;
 use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
@@ -19,9 +19,9 @@ pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, 
     }
     let (translation, rotation, scale) =
         (node.numbers::<3>("translation")?, node.numbers::<4>("rotation")?, node.numbers::<3>("scale")?);
-    let translation = pose.numbers(index, Moves::Translation).or(translation).unwrap_or([0.0; 3]);
-    let rotation = pose.numbers(index, Moves::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    let scale = pose.numbers(index, Moves::Scale).or(scale).unwrap_or([1.0; 3]);
+    let translation = pose.numbers(index, AnimatedProperty::Translation).or(translation).unwrap_or([0.0; 3]);
+    let rotation = pose.numbers(index, AnimatedProperty::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let scale = pose.numbers(index, AnimatedProperty::Scale).or(scale).unwrap_or([1.0; 3]);
     compose(translation, rotation, scale).ok_or_else(|| {
         FormatError::malformed("this rotation is zero and has no effect", node.at_key("rotation"))
     })

@@ -42,7 +42,7 @@ impl<'d> Gltf<'d, '_, '_> {
             let Some(picture) = picture else { continue };
             let (width, height) = (picture.width, picture.height);
             let image = Image { width, height, texels: Texels::Bytes(picture.texels) };
-            self.reading.hold_image(&image, &name)?;
+            self.reading.charge_image(&image, &name)?;
             self.images.insert((number, false), Some((name, Arc::new(image))));
         }
         Ok(())

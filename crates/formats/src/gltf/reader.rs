@@ -44,16 +44,16 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     }
     let Gltf { mut scene, oddities, meshes, materials, images, .. } = gltf;
     if reading.options.whole_movement && scene.inventory.moves() {
-        let made = Made { meshes, materials, images };
+        let cache = PassCache { meshes, materials, images };
         let end = scene.inventory.seconds();
-        scene.inventory.movement = Some(Arc::new(movement(&document, source, reading, made, end)?));
+        scene.inventory.movement = Some(Arc::new(movement(&document, source, reading, cache, end)?));
     }
     oddities.into_warnings(&mut scene);
     Ok(scene)
 }
 
 /// The results of one pass over a file that the next pass can reuse.
-struct Made {
+struct PassCache {
     meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
     materials: HashMap<(Option<usize>, bool), UsedMaterial>,
     images: HashMap<(usize, bool), Option<Named>>,
@@ -67,20 +67,20 @@ fn movement<'r>(
     document: &Document<'_>,
     source: &'r Source<'r>,
     reading: &'r mut Reading,
-    mut made: Made,
+    mut cache: PassCache,
     end: f32,
 ) -> Result<SceneBuilder, FormatError> {
     let mut all = SceneBuilder::default();
     for moment in 0..=MOMENTS {
         let time = end * moment as f32 / MOMENTS as f32;
         let mut gltf = Gltf::new(document, source, &mut *reading, Oddities::default(), time);
-        (gltf.meshes, gltf.materials, gltf.images) = (made.meshes, made.materials, made.images);
+        (gltf.meshes, gltf.materials, gltf.images) = (cache.meshes, cache.materials, cache.images);
         // The keys of skinned meshes do not include the time.
         gltf.meshes.retain(|(_, _, skin), _| skin.is_none());
         gltf.scene()?;
         let Gltf { scene, meshes, materials, images, .. } = gltf;
         all.objects.extend(scene.objects);
-        made = Made { meshes, materials, images };
+        cache = PassCache { meshes, materials, images };
     }
     Ok(all)
 }

@@ -5,7 +5,7 @@ use super::material::UvSets;
 use super::reader::{Gltf, Named};
 use super::uri::{self, Resource};
 use crate::FormatError;
-use crate::images::Means;
+use crate::images::SampleMeaning;
 use bilux_math::Rgb;
 use bilux_scene::texture::{Channel, Filter, UvTransform, Wrap};
 use bilux_scene::{Texture, Value};
@@ -147,7 +147,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let kind = image.text("mimeType")?.unwrap_or_default();
         let extension = Path::new(&name).extension().and_then(|e| e.to_str());
         let hint = kind.strip_prefix("image/").or(extension);
-        let means = if is_data { Means::Numbers } else { Means::SrgbColours };
+        let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::SrgbColours };
         let decoded = self.reading.decode(&bytes, hint, means, (&name, &at))?;
         self.release_encoded(bytes);
         Ok((name, Arc::new(decoded)))

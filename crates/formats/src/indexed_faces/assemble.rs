@@ -32,8 +32,8 @@ pub(crate) fn assemble(
     let faces = std::mem::take(&mut indexed.faces);
     let mut welder = Welder::new(indexed.positions.len());
     let mut triangulator = Triangulator::default();
-    let mut rooms = rooms(&indexed, &faces).into_iter();
-    let mut piece = Piece::new(&indexed, rooms.next());
+    let mut run_sizes = run_sizes(&indexed, &faces).into_iter();
+    let mut piece = Piece::new(&indexed, run_sizes.next());
     let mut run = 0;
     let mut finish = |piece: Piece, run: &Run, oddities: &mut Oddities| {
         let name = if run.name.is_empty() { source.stem() } else { run.name.clone() };
@@ -44,7 +44,7 @@ pub(crate) fn assemble(
     // Corners are freed as triangles are made from them: holding both would be the peak of memory.
     faces.consume(|face, corners| {
         if indexed.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
-            let done = std::mem::replace(&mut piece, Piece::new(&indexed, rooms.next()));
+            let done = std::mem::replace(&mut piece, Piece::new(&indexed, run_sizes.next()));
             finish(done, &indexed.runs[run], oddities);
             (run, welder.run) = (run + 1, welder.run + 1);
         }
@@ -64,20 +64,20 @@ pub(crate) fn assemble(
 
 /// The number of corners and faces of a run.
 #[derive(Clone, Copy, Default)]
-struct Room {
+struct RunSize {
     corners: usize,
     faces: usize,
 }
 
-fn rooms(indexed: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
-    let mut rooms = vec![Room::default(); indexed.runs.len()];
+fn run_sizes(indexed: &IndexedFaces, faces: &FaceList) -> Vec<RunSize> {
+    let mut run_sizes = vec![RunSize::default(); indexed.runs.len()];
     let mut run = 0;
     for (face, corners) in faces.iter().enumerate() {
         run += usize::from(indexed.runs.get(run + 1).is_some_and(|next| next.first_face <= face));
-        rooms[run].corners += corners.len();
-        rooms[run].faces += 1;
+        run_sizes[run].corners += corners.len();
+        run_sizes[run].faces += 1;
     }
-    rooms
+    run_sizes
 }
 
 /// Checks all indices after reading, since they may point forward.
@@ -246,8 +246,8 @@ struct Piece<'s> {
 
 impl<'s> Piece<'s> {
     /// Reserves memory for all triangles and the likely number of vertices; unused memory costs nothing.
-    fn new(indexed: &'s IndexedFaces, room: Option<Room>) -> Piece<'s> {
-        let Room { corners, faces } = room.unwrap_or_default();
+    fn new(indexed: &'s IndexedFaces, size: Option<RunSize>) -> Piece<'s> {
+        let RunSize { corners, faces } = size.unwrap_or_default();
         let longest = indexed.positions.len().max(indexed.uvs.len()).max(indexed.normals.len());
         let vertices = corners.min(longest);
         let of = |wanted: bool| if wanted { vertices } else { 0 };

@@ -68,7 +68,7 @@ const HOLDS: MaterialSupport = MaterialSupport {
         ("dielectric", &["eta", "tint"]),
     ],
     of_any: &["opacity", "normal", "normal_scale"],
-    pictured: Some(&[
+    textured: Some(&[
         "roughness",
         "kd",
         "reflectance",
@@ -98,7 +98,7 @@ fn write_material(
             spec.kind
         ));
     }
-    HOLDS.tell(spec, writing);
+    HOLDS.warn_unsupported(spec, writing);
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     match spec.kind.as_str() {
         "phong" => write_phong(spec, out),

@@ -96,8 +96,8 @@ impl Obj<'_, '_, '_> {
             for (mut block, text) in parts.into_iter().zip(texts) {
                 self.join(&mut block, &text)?;
                 spare.push(block.emptied());
-                self.reading.budget.give_back(text.len() as u64);
-                blocks.give_back(text);
+                self.reading.budget.release(text.len() as u64);
+                blocks.recycle(text);
             }
         }
     }
@@ -157,7 +157,7 @@ impl Obj<'_, '_, '_> {
                     return NONE;
                 }
                 let mut cursor = Cursor::joining_lines(text);
-                cursor.go_to(backward.offset);
+                cursor.seek(backward.offset);
                 let mut at = Places::new(self.source.name, text).at(backward.offset);
                 at.line = at.line.saturating_add(self.lines);
                 let message = bad_corner(cursor.word());

@@ -88,7 +88,7 @@ impl<'a> Off<'a, '_, '_> {
             };
             return Err(FormatError::malformed(message, self.places.at(start)));
         };
-        self.cursor.go_to(start + length);
+        self.cursor.seek(start + length);
         if self.cursor.peek_word() == b"BINARY" {
             let message = "this OFF file is binary: write it as text";
             return Err(FormatError::malformed(message, self.places.at(start)));

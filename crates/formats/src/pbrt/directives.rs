@@ -3,7 +3,7 @@
 use super::colours::SPACES;
 use super::lexer::{Lexer, Token, shown};
 use super::parameters::{self, ParameterList};
-use super::reader::{Entity, Opened, Pbrt, Use};
+use super::reader::{Entity, Scope, Pbrt, ObjectInstance};
 use super::state::{MaterialKey, TARGETS};
 use super::unknown;
 use crate::FormatError;
@@ -79,10 +79,10 @@ pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError>
         match word {
             b"Include" => directive.include()?,
             b"Import" => directive.import()?,
-            b"AttributeBegin" => directive.push(Opened::Attribute)?,
-            b"AttributeEnd" => directive.pop(Opened::Attribute)?,
-            b"TransformBegin" => directive.push(Opened::Transform)?,
-            b"TransformEnd" => directive.pop(Opened::Transform)?,
+            b"AttributeBegin" => directive.push(Scope::Attribute)?,
+            b"AttributeEnd" => directive.pop(Scope::Attribute)?,
+            b"TransformBegin" => directive.push(Scope::Transform)?,
+            b"TransformEnd" => directive.pop(Scope::Transform)?,
             b"ObjectBegin" => directive.object_begin()?,
             b"ObjectEnd" => directive.object_end()?,
             b"ObjectInstance" => directive.object_instance()?,
@@ -151,24 +151,24 @@ impl Directive<'_, '_, '_, '_> {
         Ok(())
     }
 
-    fn push(&mut self, opened: Opened) -> Result<(), FormatError> {
+    fn push(&mut self, scope: Scope) -> Result<(), FormatError> {
         if self.pbrt.pushed.len() >= MAX_DEPTH {
             return self.error(format!("attributes are nested more than {MAX_DEPTH} levels deep"));
         }
-        self.pbrt.pushed.push((opened, self.at.clone(), self.pbrt.state.clone()));
+        self.pbrt.pushed.push((scope, self.at.clone(), self.pbrt.state.clone()));
         Ok(())
     }
 
-    fn pop(&mut self, opened: Opened) -> Result<(), FormatError> {
+    fn pop(&mut self, scope: Scope) -> Result<(), FormatError> {
         let Some((began, at, state)) = self.pbrt.pushed.pop() else {
             return self.error("this ends something that was never begun: remove it");
         };
-        if (began == Opened::Object) != (opened == Opened::Object) {
+        if (began == Scope::Object) != (scope == Scope::Object) {
             // Version 3 uses one stack for both, and its own scenes interleave them.
             let what = "objects and attributes are not properly nested: each End closes the last Begin";
             self.pbrt.oddities.note(what, || at);
         }
-        if began == Opened::Transform {
+        if began == Scope::Transform {
             // In version 3, TransformEnd restores only the transforms.
             (self.pbrt.state.matrices, self.pbrt.state.is_active) = (state.matrices, state.is_active);
         } else {
@@ -185,7 +185,7 @@ impl Directive<'_, '_, '_, '_> {
         if self.pbrt.definitions.contains_key(&name) {
             return self.error(format!("there is already an object '{name}': give this one another name"));
         }
-        self.push(Opened::Object)?;
+        self.push(Scope::Object)?;
         self.pbrt.definition = Some((name, Vec::new()));
         Ok(())
     }
@@ -195,7 +195,7 @@ impl Directive<'_, '_, '_, '_> {
             return self.error("this ends an object that was never begun: remove it");
         };
         self.pbrt.definitions.insert(name, Arc::new(pieces));
-        self.pop(Opened::Object)
+        self.pop(Scope::Object)
     }
 
     fn object_instance(&mut self) -> Result<(), FormatError> {
@@ -203,9 +203,9 @@ impl Directive<'_, '_, '_, '_> {
         if self.pbrt.definition.is_some() {
             return self.error("objects cannot contain instances: move this one after ObjectEnd");
         }
-        self.pbrt.reading.budget.take::<Use>(1, &self.at.file)?;
+        self.pbrt.reading.budget.take::<ObjectInstance>(1, &self.at.file)?;
         let matrices = self.pbrt.state.matrices;
-        self.pbrt.uses.push(Use { object, matrices, at: self.at.clone() });
+        self.pbrt.uses.push(ObjectInstance { object, matrices, at: self.at.clone() });
         Ok(())
     }
 

@@ -26,7 +26,7 @@ pub(super) fn infinite(
     }
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0);
     let Some((name, is_old)) = file else {
-        let radiance = pbrt.shine(list, "L")?;
+        let radiance = pbrt.scaled_spectrum(list, "L")?;
         // The illuminance of a uniform environment is π times its luminance.
         let radiance = illuminance.map_or(radiance, |lux| radiance * (lux * FRAC_1_PI as f32));
         return Ok(Some(Spec::new("", "environment").with("radiance", radiance)));
@@ -43,7 +43,7 @@ pub(super) fn infinite(
         pbrt.oddities.note(what, || at.clone());
     }
     let mapping = if is_old || !is_square { Mapping::Latitudes } else { Mapping::Square };
-    let mut scale = if is_old { pbrt.shine(list, "L")? } else { pbrt.light_scale(list)? };
+    let mut scale = if is_old { pbrt.scaled_spectrum(list, "L")? } else { pbrt.light_scale(list)? };
     if let Some(lux) = illuminance {
         let ours = illuminance_of(&picture, mapping).max(f32::MIN_POSITIVE);
         scale *= lux / ours;
@@ -168,7 +168,7 @@ impl Pbrt<'_, '_> {
                 texels.push(looked_up(picture, mapping, d));
             }
         }
-        self.reading.budget.give_back(bytes);
+        self.reading.budget.release(bytes);
         self.picture(name, [width, height], texels)
     }
 }

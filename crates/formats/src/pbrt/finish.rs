@@ -1,7 +1,7 @@
 //! Finishes a scene after all files are read: resolves names and adds everything to the scene.
 
 use super::lights::AreaEmission;
-use super::reader::{Alpha, Pbrt, Piece, ShapeGeometry, SurfaceAttributes, Use};
+use super::reader::{Alpha, Pbrt, Piece, ShapeGeometry, SurfaceAttributes, ObjectInstance};
 use super::state::Matrices;
 use super::texture_or_value::TextureOrValue;
 use super::unknown;
@@ -52,7 +52,7 @@ impl Pbrt<'_, '_> {
     fn place(
         &mut self,
         piece: &Piece,
-        used: Option<&Use>,
+        used: Option<&ObjectInstance>,
         resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<(), FormatError> {
         let matrices = match used {
@@ -97,10 +97,10 @@ impl Pbrt<'_, '_> {
     fn area_emission_of(
         &mut self,
         piece: &Piece,
-        used: Option<&Use>,
+        used: Option<&ObjectInstance>,
         resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<Option<AreaEmission>, FormatError> {
-        let Some(index) = piece.dress.area_light else { return Ok(None) };
+        let Some(index) = piece.attributes.area_light else { return Ok(None) };
         if used.is_some() {
             self.oddities.note("surfaces of object instances emit no light, as in pbrt", || piece.at.clone());
             return Ok(None);
@@ -130,7 +130,7 @@ impl Pbrt<'_, '_> {
         let radius = f64::from(*radius) * scale;
         let area = 4.0 * std::f64::consts::PI * radius * radius;
         let TextureOrValue::Colour(radiance) = glow.radiance_of(area) else { return Ok(false) };
-        if glow.both_sides || piece.dress.alpha != Alpha::Whole || radiance.is_black() {
+        if glow.both_sides || piece.attributes.alpha != Alpha::Whole || radiance.is_black() {
             return Ok(false);
         }
         let material = self.base_material(piece)?;
@@ -150,11 +150,11 @@ impl Pbrt<'_, '_> {
 
     /// The material without attributes, built once.
     fn base_material(&mut self, piece: &Piece) -> Result<Option<Spec>, FormatError> {
-        if let Some(known) = self.made_materials.get(&piece.dress.material) {
+        if let Some(known) = self.made_materials.get(&piece.attributes.material) {
             return Ok(known.clone());
         }
-        let made = self.material(&piece.dress.material, &piece.at)?;
-        self.made_materials.insert(piece.dress.material.clone(), made.clone());
+        let made = self.material(&piece.attributes.material, &piece.at)?;
+        self.made_materials.insert(piece.attributes.material.clone(), made.clone());
         Ok(made)
     }
 
@@ -166,30 +166,30 @@ impl Pbrt<'_, '_> {
         radiance: Option<TextureOrValue>,
         resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<Option<usize>, FormatError> {
-        let dress = &piece.dress;
+        let attributes = &piece.attributes;
         let bits = match &radiance {
             Some(TextureOrValue::Colour(colour)) => colour.to_array().map(f32::to_bits),
             Some(TextureOrValue::Picture(picture)) => picture.factor.to_array().map(f32::to_bits),
             None => [0; 3],
         };
         // In an object instance nothing emits, so its material differs.
-        let key = (SurfaceAttributes { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
+        let key = (SurfaceAttributes { area_light: glow.and(attributes.area_light), ..attributes.clone() }, bits);
         if let Some(known) = resolved_attributes.materials.get(&key) {
             return Ok(*known);
         }
-        let made = self.dress(piece, glow, radiance)?;
+        let made = self.finished_material(piece, glow, radiance)?;
         let index = made.map(|spec| self.scene.add_material(spec));
         resolved_attributes.materials.insert(key, index);
         Ok(index)
     }
 
-    fn dress(
+    fn finished_material(
         &mut self,
         piece: &Piece,
         glow: Option<&AreaEmission>,
         radiance: Option<TextureOrValue>,
     ) -> Result<Option<Spec>, FormatError> {
-        let [inside, outside] = &piece.dress.media;
+        let [inside, outside] = &piece.attributes.media;
         let absorption = self.absorption_of(inside, &piece.at)?;
         if !self.absorption_of(outside, &piece.at)?.is_black() {
             let what = "absorption by a medium outside shapes is not supported";
@@ -249,7 +249,7 @@ impl Pbrt<'_, '_> {
 
     /// Adds an opacity mask to a material if the shape has an alpha.
     fn with_opacity_mask(&mut self, mut spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
-        let share = match &piece.dress.alpha {
+        let share = match &piece.attributes.alpha {
             Alpha::Whole => return Ok(Some(spec)),
             Alpha::Even(bits) => {
                 let alpha = f32::from_bits(*bits).clamp(0.0, 1.0);
@@ -265,8 +265,8 @@ impl Pbrt<'_, '_> {
             }
             Alpha::Texture(name, line, column) => {
                 let at = Span { file: piece.at.file.clone(), line: *line, column: *column };
-                let ink = self.texture(name, super::texture_or_value::Meaning::Number, &at)?;
-                self.number_value(ink, [0.0, 1.0])
+                let source = self.texture(name, super::texture_or_value::SpectrumType::Number, &at)?;
+                self.number_value(source, [0.0, 1.0])
             }
         };
         spec.parameters.set("opacity", share);

@@ -7,7 +7,7 @@ use super::environment;
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
-use super::texture_or_value::{Meaning, TextureOrValue};
+use super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use bilux_math::transcendental::cos_f64;
@@ -61,8 +61,8 @@ impl Pbrt<'_, '_> {
     }
 
     /// The colour of a parameter, white by default, times the scales of the light and of the film.
-    pub(super) fn shine(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
-        let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
+    pub(super) fn scaled_spectrum(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
+        let colour = self.spectrum(list, name, SpectrumType::Light)?.unwrap_or(Rgb::WHITE);
         let shone = colour * self.light_scale(list)?;
         if shone.max_channel() > MAX_LIGHT {
             self.oddities.note("the brightness of a light overflows", || list.at.clone());
@@ -77,7 +77,7 @@ impl Pbrt<'_, '_> {
         let scale = if is_number {
             Rgb::grey(list.finite("scale", 1.0)?)
         } else {
-            self.spectrum(list, "scale", Meaning::Number)?.unwrap_or(Rgb::WHITE)
+            self.spectrum(list, "scale", SpectrumType::Number)?.unwrap_or(Rgb::WHITE)
         };
         Ok(scale.map(|c| c.max(0.0)) * self.options.gain)
     }
@@ -98,7 +98,7 @@ impl Pbrt<'_, '_> {
                 let picture = self.light_file(name, &at)?;
                 TextureOrValue::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
             }
-            None => TextureOrValue::Colour(self.shine(list, "L")?),
+            None => TextureOrValue::Colour(self.scaled_spectrum(list, "L")?),
         };
         for name in ["samples", "nsamples"] {
             list.has(name);
@@ -160,13 +160,13 @@ fn cone(position: DVec3, forward: DVec3, intensity: Rgb, [outer, inner]: [f32; 2
 }
 
 fn point(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
-    let intensity = pbrt.shine(list, "I")? * power(list, 4.0 * PI)?;
+    let intensity = pbrt.scaled_spectrum(list, "I")? * power(list, 4.0 * PI)?;
     Ok(Some(at_point(from(list, matrix)?, intensity)))
 }
 
 fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0).unwrap_or(1.0);
-    let irradiance = pbrt.shine(list, "L")? * illuminance;
+    let irradiance = pbrt.scaled_spectrum(list, "L")? * illuminance;
     // In pbrt, light travels from `from` towards `to`.
     let to = list.triple("to", Vec3::Z)?.as_dvec3();
     let from = list.triple("from", Vec3::ZERO)?.as_dvec3();
@@ -186,7 +186,7 @@ fn spot(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<
     let [cos_outer, cos_inner] = [outer, inner].map(|angle| cos_f64(f64::from(angle).to_radians()));
     // The smooth edge emits half of the light of its range of cosines.
     let all = TAU * (1.0 - 0.5 * (cos_inner + cos_outer));
-    let intensity = pbrt.shine(list, "I")? * power(list, all)?;
+    let intensity = pbrt.scaled_spectrum(list, "I")? * power(list, all)?;
     Ok(Some(cone(from(list, matrix)?, forward(list, matrix)?, intensity, [outer, inner])))
 }
 
@@ -212,7 +212,7 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
             (mean.r + mean.g + mean.b) / 3.0
         }
     };
-    let intensity = pbrt.shine(list, "I")? * mean * power(list, 4.0 * PI * f64::from(mean))?;
+    let intensity = pbrt.scaled_spectrum(list, "I")? * mean * power(list, 4.0 * PI * f64::from(mean))?;
     Ok(Some(at_point(from(list, matrix)?, intensity)))
 }
 

@@ -2,7 +2,7 @@
 
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
-use super::texture_or_value::Meaning;
+use super::texture_or_value::SpectrumType;
 use super::unknown;
 use crate::FormatError;
 use bilux_math::Rgb;
@@ -60,11 +60,11 @@ impl Pbrt<'_, '_> {
         let [scattering, absorption] = preset.map_or([None; 2], |known| known.map(Some));
         let absorption = match absorption {
             Some(absorption) => absorption,
-            None => self.spectrum(list, "sigma_a", Meaning::Number)?.unwrap_or(Rgb::WHITE),
+            None => self.spectrum(list, "sigma_a", SpectrumType::Number)?.unwrap_or(Rgb::WHITE),
         };
         let scattering = match scattering {
             Some(scattering) => scattering,
-            None => self.spectrum(list, "sigma_s", Meaning::Number)?.unwrap_or(Rgb::WHITE),
+            None => self.spectrum(list, "sigma_s", SpectrumType::Number)?.unwrap_or(Rgb::WHITE),
         };
         list.has("g");
         if !scattering.is_black() {

@@ -74,7 +74,7 @@ pub(super) struct Piece {
     pub(super) form: ShapeGeometry,
     /// The transforms to world space, or to the space of the object definition that contains it.
     pub(super) matrices: Matrices,
-    pub(super) dress: SurfaceAttributes,
+    pub(super) attributes: SurfaceAttributes,
     /// The number of shapes that pbrt counts, each of which emits the full power of its light.
     pub(super) shapes: u32,
     pub(super) at: Span,
@@ -111,7 +111,7 @@ pub(super) enum Alpha {
 }
 
 /// An instance of an object.
-pub(super) struct Use {
+pub(super) struct ObjectInstance {
     pub(super) object: String,
     pub(super) matrices: Matrices,
     pub(super) at: Span,
@@ -119,7 +119,7 @@ pub(super) struct Use {
 
 /// The directive that pushed a graphics state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Opened {
+pub(super) enum Scope {
     Attribute,
     Transform,
     Object,
@@ -133,7 +133,7 @@ pub(super) struct Pbrt<'o, 'r> {
     /// The folder of the first file, which all names are relative to.
     pub(super) folder: Option<PathBuf>,
     pub(super) state: State,
-    pub(super) pushed: Vec<(Opened, Span, State)>,
+    pub(super) pushed: Vec<(Scope, Span, State)>,
     pub(super) in_world: bool,
     /// Named coordinate systems.
     pub(super) systems: HashMap<String, Matrices>,
@@ -152,7 +152,7 @@ pub(super) struct Pbrt<'o, 'r> {
     /// The object that is being defined.
     pub(super) definition: Option<(String, Vec<Piece>)>,
     pub(super) definitions: HashMap<String, Arc<Vec<Piece>>>,
-    pub(super) uses: Vec<Use>,
+    pub(super) uses: Vec<ObjectInstance>,
     pub(super) cache: ShapeCache,
     /// The chain of includes, from the first file to the current one.
     open: Vec<PathBuf>,

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// The quantity that a spectrum describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Meaning {
+pub(super) enum SpectrumType {
     /// A reflectance.
     Surface,
     /// Numbers of any magnitude.
@@ -81,10 +81,10 @@ impl Pbrt<'_, '_> {
     /// Applies a function to each texel, or to the constant.
     pub(super) fn mapped(
         &mut self,
-        ink: TextureOrValue,
+        source: TextureOrValue,
         rule: impl Fn(Rgb) -> Rgb,
     ) -> Result<TextureOrValue, FormatError> {
-        match ink {
+        match source {
             TextureOrValue::Colour(colour) => Ok(TextureOrValue::Colour(rule(colour))),
             TextureOrValue::Picture(picture) => {
                 let texels = picture.texels().map(rule).collect();
@@ -107,7 +107,7 @@ impl Pbrt<'_, '_> {
         colours: Vec<Rgb>,
     ) -> Result<Texture, FormatError> {
         let image = Image { width, height, texels: Texels::Floats { colours, alpha: Vec::new() } };
-        self.reading.hold_image(&image, name)?;
+        self.reading.charge_image(&image, name)?;
         Ok(Texture::of(name, Arc::new(image), true))
     }
 
@@ -116,14 +116,14 @@ impl Pbrt<'_, '_> {
     pub(super) fn by_formula<const N: usize>(
         &mut self,
         kind: &str,
-        inks: [(&str, &TextureOrValue); N],
+        sources: [(&str, &TextureOrValue); N],
         numbers: &[(&str, f32)],
         rule: impl Fn(Vec2) -> Rgb,
     ) -> Result<TextureOrValue, FormatError> {
         let mut spec = Spec::new("", kind);
         let mut parts = Vec::new();
-        for (key, ink) in inks {
-            let value = match ink {
+        for (key, source) in sources {
+            let value = match source {
                 TextureOrValue::Colour(colour) if key == "amount" => colour.r.into(),
                 TextureOrValue::Colour(colour) => (*colour).into(),
                 TextureOrValue::Picture(picture) => {
@@ -138,7 +138,7 @@ impl Pbrt<'_, '_> {
             Ok(texture) if texture.formula().is_some_and(|formula| formula.cost() <= MAX_PARTS) => {
                 Ok(TextureOrValue::Picture(Arc::new(texture)))
             }
-            _ => self.baked(kind, &inks.map(|(_, ink)| ink), rule),
+            _ => self.baked(kind, &sources.map(|(_, source)| source), rule),
         }
     }
 
@@ -153,7 +153,7 @@ impl Pbrt<'_, '_> {
         const MIN: usize = 256;
         const MAX: usize = 2048;
         let side = |of: fn(&Texture) -> usize| {
-            let sides = parts.iter().map(|ink| match ink {
+            let sides = parts.iter().map(|source| match source {
                 TextureOrValue::Picture(picture) if picture.formula().is_none() => of(picture),
                 _ => 0,
             });
@@ -166,21 +166,21 @@ impl Pbrt<'_, '_> {
             rule(Vec2::new(x / width as f32, 1.0 - y / height as f32))
         };
         let texels = (0..width * height).map(at).collect();
-        self.reading.budget.give_back((width * height * size_of::<Rgb>()) as u64);
+        self.reading.budget.release((width * height * size_of::<Rgb>()) as u64);
         Ok(TextureOrValue::Picture(Arc::new(self.picture(name, [width, height], texels)?)))
     }
 
     /// The value of a Bilux parameter.
-    pub(super) fn value(&mut self, ink: TextureOrValue) -> Value {
-        match ink {
+    pub(super) fn value(&mut self, source: TextureOrValue) -> Value {
+        match source {
             TextureOrValue::Colour(colour) => colour.into(),
             TextureOrValue::Picture(picture) => self.texture_value(picture),
         }
     }
 
     /// The value of a Bilux parameter that is a single number.
-    pub(super) fn number_value(&mut self, ink: TextureOrValue, [min, max]: [f32; 2]) -> Value {
-        match ink {
+    pub(super) fn number_value(&mut self, source: TextureOrValue, [min, max]: [f32; 2]) -> Value {
+        match source {
             TextureOrValue::Colour(colour) => colour.r.clamp(min, max).into(),
             TextureOrValue::Picture(picture) => self.texture_value(picture),
         }
@@ -200,7 +200,7 @@ impl Pbrt<'_, '_> {
         &mut self,
         list: &ParameterList,
         name: &'static str,
-        meaning: Meaning,
+        meaning: SpectrumType,
     ) -> Result<Option<Rgb>, FormatError> {
         match list.find_where(name, |p| p.kind != Kind::Texture) {
             Some(parameter) => self.colour_of(parameter, meaning).map(Some),
@@ -209,7 +209,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// The colour of a spectrum parameter.
-    pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
+    pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: SpectrumType) -> Result<Rgb, FormatError> {
         let at = &parameter.at;
         let wrong = |wanted: &str| {
             let message = format!("'{}' must be {wanted}", parameter.name);
@@ -239,22 +239,22 @@ impl Pbrt<'_, '_> {
             self.oddities.note(what, || at.clone());
         }
         let held = colour.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 });
-        if meaning == Meaning::Surface && held.max_channel() > 1.0 {
+        if meaning == SpectrumType::Surface && held.max_channel() > 1.0 {
             self.oddities.note("a reflectance is above 1: it is limited to 1", || at.clone());
         }
-        Ok(if meaning == Meaning::Surface { held.clamp(0.0, 1.0) } else { held })
+        Ok(if meaning == SpectrumType::Surface { held.clamp(0.0, 1.0) } else { held })
     }
 
-    fn of_space(&self, parameter: &Parameter, colour: Rgb, meaning: Meaning) -> Rgb {
+    fn of_space(&self, parameter: &Parameter, colour: Rgb, meaning: SpectrumType) -> Rgb {
         if parameter.kind == Kind::Xyz {
             let c = colour.to_array().map(f64::from);
             return Rgb::from_array(super::colours::from_xyz(c.into()).as_vec3().to_array());
         }
         match (parameter.space, meaning) {
             // The caller warns about values that are out of range.
-            (ColourSpace::Srgb, _) | (_, Meaning::Number) => colour,
-            (space, Meaning::Light) => space.light(colour),
-            (space, Meaning::Surface) => space.surface(colour),
+            (ColourSpace::Srgb, _) | (_, SpectrumType::Number) => colour,
+            (space, SpectrumType::Light) => space.light(colour),
+            (space, SpectrumType::Surface) => space.surface(colour),
         }
     }
 
@@ -285,7 +285,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// A spectrum by its name, or from the file with that name.
-    fn of_name(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
+    fn of_name(&mut self, parameter: &Parameter, meaning: SpectrumType) -> Result<Rgb, FormatError> {
         let Some(name) = parameter.text() else {
             let message = format!("'{}' must be one spectrum", parameter.name);
             return Err(FormatError::malformed(message, parameter.at.clone()));
@@ -293,9 +293,9 @@ impl Pbrt<'_, '_> {
         Ok(match spectra::named(name) {
             Some(Named::Light(colour)) => colour,
             Some(Named::Glass { index, .. }) => {
-                Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index })
+                Rgb::grey(if meaning == SpectrumType::Light { 1.0 } else { index })
             }
-            Some(Named::Even(index)) => Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index }),
+            Some(Named::Even(index)) => Rgb::grey(if meaning == SpectrumType::Light { 1.0 } else { index }),
             Some(Named::Metal { metal, is_extinction }) => {
                 let [eta, k] = super::metals::indices(metal);
                 if is_extinction { k } else { eta }
@@ -339,7 +339,7 @@ impl Pbrt<'_, '_> {
             }
         }
         let spectrum = self.samples(&numbers, parameter)?;
-        self.reading.budget.give_back(2 * (bytes.len() / 2 * size_of::<f32>()) as u64);
+        self.reading.budget.release(2 * (bytes.len() / 2 * size_of::<f32>()) as u64);
         self.reading.release(bytes);
         self.spectra.insert(path, Arc::new(spectrum.clone()));
         Ok(spectrum)
@@ -358,6 +358,6 @@ impl Pbrt<'_, '_> {
     }
 }
 
-fn of_samples(spectrum: &Spectrum, meaning: Meaning) -> Rgb {
-    if meaning == Meaning::Light { spectrum.light() } else { spectrum.surface() }
+fn of_samples(spectrum: &Spectrum, meaning: SpectrumType) -> Rgb {
+    if meaning == SpectrumType::Light { spectrum.light() } else { spectrum.surface() }
 }

@@ -2,7 +2,7 @@
 
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
-use super::texture_or_value::{Meaning, TextureOrValue};
+use super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
@@ -40,7 +40,7 @@ impl NamedTextures {
 const MAX_DEPTH: usize = 32;
 
 /// Builds a texture.
-type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<TextureOrValue, FormatError>;
+type Make = fn(&mut Pbrt, &ParameterList, SpectrumType) -> Result<TextureOrValue, FormatError>;
 
 /// Every supported texture.
 const TEXTURES: &[(&str, Make)] = &[
@@ -66,11 +66,11 @@ const PLAIN: &[(&str, [f32; 3])] = &[
 
 impl Pbrt<'_, '_> {
     /// The colour or texture of a parameter.
-    pub(super) fn ink(
+    pub(super) fn texture_or_value(
         &mut self,
         list: &ParameterList,
         name: &'static str,
-        meaning: Meaning,
+        meaning: SpectrumType,
     ) -> Result<Option<TextureOrValue>, FormatError> {
         let Some(parameter) = list.find(name) else { return Ok(None) };
         match (parameter.kind, parameter.text()) {
@@ -86,7 +86,7 @@ impl Pbrt<'_, '_> {
         name: &'static str,
     ) -> Result<Option<TextureOrValue>, FormatError> {
         match list.texture(name).map(|(texture, at)| (texture.to_owned(), at.clone())) {
-            Some((texture, at)) => self.texture(&texture, Meaning::Number, &at).map(Some),
+            Some((texture, at)) => self.texture(&texture, SpectrumType::Number, &at).map(Some),
             None if list.has(name) => Ok(Some(TextureOrValue::Colour(Rgb::grey(list.finite(name, 0.0)?)))),
             None => Ok(None),
         }
@@ -96,10 +96,10 @@ impl Pbrt<'_, '_> {
     pub(super) fn texture(
         &mut self,
         name: &str,
-        meaning: Meaning,
+        meaning: SpectrumType,
         at: &Span,
     ) -> Result<TextureOrValue, FormatError> {
-        let wanted = usize::from(meaning == Meaning::Number);
+        let wanted = usize::from(meaning == SpectrumType::Number);
         // A colour in place of a number, or the reverse, is better than nothing.
         let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.named[*i].contains_key(name));
         let Some(slot) = slot else {
@@ -107,7 +107,7 @@ impl Pbrt<'_, '_> {
             return Err(unknown("texture", name, names, at));
         };
         let entity = match self.textures.named[slot].get(name) {
-            Some(Slot::Ready(ink)) => return Ok(ink.clone()),
+            Some(Slot::Ready(source)) => return Ok(source.clone()),
             Some(Slot::Defined(entity)) => entity.clone(),
             _ => {
                 let message = format!("the texture '{name}' contains itself, directly or through others");
@@ -115,24 +115,24 @@ impl Pbrt<'_, '_> {
             }
         };
         self.textures.named[slot].insert(name.to_owned(), Slot::Open);
-        let meaning = if slot == 1 { Meaning::Number } else { Meaning::Surface };
+        let meaning = if slot == 1 { SpectrumType::Number } else { SpectrumType::Surface };
         self.textures.depth += 1;
         if self.textures.depth > MAX_DEPTH {
             let message = format!("textures are nested more than {MAX_DEPTH} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
-        let ink = self.made(&entity, meaning)?;
+        let source = self.make_texture(&entity, meaning)?;
         self.textures.depth -= 1;
-        self.textures.named[slot].insert(name.to_owned(), Slot::Ready(ink.clone()));
-        Ok(ink)
+        self.textures.named[slot].insert(name.to_owned(), Slot::Ready(source.clone()));
+        Ok(source)
     }
 
-    fn made(&mut self, entity: &Entity, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
+    fn make_texture(&mut self, entity: &Entity, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
         let list = &entity.parameters;
         if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
-            let ink = make(self, list, meaning)?;
+            let source = make(self, list, meaning)?;
             list.report_unused(&mut self.oddities);
-            return Ok(ink);
+            return Ok(source);
         }
         let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {
             let names = TEXTURES.iter().map(|(name, _)| *name).chain(PLAIN.iter().map(|(name, _)| *name));
@@ -148,18 +148,18 @@ impl Pbrt<'_, '_> {
         &mut self,
         list: &ParameterList,
         name: &'static str,
-        meaning: Meaning,
+        meaning: SpectrumType,
         default: f32,
     ) -> Result<TextureOrValue, FormatError> {
         let found = match meaning {
-            Meaning::Number => self.float_texture(list, name)?,
-            _ => self.ink(list, name, meaning)?,
+            SpectrumType::Number => self.float_texture(list, name)?,
+            _ => self.texture_or_value(list, name, meaning)?,
         };
         Ok(found.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
     /// The scale and offset of texture coordinates.
-    fn lies(&mut self, list: &ParameterList) -> Result<[f32; 4], FormatError> {
+    fn uv_mapping(&mut self, list: &ParameterList) -> Result<[f32; 4], FormatError> {
         let mapping = list.text("mapping")?.unwrap_or("uv");
         if mapping != "uv" {
             let what =
@@ -210,16 +210,16 @@ impl Pbrt<'_, '_> {
     }
 }
 
-fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
+fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
     pbrt.part(list, "value", meaning, 1.0)
 }
 
 /// The product of two textures; in version 4, of a texture and a number.
-fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
+fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
     let (a, b) = if list.has("tex1") || list.has("tex2") {
         (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
     } else {
-        (pbrt.part(list, "tex", meaning, 1.0)?, pbrt.part(list, "scale", Meaning::Number, 1.0)?)
+        (pbrt.part(list, "tex", meaning, 1.0)?, pbrt.part(list, "scale", SpectrumType::Number, 1.0)?)
     };
     match (a, b) {
         (TextureOrValue::Colour(colour), other) | (other, TextureOrValue::Colour(colour)) => {
@@ -229,9 +229,9 @@ fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Text
     }
 }
 
-fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
+fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
-    let amount = pbrt.part(list, "amount", Meaning::Number, 0.5)?;
+    let amount = pbrt.part(list, "amount", SpectrumType::Number, 0.5)?;
     let blend = |a: Rgb, b: Rgb, t: Rgb| a + (b + a * -1.0) * t;
     match (a, b, amount) {
         (TextureOrValue::Colour(a), TextureOrValue::Colour(b), TextureOrValue::Colour(t)) => {
@@ -247,7 +247,7 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Textur
 fn direction_mix(
     pbrt: &mut Pbrt,
     list: &ParameterList,
-    meaning: Meaning,
+    meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
     list.has("dir");
@@ -259,7 +259,7 @@ fn direction_mix(
 fn checkerboard(
     pbrt: &mut Pbrt,
     list: &ParameterList,
-    meaning: Meaning,
+    meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 0.0)?);
     if list.integer("dimension")?.unwrap_or(2) == 3 {
@@ -268,19 +268,19 @@ fn checkerboard(
         return Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5));
     }
     list.has("aamode");
-    let [su, sv, du, dv] = pbrt.lies(list)?;
-    let lies = [("u_scale", su), ("v_scale", sv), ("u_offset", du), ("v_offset", dv)];
-    pbrt.by_formula("checker", [("a", &a), ("b", &b)], &lies, |uv| {
+    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
+    let placement = [("u_scale", su), ("v_scale", sv), ("u_offset", du), ("v_offset", dv)];
+    pbrt.by_formula("checker", [("a", &a), ("b", &b)], &placement, |uv| {
         let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
         if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
     })
 }
 
-fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
+fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
     let mut corner = |name, default| Ok::<_, FormatError>(pbrt.part(list, name, meaning, default)?.mean());
     let (v00, v01, v10, v11) =
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
-    let [su, sv, du, dv] = pbrt.lies(list)?;
+    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
     let ramp = pbrt.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
     // The centres of the four texels are the corners.
     let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
@@ -288,7 +288,7 @@ fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Tex
     Ok(TextureOrValue::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
 }
 
-fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<TextureOrValue, FormatError> {
+fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: SpectrumType) -> Result<TextureOrValue, FormatError> {
     let Some(name) = list.text("filename")? else {
         let what = "filename (of the picture)".to_owned();
         return Err(SceneError::Missing { what, at: list.at.clone() }.into());
@@ -310,20 +310,20 @@ fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Textur
     if list.text("filter")? == Some("point") {
         texture.filter = Filter::Nearest;
     }
-    let [su, sv, du, dv] = pbrt.lies(list)?;
+    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
     if [su, sv, du, dv] != [1.0, 1.0, 0.0, 0.0] {
         // Rows run downwards, but t points upwards.
         texture.transform = Some(UvTransform::new([du, 1.0 - sv - dv], 0.0, [su, sv]));
     }
-    let mut ink = TextureOrValue::Picture(Arc::new(texture));
+    let mut source = TextureOrValue::Picture(Arc::new(texture));
     if let Some(gamma) = gamma {
-        ink = pbrt.mapped(ink, |c| c.map(|c| powf(c.max(0.0), gamma)))?;
+        source = pbrt.mapped(source, |c| c.map(|c| powf(c.max(0.0), gamma)))?;
     }
-    ink = ink.scaled(Rgb::grey(list.finite("scale", 1.0)?));
+    source = source.scaled(Rgb::grey(list.finite("scale", 1.0)?));
     if list.flag("invert", false)? {
-        ink = pbrt.mapped(ink, |c| c.map(|c| (1.0 - c).max(0.0)))?;
+        source = pbrt.mapped(source, |c| c.map(|c| (1.0 - c).max(0.0)))?;
     }
-    Ok(ink)
+    Ok(source)
 }
 
 fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {

@@ -25,7 +25,7 @@ impl<'a> Body<'a> {
         start: usize,
     ) -> Body<'a> {
         let mut cursor = Cursor::new(source.bytes);
-        cursor.go_to(start);
+        cursor.seek(start);
         Body { encoding, cursor, bytes: source.bytes, pos: start, places }
     }
 

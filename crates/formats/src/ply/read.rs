@@ -118,7 +118,7 @@ impl Ply<'_, '_, '_> {
             + 2 * usize::from(slots.uvs);
         // The count has been checked against the remaining bytes, so the memory is reserved at once.
         self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
-        self.make_room(&slots, element.count as usize);
+        self.reserve(&slots, element.count as usize);
         let origin = self.reading.origin;
         let is_far = origin != DVec3::ZERO;
         let plain = slots.offsets(element).filter(|_| self.body.is_little() && !is_far);
@@ -159,14 +159,14 @@ impl Ply<'_, '_, '_> {
         }
     }
 
-    fn make_room(&mut self, slots: &Slots, count: usize) {
+    fn reserve(&mut self, slots: &Slots, count: usize) {
         let indexed = &mut self.indexed;
-        let room = |wanted: bool| if wanted { count } else { 0 };
+        let additional = |wanted: bool| if wanted { count } else { 0 };
         indexed.positions.reserve_exact(count);
-        indexed.normals.reserve_exact(room(slots.normals));
-        indexed.uvs.reserve_exact(room(slots.uvs));
-        indexed.colours.reserve_exact(room(slots.kd));
-        indexed.specular.reserve_exact(room(slots.ks));
+        indexed.normals.reserve_exact(additional(slots.normals));
+        indexed.uvs.reserve_exact(additional(slots.uvs));
+        indexed.colours.reserve_exact(additional(slots.kd));
+        indexed.specular.reserve_exact(additional(slots.ks));
     }
 
     fn push_vertex(&mut self, values: &[f32; MEANINGS.len()], slots: &Slots, start: usize) {

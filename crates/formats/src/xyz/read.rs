@@ -144,7 +144,7 @@ impl Xyz<'_, '_, '_> {
     /// The numbers of the first points from this offset.
     fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MAX]>, FormatError> {
         let back = self.cursor.clone();
-        self.cursor.go_to(start);
+        self.cursor.seek(start);
         let mut rows = Vec::new();
         while rows.len() < FIRST && !self.cursor.is_done() {
             if let Line::Numbers(row) = self.line()? {

@@ -49,14 +49,14 @@ fn every_beginning_of_every_file_is_survived() {
 
 /// A way to damage a file.
 #[derive(Clone, Debug)]
-enum Harm {
+enum Damage {
     Set(usize, u8),
     Remove(usize, usize),
     Repeat(usize, usize),
     Insert(usize, &'static str),
 }
 
-fn harm() -> impl Strategy<Value = Harm> {
+fn damage() -> impl Strategy<Value = Damage> {
     let words = [
         "-",
         "nan",
@@ -74,32 +74,32 @@ fn harm() -> impl Strategy<Value = Harm> {
         "99999999999999999999",
     ];
     prop_oneof![
-        (any::<usize>(), any::<u8>()).prop_map(|(at, byte)| Harm::Set(at, byte)),
-        (any::<usize>(), 1usize..40).prop_map(|(at, n)| Harm::Remove(at, n)),
-        (any::<usize>(), 1usize..80).prop_map(|(at, n)| Harm::Repeat(at, n)),
-        (any::<usize>(), prop::sample::select(words.to_vec())).prop_map(|(at, word)| Harm::Insert(at, word)),
+        (any::<usize>(), any::<u8>()).prop_map(|(at, byte)| Damage::Set(at, byte)),
+        (any::<usize>(), 1usize..40).prop_map(|(at, n)| Damage::Remove(at, n)),
+        (any::<usize>(), 1usize..80).prop_map(|(at, n)| Damage::Repeat(at, n)),
+        (any::<usize>(), prop::sample::select(words.to_vec())).prop_map(|(at, word)| Damage::Insert(at, word)),
     ]
 }
 
-fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
-    for harm in harms {
+fn damaged(mut bytes: Vec<u8>, damages: &[Damage]) -> Vec<u8> {
+    for damage in damages {
         let length = bytes.len().max(1);
-        match *harm {
-            Harm::Set(at, byte) => {
+        match *damage {
+            Damage::Set(at, byte) => {
                 if let Some(slot) = bytes.get_mut(at % length) {
                     *slot = byte;
                 }
             }
-            Harm::Remove(at, n) => {
+            Damage::Remove(at, n) => {
                 drop(bytes.drain((at % length).min(bytes.len())..(at % length + n).min(bytes.len())))
             }
-            Harm::Repeat(at, n) => {
+            Damage::Repeat(at, n) => {
                 let piece =
                     bytes[(at % length).min(bytes.len())..(at % length + n).min(bytes.len())].to_vec();
                 let at = (at % length).min(bytes.len());
                 drop(bytes.splice(at..at, piece));
             }
-            Harm::Insert(at, word) => {
+            Damage::Insert(at, word) => {
                 let at = (at % length).min(bytes.len());
                 drop(bytes.splice(at..at, word.bytes()));
             }
@@ -140,19 +140,19 @@ proptest! {
     }
 
     #[test]
-    fn harmed_files_are_survived(pick: usize, harms in prop::collection::vec(harm(), 1..6)) {
+    fn harmed_files_are_survived(pick: usize, damages in prop::collection::vec(damage(), 1..6)) {
         for format in formats() {
             let files = corpus(format);
             let (_, bytes) = &files[pick % files.len()];
-            survive(format, &harmed(bytes.clone(), &harms));
+            survive(format, &damaged(bytes.clone(), &damages));
         }
     }
 
     #[test]
-    fn harmed_materials_are_survived(pick: usize, harms in prop::collection::vec(harm(), 0..6)) {
+    fn harmed_materials_are_survived(pick: usize, damages in prop::collection::vec(damage(), 0..6)) {
         let files = corpus("mtl");
         let (_, library) = &files[pick % files.len()];
-        if let Ok(scene) = with_materials(&harmed(library.clone(), &harms)) {
+        if let Ok(scene) = with_materials(&damaged(library.clone(), &damages)) {
             prop_assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
         }
     }

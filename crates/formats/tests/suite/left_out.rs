@@ -47,7 +47,7 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
 }
 
 /// Parameters that apply only to the paper's own rendering modes, or that another parameter makes irrelevant.
-fn is_beside(key: &str) -> bool {
+fn is_irrelevant(key: &str) -> bool {
     ["ka", "gloss", "translucency", "classic"].contains(&key)
 }
 
@@ -75,14 +75,14 @@ fn others(parameter: &Parameter) -> Vec<Value> {
 }
 
 /// Adds a spec to a scene; returns the material of its triangle.
-type Put = fn(&mut SceneBuilder, Spec) -> usize;
+type AddSpec = fn(&mut SceneBuilder, Spec) -> usize;
 
 /// All files of a scene with one triangle and this spec, by name, and the warnings.
-fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
+fn written(spec: Spec, add: AddSpec, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
     let mut scene = SceneBuilder::default();
     let texels = (1..5).map(|i| Rgb::new(0.2, 0.25, 0.2) * i as f32).collect();
     scene.textures.push(Arc::new(Texture::new("t", 2, 2, texels, true)));
-    let material = put(&mut scene, spec);
+    let material = add(&mut scene, spec);
     let mesh = Mesh {
         positions: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Into::into).to_vec(),
         uvs: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec(),
@@ -100,19 +100,19 @@ fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Ve
 }
 
 /// The parameters of a spec that a format drops without a warning.
-fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
+fn lost(entry: &Entry, add: AddSpec, format: &str) -> Vec<String> {
     let before = BEFORE.iter().find(|(kind, _)| *kind == entry.name).map_or(&[][..], |(_, keys)| keys);
     let base = before
         .iter()
         .fold(Spec::new("m", entry.name), |spec, (key, value)| spec.with(key, Value::Number(*value)));
-    let said = entry.parameters.iter().filter(|parameter| !is_beside(parameter.name));
+    let said = entry.parameters.iter().filter(|parameter| !is_irrelevant(parameter.name));
     let said = said.flat_map(|parameter| others(parameter).into_iter().map(move |value| (parameter, value)));
     let lost = said.filter(|(parameter, value)| {
         let has = |key: &str| entry.parameters.iter().any(|parameter| parameter.name == key);
         let beside = beside(parameter.name).filter(|(key, _)| has(key));
         let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
-        let (plain, told_of_plain) = written(base.clone(), put, format);
-        let (changed, reported) = written(base.with(parameter.name, value.clone()), put, format);
+        let (plain, told_of_plain) = written(base.clone(), add, format);
+        let (changed, reported) = written(base.with(parameter.name, value.clone()), add, format);
         // If the parameter or its whole layer is left out in any case, no further warning is needed.
         let layer = |message: &String| {
             let of = message.split('\'').nth(1).unwrap_or_default();
@@ -125,9 +125,9 @@ fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
     lost.map(|(parameter, value)| format!("{} = {value:?}", parameter.name)).collect()
 }
 
-fn assert_told<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, put: Put, formats: &[&str]) {
+fn assert_warned<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, add: AddSpec, formats: &[&str]) {
     for format in formats {
-        let lost = rows.clone().map(|entry| (entry.name, lost(entry, put, format)));
+        let lost = rows.clone().map(|entry| (entry.name, lost(entry, add, format)));
         let lost: Vec<_> = lost.filter(|(_, keys)| !keys.is_empty()).collect();
         assert!(lost.is_empty(), "in {format}: {lost:?}");
     }
@@ -136,14 +136,14 @@ fn assert_told<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, put: Put, form
 #[test]
 fn unsupported_material_parameters_give_warnings() {
     let rows = MATERIALS.iter().map(|row| &row.entry).filter(|entry| entry.name != "mix");
-    assert_told(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj"]);
+    assert_warned(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj"]);
 }
 
 #[test]
 fn unsupported_light_parameters_give_warnings() {
-    let put: Put = |scene, light| {
+    let add: AddSpec = |scene, light| {
         scene.lights.push(light);
         scene.add_material(Spec::new("m", "diffuse"))
     };
-    assert_told(LIGHTS.iter().map(|row| &row.entry), put, &["toml", "glb", "pbrt"]);
+    assert_warned(LIGHTS.iter().map(|row| &row.entry), add, &["toml", "glb", "pbrt"]);
 }

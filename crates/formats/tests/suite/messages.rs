@@ -25,7 +25,7 @@ impl Numbers {
 }
 
 /// Changes, removes, repeats or inserts a few bytes, or cuts off the end.
-fn harmed(bytes: &[u8], numbers: &mut Numbers) -> Vec<u8> {
+fn damaged(bytes: &[u8], numbers: &mut Numbers) -> Vec<u8> {
     const WORDS: [&str; 8] = ["-1", "nan", "1e39", "x", "\"", "{", "4294967295", "\n"];
     let mut bytes = bytes.to_vec();
     for _ in 0..1 + numbers.below(3) {
@@ -121,7 +121,7 @@ fn messages_about_broken_scenes_are_plain() {
     for row in SCENE_FORMATS {
         for (_, bytes) in seeds(&format!("scene_{}", row.entry.name)) {
             for _ in 0..60 {
-                match read_bytes(&harmed(&bytes, &mut numbers), row.entry.name, None, "scene", &options) {
+                match read_bytes(&damaged(&bytes, &mut numbers), row.entry.name, None, "scene", &options) {
                     Ok(scene) => messages.extend(scene.warnings.iter().map(ToString::to_string)),
                     Err(error) => messages.push(error.to_string()),
                 }
@@ -145,7 +145,7 @@ fn messages_about_broken_materials_are_plain() {
     let mut messages = Vec::new();
     for (_, bytes) in seeds("scene_mtl") {
         for _ in 0..60 {
-            put("x.mtl", &harmed(&bytes, &mut numbers));
+            put("x.mtl", &damaged(&bytes, &mut numbers));
             match read(&folder.path().join("x.obj"), &ReadOptions::default()) {
                 Ok(scene) => messages.extend(scene.warnings.iter().map(ToString::to_string)),
                 Err(error) => messages.push(error.to_string()),
@@ -162,8 +162,8 @@ fn messages_about_broken_pictures_are_plain() {
     for row in PICTURE_FORMATS {
         for (_, bytes) in seeds(&format!("picture_{}", row.entry.name)) {
             for _ in 0..100 {
-                let harmed = harmed(&bytes, &mut numbers);
-                messages.extend((row.read)(&harmed, &Limits::new(1 << 22)).err().map(|e| e.to_string()));
+                let damaged = damaged(&bytes, &mut numbers);
+                messages.extend((row.read)(&damaged, &Limits::new(1 << 22)).err().map(|e| e.to_string()));
             }
         }
     }

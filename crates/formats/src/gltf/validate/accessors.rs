@@ -51,7 +51,7 @@ pub(super) fn lies_within<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(number) = node.number_in_list().filter(|_| is_sound) else { return };
     let spent = check.budget.spent();
     let opened = Accessor::open(check.document, number, node, check.budget).map(|_| ());
-    check.budget.give_back(check.budget.spent() - spent);
+    check.budget.release(check.budget.spent() - spent);
     if let Err(error @ FormatError::Malformed { .. }) = opened {
         // An invalid reference is reported at the reference itself.
         let names = |key| node.get(key).is_none_or(|_| check.named("bufferViews", node, key).is_some());
@@ -107,7 +107,7 @@ pub(super) fn sparse<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         );
     }
     for part in ["indices", "values"].into_iter().filter_map(|key| sparse.get(key)) {
-        check.give_role(part, part, Role::Sparse);
+        check.assign_role(part, part, Role::Sparse);
     }
 }
 

@@ -89,7 +89,7 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: JsonNode<'d>) {
             format!("the times of keyframes must be SCALAR of FLOAT, not {}", format_words(accessor));
         return check.report_key(sampler, "input", message);
     }
-    check.give_role(sampler, accessor, Role::Animation);
+    check.assign_role(sampler, accessor, Role::Animation);
     if accessor.get("min").is_none() || accessor.get("max").is_none() {
         check.report(accessor, "the times of keyframes need min and max");
     }
@@ -119,7 +119,7 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: JsonNode<'d>) {
 
 fn output<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, sampler: JsonNode<'d>, path: &str) {
     let Some((index, accessor)) = check.named("accessors", sampler, "output") else { return };
-    check.give_role(sampler, accessor, Role::Animation);
+    check.assign_role(sampler, accessor, Role::Animation);
     let (kind, may_be_normalized) = match path {
         "translation" | "scale" => ("VEC3", false),
         "rotation" => ("VEC4", true),

@@ -131,7 +131,7 @@ pub(super) fn layout<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let targets = node.get("targets").into_iter().flat_map(|list| list.children());
     all.extend(targets.flat_map(|target| attributes(check, target)));
     for (name, index, accessor) in all {
-        check.give_role(node, accessor, Role::Vertices);
+        check.assign_role(node, accessor, Role::Vertices);
         let Some((number, view)) = check.named("bufferViews", accessor, "bufferView") else { continue };
         let size = whole(accessor, "componentType").map_or(0, component_size)
             * text(accessor, "type").map_or(0, width);

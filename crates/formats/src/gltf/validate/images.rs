@@ -16,7 +16,7 @@ pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         }
         _ => {}
     }
-    check.give_role(node, node, Role::Image);
+    check.assign_role(node, node, Role::Image);
     if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri.starts_with("data:")) {
         let message = "a GLB file should keep its images in its binary chunk, not in a data URI, which takes a third more";
         check.report_key(node, "uri", message);

@@ -96,7 +96,7 @@ pub(super) fn indices<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
             check.report_key(node, "indices", message);
             return;
         }
-        check.give_role(node, accessor, Role::Indices);
+        check.assign_role(node, accessor, Role::Indices);
         corners = whole(accessor, "count");
         if let (Some(all), Some(vertices)) = (check.indices(index), vertices) {
             index_values(check, node, &all, vertices, code == Some(5121), code == Some(5123));
@@ -205,7 +205,7 @@ pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
                     );
                     check.report_key(target, name, message);
                 }
-                _ => check.give_role(target, accessor, Role::Vertices),
+                _ => check.assign_role(target, accessor, Role::Vertices),
             }
         }
     }

@@ -130,7 +130,7 @@ impl<'d> Check<'d, '_> {
         let spent = self.budget.spent();
         let numbers = Accessor::open(self.document, index, node, self.budget)
             .and_then(|accessor| accessor.numbers(self.budget));
-        self.budget.give_back(self.budget.spent() - spent);
+        self.budget.release(self.budget.spent() - spent);
         self.unless_too_large(node, numbers)
     }
 
@@ -140,7 +140,7 @@ impl<'d> Check<'d, '_> {
         let spent = self.budget.spent();
         let indices = Accessor::open(self.document, index, node, self.budget)
             .and_then(|accessor| accessor.indices(self.budget));
-        self.budget.give_back(self.budget.spent() - spent);
+        self.budget.release(self.budget.spent() - spent);
         self.unless_too_large(node, indices)
     }
 
@@ -152,7 +152,7 @@ impl<'d> Check<'d, '_> {
     }
 
     /// Records the use of a buffer view, and reports a second use that conflicts with the first.
-    fn give_role(&mut self, user: JsonNode<'d>, accessor: JsonNode<'d>, role: Role) {
+    fn assign_role(&mut self, user: JsonNode<'d>, accessor: JsonNode<'d>, role: Role) {
         let Some((index, view)) = self.named("bufferViews", accessor, "bufferView") else { return };
         let before = *self.roles.entry(index).or_insert(role);
         let target = whole(view, "target");

@@ -12,7 +12,7 @@ pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
         let message = format!("inverse bind matrices must be MAT4 of FLOAT, not {}", format_words(accessor));
         return check.report_key(skin, key, message);
     }
-    check.give_role(skin, accessor, Role::InverseBindMatrices);
+    check.assign_role(skin, accessor, Role::InverseBindMatrices);
     let (have, wanted) = (whole(accessor, "count").unwrap_or(0), named_nodes(skin, "joints").len());
     if have < wanted {
         let message = format!("there are only {have} inverse bind matrices for {}", counted(wanted, "joint"));

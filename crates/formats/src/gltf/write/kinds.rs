@@ -19,7 +19,7 @@ pub(super) const OTHERS: MaterialSupport = MaterialSupport {
         ("phong", &["kd", "ks", "exponent"]),
     ],
     of_any: OF_ANY,
-    pictured: None,
+    textured: None,
 };
 
 /// The supported parameters that all kinds share.

@@ -63,7 +63,7 @@ const ELSEWHERE: &[&str] = &[
 ];
 
 /// Those of them that may be textures.
-const PICTURED: [&str; 6] = [
+const TEXTURED: [&str; 6] = [
     "base_color",
     "base_metalness",
     "specular_roughness",
@@ -76,13 +76,13 @@ impl Document<'_> {
     /// Writes a material of any kind.
     pub(super) fn material(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Json, FormatError> {
         let principled = as_principled(spec, self, writing);
-        OTHERS.tell(spec, writing);
+        OTHERS.warn_unsupported(spec, writing);
         let in_tables = NUMBERS.iter().map(|row| row.0).chain(COLOURS.iter().map(|row| row.0));
         let of_any: Vec<&str> = in_tables.chain(OF_ANY.iter().copied()).collect();
-        let pictured = [&of_any[..], &PICTURED].concat();
+        let textured = [&of_any[..], &TEXTURED].concat();
         let of_kinds = &[("principled", ELSEWHERE)];
-        MaterialSupport { format: "glTF", of_kinds, of_any: &of_any, pictured: Some(&pictured) }
-            .tell(&principled, writing);
+        MaterialSupport { format: "glTF", of_kinds, of_any: &of_any, textured: Some(&textured) }
+            .warn_unsupported(&principled, writing);
         let is_front =
             |key| matches!(principled.parameters.find(key), Some((Value::Text(side), _)) if side == "front");
         let is_one_sided = is_front("visible_sides");

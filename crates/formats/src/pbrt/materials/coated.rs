@@ -4,7 +4,7 @@ use super::super::media::measured;
 use super::super::metals::straight_and_grazing;
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
-use super::super::texture_or_value::{Meaning, TextureOrValue};
+use super::super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::plain::{CONDUCTOR, INTERFACE, Metal, extinction_of};
 use super::roughness::{Keys, OWN, PRINCIPLED};
 use crate::FormatError;
@@ -15,7 +15,7 @@ use bilux_scene::Spec;
 /// reflection.
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let reflectance =
-        pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
+        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
     pbrt.read_layer_medium(list)?;
     Ok(Some(pbrt.below_dielectric(list, reflectance, index, 0.0, false)?))
@@ -30,7 +30,7 @@ impl Pbrt<'_, '_> {
         roughness: f32,
         is_old: bool,
     ) -> Result<Spec, FormatError> {
-        let index = self.held_index(index, list).max(1.0);
+        let index = self.clamped_index(index, list).max(1.0);
         let internal_reflectance = reflected_inside(index);
         let base = self.mapped(reflectance, |c| {
             c.map(|c| c * (1.0 - internal_reflectance) / (1.0 - c * internal_reflectance))
@@ -46,7 +46,7 @@ impl Pbrt<'_, '_> {
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
             list.has(name);
         }
-        if let Some(albedo) = self.ink(list, "albedo", Meaning::Surface)?
+        if let Some(albedo) = self.texture_or_value(list, "albedo", SpectrumType::Surface)?
             && !albedo.is_black()
         {
             self.oddities.note("a medium between layers is not supported", || list.place("albedo"));
@@ -80,7 +80,7 @@ fn fresnel(cos: f32, index: f32) -> f32 {
 pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     const COAT: Keys = (["coat_roughness", "", ""], 0.0);
     let index = pbrt.index(list, "interface.eta")?.unwrap_or(1.5);
-    let index = pbrt.held_index(index, list).max(1.0);
+    let index = pbrt.clamped_index(index, list).max(1.0);
     pbrt.read_layer_medium(list)?;
     let mut spec = Spec::new("", "principled").with("base_metalness", 1.0f32).with("coat_weight", 1.0f32);
     spec.parameters.set("coat_ior", index);
@@ -116,8 +116,8 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
         list.has(name);
     }
     let named = list.text("name")?.and_then(measured);
-    let scattering = pbrt.ink(list, "sigma_s", Meaning::Number)?.map(|ink| ink.mean());
-    let absorption = pbrt.ink(list, "sigma_a", Meaning::Number)?.map(|ink| ink.mean());
+    let scattering = pbrt.texture_or_value(list, "sigma_s", SpectrumType::Number)?.map(|source| source.mean());
+    let absorption = pbrt.texture_or_value(list, "sigma_a", SpectrumType::Number)?.map(|source| source.mean());
     let multiple_scattering_colour = |[scattering, absorption]: [Rgb; 2], g: f32| {
         let channel = |c: usize| {
             let reduced = scattering[c] * (1.0 - g);
@@ -125,7 +125,7 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
         };
         TextureOrValue::Colour(Rgb::new(channel(0), channel(1), channel(2)))
     };
-    let colour = match (named, scattering.zip(absorption), pbrt.ink(list, "reflectance", Meaning::Surface)?) {
+    let colour = match (named, scattering.zip(absorption), pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?) {
         (Some(known), ..) => multiple_scattering_colour(known, 0.0),
         (None, Some((scattering, absorption)), _) => {
             multiple_scattering_colour([scattering, absorption], asymmetry)
@@ -134,7 +134,7 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
         _ => multiple_scattering_colour([Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)], 0.0),
     };
     let index = pbrt.index(list, "eta")?.unwrap_or(1.33);
-    let mut spec = Spec::new("", "principled").with("specular_ior", pbrt.held_index(index, list).max(1.0));
+    let mut spec = Spec::new("", "principled").with("specular_ior", pbrt.clamped_index(index, list).max(1.0));
     pbrt.set(&mut spec, "base_color", colour, list.at.clone());
     pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PRINCIPLED)?;
     Ok(Some(spec))

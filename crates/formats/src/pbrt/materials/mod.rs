@@ -12,7 +12,7 @@ use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
 use super::spectra::{Named, named};
 use super::state::MaterialKey;
-use super::texture_or_value::{Meaning, TextureOrValue};
+use super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
@@ -133,12 +133,12 @@ impl Pbrt<'_, '_> {
         if let Some(Named::Glass { index, abbe_number }) = parameter.text().and_then(named) {
             return Ok(Some((index, Some(20.0 / abbe_number))));
         }
-        Ok(Some((self.colour_of(parameter, Meaning::Number)?.g, Some(0.0))))
+        Ok(Some((self.colour_of(parameter, SpectrumType::Number)?.g, Some(0.0))))
     }
 
     /// Sets a parameter to a colour or a texture.
-    fn set(&mut self, spec: &mut Spec, key: &str, ink: TextureOrValue, at: Span) {
-        let value = self.value(ink);
+    fn set(&mut self, spec: &mut Spec, key: &str, source: TextureOrValue, at: Span) {
+        let value = self.value(source);
         spec.parameters.set_at(key, value, at);
     }
 
@@ -224,7 +224,7 @@ impl Pbrt<'_, '_> {
     ) -> Result<Option<TextureOrValue>, FormatError> {
         if list.find(name).is_some_and(|p| matches!(p.kind, Kind::Rgb | Kind::Spectrum)) {
             return Ok(self
-                .spectrum(list, name, Meaning::Number)?
+                .spectrum(list, name, SpectrumType::Number)?
                 .map(|c| TextureOrValue::Colour(bilux_math::Rgb::grey(c.luminance()))));
         }
         self.float_texture(list, name)

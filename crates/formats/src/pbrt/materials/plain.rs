@@ -4,7 +4,7 @@ use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
 use super::super::spectra::{Named, named};
-use super::super::texture_or_value::{Meaning, TextureOrValue};
+use super::super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::roughness::{Names, OWN, PLAIN};
 use crate::FormatError;
 use bilux_math::Rgb;
@@ -12,7 +12,7 @@ use bilux_scene::Spec;
 
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let reflectance =
-        pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
+        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let mut spec = Spec::new("", "diffuse");
     pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
     Ok(Some(spec))
@@ -29,21 +29,21 @@ pub(super) fn diffuse_transmission(
     list: &ParameterList,
 ) -> Result<Option<Spec>, FormatError> {
     let scale = Rgb::grey(list.finite("scale", 1.0)?);
-    let ink = |found: Option<TextureOrValue>| {
+    let source = |found: Option<TextureOrValue>| {
         found.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.25))).scaled(scale)
     };
-    let reflectance = ink(pbrt.ink(list, "reflectance", Meaning::Surface)?);
-    let transmittance = ink(pbrt.ink(list, "transmittance", Meaning::Surface)?);
+    let reflectance = source(pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?);
+    let transmittance = source(pbrt.texture_or_value(list, "transmittance", SpectrumType::Surface)?);
     let share = transmitted_fraction(&reflectance, &transmittance);
     let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
     spec.parameters.set("diffuse_transmission_weight", share);
     let part =
-        |ink: TextureOrValue, share: f32| if share > 0.0 { ink.scaled(Rgb::grey(1.0 / share)) } else { ink };
+        |source: TextureOrValue, share: f32| if share > 0.0 { source.scaled(Rgb::grey(1.0 / share)) } else { source };
     let (front, behind) = (part(reflectance, 1.0 - share), part(transmittance, share));
-    for (key, ink, name) in
+    for (key, source, name) in
         [("base_color", front, "reflectance"), ("diffuse_transmission_color", behind, "transmittance")]
     {
-        let held = match ink {
+        let held = match source {
             TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour.clamp(0.0, 1.0)),
             picture => picture,
         };
@@ -75,7 +75,7 @@ pub(super) fn thin_dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<O
 
 fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
     let (index, dispersion) = pbrt.refraction(list, "eta")?.unwrap_or((1.5, Some(0.0)));
-    let spec = Spec::new("", "dielectric").with("eta", pbrt.held_index(index, list));
+    let spec = Spec::new("", "dielectric").with("eta", pbrt.clamped_index(index, list));
     Ok(match dispersion {
         Some(0.0) => spec,
         Some(dispersion) => spec.with("dispersion", dispersion),
@@ -88,7 +88,7 @@ fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
 
 impl Pbrt<'_, '_> {
     /// The index of refraction, clamped to the supported range.
-    pub(super) fn held_index(&mut self, index: f32, list: &ParameterList) -> f32 {
+    pub(super) fn clamped_index(&mut self, index: f32, list: &ParameterList) -> f32 {
         let held = if index.is_finite() { index.clamp(0.1, 10.0) } else { 1.5 };
         if held != index {
             self.oddities
@@ -121,7 +121,7 @@ impl Pbrt<'_, '_> {
         [eta_name, k_name]: [&'static str; 2],
     ) -> Result<Metal, FormatError> {
         let given = list.has(eta_name) || list.has(k_name);
-        if let Some(reflectance) = self.ink(list, "reflectance", Meaning::Surface)? {
+        if let Some(reflectance) = self.texture_or_value(list, "reflectance", SpectrumType::Surface)? {
             if given {
                 let message =
                     "'reflectance' and a refractive index both define the metal: remove one of them";
@@ -155,12 +155,12 @@ impl Pbrt<'_, '_> {
         }
         let [eta, k] = metals::indices("copper");
         let mut part = |name, default| {
-            let ink = self.ink(list, name, Meaning::Number)?;
-            if let Some(TextureOrValue::Picture(_)) = &ink {
+            let source = self.texture_or_value(list, name, SpectrumType::Number)?;
+            if let Some(TextureOrValue::Picture(_)) = &source {
                 let what = "a refractive index from a texture is not supported: its mean is used";
                 self.oddities.note(what, || list.place(name));
             }
-            Ok::<_, FormatError>(ink.map_or(default, |ink| ink.mean()))
+            Ok::<_, FormatError>(source.map_or(default, |source| source.mean()))
         };
         let (eta, k) = (part(eta_name, eta)?, part(k_name, k)?);
         Ok(Metal::Indices([eta.map(|x| x.clamp(1e-3, 100.0)), k.map(|x| x.clamp(0.0, 100.0))]))
@@ -174,7 +174,7 @@ impl Pbrt<'_, '_> {
     ) -> Result<(), FormatError> {
         let at = list.place(names[0]);
         match self.metal(list, names)? {
-            Metal::Reflectance(ink) => self.set_reflectance(spec, ink, list),
+            Metal::Reflectance(source) => self.set_reflectance(spec, source, list),
             Metal::Indices([eta, k]) => {
                 spec.parameters.set_at("eta", eta.into(), at.clone());
                 spec.parameters.set_at("k", k.into(), at);
@@ -185,9 +185,9 @@ impl Pbrt<'_, '_> {
 
     /// Sets a metal of index 1, as pbrt assumes for a given reflectance; a texture uses Schlick's approximation
     /// instead.
-    pub(super) fn set_reflectance(&mut self, spec: &mut Spec, ink: TextureOrValue, list: &ParameterList) {
+    pub(super) fn set_reflectance(&mut self, spec: &mut Spec, source: TextureOrValue, list: &ParameterList) {
         let at = list.place("reflectance");
-        match ink {
+        match source {
             TextureOrValue::Colour(colour) => {
                 spec.parameters.set_at("eta", Rgb::WHITE.into(), at.clone());
                 spec.parameters.set_at("k", extinction_of(colour).into(), at);
@@ -219,7 +219,7 @@ pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>
     pbrt.oddities.note(what, || list.at.clone());
     let mut colour = None;
     for name in ["reflectance", "color"] {
-        colour = colour.or(pbrt.ink(list, name, Meaning::Surface)?);
+        colour = colour.or(pbrt.texture_or_value(list, name, SpectrumType::Surface)?);
     }
     for name in ["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"] {
         list.has(name);

@@ -86,8 +86,8 @@ impl Pbrt<'_, '_> {
                 "roughness that differs along u and v is supported only for numbers: the one along u is used";
             self.oddities.note(what, || at.clone());
         }
-        let ink = self.mapped(u, |c| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt()))?;
-        self.set(spec, roughness, ink, at);
+        let source = self.mapped(u, |c| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt()))?;
+        self.set(spec, roughness, source, at);
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
-use super::super::texture_or_value::{Meaning, TextureOrValue};
+use super::super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::plain::Metal;
 use super::roughness::{OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
@@ -16,14 +16,14 @@ impl Pbrt<'_, '_> {
         name: &'static str,
         default: f32,
     ) -> Result<TextureOrValue, FormatError> {
-        Ok(self.ink(list, name, Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
+        Ok(self.texture_or_value(list, name, SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
     /// An index of refraction under one of its two names.
     fn old_index(&mut self, list: &ParameterList) -> Result<f32, FormatError> {
         let name = if list.has("index") { "index" } else { "eta" };
         let index = self.index(list, name)?.unwrap_or(1.5);
-        Ok(self.held_index(index, list))
+        Ok(self.clamped_index(index, list))
     }
 }
 
@@ -52,7 +52,7 @@ pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     let mut spec = Spec::new("", "principled").with("specular_ior", index);
     pbrt.set(&mut spec, "base_color", kd, list.place("Kd"));
     spec.parameters.set("specular_weight", weight.clamp(0.0, 1.0));
-    if let Some(opacity) = pbrt.ink(list, "opacity", Meaning::Surface)? {
+    if let Some(opacity) = pbrt.texture_or_value(list, "opacity", SpectrumType::Surface)? {
         let grey = pbrt.mapped(opacity, |c| Rgb::grey(c.luminance()))?;
         let value = pbrt.number_value(grey, [0.0, 1.0]);
         spec.parameters.set_at("opacity", value, list.place("opacity"));
@@ -64,7 +64,7 @@ pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
 pub(super) fn metal(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "conductor");
     match pbrt.metal(list, ["eta", "k"])? {
-        Metal::Reflectance(ink) => pbrt.set_reflectance(&mut spec, ink, list),
+        Metal::Reflectance(source) => pbrt.set_reflectance(&mut spec, source, list),
         Metal::Indices([eta, k]) => {
             spec.parameters.set("eta", eta);
             spec.parameters.set("k", k);
@@ -129,8 +129,8 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
         ("spectrans", "transmission_weight", 0.0),
         ("clearcoat", "coat_weight", 0.0),
     ] {
-        let ink = pbrt.float_texture(list, theirs)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
-        let value = pbrt.number_value(ink, [0.0, 1.0]);
+        let source = pbrt.float_texture(list, theirs)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
+        let value = pbrt.number_value(source, [0.0, 1.0]);
         spec.parameters.set_at(ours, value, list.place(theirs));
     }
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);

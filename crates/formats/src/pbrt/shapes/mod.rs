@@ -67,14 +67,14 @@ impl Pbrt<'_, '_> {
             }
         };
         self.reading.budget.take::<Piece>(1, &entity.at.file)?;
-        let dress = SurfaceAttributes {
+        let attributes = SurfaceAttributes {
             material: self.state.material.clone(),
             area_light: self.state.area_light,
             alpha,
             media: self.state.media.clone(),
         };
         let (matrices, at) = (self.state.matrices, entity.at.clone());
-        Ok(made.map(|form| Piece { shapes: count(entity, &form), form, matrices, dress, at }))
+        Ok(made.map(|form| Piece { shapes: count(entity, &form), form, matrices, attributes, at }))
     }
 
     /// Finishes a mesh: reverses it if the state says so, and charges the budget.

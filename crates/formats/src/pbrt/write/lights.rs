@@ -21,12 +21,12 @@ impl Document<'_> {
         match spec.kind.as_str() {
             "point" => {
                 let given = rgb("I", shine("intensity", 100.0)) + &point("from", position);
-                self.say(&format!("LightSource \"point\"{given}"));
+                self.line(&format!("LightSource \"point\"{given}"));
             }
             "directional" => {
                 let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
                 let given = rgb("L", shine("irradiance", 3.0)) + &from_to(Vec3::ZERO, direction);
-                self.say(&format!("LightSource \"distant\"{given}"));
+                self.line(&format!("LightSource \"distant\"{given}"));
                 if number(spec, "diameter").is_some_and(|angle| angle > 0.0) {
                     writing.warn(
                         "pbrt files cannot store 'diameter' of a directional light: its shadows become hard",
@@ -39,7 +39,7 @@ impl Document<'_> {
                 let inner = number(spec, "inner_angle").unwrap_or(25.0);
                 let cone = float("coneangle", outer) + &float("conedeltaangle", (outer - inner).max(0.0));
                 let given = rgb("I", shine("intensity", 100.0)) + &from_to(position, ahead) + &cone;
-                self.say(&format!("LightSource \"spot\"{given}"));
+                self.line(&format!("LightSource \"spot\"{given}"));
             }
             "rect" => {
                 let edge = |key, default| vector(spec, key).unwrap_or(default);
@@ -70,7 +70,7 @@ impl Document<'_> {
     /// Writes a black shape that emits light.
     fn glowing(&mut self, place: &str, shape: &str, radiance: Rgb, both_sides: bool) {
         let light = area_light(&rgb("L", radiance), both_sides);
-        self.say(&format!("AttributeBegin\n{place}{BLACK}\n{light}\nShape {shape}\nAttributeEnd"));
+        self.line(&format!("AttributeBegin\n{place}{BLACK}\n{light}\nShape {shape}\nAttributeEnd"));
     }
 
     fn environment(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(), FormatError> {
@@ -82,7 +82,7 @@ impl Document<'_> {
         let picture = texture(spec, "radiance").and_then(|i| self.scene.textures.get(i));
         let changes = ["zenith", "horizon", "ground"].iter().any(|key| colour(spec, key).is_some());
         if picture.is_none() && !changes {
-            self.say(&format!("LightSource \"infinite\"{}", rgb("L", built.le(Vec3::Y))));
+            self.line(&format!("LightSource \"infinite\"{}", rgb("L", built.le(Vec3::Y))));
             return Ok(());
         }
         // The square has enough texels to keep the resolution of the longitude-latitude map at its equator.
@@ -96,7 +96,7 @@ impl Document<'_> {
         let bytes = write_bytes("exr", &picture, &bilux_pictures::WriteOptions::default())?;
         let name = writing.add_numbered("sky", writing.count() + 1, "exr", bytes);
         writing.warn("environment maps are resampled to pbrt's square layout");
-        self.say(&format!("LightSource \"infinite\" \"string filename\" \"{name}\""));
+        self.line(&format!("LightSource \"infinite\" \"string filename\" \"{name}\""));
         Ok(())
     }
 }

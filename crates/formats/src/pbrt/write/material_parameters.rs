@@ -34,7 +34,7 @@ pub(super) const HOLDS: MaterialSupport = MaterialSupport {
         ("mix", &["a", "b", "amount"]),
     ],
     of_any: &["emission", "emission_scale", "emission_sides", "opacity", "normal"],
-    pictured: Some(&[
+    textured: Some(&[
         "reflectance",
         "roughness",
         "base_color",

@@ -26,7 +26,7 @@ impl Document<'_> {
     ) -> Result<(String, Rgb), FormatError> {
         let plain = with_indices(spec);
         let spec = if GLASSES.iter().any(|(_, ours)| is_of(spec, ours)) { spec } else { &*plain };
-        HOLDS.tell(spec, writing);
+        HOLDS.warn_unsupported(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
             "diffuse" => self.diffuse(spec, "reflectance", 0.7, writing)?,
@@ -61,7 +61,7 @@ impl Document<'_> {
             let file = self.picture(&map, false, AS_IT_IS, writing)?;
             line += &format!(" \"string normalmap\" \"{file}\"");
         }
-        self.say(&line);
+        self.line(&line);
         Ok(name)
     }
 

@@ -45,7 +45,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         shared: HashMap::new(),
     };
     document.view(writing);
-    document.say("WorldBegin");
+    document.line("WorldBegin");
     for spec in &scene.materials {
         let look = document.look(spec, writing)?;
         document.shape_attributes.push(look);
@@ -66,7 +66,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
 }
 
 impl Document<'_> {
-    fn say(&mut self, line: &str) {
+    fn line(&mut self, line: &str) {
         self.out.push_str(line);
         self.out.push('\n');
     }

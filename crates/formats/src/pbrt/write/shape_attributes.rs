@@ -36,7 +36,7 @@ impl Document<'_> {
         if !absorbed.is_black() {
             let medium = self.name(&spec.name, "medium");
             let given = rgb("sigma_a", absorbed) + &rgb("sigma_s", Rgb::BLACK);
-            self.say(&format!("MakeNamedMedium \"{medium}\" \"string type\" \"homogeneous\"{given}"));
+            self.line(&format!("MakeNamedMedium \"{medium}\" \"string type\" \"homogeneous\"{given}"));
             let _ = writeln!(look.begin, "MediumInterface \"{medium}\" \"\"");
         }
         if let Some(radiance) = self.radiance(spec, writing)? {

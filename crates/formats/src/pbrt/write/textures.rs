@@ -72,7 +72,7 @@ impl Document<'_> {
                 let _ = write!(line, " \"float {key}\" [ {number} ]");
             }
         }
-        self.say(&line);
+        self.line(&line);
         self.textures.insert(key, name.clone());
         Ok(Some(name))
     }

@@ -29,7 +29,7 @@ impl Document<'_> {
         });
         let [width, height] = size.filter(|size| size.iter().all(|side| *side > 0)).unwrap_or([512, 512]);
         let file = format!("{}.exr", writing.stem.replace(['"', '\\'], "_"));
-        self.say(&format!(
+        self.line(&format!(
             "Film \"rgb\" \"integer xresolution\" [ {width} ] \"integer yresolution\" [ {height} ] \
              \"string filename\" \"{file}\""
         ));
@@ -44,7 +44,7 @@ impl Document<'_> {
                 "PixelFilter \"gaussian\""
             }
         };
-        self.say(filter);
+        self.line(filter);
         let mut sampler = "Sampler \"zsobol\"".to_owned();
         for (key, theirs) in [("spp", "pixelsamples"), ("seed", "seed")] {
             if let Some(count) = whole(key).filter(|count| *count > 0) {
@@ -52,10 +52,10 @@ impl Document<'_> {
             }
         }
         if sampler.contains('[') {
-            self.say(&sampler);
+            self.line(&sampler);
         }
         let depth = whole("max_depth").unwrap_or(16);
-        self.say(&format!("Integrator \"volpath\" \"integer maxdepth\" [ {depth} ]"));
+        self.line(&format!("Integrator \"volpath\" \"integer maxdepth\" [ {depth} ]"));
         for (key, ..) in &settings.0 {
             if !QUIET.contains(&key.as_str()) && !["spp", "seed"].contains(&key.as_str()) {
                 writing.warn(format!("pbrt files cannot store the setting '{key}': left out"));
@@ -82,14 +82,14 @@ impl Document<'_> {
         let position = at("position", Vec3::new(0.0, 0.0, 5.0));
         let ahead = at("look_at", Vec3::ZERO);
         if !is_switched_on(spec, "mirrored") {
-            self.say("Scale -1 1 1");
+            self.line("Scale -1 1 1");
         }
         let all = [position, ahead, at("up", Vec3::Y)].map(|v| numbers(&v.to_array()));
-        self.say(&format!("LookAt {}", all.join("  ")));
+        self.line(&format!("LookAt {}", all.join("  ")));
         if spec.kind == "orthographic" {
             let half = number(spec, "height").unwrap_or(2.0) * 0.5;
             let window = numbers(&[-half * aspect, half * aspect, -half, half]);
-            self.say(&format!("Camera \"orthographic\" \"float screenwindow\" [ {window} ]"));
+            self.line(&format!("Camera \"orthographic\" \"float screenwindow\" [ {window} ]"));
             return;
         }
         let vertical = number(spec, "fov").unwrap_or(40.0);
@@ -104,7 +104,7 @@ impl Document<'_> {
             line += &float("lensradius", radius);
             line += &float("focaldistance", focus.unwrap_or((ahead - position).length()));
         }
-        self.say(&line);
+        self.line(&line);
     }
 }
 
