@@ -75,8 +75,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn usage(trouble: &str) -> ExitCode {
-    eprintln!("xtask: {trouble}\n\nusage: cargo xtask CHORE\n");
+fn usage(problem: &str) -> ExitCode {
+    eprintln!("xtask: {problem}\n\nusage: cargo xtask CHORE\n");
     for chore in CHORES {
         eprintln!("  {:<13} {}", chore.name, chore.summary);
     }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// If an accelerator is unknown.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![1, 5, 25] } else { options.counts.clone() };
     let all = || {
         let names = ACCELERATORS.iter().map(|row| row.entry.name.to_owned());
@@ -26,7 +26,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     for &count in &counts {
         let mesh = mesh(count, &options.layout)?;
         for accel in &accels {
-            tell(&format!("{accel} over {} triangles", mesh.len()));
+            progress(&format!("{accel} over {} triangles", mesh.len()));
             let Some((seconds, tree)) = one(accel, &mesh, options.repeats, &pools)? else { continue };
             rows.push(json(accel, mesh.len(), seconds, &*tree, &pools));
             let shape = tree.shape();

@@ -13,7 +13,7 @@ const FRAMES: u32 = 24;
 ///
 /// # Errors
 /// If an accelerator is unknown.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let size = options.size_or((512, 512));
     let count = options.counts.first().copied().unwrap_or(5);
     let default = ["bsp-sah", "bvh"].map(str::to_owned).to_vec();
@@ -22,28 +22,28 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     for motion in ["walk", "moving"] {
         let scene = scene(count, motion)?;
         for accel in &accels {
-            tell(&format!("{motion}, {accel}"));
+            progress(&format!("{motion}, {accel}"));
             let settings = settings(accel, size);
             let (kept, kept_pictures) = timed(|| kept(&scene, &settings))?;
-            let (anew, anew_pictures) = timed(|| anew(&scene, &settings))?;
-            let same = kept_pictures == anew_pictures;
-            let ratio = anew / kept;
+            let (rebuilt, rebuilt_pictures) = timed(|| rebuilt(&scene, &settings))?;
+            let same = kept_pictures == rebuilt_pictures;
+            let ratio = rebuilt / kept;
             rows.push(json!({
                 "scene": motion, "teapots": count, "accel": accel, "frames": FRAMES, "seconds": kept,
-                "rebuilding_seconds": anew, "speedup": ratio, "same_pictures": same,
+                "rebuilding_seconds": rebuilt, "speedup": ratio, "same_pictures": same,
             }));
             cells.push(vec![
                 motion.to_owned(),
                 accel.clone(),
                 format!("{kept:.3}"),
-                format!("{anew:.3}"),
+                format!("{rebuilt:.3}"),
                 format!("{ratio:.2}×"),
                 if same { "the same".to_owned() } else { "DIFFERENT".to_owned() },
             ]);
         }
     }
     let title = format!("{FRAMES} frames of {count} teapots, {}x{}, whitted", size.0, size.1);
-    let header = ["scene", "accel", "seconds", "all anew", "gain", "pictures"];
+    let header = ["scene", "accel", "seconds", "all rebuilt", "gain", "pictures"];
     Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
 }
 
@@ -74,7 +74,7 @@ fn kept(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Er
 }
 
 /// One job per frame: every tree is rebuilt.
-fn anew(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Error> {
+fn rebuilt(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Error> {
     let mut pictures = Vec::new();
     for frame in 0..FRAMES {
         let mut job = Job::new(scene, settings)?;

@@ -31,10 +31,10 @@ pub struct Options {
 ///
 /// # Errors
 /// If a file cannot be read.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let mut rows = Vec::new();
     for file in &options.files {
-        tell(&file.display().to_string());
+        progress(&file.display().to_string());
         rows.push(one(file, options)?);
     }
     Ok(report(rows))

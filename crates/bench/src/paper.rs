@@ -20,15 +20,15 @@ const COSTS: [u32; 5] = [1, 4, 16, 64, 256];
 ///
 /// # Errors
 /// If something cannot be rendered.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let scene = bilux::generate(&Spec::new("", "trio"))?;
     let size = options.size_or((256, 144));
     let mask = mirror_mask(&scene, size)?;
-    tell(&format!("path, converged: {CONVERGED} samples"));
+    progress(&format!("path, converged: {CONVERGED} samples"));
     let (_, converged) = render(&scene, "path", CONVERGED, 1, size)?;
     let (mut rows, mut cells, mut panels) = (Vec::new(), Vec::new(), Vec::new());
     for (name, spp) in PANELS {
-        tell(&format!("{name}, {spp} samples"));
+        progress(&format!("{name}, {spp} samples"));
         let (seconds, picture) = render(&scene, name, spp, 0, size)?;
         let error = rmse(&picture, &converged, &mask);
         rows.push(json!({
@@ -43,7 +43,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let whole = vec![true; mask.len()];
     let mut costs = Vec::new();
     for spp in COSTS {
-        tell(&format!("path, {spp} samples"));
+        progress(&format!("path, {spp} samples"));
         let (seconds, picture) = render(&scene, "path", spp, 0, size)?;
         let error = rmse(&picture, &converged, &whole);
         rows.push(

@@ -27,7 +27,7 @@ struct Row {
 ///
 /// # Errors
 /// If an accelerator or a layout is unknown.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![2, 3, 4, 5] } else { options.counts.clone() };
     let mut accels = options.accels.clone();
     if accels.is_empty() {
@@ -47,8 +47,8 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
             for competitor in &mut competitors {
                 // A loop over all triangles takes long enough for a single timing.
                 if round == 0 || !competitor.is_loop() {
-                    tell(&format!("{count} teapots by {}, round {}", competitor.accel, round + 1));
-                    competitor.race()?;
+                    progress(&format!("{count} teapots by {}, round {}", competitor.accel, round + 1));
+                    competitor.time_round()?;
                 }
             }
         }
@@ -104,7 +104,7 @@ impl Competitor {
         self.accel.starts_with("brute")
     }
 
-    fn race(&mut self) -> Result<(), Error> {
+    fn time_round(&mut self) -> Result<(), Error> {
         if self.is_loop() {
             self.job.count_work();
         }

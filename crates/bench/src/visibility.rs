@@ -13,17 +13,17 @@ use std::time::Instant;
 ///
 /// # Errors
 /// If the layout is unknown.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let count = options.counts.first().copied().unwrap_or(5);
     let mesh = crate::build::mesh(count, &options.layout)?;
     let view = view(count, options)?;
-    tell("rays through the pixels' centres, the reference");
+    progress("rays through the pixels' centres, the reference");
     let tree = bilux::accel::build("auto", mesh.clone(), &BuildOptions::default())
         .map_err(|e| Error::Settings(e.to_string()))?;
     let reference = view.cast(&*tree, VisibilityOptions::default().culling);
     let (mut rows, mut cells) = (Vec::new(), Vec::new());
     for row in VISIBILITY {
-        tell(row.entry.name);
+        progress(row.entry.name);
         let (seconds, result) =
             repeated(options.repeats, || (row.run)(&view, &mesh, &VisibilityOptions::default()));
         let (c, wrong) = (&result.counts, wrong_pixels(&result.ids, &reference));

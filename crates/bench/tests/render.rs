@@ -56,11 +56,11 @@ fn files_are_measured_with_the_predictions_of_auto() {
     for row in &report.rows {
         assert_eq!(row["scene"].as_str(), file.to_str());
         let number = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"));
-        assert!(["foreseen", "measured", "measured_trimmed"].map(number).iter().all(|x| *x > 0.0), "{row}");
+        assert!(["predicted", "measured", "measured_trimmed"].map(number).iter().all(|x| *x > 0.0), "{row}");
     }
-    assert_eq!(report.rows[0]["foreseen"], 1.0);
+    assert_eq!(report.rows[0]["predicted"], 1.0);
     assert!(report.rows[0]["chosen"].is_string() && report.rows[1]["chosen"].is_null());
-    assert!(report.text.contains("foreseen") && report.text.contains("and trimmed"), "{}", report.text);
+    assert!(report.text.contains("predicted") && report.text.contains("and trimmed"), "{}", report.text);
 }
 
 #[test]

@@ -127,7 +127,7 @@ impl Job {
             .map(|ground| ShadowCatcher { ground: ground as u32, objects });
         if settings.background.is_cut_out() {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
-            crate::presets::put_behind(&mut completed, nothing);
+            crate::presets::replace_backdrop(&mut completed, nothing);
         }
         let size = [settings.width, settings.height];
         bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
@@ -388,7 +388,7 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         threads: settings.threads,
         max_depth: settings.max_depth,
         pixel_anchor: if settings.corner_anchor { PixelAnchor::Corner } else { PixelAnchor::Centre },
-        filter: Filter::named(&settings.filter)?,
+        filter: Filter::from_name(&settings.filter)?,
         count_work: false,
         stop: settings.stop,
         interval: false,

@@ -3,7 +3,7 @@
 use crate::{Error, Job, Outcome};
 use bilux_pictures::Picture;
 use bilux_pictures::PictureError;
-use bilux_pictures::denoise::{Chosen, Noisy, Source, Task, denoiser, repainted};
+use bilux_pictures::denoise::{DenoiserChoice, Noisy, Source, Task, denoiser, repainted};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{Window, push_variance};
 use std::ops::Range;
@@ -34,7 +34,7 @@ impl Job {
     ///
     /// # Errors
     /// If the denoiser that was asked for is not available.
-    pub fn denoiser(&mut self, for_display: bool) -> Result<Option<Chosen>, Error> {
+    pub fn denoiser(&mut self, for_display: bool) -> Result<Option<DenoiserChoice>, Error> {
         let name = match self.settings.denoise.as_str() {
             "off" => return Ok(None),
             FOR_DISPLAY if !for_display || !self.render.stop.is_any() => return Ok(None),
@@ -90,7 +90,7 @@ impl Outcome {
     ///
     /// # Errors
     /// If memory is short, or the denoiser fails.
-    pub fn denoised(&self, chosen: &Chosen) -> Result<Picture, Error> {
+    pub fn denoised(&self, chosen: &DenoiserChoice) -> Result<Picture, Error> {
         let smooth = chosen.denoiser.denoise(self)?;
         Ok(self.encoded(repainted(self.light()?, &smooth)))
     }

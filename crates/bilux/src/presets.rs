@@ -21,14 +21,14 @@ pub fn completed(scene: &SceneBuilder, studio: &Studio) -> SceneBuilder {
 ///
 /// # Errors
 /// If the image cannot be read, or has no colours.
-pub fn set_behind(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
+pub fn set_background(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
     let light = picture_light(scene, picture, options)?;
-    put_behind(scene, light);
+    replace_backdrop(scene, light);
     Ok(())
 }
 
 /// Makes an environment the only backdrop of a scene.
-pub(crate) fn put_behind(scene: &mut SceneBuilder, environment: Spec) {
+pub(crate) fn replace_backdrop(scene: &mut SceneBuilder, environment: Spec) {
     scene.lights.retain(|light| !light.is_backdrop());
     scene.lights.push(environment.with("backdrop", true));
 }

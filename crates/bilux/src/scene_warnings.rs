@@ -81,12 +81,12 @@ const SPECK: f32 = 0.003;
 fn visible_fraction(objects: u32, scene: &Scene, camera: &dyn Camera) -> f32 {
     const GRID: usize = 96;
     let mut tracer = Tracer::new(scene, false);
-    let mut is_met = |i: &usize| {
+    let mut is_hit = |i: &usize| {
         let film = Vec2::new((i % GRID) as f32 + 0.5, (i / GRID) as f32 + 0.5) / GRID as f32;
         let ray = camera.ray(&CameraSample { film, lens: Vec2::splat(0.5), time: scene.shutter()[0] });
         tracer.closest(&ray).is_some_and(|surface| surface.object < objects)
     };
-    (0..GRID * GRID).filter(&mut is_met).count() as f32 / (GRID * GRID) as f32
+    (0..GRID * GRID).filter(&mut is_hit).count() as f32 / (GRID * GRID) as f32
 }
 
 fn shows_something(mesh: &Mesh) -> bool {
@@ -100,18 +100,20 @@ fn shows_something(mesh: &Mesh) -> bool {
 fn sees_only_back_faces(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
     const GRID: usize = 32;
     let mut tracer = Tracer::new(scene, false);
-    let mut hides = false;
+    let mut is_culled = false;
     for i in 0..GRID * GRID {
         let film = Vec2::new((i % GRID) as f32 + 0.5, (i / GRID) as f32 + 0.5) / GRID as f32;
         let ray = camera.ray(&CameraSample { film, lens: Vec2::ZERO, time: scene.shutter()[0] });
-        let mut meets = |ray: &Ray| tracer.closest(ray).filter(|surface| surface.object < objects);
-        let Some(first) = meets(&ray) else { continue };
-        if !scene.hides(&first, -Vec3::from(ray.direction)) || meets(&scene.from_camera(ray)).is_some() {
+        let mut closest_surface = |ray: &Ray| tracer.closest(ray).filter(|surface| surface.object < objects);
+        let Some(first) = closest_surface(&ray) else { continue };
+        if !scene.camera_sees_through(&first, -Vec3::from(ray.direction))
+            || closest_surface(&scene.from_camera(ray)).is_some()
+        {
             return false;
         }
-        hides = true;
+        is_culled = true;
     }
-    hides
+    is_culled
 }
 
 /// The orbit of the studio's camera that looks from the opposite side, in tenths of a degree: what shows its back to one shows

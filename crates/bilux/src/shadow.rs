@@ -20,7 +20,7 @@ impl Job {
             return Duration::ZERO;
         }
         let pixels = self.render.width as usize * self.render.height as usize;
-        shadow_alpha_time(pixels, self.threads_task().threads_at_work())
+        shadow_alpha_time(pixels, self.threads_task().thread_count())
     }
 
     fn threads_task(&self) -> Task {

@@ -48,11 +48,11 @@ impl Interrupt {
             let seconds = timeout.as_secs_f64();
             if renders.load(Ordering::Relaxed) {
                 std::thread::sleep(GRACE);
-                output::say(format_args!(
+                output::eprint(format_args!(
                     "error: --timeout: the time of {seconds} s was up, and the picture could not be saved"
                 ));
             } else {
-                output::say(format_args!(
+                output::eprint(format_args!(
                     "error: --timeout: the time of {seconds} s was up before there was a picture to save"
                 ));
             }

@@ -75,7 +75,7 @@ fn print_answer(answer: &clap::Error) -> anyhow::Result<u8> {
     let printed = answer.print().and_then(|()| std::io::stdout().flush());
     // If standard error is closed, there is nowhere to report the failure.
     if !answer.use_stderr() {
-        printed.map_err(output::Unprinted)?;
+        printed.map_err(output::PrintError)?;
     }
     Ok(u8::try_from(answer.exit_code()).unwrap_or(WRONG_COMMAND_LINE))
 }
@@ -84,7 +84,7 @@ fn print_answer(answer: &clap::Error) -> anyhow::Result<u8> {
 fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
         if !bilux::pictures::is_decoding() {
-            output::say(format_args!("error: this is a bug in Bilux; please report it: {panic}"));
+            output::eprint(format_args!("error: this is a bug in Bilux; please report it: {panic}"));
         }
     }));
 }

@@ -6,15 +6,15 @@ use std::io::{self, IsTerminal, Write};
 
 /// Why a result could not be printed.
 #[derive(Debug)]
-pub struct Unprinted(pub io::Error);
+pub struct PrintError(pub io::Error);
 
-impl std::fmt::Display for Unprinted {
+impl std::fmt::Display for PrintError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "cannot write to standard output: {}", self.0)
     }
 }
 
-impl std::error::Error for Unprinted {}
+impl std::error::Error for PrintError {}
 
 /// Prints a result and a newline.
 ///
@@ -31,29 +31,29 @@ pub fn print(text: impl Display) -> anyhow::Result<()> {
 pub fn print_bytes(bytes: &[u8]) -> anyhow::Result<()> {
     let mut stdout = io::stdout().lock();
     let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
-    Ok(written.map_err(Unprinted)?)
+    Ok(written.map_err(PrintError)?)
 }
 
 /// True if the reader of standard output has gone away, as `head` does. That is not an error that needs a message.
 pub fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    let unprinted = error.chain().find_map(|cause| cause.downcast_ref::<Unprinted>());
-    unprinted.is_some_and(|unprinted| unprinted.0.kind() == io::ErrorKind::BrokenPipe)
+    let print_error = error.chain().find_map(|cause| cause.downcast_ref::<PrintError>());
+    print_error.is_some_and(|print_error| print_error.0.kind() == io::ErrorKind::BrokenPipe)
 }
 
 /// Prints a line to standard error.
-pub fn say(text: impl Display) {
+pub fn eprint(text: impl Display) {
     // If standard error is closed, there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{text}");
 }
 
 /// Prints a warning: something is odd, but the work goes on.
 pub fn warning(text: impl Display) {
-    say(format_args!("{}: {text}", painted("warning", "33")));
+    eprint(format_args!("{}: {text}", painted("warning", "33")));
 }
 
 /// Prints why the work failed.
 pub fn error(error: &anyhow::Error) {
-    say(format_args!("{}: {}", painted("error", "31"), message(error)));
+    eprint(format_args!("{}: {}", painted("error", "31"), message(error)));
 }
 
 /// An error with its causes, each mentioned once: most libraries' messages already end with their cause's message.

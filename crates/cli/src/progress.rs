@@ -77,7 +77,7 @@ impl Report {
         *last = Instant::now();
         let share = samples as f64 / self.total.load(Ordering::Relaxed).max(1) as f64;
         let left = self.begun.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-9);
-        output::say(format_args!(
+        output::eprint(format_args!(
             "{}: {:.0}%, {:.2} Mrays/s, {left:.0} s left",
             self.label,
             share * 100.0,

@@ -61,7 +61,7 @@ impl StudioArguments {
             bilux::presets::surround(scene, picture, options).context("--env")?;
         }
         if let Some(picture) = self.picture_behind() {
-            bilux::presets::set_behind(scene, picture, options).context("--background")?;
+            bilux::presets::set_background(scene, picture, options).context("--background")?;
         }
         Ok(())
     }

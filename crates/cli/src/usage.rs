@@ -4,30 +4,30 @@ use std::fmt;
 use std::path::Path;
 
 /// An error that the command line is to blame for.
-struct WrongCommandLine(anyhow::Error);
+struct UsageError(anyhow::Error);
 
-impl fmt::Display for WrongCommandLine {
+impl fmt::Display for UsageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&crate::output::message(&self.0))
     }
 }
 
-impl fmt::Debug for WrongCommandLine {
+impl fmt::Debug for UsageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-impl std::error::Error for WrongCommandLine {}
+impl std::error::Error for UsageError {}
 
 /// Blames the command line for an error.
 pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
-    anyhow::Error::new(WrongCommandLine(error.into()))
+    anyhow::Error::new(UsageError(error.into()))
 }
 
 /// Adds the scene's name to an error, unless it already has it or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
-    let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::Unprinted>();
+    let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::PrintError>();
     if !is_about_scene || scene == Path::new("-") {
         return error;
     }
@@ -42,7 +42,7 @@ pub fn is_command_line(error: &anyhow::Error) -> bool {
             Some(bilux::Error::Scene(scene)) => Some(scene),
             _ => cause.downcast_ref::<bilux::scene::SceneError>(),
         };
-        cause.is::<WrongCommandLine>()
+        cause.is::<UsageError>()
             || scene.is_some_and(|s| s.at().file.starts_with("--"))
             || cause.downcast_ref().is_some_and(is_about_options)
     })

@@ -71,7 +71,7 @@ impl Aabb {
 
     /// The box enlarged by `margin` on every side.
     #[inline]
-    pub fn grown(self, margin: f32) -> Aabb {
+    pub fn expanded(self, margin: f32) -> Aabb {
         Aabb { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
     }
 

@@ -80,7 +80,7 @@ impl Motion {
 
     /// The transform, if it has no keys and so is the same at all times.
     #[inline]
-    pub fn resting(&self) -> Option<&Transform> {
+    pub fn static_transform(&self) -> Option<&Transform> {
         match &self.course {
             Course::Rest => Some(&Transform::IDENTITY),
             Course::Still(transform) => Some(transform),
@@ -124,7 +124,7 @@ impl Motion {
     /// The transform at a time in seconds. The same time always gives the same bits; a NaN time means the first key's
     /// time.
     pub fn at(&self, time_seconds: f32) -> Transform {
-        if let Some(transform) = self.resting() {
+        if let Some(transform) = self.static_transform() {
             return *transform;
         }
         let poses = self.poses();
@@ -141,7 +141,7 @@ impl Motion {
     /// uniform scale and a translation; uniform and orthogonal to within a thousandth), because then no keys describe
     /// the same motion.
     pub fn then(&self, next: &Transform) -> Option<Motion> {
-        if let Some(transform) = self.resting() {
+        if let Some(transform) = self.static_transform() {
             return Some(Motion::still(transform.then(next)));
         }
         let (scale, rotation, translation) = similarity(next)?;
@@ -185,7 +185,7 @@ impl Motion {
         if bounds.is_empty() {
             return Aabb::EMPTY;
         }
-        if let Some(transform) = self.resting() {
+        if let Some(transform) = self.static_transform() {
             return moved_by(transform, bounds);
         }
         let segments = self.segments_over(seconds);
@@ -202,7 +202,7 @@ impl Motion {
             let linear = DMat3::from_mat4(transform.matrix().as_dmat4());
             [frobenius(linear), frobenius(linear.inverse())]
         };
-        if let Some(transform) = self.resting() {
+        if let Some(transform) = self.static_transform() {
             return stretch(transform);
         }
         let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| stretch(&transform));
@@ -333,7 +333,7 @@ impl Segment {
         let piece = (end - start) / PIECES as f64;
         let bulge = piece * piece / 8.0 * (angle * angle * radius + 2.0 * angle * growth);
         let far = self.from.translation.abs().max(self.to.translation.abs()).max_element() + radius;
-        grown_outwards(low, high, bulge * (1.0 + 1e-6) + far * ROUNDING)
+        expanded_outwards(low, high, bulge * (1.0 + 1e-6) + far * ROUNDING)
     }
 }
 
@@ -356,11 +356,11 @@ fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
         let sum = DMat3::from_mat4(matrix).abs() * corner.abs() + matrix.w_axis.truncate().abs();
         far = far.max(sum.max_element());
     }
-    grown_outwards(low, high, far * 1e-14)
+    expanded_outwards(low, high, far * 1e-14)
 }
 
 /// An f32 box that contains an f64 box enlarged by `margin`.
-fn grown_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
+fn expanded_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
     let margin = DVec3::splat(margin);
     let (low, high) = ((low - margin).as_vec3(), (high + margin).as_vec3());
     Aabb {

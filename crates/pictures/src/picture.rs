@@ -315,7 +315,7 @@ impl Picture {
         }
         let space = self.colour_space;
         if space != ColourSpace::Srgb {
-            self.map_colours(|sample| srgb_encode(hold_within(space.decode(sample), 1.0)));
+            self.map_colours(|sample| srgb_encode(clamp_sample(space.decode(sample), 1.0)));
         }
         self.colour_space = ColourSpace::Srgb;
         self.alpha = Alpha::Straight;
@@ -382,7 +382,7 @@ const PIECE: usize = 1 << 14;
 const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];
 
 /// Clamps a sample to 0..=`most`; NaN becomes 0, whereas `clamp` would keep it.
-pub(crate) fn hold_within(sample: f32, most: f32) -> f32 {
+pub(crate) fn clamp_sample(sample: f32, most: f32) -> f32 {
     if sample > 0.0 { sample.min(most) } else { 0.0 }
 }
 

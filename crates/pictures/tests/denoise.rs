@@ -4,7 +4,7 @@
 
 use bilux_math::Rgb;
 use bilux_math::hash::{hash_words, unit_f32};
-use bilux_pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux_pictures::denoise::{DenoiserChoice, Task, denoise, denoiser};
 use bilux_pictures::{DENOISERS, Picture};
 
 const SIZE: usize = 96;
@@ -64,7 +64,7 @@ fn task(threads: usize) -> Task {
 }
 
 /// Runs a check on every denoiser that is available here; the others are reported.
-fn each(check: impl Fn(&str, &Chosen)) {
+fn each(check: impl Fn(&str, &DenoiserChoice)) {
     for row in DENOISERS {
         match denoiser(row.entry.name, &task(2)) {
             Ok(chosen) => check(row.entry.name, &chosen),

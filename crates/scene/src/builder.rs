@@ -139,7 +139,8 @@ impl SceneBuilder {
         for object in &self.objects {
             check_mesh(object, materials.len())?;
         }
-        let BuiltLights { lights, surfaces, panels, spheres, lamps } = self.build_lights(&mut materials)?;
+        let BuiltLights { lights, surfaces, panels, spheres, sphere_lights } =
+            self.build_lights(&mut materials)?;
         let cameras = self
             .cameras
             .iter()
@@ -160,7 +161,7 @@ impl SceneBuilder {
         let size = if has_strokes { self.bounds(shutter[0]).extent().length() } else { 1.0 };
         let widths = self.stroke_widths.for_size(size);
         let geometry = Geometry::build(placed.collect(), spheres, widths, accel)?;
-        let parts = SceneParts::new(geometry, materials, lights, &panels, &lamps, cameras, filtered);
+        let parts = SceneParts::new(geometry, materials, lights, &panels, &sphere_lights, cameras, filtered);
         Ok(Scene::new(Arc::new(parts), accel, shutter))
     }
 
@@ -189,7 +190,7 @@ impl SceneBuilder {
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
                     let material = glowing(emission, Sides::Both)? as u32;
                     built.spheres.push(PlacedSphere { centre, radius, material });
-                    built.lamps.push((spec.name.clone(), classic));
+                    built.sphere_lights.push((spec.name.clone(), classic));
                 }
             }
         }
@@ -208,7 +209,7 @@ struct BuiltLights {
     panels: Vec<(usize, Rgb)>,
     spheres: Vec<PlacedSphere>,
     /// The name of each sphere, and its classic colour if given.
-    lamps: Vec<(String, Option<Rgb>)>,
+    sphere_lights: Vec<(String, Option<Rgb>)>,
 }
 
 /// Checks that a mesh has as many attributes as positions, and that its indices are in range.

@@ -98,7 +98,8 @@ impl Geometry {
             instance_objects.push(object);
             strokes.push((tree, is_baked));
         }
-        let mirrored = objects.iter().map(|o| o.motion.resting().is_some_and(Transform::mirrors)).collect();
+        let mirrored =
+            objects.iter().map(|o| o.motion.static_transform().is_some_and(Transform::mirrors)).collect();
         let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
         instances.extend(spheres.tree());
         Ok(Geometry {
@@ -272,7 +273,7 @@ impl Geometry {
     #[inline]
     fn place(&self, object: u32, time: f32) -> (Cow<'_, Transform>, bool) {
         let motion = &self.objects[object as usize].motion;
-        match motion.resting() {
+        match motion.static_transform() {
             Some(to_world) => (Cow::Borrowed(to_world), self.mirrored[object as usize]),
             None => {
                 let to_world = motion.at(time);

@@ -41,7 +41,7 @@ pub use inventory::{Animation, Inventory};
 pub use lights::{EmissionSample, LIGHTS, Light, LightSample};
 pub use materials::{MATERIALS, Material, Nested};
 pub use mesh::Mesh;
-pub use orientation::{Axis, Because, Orientation, UpHint};
+pub use orientation::{Axis, Orientation, OrientationSource, UpHint};
 pub use parameters::{Parameters, Reader, Span, Spec, Value};
 pub use scene::{Scene, Tracer};
 pub use strokes::StrokeWidths;

@@ -3,7 +3,7 @@
 use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
 use bilux_scene::generators::shapes;
 use bilux_scene::presets::{Studio, complete};
-use bilux_scene::{Axis, Because, Mesh, Object, Orientation, SceneBuilder, Spec, UpHint, Value};
+use bilux_scene::{Axis, Mesh, Object, Orientation, OrientationSource, SceneBuilder, Spec, UpHint, Value};
 use std::sync::Arc;
 
 fn scene(mesh: Mesh, up: UpHint) -> SceneBuilder {
@@ -34,7 +34,7 @@ fn bust() -> Mesh {
 }
 
 fn turned(mesh: &Mesh, up: Axis, front: Axis) -> Mesh {
-    let from = Orientation { up, front, because: Because::Asked }.upright().transpose();
+    let from = Orientation { up, front, source: OrientationSource::Asked }.upright().transpose();
     let mut mesh = mesh.clone();
     mesh.positions.iter_mut().for_each(|p| *p = (from * p.as_dvec3()).as_vec3());
     mesh
@@ -43,18 +43,18 @@ fn turned(mesh: &Mesh, up: Axis, front: Axis) -> Mesh {
 #[test]
 fn names_of_axes() {
     for axis in Axis::ALL {
-        assert_eq!(Axis::named(axis.name()), Some(axis));
+        assert_eq!(Axis::from_name(axis.name()), Some(axis));
         assert_eq!(axis.direction(), -axis.opposite().direction());
     }
-    assert_eq!(Axis::named(" +Z"), Some(Axis::Z));
-    assert_eq!((Axis::named("auto"), Axis::named("w")), (None, None));
+    assert_eq!(Axis::from_name(" +Z"), Some(Axis::Z));
+    assert_eq!((Axis::from_name("auto"), Axis::from_name("w")), (None, None));
 }
 
 #[test]
 fn up_and_front_are_turned_to_y_and_z() {
     for up in Axis::ALL {
         for front in Axis::ALL.into_iter().filter(|front| front.index() != up.index()) {
-            let turn = Orientation { up, front, because: Because::Asked }.upright();
+            let turn = Orientation { up, front, source: OrientationSource::Asked }.upright();
             assert_eq!((turn * up.direction(), turn * front.direction()), (DVec3::Y, DVec3::Z));
             assert_eq!(turn.determinant(), 1.0);
         }
@@ -69,13 +69,16 @@ fn a_stable_shape_overrides_the_usual_axis_and_a_ball_does_not() {
             let scene = scene(turned(&bust(), up, front), UpHint::Usually(usual));
             let found = Orientation::of(&scene, None, None).unwrap();
             assert_eq!(found.up, up, "where {usual:?} is usual");
-            assert_eq!(found.because, if up == usual { Because::Usual } else { Because::Shape });
+            assert_eq!(
+                found.source,
+                if up == usual { OrientationSource::Usual } else { OrientationSource::Shape }
+            );
         }
     }
     let ball = || shapes::icosphere(Vec3::ZERO, 1.0, 3);
     for usual in [Axis::Y, Axis::Z] {
         let found = Orientation::of(&scene(ball(), UpHint::Usually(usual)), None, None).unwrap();
-        assert_eq!((found.up, found.because), (usual, Because::Usual));
+        assert_eq!((found.up, found.source), (usual, OrientationSource::Usual));
     }
     // A plate lies flat, and an orientation fixed by the format is not questioned.
     let plate = || joined(&[[[-1.0, -0.7, 0.0], [1.0, 0.7, 0.05]]]);
@@ -115,7 +118,7 @@ fn an_animal_stands_on_its_legs_where_the_usual_axis_would_topple_it() {
     parts.push([[-0.05, 1.6, -3.1], [0.05, 1.7, -1.6]]);
     let scene = scene(joined(&parts), UpHint::Usually(Axis::Z));
     let found = Orientation::of(&scene, None, None).unwrap();
-    assert_eq!((found.up, found.because), (Axis::Y, Because::Shape));
+    assert_eq!((found.up, found.source), (Axis::Y, OrientationSource::Shape));
 }
 
 /// A room that lacks its wall at +z or at -z, its triangles facing inwards; and a box that lacks one, its triangles facing outwards.
@@ -145,7 +148,7 @@ fn requested_axes_are_applied_and_scenes_with_cameras_stay() {
     let mut up_x = long();
     let floor = |scene: &SceneBuilder| scene.objects.len();
     let found = complete(&mut up_x, &asked(Some(Axis::X), None)).unwrap();
-    assert_eq!((found.up, found.because, floor(&up_x)), (Axis::X, Because::Asked, 2));
+    assert_eq!((found.up, found.source, floor(&up_x)), (Axis::X, OrientationSource::Asked, 2));
     up_x.objects.truncate(1);
     assert_eq!(height(&up_x).y, 1.0);
     let mut front_x = long();

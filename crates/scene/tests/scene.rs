@@ -135,7 +135,7 @@ fn the_single_tree_shortcut_matches_the_top_level() {
         let words = [0, 1, 2].map(|k| bilux_math::hash::hash_words([i, k]));
         Vec3::from(words.map(|w| (w >> 40) as f32 / (1u64 << 24) as f32 * 2.0 - 1.0))
     };
-    let mut met = [0; 2];
+    let mut counts = [0; 2];
     for i in 0..10_000 {
         let mut ray = bilux_scene::Ray::new((random(3 * i) * 1.5).to_array(), random(3 * i + 1).to_array());
         for _ in 0..3 {
@@ -144,12 +144,12 @@ fn the_single_tree_shortcut_matches_the_top_level() {
             let [a, b] = hits.map(|hit| hit.map(|hit| (hit.t.to_bits(), hit.primitive, hit.p)));
             assert_eq!(a, b, "{ray:?}");
             let Some(hit) = plain.closest(&ray) else { break };
-            met[usize::from(hit.primitive.instance == 1)] += 1;
+            counts[usize::from(hit.primitive.instance == 1)] += 1;
             ray = hit.spawn(random(3 * i + 2));
             ray.t_max = 0.8;
         }
     }
-    assert!(met[0] > 500 && met[1] > 500, "{met:?}");
+    assert!(counts[0] > 500 && counts[1] > 500, "{counts:?}");
 }
 
 #[test]

@@ -120,7 +120,7 @@ const UNAIMED: f32 = 0.25;
 
 impl Guide {
     /// A guide that distinguishes cells but aims at none of them.
-    pub(crate) fn untaught(scene: &Scene) -> Option<Guide> {
+    pub(crate) fn untrained(scene: &Scene) -> Option<Guide> {
         let lights = scene.lights().len();
         let side = ((MAX_CELLS / lights.max(1)) as f64).sqrt() as usize;
         let side = side.min(MAX_SIDE);
@@ -144,7 +144,7 @@ impl Guide {
 
     /// A guide that aims at cells in proportion to the worth of each, and a little around them; `None` where nothing is
     /// worth anything.
-    pub(crate) fn taught(self, worth: &[f64]) -> Option<Guide> {
+    pub(crate) fn trained(self, worth: &[f64]) -> Option<Guide> {
         let worth = self.blurred(worth);
         let all: f64 = worth.iter().sum();
         let shares: Vec<f32> = worth.iter().map(|cell| (cell / all) as f32).collect();

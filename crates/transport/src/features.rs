@@ -113,20 +113,21 @@ pub fn coverage(
     settings.check()?;
     let window = settings.window();
     let eye = CameraRays::new(scene, camera, integrator, settings);
-    let mut met = zeroed::<f32>(window.pixels())?;
-    let of_row = |(row, met): (usize, &mut [f32])| {
+    let mut coverage = zeroed::<f32>(window.pixels())?;
+    let of_row = |(row, coverage): (usize, &mut [f32])| {
         let mut tracer = Tracer::new(eye.scene, false);
-        for (column, met) in met.iter_mut().enumerate() {
+        for (column, coverage) in coverage.iter_mut().enumerate() {
             let (x, y) = (window.x + column as u32, window.y + row as u32);
             let hits = (0..samples).filter(|&sample| {
                 let (ray, _) = eye.sample(&mut tracer, x, y, sample);
                 tracer.closest(&ray).is_some()
             });
-            *met = hits.count() as f32 / samples.max(1) as f32;
+            *coverage = hits.count() as f32 / samples.max(1) as f32;
         }
     };
-    threads(settings)?.install(|| met.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
-    Ok(met)
+    threads(settings)?
+        .install(|| coverage.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
+    Ok(coverage)
 }
 
 /// Adds one sample to each pixel of a tile.
@@ -152,7 +153,7 @@ impl Sums {
             };
             beta *= passed;
             if event == 0 {
-                self.meet(scene, &surface, sample);
+                self.add_surface(scene, &surface, sample);
             }
             let bsdf = media.bsdf(scene, &surface, &Wavelength::D);
             let smooth = (bsdf.is_delta() && event < MAX_SMOOTH)
@@ -171,7 +172,7 @@ impl Sums {
     }
 
     /// Records the first surface itself.
-    fn meet(&mut self, scene: &Scene, surface: &Surface, sample: u32) {
+    fn add_surface(&mut self, scene: &Scene, surface: &Surface, sample: u32) {
         self.depth += surface.t;
         self.hits += 1;
         if sample == 0 {

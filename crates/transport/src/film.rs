@@ -38,7 +38,7 @@ pub struct Film {
     pub(crate) splats: Vec<[i64; 3]>,
     pub(crate) iterations: Vec<u32>,
     /// Bad samples, pixel by pixel; empty as long as there are none.
-    pub(crate) trouble: Vec<PixelFailures>,
+    pub(crate) failures: Vec<PixelFailures>,
     pub(crate) coverage: Coverage,
     /// Identifies what the film shows: any text from the caller that differs where scene or settings differ. Films with
     /// different fingerprints do not merge.
@@ -98,7 +98,7 @@ impl Film {
             counts: Vec::new(),
             splats: Vec::new(),
             iterations: Vec::new(),
-            trouble: Vec::new(),
+            failures: Vec::new(),
             coverage: Coverage::default(),
             fingerprint: String::new(),
         }
@@ -159,21 +159,21 @@ impl Film {
 
     #[cold]
     fn note_non_finite(&mut self, index: usize, sample: u32) {
-        let trouble = self.trouble_at(index);
-        trouble.absorb(&PixelFailures::non_finite_at(sample));
+        let failures = self.failures_at(index);
+        failures.absorb(&PixelFailures::non_finite_at(sample));
     }
 
     #[cold]
     fn note_overflowed(&mut self, index: usize, sample: u32) {
-        let trouble = self.trouble_at(index);
-        trouble.absorb(&PixelFailures::overflowed_at(sample));
+        let failures = self.failures_at(index);
+        failures.absorb(&PixelFailures::overflowed_at(sample));
     }
 
-    pub(crate) fn trouble_at(&mut self, index: usize) -> &mut PixelFailures {
-        if self.trouble.is_empty() {
-            self.trouble = vec![PixelFailures::default(); self.window.pixels()];
+    pub(crate) fn failures_at(&mut self, index: usize) -> &mut PixelFailures {
+        if self.failures.is_empty() {
+            self.failures = vec![PixelFailures::default(); self.window.pixels()];
         }
-        &mut self.trouble[index]
+        &mut self.failures[index]
     }
 
     /// Adds another film's samples. The sums are the same in whatever order films are merged.
@@ -242,8 +242,8 @@ impl Film {
                     add(&mut self.splats[start + i], *splats);
                     self.iterations[start + i] += part.iterations[from + i];
                 }
-                if let Some(trouble) = part.trouble.get(from + i).filter(|t| t.is_any()) {
-                    self.trouble_at(start + i).absorb(trouble);
+                if let Some(failures) = part.failures.get(from + i).filter(|t| t.is_any()) {
+                    self.failures_at(start + i).absorb(failures);
                 }
             }
         }
@@ -257,13 +257,13 @@ impl Film {
         self.sums.resize(pixels, [0; 3]);
         self.counts.clear();
         self.counts.resize(pixels, 0);
-        self.trouble.clear();
+        self.failures.clear();
     }
 
     /// The bad samples of all pixels together.
-    pub fn trouble(&self) -> SampleFailures {
+    pub fn sample_failures(&self) -> SampleFailures {
         let mut total = SampleFailures::default();
-        for (index, pixel) in self.trouble.iter().enumerate() {
+        for (index, pixel) in self.failures.iter().enumerate() {
             let at = |sample| {
                 let (x, y) = self.window.position(index);
                 SamplePlace { x, y, sample }
@@ -305,7 +305,7 @@ impl Film {
     }
 
     fn mean(&self, index: usize) -> Rgb {
-        let bad = self.trouble.get(index).is_some_and(|t| t.non_finite > 0);
+        let bad = self.failures.get(index).is_some_and(|t| t.non_finite > 0);
         match self.counts[index] {
             0 if bad => Rgb::grey(f32::NAN),
             0 => Rgb::BLACK,
@@ -397,10 +397,10 @@ mod tests {
         film.add(1, 1, 4, Rgb::grey(f32::NEG_INFINITY));
         film.add(1, 1, 6, Rgb::WHITE);
         film.add(0, 0, 9, Rgb::grey(1e30));
-        let trouble = film.trouble();
-        assert_eq!(trouble.non_finite, 3);
-        assert_eq!(trouble.first_non_finite, Some(SamplePlace { x: 1, y: 1, sample: 4 }));
-        assert_eq!(trouble.first_overflowed, Some(SamplePlace { x: 0, y: 0, sample: 9 }));
+        let failures = film.sample_failures();
+        assert_eq!(failures.non_finite, 3);
+        assert_eq!(failures.first_non_finite, Some(SamplePlace { x: 1, y: 1, sample: 4 }));
+        assert_eq!(failures.first_overflowed, Some(SamplePlace { x: 0, y: 0, sample: 9 }));
         assert!(film.pixel(2, 1).r.is_nan());
         assert_eq!(film.pixel(1, 1), Rgb::WHITE);
         assert!(film.pixel(0, 0).r > 1e5);

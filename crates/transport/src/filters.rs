@@ -89,7 +89,7 @@ impl Filter {
     ///
     /// # Errors
     /// When there is none.
-    pub fn named(name: &str) -> Result<Filter, RenderError> {
+    pub fn from_name(name: &str) -> Result<Filter, RenderError> {
         let names = FILTERS.iter().map(|row| row.entry.name);
         match FILTERS.iter().find(|row| row.entry.name == name) {
             Some(row) => Ok(Filter::new(row)),
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn misspelt_names_suggest_the_nearest() {
-        let error = Filter::named("gausian").unwrap_err();
+        let error = Filter::from_name("gausian").unwrap_err();
         assert!(error.to_string().contains("did you mean 'gaussian'?"), "{error}");
     }
 }

@@ -35,7 +35,7 @@ impl Media {
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
         let (mut media, scene) = (Media::AIR, tracer.scene);
-        let t_max = match scene.absorbed_up_to(ray) {
+        let t_max = match scene.absorption_distance(ray) {
             _ if scene.has_nested() => ray.t_max,
             Some(t) => t.min(ray.t_max),
             // Outside the bounds of everything that absorbs there is no medium.

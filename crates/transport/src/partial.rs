@@ -26,7 +26,7 @@ const SPLATS: [[&str; 2]; 3] =
 
 const ITERATIONS: &str = "iterations";
 
-const TROUBLE: [&str; 4] =
+const FAILURE_PLANES: [&str; 4] =
     ["bad.non_finite", "bad.first_non_finite", "bad.overflowed", "bad.first_overflowed"];
 
 impl Film {
@@ -61,9 +61,9 @@ impl Film {
             push_sums(&mut picture, SPLATS, &self.splats)?;
             picture.push_integer_plane(ITERATIONS, self.iterations.clone())?;
         }
-        if !self.trouble.is_empty() {
-            for (field, name) in TROUBLE.into_iter().enumerate() {
-                let plane = self.trouble.iter().map(|t| t.to_array()[field]).collect();
+        if !self.failures.is_empty() {
+            for (field, name) in FAILURE_PLANES.into_iter().enumerate() {
+                let plane = self.failures.iter().map(|t| t.to_array()[field]).collect();
                 picture.push_integer_plane(name, plane)?;
             }
         }
@@ -137,11 +137,16 @@ impl Film {
                 return Err(not_a_film(format!("its sums at pixel {x},{y} are invalid")));
             }
         }
-        if picture.integer_plane(TROUBLE[0]).is_some() {
-            let planes = [plane(TROUBLE[0])?, plane(TROUBLE[1])?, plane(TROUBLE[2])?, plane(TROUBLE[3])?];
-            self.trouble = zeroed(self.counts.len())?;
-            for (i, trouble) in self.trouble.iter_mut().enumerate() {
-                *trouble = PixelFailures::from_array(planes.map(|plane| plane[i]));
+        if picture.integer_plane(FAILURE_PLANES[0]).is_some() {
+            let planes = [
+                plane(FAILURE_PLANES[0])?,
+                plane(FAILURE_PLANES[1])?,
+                plane(FAILURE_PLANES[2])?,
+                plane(FAILURE_PLANES[3])?,
+            ];
+            self.failures = zeroed(self.counts.len())?;
+            for (i, failures) in self.failures.iter_mut().enumerate() {
+                *failures = PixelFailures::from_array(planes.map(|plane| plane[i]));
             }
         }
         Ok(())
@@ -239,7 +244,7 @@ mod tests {
         let read = read_bytes(&bytes, None, &Limits::default()).unwrap();
         let back = Film::from_partial(&read).unwrap();
         assert_eq!(back, film);
-        assert_eq!(back.trouble(), film.trouble());
+        assert_eq!(back.sample_failures(), film.sample_failures());
     }
 
     #[test]

@@ -102,16 +102,16 @@ impl RenderSettings {
     /// The number of samples that an integrator takes. Integrators that trace light subpaths take all samples of the
     /// whole film, whatever part of it is requested, since any light subpath may contribute there.
     pub fn sample_count(&self, integrator: &dyn PixelIntegrator) -> u64 {
-        self.walked(integrator).pixels() as u64 * self.samples.len() as u64
+        self.sampled_window(integrator).pixels() as u64 * self.samples.len() as u64
     }
 
     /// The pixels whose samples are taken.
-    fn walked(&self, integrator: &dyn PixelIntegrator) -> Window {
+    fn sampled_window(&self, integrator: &dyn PixelIntegrator) -> Window {
         if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
     }
 
     /// The settings that choosing integrators see: the choice is the same with an interval and without.
-    pub(crate) fn as_planned(&self) -> RenderSettings {
+    pub(crate) fn for_planning(&self) -> RenderSettings {
         RenderSettings { interval: false, batch_means: false, ..self.clone() }
     }
 
@@ -165,7 +165,7 @@ impl Progress for Silent {
 /// The result of a render.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// The film; [`Film::trouble`] reports bad samples.
+    /// The film; [`Film::sample_failures`] reports bad samples.
     pub film: Film,
     /// The work of tracing; only `rays` unless [`RenderSettings::count_work`] was on.
     pub counters: Counters,
@@ -199,7 +199,7 @@ pub fn render(
     let scale = scale_exponent(scene);
     let film = Film::windowed(settings.width, settings.height, settings.window(), scale)?;
     let pool = threads(settings)?;
-    let plan = pool.install(|| integrator.plan(scene, camera, &settings.as_planned()));
+    let plan = pool.install(|| integrator.plan(scene, camera, &settings.for_planning()));
     let (choice, planned, counters) = match plan {
         Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
         None => (None, None, Counters::default()),
@@ -236,7 +236,8 @@ pub fn render(
                 if let Some(batches) = batches.as_mut().filter(|_| BatchMeans::ends_at(watch.done)) {
                     batches.close(&rendered.film, watch.done);
                 }
-                progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
+                progress
+                    .begin(settings.sampled_window(integrator).pixels() as u64 * u64::from(watch.expected()));
             }
         }
         rendered.reached = watch.reached;
@@ -276,7 +277,7 @@ impl<'a> Run<'a> {
     /// Adds some samples of every pixel.
     fn take(&self, samples: &Range<u32>, mut rendered: Rendered) -> Result<Rendered, RenderError> {
         let (pool, settings) = (&self.pool, self.settings);
-        let tiles = settings.walked(self.integrator).tiles(TILE);
+        let tiles = settings.sampled_window(self.integrator).tiles(TILE);
         let Some(merging) = self.integrator.merging() else {
             return all_passes(pool, self.eye(), tiles, passes(samples), self.progress, rendered);
         };

@@ -50,7 +50,7 @@ pub fn replay(
     if x >= width || y >= height {
         return Err(RenderError::Pixel { x, y, width, height });
     }
-    let plan = integrator.plan(scene, camera, &settings.as_planned());
+    let plan = integrator.plan(scene, camera, &settings.for_planning());
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let mut eye = CameraRays::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);

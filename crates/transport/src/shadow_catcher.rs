@@ -76,7 +76,8 @@ pub fn shadow_alpha(
 ) -> Result<Vec<f32>, RenderError> {
     settings.check()?;
     let window = settings.window();
-    let (eye, lights) = (CameraRays::new(scene, camera, integrator, settings), lamps(scene, catcher));
+    let (eye, lights) =
+        (CameraRays::new(scene, camera, integrator, settings), shadowed_lights(scene, catcher));
     let mut pixels = zeroed::<Sums>(window.pixels())?;
     let least = if denoiser.is_some() { MIN_SAMPLES_DENOISED } else { MIN_SAMPLES };
     let tries = least.div_ceil(samples.max(1));
@@ -130,7 +131,7 @@ impl Source for Shadow<'_> {
 }
 
 /// Indices of the lights that remain without the model, as far as their probability is above 0.
-fn lamps(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
+fn shadowed_lights(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
     let of_model: Vec<usize> =
         (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
     let choice = LightChoice::new(scene);

@@ -35,7 +35,7 @@ pub(crate) struct Deposit {
     /// The pixel's index in the film's window.
     pub(crate) index: u32,
     pub(crate) steps: [i64; 3],
-    pub(crate) trouble: PixelFailures,
+    pub(crate) failures: PixelFailures,
 }
 
 impl<'a> Splats<'a> {
@@ -93,25 +93,25 @@ impl<'a> Splats<'a> {
 
     fn deposit(&mut self, x: u32, y: u32, light: Rgb) {
         let Some(index) = self.window.index(x, y) else { return };
-        let mut deposit = Deposit { index: index as u32, steps: [0; 3], trouble: PixelFailures::default() };
+        let mut deposit = Deposit { index: index as u32, steps: [0; 3], failures: PixelFailures::default() };
         if light.is_finite() {
             let dither = hash_words([self.path[0], self.path[1], u64::from(x) << 32 | u64::from(y)]);
             let (steps, overflowed) = to_steps(light, self.scale_exponent, dither);
             deposit.steps = steps;
             if overflowed {
-                deposit.trouble = PixelFailures::overflowed_at(self.sample);
+                deposit.failures = PixelFailures::overflowed_at(self.sample);
             }
         } else {
-            deposit.trouble = PixelFailures::non_finite_at(self.sample);
+            deposit.failures = PixelFailures::non_finite_at(self.sample);
         }
         self.deposits.push(deposit);
     }
 }
 
 impl<const N: usize> Tally<N> for Splats<'_> {
-    fn here(&mut self, _way: Technique, _found: &Contribution<N>) {}
+    fn add_sample(&mut self, _technique: Technique, _found: &Contribution<N>) {}
 
-    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<N>) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<N>) {
         self.add(film, found.weighted());
     }
 }
@@ -157,22 +157,22 @@ impl<'a, const N: usize> LightPathVisitor<N> for IterationSplats<'a> {
 /// The splats of some iterations as they arrive.
 pub(crate) struct Iterations {
     sums: Vec<[i64; 3]>,
-    trouble: Vec<(u32, PixelFailures)>,
+    failures: Vec<(u32, PixelFailures)>,
     /// Tiles of the film whose light subpaths have not arrived yet.
     pub(crate) tiles_left: usize,
 }
 
 impl Iterations {
     pub(crate) fn new(pixels: usize, tiles: usize) -> Result<Iterations, FilmError> {
-        Ok(Iterations { sums: zeroed(pixels)?, trouble: Vec::new(), tiles_left: tiles })
+        Ok(Iterations { sums: zeroed(pixels)?, failures: Vec::new(), tiles_left: tiles })
     }
 
     /// Takes over the splats of one tile.
     pub(crate) fn take(&mut self, deposits: &mut Vec<Deposit>) {
         for deposit in deposits.drain(..) {
             add(&mut self.sums[deposit.index as usize], deposit.steps);
-            if deposit.trouble.is_any() {
-                self.trouble.push((deposit.index, deposit.trouble));
+            if deposit.failures.is_any() {
+                self.failures.push((deposit.index, deposit.failures));
             }
         }
         self.tiles_left -= 1;
@@ -187,8 +187,8 @@ impl Film {
             add(sum, *more);
         }
         self.iterations.iter_mut().for_each(|count| *count += iterations);
-        for (index, trouble) in &splats.trouble {
-            self.trouble_at(*index as usize).absorb(trouble);
+        for (index, failures) in &splats.failures {
+            self.failures_at(*index as usize).absorb(failures);
         }
         Ok(())
     }

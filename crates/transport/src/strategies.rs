@@ -239,7 +239,7 @@ impl<'a> Layers<'a> {
 }
 
 impl Tally<1> for Layers<'_> {
-    fn here(&mut self, technique: Technique, found: &Contribution) {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution) {
         let (strategy, [x, y, _]) = (Strategy::of(technique), self.place);
         let Some(index) = self.window.index(x, y).filter(|_| strategy.edges <= MAX_EDGES) else { return };
         let pixels = self.window.pixels();
@@ -248,7 +248,7 @@ impl Tally<1> for Layers<'_> {
         light[1] += found.light * (1.0 / found.own.0[0]);
     }
 
-    fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
+    fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
         let strategy = Strategy::of(technique);
         if strategy.edges > MAX_EDGES {
             return;

@@ -68,16 +68,16 @@ fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f
 fn the_noise_of_every_set_is_predicted() {
     let scene = built(&corner());
     let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
-    let mut foreseen = vec![0.0; SETS.len()];
+    let mut predicted = vec![0.0; SETS.len()];
     for seed in 0..60 {
-        for (sum, candidate) in foreseen.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
+        for (sum, candidate) in predicted.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
             *sum += candidate.error / 60.0;
         }
     }
-    for (set, foreseen) in SETS.into_iter().zip(foreseen) {
+    for (set, predicted) in SETS.into_iter().zip(predicted) {
         let measured = measured(&scene, &*reported(set, false), 60);
-        let ratio = foreseen / measured;
-        assert!((0.8..1.25).contains(&ratio), "{set}: foreseen {foreseen}, measured {measured}");
+        let ratio = predicted / measured;
+        assert!((0.8..1.25).contains(&ratio), "{set}: predicted {predicted}, measured {measured}");
     }
 }
 

@@ -163,11 +163,11 @@ impl PixelIntegrator for Broken {
 fn bad_samples_are_located_whatever_the_threads() {
     let scene = built(&still_life());
     let of = |threads| shoot(&scene, &Broken, &RenderSettings { threads, ..settings() }).film;
-    let trouble = of(1).trouble();
-    assert!(trouble.non_finite > 0);
-    let SamplePlace { x, y, sample } = trouble.first_non_finite.unwrap();
+    let failures = of(1).sample_failures();
+    assert!(failures.non_finite > 0);
+    let SamplePlace { x, y, sample } = failures.first_non_finite.unwrap();
     assert_eq!((x, y), (18, 0));
-    assert_eq!(of(5).trouble(), trouble);
+    assert_eq!(of(5).sample_failures(), failures);
     let place = SamplePlace { x, y, sample };
     let again = replay(&scene, &*scene.cameras()[0].1, &Broken, &settings(), place).unwrap();
     assert!(again.radiance.r.is_nan());

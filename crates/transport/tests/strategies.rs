@@ -75,7 +75,7 @@ fn longer(mut blocks: Blocks) -> Blocks {
 }
 
 /// The same with one technique brighter by this factor.
-fn spoilt(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
+fn defective(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
     let mut wrong = all.clone();
     wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= factor);
     wrong
@@ -94,11 +94,11 @@ fn all_strategies_find_the_same_light() {
 
     // Each of them on its own is detected when it is a little too bright, or counted twice.
     for strategy in all.keys() {
-        let (p, which) = least(&spoilt(&all, strategy, 2.0), &picked);
+        let (p, which) = least(&defective(&all, strategy, 2.0), &picked);
         assert!(p < UNLIKELY && which == Some(*strategy), "{strategy} counted twice passes: p = {p}");
     }
     for strategy in all.keys().filter(|strategy| strategy.s > 0 && strategy.edges < 4) {
-        let (p, _) = least(&spoilt(&all, strategy, 1.1), &picked);
+        let (p, _) = least(&defective(&all, strategy, 1.1), &picked);
         assert!(p < UNLIKELY, "{strategy} passes with a tenth too much: p = {p}");
     }
 }
@@ -115,7 +115,7 @@ fn merging_finds_the_same_light_with_a_small_radius() {
     let (p, which) = least(&all, &picked);
     assert!(p > UNLIKELY, "p = {p}, {which:?}");
     for strategy in all.keys() {
-        let (p, _) = least(&spoilt(&all, strategy, 2.0), &picked);
+        let (p, _) = least(&defective(&all, strategy, 2.0), &picked);
         assert!(p < UNLIKELY, "{strategy} counted twice passes: p = {p}");
     }
 }

@@ -12,7 +12,7 @@
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 use bilux_validation::agreement::{Comparison, Evidence, Stage, Technique, shipped, stages, techniques};
-use bilux_validation::statistics::{bars, evenness, histogram};
+use bilux_validation::statistics::{bars, histogram, uniformity_p};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -142,8 +142,8 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     println!("all scenes, green channel");
     for (pair, p_values) in &all {
         let bins = histogram(p_values);
-        let even = evenness(p_values);
-        println!("  {pair:<14} {:>5} evenness p {even:.3}  [{}] {bins:?}", p_values.len(), bars(&bins));
+        let even = uniformity_p(p_values);
+        println!("  {pair:<14} {:>5} uniformity p {even:.3}  [{}] {bins:?}", p_values.len(), bars(&bins));
     }
     if !undecided.is_empty() {
         println!("more seconds are needed to say anything of {}", undecided.join(", "));

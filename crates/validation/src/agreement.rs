@@ -115,7 +115,7 @@ pub fn stages(name: &str, scene: &SceneBuilder, size: [u32; 2]) -> Result<Vec<St
     let mut stages = vec![Stage::new(name, &scene, size)?];
     if scene.lights.iter().any(is_point) {
         stages[0].has_points = true;
-        stages.push(Stage::new(&format!("{name}, wide lamps"), &with_wide_lamps(&scene)?, size)?);
+        stages.push(Stage::new(&format!("{name}, wide lights"), &with_wide_lights(&scene)?, size)?);
     }
     Ok(stages)
 }
@@ -125,7 +125,7 @@ fn is_point(light: &Spec) -> bool {
 }
 
 /// Suns become discs in the sky, a few degrees wide; points and spots are left out.
-fn with_wide_lamps(scene: &SceneBuilder) -> Result<SceneBuilder, Error> {
+fn with_wide_lights(scene: &SceneBuilder) -> Result<SceneBuilder, Error> {
     const ROWS: usize = 32;
     let mut wide = scene.clone();
     wide.lights.retain(|light| !is_point(light));
@@ -159,10 +159,11 @@ impl Stage {
         let (name, plain, seen) = (name.to_owned(), Vec::new(), Vec::new());
         let mut stage = Stage { name, scene: built, settings, has_points: false, plain, seen };
         stage.plain = (0..stage.blocks()).map(|block| stage.is_plain(block)).collect();
-        let lamps = RenderSettings { max_depth: 0, ..stage.settings.clone() };
+        let emission_only = RenderSettings { max_depth: 0, ..stage.settings.clone() };
         let path = integrators::build(&Spec::new("", "path"))?;
-        let lamps = stage.evidence(&*path, &RenderSettings { spp: 256, samples: 0..256, ..lamps }, 0, 1)?;
-        stage.seen = lamps.cells.into_iter().map(|cell| cell[0]).collect();
+        let emission_only =
+            stage.evidence(&*path, &RenderSettings { spp: 256, samples: 0..256, ..emission_only }, 0, 1)?;
+        stage.seen = emission_only.cells.into_iter().map(|cell| cell[0]).collect();
         Ok(stage)
     }
 
@@ -291,9 +292,9 @@ impl Stage {
         let mut resolutions = Vec::new();
         for &cell in &common {
             match judge([&a[cell], &b[cell]], self.seen[cell], false) {
-                Judged::Empty => {}
-                Judged::Undecided => found.undecided += 1,
-                Judged::Decided { p, error } => {
+                CellVerdict::Empty => {}
+                CellVerdict::Undecided => found.undecided += 1,
+                CellVerdict::Decided { p, error } => {
                     found.p_values.push(p);
                     found.green.extend((cell % 3 == 1).then_some(p));
                     resolutions.push(error);
@@ -309,9 +310,9 @@ impl Stage {
                 (0..pictures).map(|k| cells().map(|cell| of[cell][k]).sum()).collect()
             };
             match judge([&whole(a), &whole(b)], cells().map(|cell| self.seen[cell]).sum(), true) {
-                Judged::Empty => {}
-                Judged::Undecided => found.undecided += 1,
-                Judged::Decided { p, .. } => found.p_values.push(p),
+                CellVerdict::Empty => {}
+                CellVerdict::Undecided => found.undecided += 1,
+                CellVerdict::Decided { p, .. } => found.p_values.push(p),
             }
         }
         found
@@ -319,7 +320,7 @@ impl Stage {
 }
 
 /// The verdict on a cell.
-enum Judged {
+enum CellVerdict {
     /// There is no light apart from that of the lights themselves.
     Empty,
     /// Too little has been found.
@@ -331,22 +332,22 @@ enum Judged {
 
 /// Judges two sets of pictures of a cell, in which `seen` is the light of the lights themselves. That one technique
 /// finds nothing at all counts only where it is `sure` to find something: it may just not have happened yet.
-fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> Judged {
+fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> CellVerdict {
     let estimates = pair.map(estimate);
     let light = estimates.map(|(mean, _)| mean).into_iter().fold(0.0, f64::max) - seen;
     // The lights' edges are not the same in all pictures.
     if light < 1e-2 * seen || light <= 0.0 {
-        return Judged::Empty;
+        return CellVerdict::Empty;
     }
     let is_unknown = |(values, (mean, variance)): (&[f64], (f64, f64))| {
         let finds_nothing = mean - seen < 1e-2 * light;
         variance.sqrt() > COARSE * light || is_skewed(values) || (finds_nothing && !sure)
     };
-    let Some(p) = welch(pair[0], pair[1]) else { return Judged::Empty };
+    let Some(p) = welch(pair[0], pair[1]) else { return CellVerdict::Empty };
     if pair.into_iter().zip(estimates).any(is_unknown) {
-        return Judged::Undecided;
+        return CellVerdict::Undecided;
     }
-    Judged::Decided { p, error: (estimates[0].1 + estimates[1].1).sqrt() / light }
+    CellVerdict::Decided { p, error: (estimates[0].1 + estimates[1].1).sqrt() / light }
 }
 
 /// The evidence of one technique's pictures.

@@ -11,7 +11,7 @@ pub const CHECKS: [(&str, Check); 5] = [
     ("points on a ray project to its film position", rays_come_back),
     ("the density matches that of neighbouring rays", density_is_that_of_rays),
     ("a ray reports its own density", rays_know_their_density),
-    ("points of a plane are sampled as often as rays hit them", planes_are_seen_as_met),
+    ("points of a plane are sampled as often as rays hit them", planes_are_sampled_as_hit),
     ("nothing behind the camera or off the film is visible", nothing_is_seen_elsewhere),
 ];
 
@@ -110,7 +110,7 @@ pub fn rays_know_their_density(camera: &dyn Camera, time: f32) -> Result<(), Str
 
 /// On a tilted square in front of the camera, random points connected with the camera count as much in each cell of the
 /// film as random rays that hit the square.
-pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), String> {
+pub fn planes_are_sampled_as_hit(camera: &dyn Camera, time: f32) -> Result<(), String> {
     let middle = camera.ray(&CameraSample { film: Vec2::splat(0.45), lens: Vec2::ZERO, time });
     let (forward, distance) = (Vec3::from(middle.direction), 3.0);
     let side = forward.any_orthonormal_vector();
@@ -121,7 +121,7 @@ pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), Stri
         let index = |x: f32| (x * CELLS as f32) as usize;
         index(film.y) * CELLS + index(film.x)
     };
-    let (mut met, mut seen) = ([Tally::default(); ALL + 1], [Tally::default(); ALL + 1]);
+    let (mut traced, mut seen) = ([Tally::default(); ALL + 1], [Tally::default(); ALL + 1]);
     for i in 0..SAMPLES {
         let sample = sample(30, i, time);
         let ray = camera.ray(&sample);
@@ -131,7 +131,7 @@ pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), Stri
         let share = |x: Vec3, y: Vec3| x.cross(y).dot(across) / area;
         let inside = |x: f32| (0.0..1.0).contains(&x);
         let hit = t > 0.0 && inside(share(place, v)) && inside(share(u, place));
-        met.iter_mut().enumerate().for_each(|(c, tally)| {
+        traced.iter_mut().enumerate().for_each(|(c, tally)| {
             tally.add(f64::from(u8::from(hit && (c == ALL || c == cell(sample.film)))))
         });
         let (place, lens) = (uniforms(40, i).1, warp::sample_disc(uniforms(41, i).1));
@@ -141,11 +141,11 @@ pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), Stri
             .enumerate()
             .for_each(|(c, tally)| tally.add(found.filter(|f| c == ALL || f.0 == c).map_or(0.0, |f| f.1)));
     }
-    for (c, (met, seen)) in met.iter().zip(&seen).enumerate() {
-        let p = met.p_value(seen);
-        let sparse = c != ALL && (met.is_sparse() || seen.is_sparse());
+    for (c, (traced, seen)) in traced.iter().zip(&seen).enumerate() {
+        let p = traced.p_value(seen);
+        let sparse = c != ALL && (traced.is_sparse() || seen.is_sparse());
         if !sparse && p < SIGNIFICANCE / (ALL + 1) as f64 {
-            let (a, b) = (met.mean(), seen.mean());
+            let (a, b) = (traced.mean(), seen.mean());
             return Err(format!("cell {c}: {a:.5} of the rays, {b:.5} of the points, p = {p:.2e}"));
         }
     }

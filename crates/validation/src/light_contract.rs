@@ -28,8 +28,8 @@ pub const CHECKS: [(&str, Check); 8] = [
     ("aimed rays hit their target", aimed_rays_go_where_they_should),
     ("rays aimed everywhere add up to the power", what_is_aimed_everywhere_is_the_power),
     ("direct sampling finds the emitted light", direct_light_finds_what_was_sent),
-    ("sampled points are hit with the same density", picked_is_met),
-    ("flux through a plane agrees in both directions", flux_is_the_same_both_ways),
+    ("sampled points are hit with the same density", sampled_points_are_hit),
+    ("flux through a plane agrees in both directions", flux_agrees_in_both_directions),
 ];
 
 /// One check; an error describes what is wrong.
@@ -236,7 +236,7 @@ fn found_on_surface(
 }
 
 /// A ray in a sampled direction hits the light there, with the density with which it was sampled.
-pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
+pub fn sampled_points_are_hit(case: &LightCase) -> Result<(), String> {
     if case.light.is_delta() {
         return Ok(());
     }
@@ -267,12 +267,12 @@ pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
             format!("{pdf} for {sample:?}")
         })?;
     }
-    check(missed * 4 <= 3 * asked, || format!("{missed} of {asked} are not met"))
+    check(missed * 4 <= 3 * asked, || format!("{missed} of {asked} are not hit"))
 }
 
 /// A square in the scene receives as much in each of its cells from rays that the light emits as from points that
 /// sample the light. Occlusion is ignored, and so is light that this light leaves to other techniques.
-pub fn flux_is_the_same_both_ways(case: &LightCase) -> Result<(), String> {
+pub fn flux_agrees_in_both_directions(case: &LightCase) -> Result<(), String> {
     let corner = Vec3::new(-0.8, 0.25, -1.0);
     let (side_u, side_v) = (Vec3::new(1.6, 0.3, 0.0), Vec3::new(0.0, 0.2, 2.0));
     let across = side_u.cross(side_v);
@@ -282,7 +282,7 @@ pub fn flux_is_the_same_both_ways(case: &LightCase) -> Result<(), String> {
     };
     let mut sent = [Tally::default(); ALL + 1];
     for sample in case.samples(8, 2 * SAMPLES) {
-        let met = sample.filter(|s| s.pdf_direct > 0.0).and_then(|s| {
+        let crossing = sample.filter(|s| s.pdf_direct > 0.0).and_then(|s| {
             let t = (corner - s.p).dot(across) / s.direction.dot(across);
             let at = s.p + s.direction * t - corner;
             let u = at.cross(side_v).dot(across) / across.length_squared();
@@ -290,19 +290,19 @@ pub fn flux_is_the_same_both_ways(case: &LightCase) -> Result<(), String> {
             if t > 0.0 { Some((cell(u, v)?, power_of(&s))) } else { None }
         });
         for (i, tally) in sent.iter_mut().enumerate() {
-            tally.add(met.filter(|(c, _)| *c == i || i == ALL).map_or(0.0, |(_, power)| power));
+            tally.add(crossing.filter(|(c, _)| *c == i || i == ALL).map_or(0.0, |(_, power)| power));
         }
     }
     let mut asked = sent.map(|_| Tally::default());
     for i in 0..SAMPLES {
         let (place, u) = (uniforms(10, i).1, uniforms(11, i).1);
         let from = corner + side_u * place.x + side_v * place.y;
-        let met = case.light.sample_li(from, case.time, u).map(|s| {
+        let crossing = case.light.sample_li(from, case.time, u).map(|s| {
             let flux = s.li.luminance() * s.wi.dot(across).abs() / s.pdf_solid_angle;
             (cell(place.x, place.y), f64::from(flux))
         });
         for (i, tally) in asked.iter_mut().enumerate() {
-            tally.add(met.filter(|(c, _)| *c == Some(i) || i == ALL).map_or(0.0, |(_, flux)| flux));
+            tally.add(crossing.filter(|(c, _)| *c == Some(i) || i == ALL).map_or(0.0, |(_, flux)| flux));
         }
     }
     for (i, (sent, asked)) in sent.iter().zip(&asked).enumerate() {

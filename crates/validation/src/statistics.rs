@@ -55,7 +55,7 @@ pub fn bars(bins: &[usize]) -> String {
 }
 
 /// The probability that independent, uniform values in 0..=1 look less uniform than these do. [Kolmogorov 1933]
-pub fn evenness(values: &[f64]) -> f64 {
+pub fn uniformity_p(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len() as f64;
@@ -93,12 +93,12 @@ mod tests {
             (0..400).map(test).collect()
         };
         let (same, off) = (p_values(1.0), p_values(1.05));
-        assert!(evenness(&same) > 1e-3, "{:?}", histogram(&same));
-        assert!(evenness(&off) < 1e-6, "{:?}", histogram(&off));
+        assert!(uniformity_p(&same) > 1e-3, "{:?}", histogram(&same));
+        assert!(uniformity_p(&off) < 1e-6, "{:?}", histogram(&off));
         assert!(off.iter().copied().fold(1.0, f64::min) < 1e-3);
         // A wrong number of degrees of freedom, as if the variances of single values were those of means.
         let timid: Vec<f64> = same.iter().map(|p| powf_f64(*p, 0.25)).collect();
-        assert!(evenness(&timid) < 1e-6);
+        assert!(uniformity_p(&timid) < 1e-6);
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
             let shift = x / f64::from(n).sqrt() - 0.5 / f64::from(n);
             let values: Vec<f64> =
                 (0..n).map(|i| ((f64::from(i) + 0.5) / f64::from(n) - shift).max(0.0)).collect();
-            assert!((evenness(&values) / wanted - 1.0).abs() < 0.05, "{}", evenness(&values));
+            assert!((uniformity_p(&values) / wanted - 1.0).abs() < 0.05, "{}", uniformity_p(&values));
         }
     }
 

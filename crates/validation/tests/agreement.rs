@@ -5,7 +5,7 @@ use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
 use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
 use bilux_validation::agreement::{Evidence, Stage, Technique, stages, techniques};
-use bilux_validation::statistics::{evenness, histogram};
+use bilux_validation::statistics::{histogram, uniformity_p};
 
 /// A p-value below this means a bug, not chance.
 const UNLIKELY: f64 = 1e-4;
@@ -16,7 +16,7 @@ fn pictures(stage: &Stage, integrator: &dyn PixelIntegrator, spp: u32, seed: u64
     stage.render(integrator, spp, seed, PICTURES).unwrap()
 }
 
-fn of_way(stage: &Stage, technique: &Technique, seed: u64) -> Evidence {
+fn evidence_of(stage: &Stage, technique: &Technique, seed: u64) -> Evidence {
     let spp = if technique.name == "light" { 64 } else { 16 };
     pictures(stage, &*integrators::build(&technique.spec).unwrap(), spp, seed)
 }
@@ -41,7 +41,9 @@ fn all_unbiased_integrators_agree_block_by_block() {
                 techniques.iter().any(|b| b.name != technique.name && stage.compares(technique, b))
             };
             let found: Vec<Option<Evidence>> = (techniques.iter().enumerate())
-                .map(|(i, technique)| compared(technique).then(|| of_way(&stage, technique, 1000 * i as u64)))
+                .map(|(i, technique)| {
+                    compared(technique).then(|| evidence_of(&stage, technique, 1000 * i as u64))
+                })
                 .collect();
             for (i, a) in techniques.iter().enumerate() {
                 let Some(of_a) = &found[i] else { continue };
@@ -60,7 +62,7 @@ fn all_unbiased_integrators_agree_block_by_block() {
     }
     assert!(decided > 300, "only {decided} cells are decided");
     // The test itself: where nothing differs but the seeds, p-values are uniform.
-    let even = evenness(&by_chance);
+    let even = uniformity_p(&by_chance);
     assert!(even > 1e-3, "{:?}", histogram(&by_chance));
 }
 
@@ -89,7 +91,7 @@ fn a_biased_integrator_is_detected() {
     let cornell = bilux::generate(&Spec::new("", "cornell")).unwrap();
     let stage = &stages("cornell", &cornell, [32, 24]).unwrap()[0];
     let (path, bdpt) = (&techniques[0], &techniques[2]);
-    let of_path = of_way(stage, path, 0);
+    let of_path = evidence_of(stage, path, 0);
     let least = |camera_paths, forgets_splats| {
         let integrator = integrators::build(&bdpt.spec).unwrap();
         let buggy = Buggy { integrator, camera_paths, forgets_splats };

@@ -241,26 +241,27 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let mirror = Lobe::Mirror(Mirror { reflectance: Rgb::WHITE });
     let white = Promise { reciprocal: true, lossless: true };
     let adjoint = Promise { reciprocal: false, lossless: true };
-    let spoilt = |spoil: &dyn Fn(&mut Scatterer)| {
+    let defective = |defect: &dyn Fn(&mut Scatterer)| {
         let mut scatterer = Scatterer::from(lambert);
-        spoil(&mut scatterer);
+        defect(&mut scatterer);
         scatterer
     };
-    let tilted = spoilt(&|s| {
+    let tilted = defective(&|s| {
         s.sample = Box::new(move |wo, c, u, mode| lambert.sample(wo, c, Vec2::new(u.x, u.y * u.y), mode));
     });
-    let denser = spoilt(&|s| s.pdf = Box::new(move |wo, wi, _| 1.05 * lambert.pdf_solid_angle(wo, wi)));
-    let no_cosine =
-        spoilt(&|s| s.eval = Box::new(move |wo, wi, mode| lambert.eval(wo, wi, mode) / wi.z.abs().max(1e-3)));
-    let one_way = spoilt(&|s| {
+    let denser = defective(&|s| s.pdf = Box::new(move |wo, wi, _| 1.05 * lambert.pdf_solid_angle(wo, wi)));
+    let no_cosine = defective(&|s| {
+        s.eval = Box::new(move |wo, wi, mode| lambert.eval(wo, wi, mode) / wi.z.abs().max(1e-3))
+    });
+    let one_way = defective(&|s| {
         s.eval = Box::new(move |wo, wi, mode| lambert.eval(wo, wi, mode) * (1.0 + 0.1 * wo.z));
     });
-    let counted_twice = spoilt(&|s| {
+    let counted_twice = defective(&|s| {
         s.sample = Box::new(move |wo, c, u, mode| {
             lambert.sample(wo, c, u, mode).map(|x| bilux_scene::BsdfSample { weight: x.weight * 1.02, ..x })
         });
     });
-    let leaking = spoilt(&|s| {
+    let leaking = defective(&|s| {
         s.sample = Box::new(move |wo, c, u, mode| {
             lambert.sample(wo, c, u, mode).map(|x| bilux_scene::BsdfSample { weight: x.weight * 0.98, ..x })
         });
@@ -292,7 +293,7 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     vec![
         ("a tilted warp", "samples follow the pdf", tilted, white),
         ("pdf × 1.05", "weight times pdf is eval", denser, white),
-        ("pdf × 1.05", "samples follow the pdf", spoilt_pdf(lambert), white),
+        ("pdf × 1.05", "samples follow the pdf", defective_pdf(lambert), white),
         ("a cosine divided out", "weight times pdf is eval", no_cosine, white),
         ("a factor of one side only", "reciprocity, or else the adjoint", one_way, white),
         ("2% too much", "energy", counted_twice, white),
@@ -338,7 +339,7 @@ fn no_eta_either(lobe: Lobe) -> Scatterer {
     scatterer
 }
 
-fn spoilt_pdf(lobe: Lobe) -> Scatterer {
+fn defective_pdf(lobe: Lobe) -> Scatterer {
     let mut scatterer = Scatterer::from(lobe);
     scatterer.pdf = Box::new(move |wo, wi, _| 1.05 * lobe.pdf_solid_angle(wo, wi));
     scatterer

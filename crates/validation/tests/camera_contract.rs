@@ -10,7 +10,7 @@ fn spec(kind: &str) -> Spec {
     Spec::new("", kind).with("position", Vec3::new(1.0, 2.0, 4.0)).with("look_at", Vec3::new(0.2, 0.5, -0.5))
 }
 
-fn resting(name: &str, spec: Spec, aspect: f32) -> (String, Arc<dyn Camera>, f32) {
+fn still(name: &str, spec: Spec, aspect: f32) -> (String, Arc<dyn Camera>, f32) {
     (name.to_owned(), build(&CameraSpec { spec, keyframes: Vec::new() }, aspect).unwrap(), 0.0)
 }
 
@@ -25,7 +25,7 @@ fn moving(name: &str, spec: Spec, changes: &[(&str, Value)], time: f32) -> (Stri
 
 fn cameras() -> Vec<(String, Arc<dyn Camera>, f32)> {
     let mut cameras: Vec<_> =
-        CAMERAS.iter().map(|row| resting(row.entry.name, Spec::new("", row.entry.name), 1.0)).collect();
+        CAMERAS.iter().map(|row| still(row.entry.name, Spec::new("", row.entry.name), 1.0)).collect();
     let lens = spec("perspective").with("aperture", 0.3f32);
     let there = [
         ("position", Value::triple([-1.0, 1.5, 3.0])),
@@ -34,12 +34,12 @@ fn cameras() -> Vec<(String, Arc<dyn Camera>, f32)> {
     ];
     let wider = [("position", Value::triple([-1.0, 1.5, 3.0])), ("height", Value::Number(4.0))];
     cameras.extend([
-        resting("wide", spec("perspective").with("fov", 100.0f32), 2.4),
-        resting("upright", spec("perspective").with("fov", 20.0f32), 0.5),
-        resting("mirrored", spec("perspective").with("mirrored", true), 1.6),
-        resting("lens", lens.clone(), 1.5),
-        resting("lens, focused near", lens.clone().with("focus", 1.5f32).with("mirrored", true), 1.5),
-        resting("plan", spec("orthographic").with("height", 3.0f32), 1.7),
+        still("wide", spec("perspective").with("fov", 100.0f32), 2.4),
+        still("upright", spec("perspective").with("fov", 20.0f32), 0.5),
+        still("mirrored", spec("perspective").with("mirrored", true), 1.6),
+        still("lens", lens.clone(), 1.5),
+        still("lens, focused near", lens.clone().with("focus", 1.5f32).with("mirrored", true), 1.5),
+        still("plan", spec("orthographic").with("height", 3.0f32), 1.7),
         moving("moving lens", lens, &there, 0.4),
         moving("moving plan", spec("orthographic"), &wider, 0.7),
     ]);
@@ -56,20 +56,20 @@ fn every_camera_keeps_its_contract() {
 }
 
 /// A camera whose connections have a bug.
-struct Spoilt {
+struct BuggyCamera {
     camera: Arc<dyn Camera>,
-    spoil: Spoil,
+    defect: Defect,
 }
 
-type Spoil = fn(&dyn Camera, Vec3, Vec2, f32) -> Option<CameraConnection>;
+type Defect = fn(&dyn Camera, Vec3, Vec2, f32) -> Option<CameraConnection>;
 
-impl Camera for Spoilt {
+impl Camera for BuggyCamera {
     fn ray(&self, sample: &CameraSample) -> Ray {
         self.camera.ray(sample)
     }
 
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection> {
-        (self.spoil)(&*self.camera, from, lens, time)
+        (self.defect)(&*self.camera, from, lens, time)
     }
 
     fn density(&self, ray: &Ray, t: f32) -> f32 {
@@ -90,7 +90,7 @@ impl Camera for Spoilt {
 }
 
 /// A bug, the camera that has it, and the check that must detect it.
-const PLANTED: &[(&str, &str, &str, Spoil)] = &[
+const PLANTED: &[(&str, &str, &str, Defect)] = &[
     ("a lens not looked at", "lens", "points on a ray project to its film position", |c, from, _, time| {
         c.connect(from, Vec2::ZERO, time)
     }),
@@ -148,10 +148,10 @@ const PLANTED: &[(&str, &str, &str, Spoil)] = &[
 
 #[test]
 fn every_check_catches_its_planted_bugs() {
-    for (bug, name, check, spoil) in PLANTED {
+    for (bug, name, check, defect) in PLANTED {
         let (_, camera, time) = cameras().into_iter().find(|(found, ..)| found == name).unwrap();
         let (_, run) = CHECKS.iter().find(|(name, _)| name == check).unwrap();
-        assert!(run(&Spoilt { camera, spoil: *spoil }, time).is_err(), "{check} does not see {bug}");
+        assert!(run(&BuggyCamera { camera, defect: *defect }, time).is_err(), "{check} does not see {bug}");
     }
     for (check, _) in CHECKS {
         assert!(PLANTED.iter().any(|(_, _, name, _)| *name == check), "{check}");

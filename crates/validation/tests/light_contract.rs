@@ -175,14 +175,14 @@ fn every_light_keeps_its_contract() {
 }
 
 /// A light with a bug.
-struct Spoilt {
+struct BuggyLight {
     light: Arc<dyn Light>,
-    spoil: Spoil,
+    defect: Defect,
 }
 
 /// Where the bug is.
 #[derive(Clone, Copy)]
-enum Spoil {
+enum Defect {
     /// In the rays that it emits.
     Sent(fn(EmissionSample) -> EmissionSample),
     /// In the rays that are aimed.
@@ -193,10 +193,10 @@ enum Spoil {
     Density(fn(f32, &EmissionSample) -> f32),
 }
 
-impl Light for Spoilt {
+impl Light for BuggyLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
         let sample = self.light.sample_li(from, time, u);
-        if let Spoil::Picked(spoil) = self.spoil { sample.map(spoil) } else { sample }
+        if let Defect::Picked(defect) = self.defect { sample.map(defect) } else { sample }
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
@@ -209,17 +209,17 @@ impl Light for Spoilt {
 
     fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
         let pdf = self.light.direct_pdf(sample, from);
-        if let Spoil::Density(spoil) = self.spoil { spoil(pdf, sample) } else { pdf }
+        if let Defect::Density(defect) = self.defect { defect(pdf, sample) } else { pdf }
     }
 
     fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u: Vec2) -> Option<EmissionSample> {
         let sample = self.light.sample_le(bounds, time, u_point, u);
-        if let Spoil::Sent(spoil) = self.spoil { sample.map(spoil) } else { sample }
+        if let Defect::Sent(defect) = self.defect { sample.map(defect) } else { sample }
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let sample = self.light.sample_le_aimed(bounds, time, u, aim);
-        if let Spoil::Aimed(spoil) = self.spoil { sample.map(spoil) } else { sample }
+        if let Defect::Aimed(defect) = self.defect { sample.map(defect) } else { sample }
     }
 
     fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
@@ -230,8 +230,8 @@ impl Light for Spoilt {
         self.light.samples_all_light()
     }
 
-    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
-        self.light.shines(hit, wo)
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
+        self.light.emits_towards(hit, wo)
     }
 
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
@@ -263,7 +263,7 @@ impl Light for Spoilt {
     }
 }
 
-type Bug = (&'static str, &'static str, &'static str, Spoil);
+type Bug = (&'static str, &'static str, &'static str, Defect);
 
 /// A bug, the light that has it, and the check that must detect it.
 const PLANTED: &[Bug] = &[
@@ -271,43 +271,43 @@ const PLANTED: &[Bug] = &[
         "a scene seen from within",
         "sky",
         "samples are sound",
-        Spoil::Sent(|s| EmissionSample { p: s.p + s.direction * 3.0, ..s }),
+        Defect::Sent(|s| EmissionSample { p: s.p + s.direction * 3.0, ..s }),
     ),
     (
         "a normal on the other side",
         "ball",
         "samples are sound",
-        Spoil::Sent(|s| EmissionSample { n_light: -s.n_light, ..s }),
+        Defect::Sent(|s| EmissionSample { n_light: -s.n_light, ..s }),
     ),
     (
         "one side's density",
         "panel",
         "densities match the samples",
-        Spoil::Sent(|s| EmissionSample { pdf_emission: 2.0 * s.pdf_emission, ..s }),
+        Defect::Sent(|s| EmissionSample { pdf_emission: 2.0 * s.pdf_emission, ..s }),
     ),
     (
         "1% too dense",
         "moving ball, later",
         "emitted samples add up to the power",
-        Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
+        Defect::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
     ),
     (
         "an edge forgotten",
         "spot",
         "emitted samples add up to the power",
-        Spoil::Sent(|s| EmissionSample { le: Rgb::WHITE * 100.0, ..s }),
+        Defect::Sent(|s| EmissionSample { le: Rgb::WHITE * 100.0, ..s }),
     ),
     (
         "a cosine counted twice",
         "panel",
         "emitted samples add up to the power",
-        Spoil::Sent(|s| EmissionSample { le: s.le * s.cos(), ..s }),
+        Defect::Sent(|s| EmissionSample { le: s.le * s.cos(), ..s }),
     ),
     (
         "an aim turned about",
         "panel",
         "aimed rays hit their target",
-        Spoil::Aimed(|s| EmissionSample {
+        Defect::Aimed(|s| EmissionSample {
             direction: Vec3::new(s.direction.z, s.direction.y, -s.direction.x),
             ..s
         }),
@@ -316,49 +316,49 @@ const PLANTED: &[Bug] = &[
         "an aim past the scene",
         "sky",
         "aimed rays hit their target",
-        Spoil::Aimed(|s| EmissionSample { p: s.p + Vec3::X * 0.1, ..s }),
+        Defect::Aimed(|s| EmissionSample { p: s.p + Vec3::X * 0.1, ..s }),
     ),
     (
         "2% too dense",
         "near sphere",
         "rays aimed everywhere add up to the power",
-        Spoil::Aimed(|s| EmissionSample { pdf_emission: 1.02 * s.pdf_emission, ..s }),
+        Defect::Aimed(|s| EmissionSample { pdf_emission: 1.02 * s.pdf_emission, ..s }),
     ),
     (
         "a cosine that the aim has no part in",
         "panel",
         "rays aimed everywhere add up to the power",
-        Spoil::Aimed(|s| EmissionSample { pdf_emission: s.pdf_emission * s.cos(), ..s }),
+        Defect::Aimed(|s| EmissionSample { pdf_emission: s.pdf_emission * s.cos(), ..s }),
     ),
     (
         "the wrong instance",
         "ball of its own tree",
         "direct sampling finds the emitted light",
-        Spoil::Sent(|s| EmissionSample { primitive: Primitive { instance: 0, ..s.primitive }, ..s }),
+        Defect::Sent(|s| EmissionSample { primitive: Primitive { instance: 0, ..s.primitive }, ..s }),
     ),
     (
         "a density of its own space",
         "moving ball, later",
         "direct sampling finds the emitted light",
-        Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }),
+        Defect::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }),
     ),
     (
         "the sky upside down",
         "sky",
         "direct sampling finds the emitted light",
-        Spoil::Sent(|s| EmissionSample { direction: -s.direction, ..s }),
+        Defect::Sent(|s| EmissionSample { direction: -s.direction, ..s }),
     ),
     (
         "a picture's density of another place",
         "picture",
         "direct sampling finds the emitted light",
-        Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }),
+        Defect::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }),
     ),
     (
         "one side only",
         "panel",
         "flux through a plane agrees in both directions",
-        Spoil::Sent(|s| {
+        Defect::Sent(|s| {
             let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };
             EmissionSample { direction: s.direction - s.n_light * s.cos() + up * s.cos(), n_light: up, ..s }
         }),
@@ -367,53 +367,53 @@ const PLANTED: &[Bug] = &[
         "a narrow disc",
         "sky",
         "flux through a plane agrees in both directions",
-        Spoil::Sent(|s| EmissionSample { p: s.p * 0.9, ..s }),
+        Defect::Sent(|s| EmissionSample { p: s.p * 0.9, ..s }),
     ),
     (
         "1% too dense",
         "near sphere",
         "emitted samples add up to the power",
-        Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
+        Defect::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
     ),
     (
         "a density that forgets who asks",
         "near sphere",
         "direct sampling finds the emitted light",
-        Spoil::Density(|_, s| s.pdf_direct),
+        Defect::Density(|_, s| s.pdf_direct),
     ),
     (
         "a density of half a cone",
         "near sphere",
         "sampled points are hit with the same density",
-        Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.05 * s.pdf_solid_angle, ..s }),
+        Defect::Picked(|s| LightSample { pdf_solid_angle: 1.05 * s.pdf_solid_angle, ..s }),
     ),
     (
         "a point of the far side",
         "sphere",
         "sampled points are hit with the same density",
-        Spoil::Picked(|s| LightSample { point: s.point.map(|p| p + s.wi), ..s }),
+        Defect::Picked(|s| LightSample { point: s.point.map(|p| p + s.wi), ..s }),
     ),
     (
         "a cone of the wrong width",
         "near sphere",
         "flux through a plane agrees in both directions",
-        Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.1 * s.pdf_solid_angle, ..s }),
+        Defect::Picked(|s| LightSample { pdf_solid_angle: 1.1 * s.pdf_solid_angle, ..s }),
     ),
 ];
 
 #[test]
 fn every_check_catches_its_planted_bugs() {
     let cases = cases();
-    for (bug, name, check, spoil) in PLANTED {
+    for (bug, name, check, defect) in PLANTED {
         let sound = cases.iter().find(|case| case.name == *name).unwrap();
-        let spoilt = LightCase {
+        let defective = LightCase {
             name: name.to_string(),
             scene: sound.scene.at(&AccelChoice::default(), sound.scene.shutter()),
-            light: Arc::new(Spoilt { light: sound.light.clone(), spoil: *spoil }),
+            light: Arc::new(BuggyLight { light: sound.light.clone(), defect: *defect }),
             ..*sound
         };
         let (_, run) = CHECKS.iter().find(|(name, _)| name == check).unwrap();
-        assert!(run(&spoilt).is_err(), "{check} does not see {bug}");
+        assert!(run(&defective).is_err(), "{check} does not see {bug}");
     }
     for (check, _) in CHECKS {
         assert!(PLANTED.iter().any(|(_, _, name, _)| *name == check), "{check}");

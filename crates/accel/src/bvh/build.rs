@@ -44,8 +44,10 @@ pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, V
     }
     let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
     let mut pairs = vec![Pair::default(); items.len() - 1];
-    let root =
-        subtree(Task { items: &mut items, first_item: 0, pairs: &mut pairs, first_pair: 0, depth: 1 }, planes);
+    let root = subtree(
+        Task { items: &mut items, first_item: 0, pairs: &mut pairs, first_pair: 0, depth: 1 },
+        planes,
+    );
     let order = items.iter().map(|item| item.index).collect();
     (compact(root, pairs), order)
 }
@@ -77,8 +79,13 @@ fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
     let Some((pair, pairs)) = pairs.split_first_mut() else { return leaf };
     let (left_items, right_items) = items.split_at_mut(middle);
     let (left_pairs, right_pairs) = pairs.split_at_mut(middle - 1);
-    let left =
-        Task { items: left_items, first_item, pairs: left_pairs, first_pair: first_pair + 1, depth: depth + 1 };
+    let left = Task {
+        items: left_items,
+        first_item,
+        pairs: left_pairs,
+        first_pair: first_pair + 1,
+        depth: depth + 1,
+    };
     let right = Task {
         items: right_items,
         first_item: first_item + middle as u32,

@@ -187,7 +187,12 @@ impl Tree {
     }
 
     /// Distributes pieces over the three regions of the last node.
-    pub(super) fn distribute(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
+    pub(super) fn distribute(
+        &mut self,
+        pieces: Vec<Piece>,
+        slack: &Slack,
+        counts: &mut VisibilityCounts,
+    ) -> Sides {
         let index = self.nodes.len() as u32 - 1;
         let PartitionNode { plane, half, .. } = self.nodes[index as usize];
         // A hit is at most a radius away from its polygon.

@@ -84,13 +84,13 @@ impl Row {
 ///
 /// # Errors
 /// If a picture cannot be rendered, or a file cannot be written.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let scratch = std::env::temp_dir().join(format!("bilux-models-{}", std::process::id()));
     make_folder(&scratch)?;
     if let Some(folder) = &options.references {
         make_folder(folder)?;
     }
-    let bench = Bench { options, scratch: &scratch, tell };
+    let bench = Bench { options, scratch: &scratch, progress };
     let rows = bench.rows();
     // The generated files are no longer needed.
     let _ = std::fs::remove_dir_all(&scratch);
@@ -134,7 +134,7 @@ fn summary(rows: &[Row]) -> String {
 struct Bench<'a> {
     options: &'a Options,
     scratch: &'a Path,
-    tell: ProgressFn<'a>,
+    progress: ProgressFn<'a>,
 }
 
 impl Bench<'_> {
@@ -146,7 +146,7 @@ impl Bench<'_> {
         let mut rows = Vec::new();
         for file in files {
             let model = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-            (self.tell)(&model);
+            (self.progress)(&model);
             let reference = self.reference(&file, &model)?;
             for setting in &SETTINGS {
                 let output = self.scratch.join("picture.png");

@@ -266,12 +266,12 @@ pub(super) enum Packets {
 }
 
 /// A tree together with one way of tracing rays through it.
-pub(super) struct Asked {
+pub(super) struct EmbreeEngine {
     pub(super) tree: Rc<Tree>,
     pub(super) packets: Packets,
 }
 
-impl Engine for Asked {
+impl Engine for EmbreeEngine {
     fn mode(&self) -> Mode {
         if self.packets == Packets::One { Mode::Single } else { Mode::Batch }
     }
@@ -292,7 +292,7 @@ impl Engine for Asked {
     }
 }
 
-impl Asked {
+impl EmbreeEngine {
     fn arguments(&self) -> Arguments {
         Arguments {
             flags: if self.packets == Packets::Coherent { FLAG_COHERENT } else { 0 },

@@ -1,6 +1,6 @@
 //! The engines being measured: our structures and their competitors, behind one trait whose calls take a whole batch.
 
-use super::embree::{Asked, Embree, KINDS, Packets, Tree};
+use super::embree::{Embree, EmbreeEngine, KINDS, Packets, Tree};
 use super::{Batch, Mode};
 use crate::accels::{find, threads};
 use bilux::Error;
@@ -73,7 +73,7 @@ pub(super) fn build(
     let alone = threads(1)?;
     let mut engines = Vec::new();
     for name in accels {
-        engines.extend(ours(name, mesh, &alone)?);
+        engines.extend(own_engines(name, mesh, &alone)?);
     }
     #[cfg(feature = "peers")]
     engines.extend(super::peers::build(mesh, &alone));
@@ -83,7 +83,7 @@ pub(super) fn build(
             for (packets, suffix) in
                 [(Packets::One, ""), (Packets::Sixteen, "/16"), (Packets::Coherent, "/16-coherent")]
             {
-                let engine = Box::new(Asked { tree: tree.clone(), packets });
+                let engine = Box::new(EmbreeEngine { tree: tree.clone(), packets });
                 engines.push(Named { name: format!("{}{suffix}", kind.name), ours: false, engine });
             }
         }
@@ -104,29 +104,29 @@ pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Err
 
 /// Our structures, ray by ray and, if a structure has a batch kernel, in batches. The structures whose speed matters
 /// most are called through their concrete types, so that the query is inlined into the loop.
-fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
+fn own_engines(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
     let failed = |e: BuildError| Error::Settings(e.to_string());
     let (row, options) = find(name)?;
     let begun = Instant::now();
     Ok(match row.entry.name {
-        "bvh" => asked(name, alone.install(|| Bvh::new(mesh)).into(), begun, &[Mode::Single]),
+        "bvh" => engines_over(name, alone.install(|| Bvh::new(mesh)).into(), begun, &[Mode::Single]),
         "bvh8" => {
             let tree = alone.install(|| Bvh8::new(mesh, &options)).map_err(failed)?;
-            asked(name, tree.into(), begun, &[Mode::Single, Mode::Batch])
+            engines_over(name, tree.into(), begun, &[Mode::Single, Mode::Batch])
         }
         "bvh8-compact" => {
             let tree = alone.install(|| CompactBvh8::new(mesh, &options)).map_err(failed)?;
-            asked(name, tree.into(), begun, &[Mode::Single])
+            engines_over(name, tree.into(), begun, &[Mode::Single])
         }
         _ => {
             let tree = alone.install(|| (row.build)(mesh.clone(), &options)).map_err(failed)?;
-            asked(name, Rc::<dyn Accelerator>::from(tree), begun, &[Mode::Single])
+            engines_over(name, Rc::<dyn Accelerator>::from(tree), begun, &[Mode::Single])
         }
     })
 }
 
 /// Wraps a tree that has just been built in an engine for each mode.
-fn asked<A: Accelerator + ?Sized + 'static>(
+fn engines_over<A: Accelerator + ?Sized + 'static>(
     name: &str,
     tree: Rc<A>,
     begun: Instant,
@@ -134,14 +134,14 @@ fn asked<A: Accelerator + ?Sized + 'static>(
 ) -> Vec<Named> {
     let build_seconds = begun.elapsed().as_secs_f64();
     let named = |&mode: &Mode| {
-        let engine = Box::new(Ours { tree: tree.clone(), build_seconds, mode });
+        let engine = Box::new(OwnEngine { tree: tree.clone(), build_seconds, mode });
         Named { name: name.to_owned(), ours: true, engine }
     };
     modes.iter().map(named).collect()
 }
 
 /// One of our structures, queried ray by ray or in batches.
-struct Ours<A: ?Sized> {
+struct OwnEngine<A: ?Sized> {
     tree: Rc<A>,
     build_seconds: f64,
     mode: Mode,
@@ -150,7 +150,7 @@ struct Ours<A: ?Sized> {
 /// The number of rays in a call that takes a batch.
 const BATCH: usize = 4096;
 
-impl<A: Accelerator + ?Sized> Engine for Ours<A> {
+impl<A: Accelerator + ?Sized> Engine for OwnEngine<A> {
     fn mode(&self) -> Mode {
         self.mode
     }

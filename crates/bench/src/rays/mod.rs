@@ -22,7 +22,7 @@ use bilux::accel::{Bvh, Query, Ray};
 use bilux::formats::ReadOptions;
 use engines::{Answers, Named};
 use report::Row;
-use scenes::Subject;
+use scenes::TestMesh;
 use std::path::{Path, PathBuf};
 
 /// The benchmark's options.
@@ -91,7 +91,7 @@ enum Mode {
 ///
 /// # Errors
 /// If a file cannot be read or written, a name is unknown, or nothing in a scene is visible.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let against = engines::load(&options.against)?;
     let mut accels = options.accels.clone();
     if accels.is_empty() {
@@ -101,14 +101,14 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     accels.iter().try_for_each(|name| find(name).map(|_| ()))?;
     let mut rows = Vec::new();
     for source in scenes::sources(options)? {
-        tell(&format!("{}: rays", source.name()));
-        let (subject, batches) = source.load(options)?;
+        progress(&format!("{}: rays", source.name()));
+        let (test_mesh, batches) = source.load(options)?;
         if let Some(folder) = &options.dump {
-            files::dump(folder, &subject.name, &subject.mesh, &batches)?;
+            files::dump(folder, &test_mesh.name, &test_mesh.mesh, &batches)?;
         }
-        tell(&format!("{}: trees over {} triangles", subject.name, subject.mesh.len()));
-        let built = engines::build(&subject.mesh, &accels, &against)?;
-        measure(&subject, &batches, &built, options, tell, &mut rows)?;
+        progress(&format!("{}: trees over {} triangles", test_mesh.name, test_mesh.mesh.len()));
+        let built = engines::build(&test_mesh.mesh, &accels, &against)?;
+        measure(&test_mesh, &batches, &built, options, progress, &mut rows)?;
     }
     Ok(Report {
         rows: rows.iter().map(Row::json).collect(),
@@ -119,16 +119,16 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
 
 /// Measures one scene: every class with every engine.
 fn measure(
-    subject: &Subject,
+    test_mesh: &TestMesh,
     batches: &[Batch],
     built: &[Named],
     options: &Options,
-    tell: ProgressFn,
+    progress: ProgressFn,
     rows: &mut Vec<Row>,
 ) -> Result<(), Error> {
-    let reference = Bvh::new(&subject.mesh);
+    let reference = Bvh::new(&test_mesh.mesh);
     for batch in batches {
-        tell(&format!("{}: {} by {} engines", subject.name, batch.class, built.len()));
+        progress(&format!("{}: {} by {} engines", test_mesh.name, batch.class, built.len()));
         let truth = truth(&reference, batch);
         if let Some(path) = &options.hits {
             files::write_hits(path, &truth)?;
@@ -147,15 +147,15 @@ fn measure(
         }
         for ((named, seconds), mismatches) in built.iter().zip(seconds).zip(mismatches) {
             rows.push(Row {
-                scene: subject.name.clone(),
-                triangles: subject.mesh.len(),
+                scene: test_mesh.name.clone(),
+                triangles: test_mesh.mesh.len(),
                 class: batch.class.clone(),
                 engine: named.name.clone(),
                 ours: named.ours,
                 mode: named.engine.mode(),
                 mrays: batch.rays.len() as f64 / median(seconds) * 1e-6,
                 build_seconds: named.engine.build_seconds(),
-                bytes_per_triangle: named.engine.bytes() as f64 / subject.mesh.len().max(1) as f64,
+                bytes_per_triangle: named.engine.bytes() as f64 / test_mesh.mesh.len().max(1) as f64,
                 mismatches,
             });
         }

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A mesh with a name.
-pub(super) struct Subject {
+pub(super) struct TestMesh {
     pub(super) name: String,
     pub(super) mesh: Arc<TriangleMesh>,
 }
 
-/// Where a subject comes from.
+/// Where a test mesh comes from.
 pub(super) enum Source {
     Own { name: &'static str, generator: &'static str, parameters: &'static [(&'static str, i64)] },
     Scene(PathBuf),
@@ -23,11 +23,11 @@ pub(super) enum Source {
 }
 
 /// A name, a generator, and its parameters.
-type Own = (&'static str, &'static str, &'static [(&'static str, i64)]);
+type OwnScene = (&'static str, &'static str, &'static [(&'static str, i64)]);
 
 /// Our own scenes: small and large, uniform and non-uniform. Those after the first [`USUAL`] are traced only when
 /// named: one model from a thousand triangles to ten million.
-const OWN: [Own; 8] = [
+const OWN: [OwnScene; 8] = [
     ("teapots3", "teapots", &[("count", 3), ("tessellation", 8)]),
     ("interior", "interior", &[("detail", 2)]),
     ("scan", "scan", &[("detail", 252)]),
@@ -42,7 +42,7 @@ const USUAL: usize = 4;
 
 /// The scenes that the options ask for. The name of one of our own scenes stands for it if there is no such file.
 pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
-    let own = |&(name, generator, parameters): &Own| Source::Own { name, generator, parameters };
+    let own = |&(name, generator, parameters): &OwnScene| Source::Own { name, generator, parameters };
     if let Some(mesh) = &options.mesh {
         if options.rays.is_empty() {
             return Err(Error::Settings("--mesh needs a file of rays: add --rays FILE".into()));
@@ -85,7 +85,7 @@ impl Source {
     }
 
     /// Loads the mesh, and the rays to trace through it.
-    pub(super) fn load(&self, options: &Options) -> Result<(Subject, Vec<Batch>), Error> {
+    pub(super) fn load(&self, options: &Options) -> Result<(TestMesh, Vec<Batch>), Error> {
         let name = self.name();
         let scene = match self {
             Source::Own { generator, parameters, .. } => {
@@ -97,14 +97,14 @@ impl Source {
             Source::Files { mesh, rays } => {
                 let mesh = Arc::new(files::read_mesh(mesh)?);
                 let batches = rays.iter().map(|path| files::read_rays(path)).collect::<Result<_, _>>()?;
-                return Ok((Subject { name, mesh }, batches));
+                return Ok((TestMesh { name, mesh }, batches));
             }
         };
         let mesh = Arc::new(mesh(&scene)?);
         let batches =
             with_camera(&scene, |camera| classes::make(&mesh, camera, light(&scene), options.count))?
                 .ok_or_else(|| Error::Settings(format!("the camera of '{name}' sees nothing of it")))?;
-        Ok((Subject { name, mesh }, batches))
+        Ok((TestMesh { name, mesh }, batches))
     }
 }
 

@@ -8,11 +8,11 @@
 mod cost;
 mod curves;
 mod errors;
-mod foreseen;
 mod page;
+mod predicted;
 mod reference;
-mod subject;
 mod table;
+mod test_scene;
 
 pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
 pub use reference::{Reference, ReferenceOptions, make_references};
@@ -29,7 +29,7 @@ use cost::Clock;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
-use subject::{Subject, subjects};
+use test_scene::{TestScene, test_scenes};
 
 /// The width and height of the pictures: whole blocks of [`BLOCK`] pixels.
 pub const SIZE: (u32, u32) = (128, 96);
@@ -122,7 +122,7 @@ impl Row {
             "scene": self.scene, "integrator": self.integrator, "seconds": self.seconds, "samples": self.samples,
             "relmse": self.relmse, "relmse_trimmed": self.relmse_trimmed, "bias2": self.bias2, "mean": self.mean,
             "peak_mb": self.peak_mb, "cpu_seconds": self.took, "reference_mean": reference.mean(),
-            "reference_relmse": reference.relmse, "foreseen": compared.foreseen, "measured": compared.measured,
+            "reference_relmse": reference.relmse, "predicted": compared.predicted, "measured": compared.measured,
             "measured_trimmed": compared.measured_trimmed,
             "chosen": self.choice.as_ref().map(|choice| choice.best().techniques),
         })
@@ -143,7 +143,7 @@ struct Measured {
 ///
 /// # Errors
 /// If a scene or an integrator is unknown, or the page cannot be written.
-pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
+pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let integrators = chosen_integrators(&options.integrators)?;
     if let Some(wrong) = options.seconds.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
         return Err(Error::Settings(format!("--seconds {wrong}: a budget is a number of seconds above 0")));
@@ -152,13 +152,13 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
         std::fs::create_dir_all(folder)
             .map_err(|e| Error::Settings(format!("cannot make the folder '{}': {e}", folder.display())))?;
     }
-    let subjects = subjects(options, tell)?;
-    let cells = subjects.len() * integrators.len();
+    let test_scenes = test_scenes(options, progress)?;
+    let cells = test_scenes.len() * integrators.len();
     let mut bench =
-        Bench { options, tell, begun: Instant::now(), done: 0.0, all: cells as f64 * options.work() };
+        Bench { options, progress, begun: Instant::now(), done: 0.0, all: cells as f64 * options.work() };
     let mut measured = Vec::new();
-    for subject in subjects {
-        measured.push(bench.scene(subject, &integrators)?);
+    for test_scene in test_scenes {
+        measured.push(bench.scene(test_scene, &integrators)?);
     }
     if let Some(folder) = &options.report {
         page::write(folder, &measured, options)?;
@@ -177,7 +177,7 @@ impl Options {
 /// A run in progress.
 struct Bench<'a> {
     options: &'a Options,
-    tell: ProgressFn<'a>,
+    progress: ProgressFn<'a>,
     begun: Instant,
     /// The CPU seconds of the pictures rendered so far, and of all pictures.
     done: f64,
@@ -185,41 +185,51 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn scene(&mut self, subject: Subject, integrators: &[String]) -> Result<Measured, Error> {
-        let shown = Job::new(&subject.scene, &settings("path", 1, 0, 1))?.write_options()?;
+    fn scene(&mut self, test_scene: TestScene, integrators: &[String]) -> Result<Measured, Error> {
+        let shown = Job::new(&test_scene.scene, &settings("path", 1, 0, 1))?.write_options()?;
         let mut rows = Vec::new();
         for integrator in integrators {
             let mut speed =
-                calibrate(&subject.scene, integrator, &self.options.seconds, self.options.threads)?;
+                calibrate(&test_scene.scene, integrator, &self.options.seconds, self.options.threads)?;
             for &seconds in &self.options.seconds {
-                (self.tell)(&format!("{}, {integrator}, {seconds} s{}", subject.name, self.time_left()));
-                let row = self.cell(&subject, integrator, seconds, speed)?;
+                (self.progress)(&format!(
+                    "{}, {integrator}, {seconds} s{}",
+                    test_scene.name,
+                    self.time_left()
+                ));
+                let row = self.cell(&test_scene, integrator, seconds, speed)?;
                 speed = f64::from(row.samples) / row.took.max(1e-3);
                 rows.push(row);
             }
         }
-        let Subject { name, summary, reference, .. } = subject;
+        let TestScene { name, summary, reference, .. } = test_scene;
         Ok(Measured { scene: name, summary, reference, shown, rows })
     }
 
     /// Renders the pictures of one scene by one integrator within one budget. `speed` is samples per pixel per CPU
     /// second.
-    fn cell(&mut self, subject: &Subject, integrator: &str, seconds: f64, speed: f64) -> Result<Row, Error> {
-        let (scene, reference) = (&subject.scene, &subject.reference);
+    fn cell(
+        &mut self,
+        test_scene: &TestScene,
+        integrator: &str,
+        seconds: f64,
+        speed: f64,
+    ) -> Result<Row, Error> {
+        let (scene, reference) = (&test_scene.scene, &test_scene.reference);
         let samples = self.fitting(scene, integrator, seconds, speed)?;
         let (mut took, mut peaks, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
         let mut choice = None;
         for seed in 1..=u64::from(self.options.seeds.max(1)) {
-            let shot = shoot(scene, &settings(integrator, samples, seed, self.options.threads))?;
+            let render = shoot(scene, &settings(integrator, samples, seed, self.options.threads))?;
             self.done += seconds;
-            took.push(shot.seconds);
-            peaks.extend(shot.peak_mb);
-            pictures.push(shot.picture);
-            choice = choice.or(shot.choice);
+            took.push(render.seconds);
+            peaks.extend(render.peak_mb);
+            pictures.push(render.picture);
+            choice = choice.or(render.choice);
         }
         let over = |error: &dyn Fn(&[Rgb]) -> f64| median(pictures.iter().map(|p| error(p)).collect());
         Ok(Row {
-            scene: subject.name.clone(),
+            scene: test_scene.name.clone(),
             integrator: integrator.to_owned(),
             seconds,
             took: median(took),
@@ -270,29 +280,29 @@ fn calibrate(scene: &SceneBuilder, integrator: &str, budgets: &[f64], threads: u
     let smallest = budgets.iter().copied().fold(f64::INFINITY, f64::min);
     let mut samples = 1;
     loop {
-        let shot = shoot(scene, &settings(integrator, samples, 0, threads))?;
-        let speed = f64::from(samples) / shot.seconds.max(1e-3);
-        if shot.seconds >= 0.2 * smallest || samples > 1 << 20 {
+        let render = shoot(scene, &settings(integrator, samples, 0, threads))?;
+        let speed = f64::from(samples) / render.seconds.max(1e-3);
+        if render.seconds >= 0.2 * smallest || samples > 1 << 20 {
             return Ok(speed);
         }
-        samples *= if shot.seconds < 0.04 * smallest { 4 } else { 2 };
+        samples *= if render.seconds < 0.04 * smallest { 4 } else { 2 };
     }
 }
 
 /// A picture and its cost.
-struct Shot {
+struct TimedRender {
     seconds: f64,
     peak_mb: Option<f64>,
     picture: Vec<Rgb>,
     choice: Option<Choice>,
 }
 
-fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<Shot, Error> {
+fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<TimedRender, Error> {
     let job = Job::new(scene, settings)?;
     let clock = Clock::start(job.settings().threads);
     let outcome = job.render(&Quiet)?;
     let (seconds, peak_mb) = clock.stop();
-    Ok(Shot { seconds, peak_mb, picture: outcome.film.to_rgb(), choice: outcome.choice })
+    Ok(TimedRender { seconds, peak_mb, picture: outcome.film.to_rgb(), choice: outcome.choice })
 }
 
 fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {

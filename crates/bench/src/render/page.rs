@@ -152,7 +152,7 @@ fn base64(bytes: &[u8]) -> String {
 
 const LEGEND: &str = "<p class=\"note\"><b>relMSE</b>: the mean of (x − r)² / (r² + 0.01) over pixels and channels. \
     <b>trimmed</b>: without the worst 0.1% of the pixels. <b>bias² of it</b>: the fraction of the error that would remain with any number of seeds, from means over blocks of 8×8 pixels. <b>mean</b>: brighter or darker than the reference. <b>/ path</b>: error \
-    over that of <code>path</code> in the same time. <b>s to 0.01</b>: CPU seconds to a relMSE of 0.01, if the error falls with time as noise does. <b>foreseen</b>, <b>measured</b>, <b>and trimmed</b>: time to the same error as a multiple of the time that <code>auto</code> takes: as its pilot render predicted it, by relMSE, and without the worst 0.1% of the pixels. Maps of errors go from black (none) to pale yellow (as large as the light itself).</p>";
+    over that of <code>path</code> in the same time. <b>s to 0.01</b>: CPU seconds to a relMSE of 0.01, if the error falls with time as noise does. <b>predicted</b>, <b>measured</b>, <b>and trimmed</b>: time to the same error as a multiple of the time that <code>auto</code> takes: as its pilot render predicted it, by relMSE, and without the worst 0.1% of the pixels. Maps of errors go from black (none) to pale yellow (as large as the light itself).</p>";
 
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Bilux: light transport, measured\
 </title><meta name=\"viewport\" content=\"width=device-width\"><style>\

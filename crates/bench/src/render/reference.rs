@@ -1,7 +1,7 @@
 //! References: long renders by two unbiased integrators that must agree before they are averaged.
 
 use super::errors::{block_means, mean};
-use super::subject::{chosen_scenes, generated};
+use super::test_scene::{chosen_scenes, generated};
 use super::{SIZE, calibrate, settings, shoot};
 use crate::{ProgressFn, Report};
 use bilux::Error;
@@ -59,7 +59,7 @@ pub struct ReferenceOptions {
 }
 
 /// Integrators that find all light in every scene, in different ways.
-const WITNESSES: [&str; 2] = ["path", "bdpt"];
+const REFERENCE_INTEGRATORS: [&str; 2] = ["path", "bdpt"];
 
 /// The number of pictures per integrator, each with its own seed, from which the variance is estimated.
 const PARTS: u64 = 16;
@@ -78,13 +78,13 @@ const AGREE: f64 = 1e-3;
 ///
 /// # Errors
 /// If a scene is unknown, or a file cannot be written.
-pub fn make_references(making: &ReferenceOptions, tell: ProgressFn) -> Result<Report, Error> {
+pub fn make_references(making: &ReferenceOptions, progress: ProgressFn) -> Result<Report, Error> {
     let (mut rows, mut lines) = (Vec::new(), Vec::new());
     for (name, _) in chosen_scenes(&making.scenes)? {
         let mut found = Vec::new();
-        for integrator in WITNESSES {
-            tell(&format!("{name}: {integrator}"));
-            found.push(Witness::ask(&generated(name)?, integrator, making)?);
+        for integrator in REFERENCE_INTEGRATORS {
+            progress(&format!("{name}: {integrator}"));
+            found.push(ReferenceRender::ask(&generated(name)?, integrator, making)?);
         }
         let [a, b] = &found[..] else { continue };
         let p = a.agreement(b);
@@ -104,7 +104,7 @@ pub fn make_references(making: &ReferenceOptions, tell: ProgressFn) -> Result<Re
             mean(&b.mean()),
             if agrees { "" } else { ": THEY DISAGREE, nothing written" }
         ));
-        tell(lines.last().map_or("", |line| line));
+        progress(lines.last().map_or("", |line| line));
         rows.push(json!({
             "scene": name, "origin": reference.origin, "relmse": reference.relmse, "p": p, "agrees": agrees,
             "mean": reference.mean(),
@@ -118,39 +118,39 @@ pub(super) fn make_reference(
     name: &str,
     scene: &SceneBuilder,
     making: &ReferenceOptions,
-    tell: ProgressFn,
+    progress: ProgressFn,
 ) -> Result<(Reference, Option<f64>), Error> {
     let ask = |integrator| {
-        tell(&format!("{name}: {integrator}, for the reference"));
-        Witness::ask(scene, integrator, making)
+        progress(&format!("{name}: {integrator}, for the reference"));
+        ReferenceRender::ask(scene, integrator, making)
     };
-    let [a, b] = WITNESSES.map(ask);
+    let [a, b] = REFERENCE_INTEGRATORS.map(ask);
     let (a, b) = (a?, b?);
     let p = a.agreement(&b);
     Ok((a.joined(&b), (p <= AGREE).then_some(p)))
 }
 
 /// One integrator's pictures of a scene.
-struct Witness {
+struct ReferenceRender {
     name: &'static str,
     /// Samples per pixel in each part.
     samples: u32,
     parts: Vec<Vec<Rgb>>,
 }
 
-impl Witness {
+impl ReferenceRender {
     fn ask(
         scene: &SceneBuilder,
         integrator: &'static str,
         making: &ReferenceOptions,
-    ) -> Result<Witness, Error> {
+    ) -> Result<ReferenceRender, Error> {
         let budget = making.seconds / PARTS as f64;
         let speed = calibrate(scene, integrator, &[budget], making.threads)?;
         let samples = ((speed * budget).round() as u32).max(1);
         let part =
             |k| Ok(shoot(scene, &settings(integrator, samples, FIRST_SEED + k, making.threads))?.picture);
         let parts = (0..PARTS).map(part).collect::<Result<_, Error>>()?;
-        Ok(Witness { name: integrator, samples, parts })
+        Ok(ReferenceRender { name: integrator, samples, parts })
     }
 
     fn mean(&self) -> Vec<Rgb> {
@@ -179,8 +179,8 @@ impl Witness {
 
     /// The probability that two integrators with equal means differ by as much in any block: the minimum p-value of
     /// Welch's tests over all blocks and channels, corrected for their number. [Welch 1947; Šidák 1967]
-    fn agreement(&self, other: &Witness) -> f64 {
-        let blocks = |w: &Witness| -> Vec<Vec<f64>> {
+    fn agreement(&self, other: &ReferenceRender) -> f64 {
+        let blocks = |w: &ReferenceRender| -> Vec<Vec<f64>> {
             w.parts.iter().map(|p| block_means(p, SIZE.0 as usize, SIDE)).collect()
         };
         let (a, b) = (blocks(self), blocks(other));
@@ -191,7 +191,7 @@ impl Witness {
     }
 
     /// Averages both, each weighted according to its error over the whole picture.
-    fn joined(&self, other: &Witness) -> Reference {
+    fn joined(&self, other: &ReferenceRender) -> Reference {
         let (a, b) = (self.mean(), other.mean());
         let (error_a, error_b) = (self.error_relative_to(&a), other.error_relative_to(&a));
         let all = (error_a + error_b).max(f64::MIN_POSITIVE);
@@ -199,7 +199,7 @@ impl Witness {
         let pixels = a.iter().zip(&b).map(|(a, b)| (*a * of_a as f32 + *b * of_b as f32).map(shortened));
         let pixels: Vec<Rgb> = pixels.collect();
         let [e, f] = [self, other].map(|w| w.error_relative_to(&pixels));
-        let reported = |w: &Witness| {
+        let reported = |w: &ReferenceRender| {
             format!("{} {} samples a pixel", w.name, u64::from(w.samples) * w.parts.len() as u64)
         };
         Reference {
@@ -246,23 +246,23 @@ mod tests {
     use bilux_math::hash::{hash_words, unit_f32};
 
     /// Parts of noise around a mean.
-    fn witness(kind: u64, mean: f32) -> Witness {
+    fn reference_render(kind: u64, mean: f32) -> ReferenceRender {
         let pixels = u64::from(SIZE.0 * SIZE.1);
         let noise = |part: u64, i: u64| unit_f32(hash_words([kind, part, i]) as u32) - 0.5;
         let part = |part| (0..pixels).map(|i| Rgb::grey(mean + noise(part, i))).collect();
-        Witness { name: "noise", samples: 4, parts: (0..PARTS).map(part).collect() }
+        ReferenceRender { name: "noise", samples: 4, parts: (0..PARTS).map(part).collect() }
     }
 
     #[test]
     fn equal_means_agree_and_others_do_not() {
-        let (a, b, c) = (witness(1, 1.0), witness(2, 1.0), witness(3, 1.05));
+        let (a, b, c) = (reference_render(1, 1.0), reference_render(2, 1.0), reference_render(3, 1.05));
         assert!(a.agreement(&b) > 0.05, "{}", a.agreement(&b));
         assert!(a.agreement(&c) < AGREE, "{}", a.agreement(&c));
     }
 
     #[test]
     fn a_reference_knows_its_error() {
-        let (a, b) = (witness(4, 1.0), witness(5, 1.0));
+        let (a, b) = (reference_render(4, 1.0), reference_render(5, 1.0));
         let reference = a.joined(&b);
         // Uniform noise of width 1 over 32 parts.
         let wanted = 1.0 / 12.0 / (2.0 * PARTS as f64) / 1.01;

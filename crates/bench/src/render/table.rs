@@ -38,7 +38,7 @@ pub(super) const HEADER: [&str; 14] = [
     "/ path",
     "s to 0.01",
     "MB",
-    "foreseen",
+    "predicted",
     "measured",
     "and trimmed",
 ];
@@ -69,7 +69,7 @@ pub(super) fn cells(scene: &Measured, row: &Row) -> Vec<String> {
         optional(path, 3),
         short(row.took * row.relmse / TARGET),
         optional(row.peak_mb, 0),
-        times(compared.foreseen),
+        times(compared.predicted),
         times(compared.measured),
         times(compared.measured_trimmed),
     ]

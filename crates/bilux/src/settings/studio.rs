@@ -33,7 +33,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         }
         false => None,
     };
-    let [up, front] = ["up", "front"].map(|key| Axis::named(&reader.text(key)));
+    let [up, front] = ["up", "front"].map(|key| Axis::from_name(&reader.text(key)));
     if up.zip(front).is_some_and(|(up, front)| up.index() == front.index()) {
         let message =
             "up and front lie on the same axis: choose two different axes, such as up z and front -y";
@@ -42,7 +42,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
     Ok(Studio {
         up,
         front,
-        ground: Ground::named(&reader.text("ground")),
+        ground: Ground::from_name(&reader.text("ground")),
         orbit,
         focal: reader.is_given("focal").then(|| reader.number("focal")),
         aspect: None,

@@ -79,12 +79,12 @@ pub fn write(
     let strategies = job.strategies(outcome, &report)?;
     let seconds = report.finish();
     let Some(strategies) = strategies else {
-        output::say(format_args!("{}: interrupted, so it was not written", folder.display()));
+        output::eprint(format_args!("{}: interrupted, so it was not written", folder.display()));
         return Ok(false);
     };
     write_strategies(&strategies, &folder, &job.write_options()?)?;
     if !common.quiet {
-        output::say(format_args!(
+        output::eprint(format_args!(
             "{}: {} strategies for paths of up to {MAX_EDGES} edges, {seconds:.2} s{}",
             folder.display(),
             strategies.pictures.len(),
@@ -119,7 +119,7 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
     }
     bilux::pictures::write(&path, &interval.to_picture()?, &WriteOptions::default())?;
     if !common.quiet {
-        output::say(format_args!(
+        output::eprint(format_args!(
             "{}: 95% intervals of {} samples in {} replicates",
             path.display(),
             interval.samples(),

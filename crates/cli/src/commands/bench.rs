@@ -27,21 +27,21 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         check_folder(path).map_err(usage::wrong)?;
         bilux::pictures::format_of_path(path).map_err(usage::wrong)?;
     }
-    let tell = |what: &str| {
+    let progress = |what: &str| {
         if !common.quiet {
-            output::say(format_args!("measuring {what}"));
+            output::eprint(format_args!("measuring {what}"));
         }
     };
     let report = match arguments.kind {
-        BenchKind::Paper => bilux_bench::paper::run(&options, &tell)?,
-        BenchKind::Teapots => bilux_bench::teapots::run(&options, &tell)?,
-        BenchKind::Frames => bilux_bench::frames::run(&options, &tell)?,
-        BenchKind::Visibility => bilux_bench::visibility::run(&options, &tell)?,
-        BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
-        BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
-        BenchKind::Render => render(arguments, common, &tell)?,
-        BenchKind::Load => load(arguments, common, &tell)?,
-        BenchKind::Models => models(arguments, &tell)?,
+        BenchKind::Paper => bilux_bench::paper::run(&options, &progress)?,
+        BenchKind::Teapots => bilux_bench::teapots::run(&options, &progress)?,
+        BenchKind::Frames => bilux_bench::frames::run(&options, &progress)?,
+        BenchKind::Visibility => bilux_bench::visibility::run(&options, &progress)?,
+        BenchKind::Build => bilux_bench::build::run(&options, &progress)?,
+        BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &progress)?,
+        BenchKind::Render => render(arguments, common, &progress)?,
+        BenchKind::Load => load(arguments, common, &progress)?,
+        BenchKind::Models => models(arguments, &progress)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?)?;
@@ -59,7 +59,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
 fn render(
     arguments: &Bench,
     common: &Common,
-    tell: bilux_bench::ProgressFn,
+    progress: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::render::{Options, ReferenceOptions, make_references, run};
     let defaults = Options::default();
@@ -67,7 +67,7 @@ fn render(
         let seconds = arguments.seconds.last().copied().unwrap_or(MINUTE);
         let scenes = arguments.gallery.clone();
         let making = ReferenceOptions { folder: folder.clone(), scenes, seconds, threads: arguments.threads };
-        return Ok(make_references(&making, tell)?);
+        return Ok(make_references(&making, progress)?);
     }
     let options = Options {
         scenes: arguments.gallery.clone(),
@@ -80,24 +80,24 @@ fn render(
         threads: arguments.threads,
         report: arguments.report.clone(),
     };
-    Ok(run(&options, tell)?)
+    Ok(run(&options, progress)?)
 }
 
 /// Runs `bench load` with one process per file, so that each file's memory is measured on its own.
 fn load(
     arguments: &Bench,
     common: &Common,
-    tell: bilux_bench::ProgressFn,
+    progress: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::load::{Options, make, report, run};
     let repeats = arguments.repeats.unwrap_or(5);
     if let [file] = arguments.scenes.as_slice() {
         let options = Options { files: vec![file.clone()], repeats, read: read_options(common) };
-        return Ok(run(&options, tell)?);
+        return Ok(run(&options, progress)?);
     }
     let folder = std::env::temp_dir().join(format!("bilux-load-{}", std::process::id()));
     let files = if arguments.scenes.is_empty() {
-        tell("files of 100 MB and a million instances, generated now");
+        progress("files of 100 MB and a million instances, generated now");
         std::fs::create_dir_all(&folder)
             .with_context(|| format!("{}: cannot create the folder", folder.display()))?;
         make(&folder, 100_000_000, 1_000_000)?
@@ -105,7 +105,7 @@ fn load(
         arguments.scenes.clone()
     };
     let rows = files.iter().map(|file| {
-        tell(&file.display().to_string());
+        progress(&file.display().to_string());
         let mut command = std::process::Command::new(std::env::current_exe()?);
         command.args(["bench", "load", "--json", "--quiet", "--repeats", &repeats.to_string()]);
         command.args(["--max-memory", &common.max_memory.to_string()]).arg(file);
@@ -123,7 +123,7 @@ fn load(
 }
 
 /// Runs `bench models` with this program itself.
-fn models(arguments: &Bench, tell: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
+fn models(arguments: &Bench, progress: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::models::{Options, SECONDS, run};
     let options = Options {
         program: std::env::current_exe()?,
@@ -131,7 +131,7 @@ fn models(arguments: &Bench, tell: bilux_bench::ProgressFn) -> anyhow::Result<bi
         seconds: arguments.seconds.last().copied().unwrap_or(SECONDS),
         references: arguments.references.clone(),
     };
-    Ok(run(&options, tell)?)
+    Ok(run(&options, progress)?)
 }
 
 /// The default time in seconds that each integrator spends on a reference.

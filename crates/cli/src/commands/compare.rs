@@ -54,7 +54,7 @@ fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
         write_heat_map(&picture, &reference, path)?;
     }
     let broken = broken_bounds(arguments, &report);
-    broken.iter().for_each(|bound| output::say(format_args!("out of bounds: {bound}")));
+    broken.iter().for_each(|bound| output::eprint(format_args!("out of bounds: {bound}")));
     Ok(if broken.is_empty() { DONE } else { BEYOND })
 }
 

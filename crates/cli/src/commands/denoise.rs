@@ -5,7 +5,7 @@ use crate::arguments::{Common, Denoise};
 use crate::sandbox::SandboxPaths;
 use crate::values::Exposure;
 use crate::{output, usage};
-use bilux::pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux::pictures::denoise::{DenoiserChoice, Task, denoise, denoiser};
 use bilux::pictures::formats::format_of_path;
 use bilux::pictures::{Limits, WriteOptions, auto_exposure, tone_map};
 use std::io::IsTerminal;
@@ -40,13 +40,13 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     bilux::pictures::write(output, &smooth, &options)?;
     if !common.quiet {
         let shows_advice = common.verbose > 0 || std::io::stderr().is_terminal();
-        output::say(format_args!("{}: {}", output.display(), summary(&chosen, seconds, shows_advice)));
+        output::eprint(format_args!("{}: {}", output.display(), summary(&chosen, seconds, shows_advice)));
     }
     Ok(DONE)
 }
 
 /// Which denoiser ran, and how to get a better one.
-fn summary(chosen: &Chosen, seconds: f64, shows_advice: bool) -> String {
+fn summary(chosen: &DenoiserChoice, seconds: f64, shows_advice: bool) -> String {
     let advice = chosen
         .advice
         .as_ref()

@@ -2,7 +2,7 @@
 
 use crate::output;
 use bilux::budget::DEFAULT_BUDGET;
-use bilux::pictures::denoise::Chosen;
+use bilux::pictures::denoise::DenoiserChoice;
 use bilux::{Job, Outcome};
 use serde_json::json;
 use std::io::IsTerminal;
@@ -21,7 +21,7 @@ pub struct Rendered<'a> {
     /// Seconds from reading the scene to the last byte written.
     pub total_seconds: f64,
     /// The denoiser that was used.
-    pub denoiser: Option<&'a Chosen>,
+    pub denoiser: Option<&'a DenoiserChoice>,
     /// Whether `--timeout` ended it.
     pub timed_out: bool,
     /// Why it took longer than its time limit, if it did.
@@ -41,7 +41,7 @@ impl Rendered<'_> {
     }
 
     /// Prints the report as text: one line, and more with `-v`.
-    pub fn tell(&self, verbose: u8) {
+    pub fn print(&self, verbose: u8) {
         let (s, output) = (self.job.settings(), self.output.display());
         if verbose > 0 {
             self.report_orientation();
@@ -55,9 +55,9 @@ impl Rendered<'_> {
             false => "",
         };
         if let Some(overrun) = &self.overrun {
-            output::say(format_args!("{output}: {overrun}"));
+            output::eprint(format_args!("{output}: {overrun}"));
         }
-        output::say(format_args!(
+        output::eprint(format_args!(
             "{output}: {}x{}, {} samples per pixel, {:.1} s{noise}{}{cut}",
             s.width,
             s.height,
@@ -68,7 +68,7 @@ impl Rendered<'_> {
         // A log is no place for advice on what to install.
         let advice = self.denoiser.and_then(|chosen| chosen.advice.as_ref());
         if let Some(advice) = advice.filter(|_| verbose > 0 || std::io::stderr().is_terminal()) {
-            output::say(format_args!("{output}: {advice}"));
+            output::eprint(format_args!("{output}: {advice}"));
         }
     }
 
@@ -77,11 +77,11 @@ impl Rendered<'_> {
         static SAID: std::sync::Once = std::sync::Once::new();
         if let Some(orientation) = self.job.orientation() {
             let (up, front) = (orientation.up.name(), orientation.front.name());
-            let because = orientation.because.words();
+            let source = orientation.source.words();
             let scene = self.scene.display();
             SAID.call_once(|| {
-                output::say(format_args!(
-                    "{scene}: up is {up}, front is {front}, {because} (change it with --up and \
+                output::eprint(format_args!(
+                    "{scene}: up is {up}, front is {front}, {source} (change it with --up and \
                                           --front)"
                 ));
             });
@@ -91,9 +91,9 @@ impl Rendered<'_> {
     fn report_details(&self) {
         let (s, outcome, output) = (self.job.settings(), self.outcome, self.output.display());
         if let Some(choice) = &outcome.choice {
-            output::say(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
+            output::eprint(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
         }
-        output::say(format_args!(
+        output::eprint(format_args!(
             "{output}: {} with {}, built in {:.2} s, rendered in {:.2} s, {:.2} million rays per second",
             s.integrator.entry.name,
             s.accel.name,
@@ -103,7 +103,7 @@ impl Rendered<'_> {
         ));
         // The samples that measure the noise are also in the mean; this reports the bias where it may matter.
         if let Some(bias) = outcome.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05) {
-            output::say(format_args!(
+            output::eprint(format_args!(
                 "{output}: stopping at a noise level biases the mean by at most {bias:.2} of the noise"
             ));
         }
@@ -131,7 +131,7 @@ pub fn print_failure(scene: &Path, picture: &Path, error: &anyhow::Error) -> any
 /// Reports the default limits of a render for which nobody set any.
 pub fn report_default_budget(output: &Path) {
     let (noise, seconds) = DEFAULT_BUDGET;
-    output::say(format_args!(
+    output::eprint(format_args!(
         "{}: renders until {}% noise or {seconds} s; --noise and --time-limit change these limits, and --spp makes \
          the picture the same on every machine",
         output.display(),
@@ -141,17 +141,17 @@ pub fn report_default_budget(output: &Path) {
 
 /// Reports samples that are not finite or overflowed: they are counted and located, never hidden.
 pub fn report_sample_failures(outcome: &Outcome) {
-    let trouble = outcome.film.trouble();
-    if let Some(first) = trouble.first_non_finite {
+    let failures = outcome.film.sample_failures();
+    if let Some(first) = failures.first_non_finite {
         output::warning(format_args!(
             "{} samples were not finite and are left out; see the first with --replay {},{},{}",
-            trouble.non_finite, first.x, first.y, first.sample
+            failures.non_finite, first.x, first.y, first.sample
         ));
     }
-    if let Some(first) = trouble.first_overflowed {
+    if let Some(first) = failures.first_overflowed {
         output::warning(format_args!(
             "{} samples were brighter than the film can hold; see the first with --replay {},{},{}",
-            trouble.overflowed, first.x, first.y, first.sample
+            failures.overflowed, first.x, first.y, first.sample
         ));
     }
 }

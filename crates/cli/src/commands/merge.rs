@@ -46,7 +46,7 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     bilux::pictures::write(&arguments.output, &picture, &Default::default())?;
     if !common.quiet {
         let parts = arguments.parts.len();
-        output::say(format_args!("{}: {parts} parts merged", arguments.output.display()));
+        output::eprint(format_args!("{}: {parts} parts merged", arguments.output.display()));
     }
     Ok(DONE)
 }

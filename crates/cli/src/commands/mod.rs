@@ -98,7 +98,7 @@ fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> 
 /// Prints what is worth knowing about a file though nothing is wrong with it, with `-v`.
 fn report_notes(notes: &[Warning], common: &Common) {
     if common.verbose > 0 {
-        notes.iter().for_each(|note| output::say(format_args!("note: {note}")));
+        notes.iter().for_each(|note| output::eprint(format_args!("note: {note}")));
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::formats::ReadOptions;
-use bilux::pictures::denoise::Chosen;
+use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
@@ -253,7 +253,9 @@ fn render_scene(
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     if common.verbose > 0 {
-        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", target.output.display())));
+        job.notes()
+            .iter()
+            .for_each(|note| output::eprint(format_args!("{}: {note}", target.output.display())));
     }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample).context("--replay")?)?;
@@ -321,7 +323,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
         output::print(rendered.json())?;
     }
     if !common.quiet {
-        rendered.tell(common.verbose);
+        rendered.print(common.verbose);
     }
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
 }
@@ -358,7 +360,7 @@ fn write(
     input: &Input,
     job: &Job,
     outcome: &Outcome,
-    denoiser: Option<&Chosen>,
+    denoiser: Option<&DenoiserChoice>,
     output: &Path,
 ) -> anyhow::Result<bool> {
     let arguments = input.arguments;

@@ -35,7 +35,11 @@ enum Interpolation {
 
 impl Pose {
     /// Three or four numbers of a node, if they are animated.
-    pub(super) fn numbers<const N: usize>(&self, node: usize, property: AnimatedProperty) -> Option<[f64; N]> {
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        node: usize,
+        property: AnimatedProperty,
+    ) -> Option<[f64; N]> {
         self.moved.get(&(node, property))?.as_slice().try_into().ok()
     }
 
@@ -153,7 +157,13 @@ impl<'d> Gltf<'d, '_, '_> {
         if !values.iter().all(|x| x.is_finite()) {
             return Err(output.node.error("an animation has numbers that are infinite or not numbers (NaN)"));
         }
-        let keys = Keys { times: &times, values: &values, width, interpolation, turns: property == AnimatedProperty::Rotation };
+        let keys = Keys {
+            times: &times,
+            values: &values,
+            width,
+            interpolation,
+            turns: property == AnimatedProperty::Rotation,
+        };
         let value = keys.at(f64::from(self.time));
         self.reading.budget.release(self.reading.budget.spent() - spent);
         if property == AnimatedProperty::Rotation && value.iter().all(|x| *x == 0.0) {

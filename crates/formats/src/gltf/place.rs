@@ -20,7 +20,8 @@ pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, 
     let (translation, rotation, scale) =
         (node.numbers::<3>("translation")?, node.numbers::<4>("rotation")?, node.numbers::<3>("scale")?);
     let translation = pose.numbers(index, AnimatedProperty::Translation).or(translation).unwrap_or([0.0; 3]);
-    let rotation = pose.numbers(index, AnimatedProperty::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let rotation =
+        pose.numbers(index, AnimatedProperty::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let scale = pose.numbers(index, AnimatedProperty::Scale).or(scale).unwrap_or([1.0; 3]);
     compose(translation, rotation, scale).ok_or_else(|| {
         FormatError::malformed("this rotation is zero and has no effect", node.at_key("rotation"))

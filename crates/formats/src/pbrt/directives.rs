@@ -3,7 +3,7 @@
 use super::colours::SPACES;
 use super::lexer::{Lexer, Token, shown};
 use super::parameters::{self, ParameterList};
-use super::reader::{Entity, Scope, Pbrt, ObjectInstance};
+use super::reader::{Entity, ObjectInstance, Pbrt, Scope};
 use super::state::{MaterialKey, TARGETS};
 use super::unknown;
 use crate::FormatError;

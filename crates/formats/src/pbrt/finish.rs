@@ -1,7 +1,7 @@
 //! Finishes a scene after all files are read: resolves names and adds everything to the scene.
 
 use super::lights::AreaEmission;
-use super::reader::{Alpha, Pbrt, Piece, ShapeGeometry, SurfaceAttributes, ObjectInstance};
+use super::reader::{Alpha, ObjectInstance, Pbrt, Piece, ShapeGeometry, SurfaceAttributes};
 use super::state::Matrices;
 use super::texture_or_value::TextureOrValue;
 use super::unknown;
@@ -173,7 +173,8 @@ impl Pbrt<'_, '_> {
             None => [0; 3],
         };
         // In an object instance nothing emits, so its material differs.
-        let key = (SurfaceAttributes { area_light: glow.and(attributes.area_light), ..attributes.clone() }, bits);
+        let key =
+            (SurfaceAttributes { area_light: glow.and(attributes.area_light), ..attributes.clone() }, bits);
         if let Some(known) = resolved_attributes.materials.get(&key) {
             return Ok(*known);
         }

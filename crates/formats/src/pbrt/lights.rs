@@ -61,7 +61,11 @@ impl Pbrt<'_, '_> {
     }
 
     /// The colour of a parameter, white by default, times the scales of the light and of the film.
-    pub(super) fn scaled_spectrum(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
+    pub(super) fn scaled_spectrum(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+    ) -> Result<Rgb, FormatError> {
         let colour = self.spectrum(list, name, SpectrumType::Light)?.unwrap_or(Rgb::WHITE);
         let shone = colour * self.light_scale(list)?;
         if shone.max_channel() > MAX_LIGHT {

@@ -209,7 +209,11 @@ impl Pbrt<'_, '_> {
     }
 
     /// The colour of a spectrum parameter.
-    pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: SpectrumType) -> Result<Rgb, FormatError> {
+    pub(super) fn colour_of(
+        &mut self,
+        parameter: &Parameter,
+        meaning: SpectrumType,
+    ) -> Result<Rgb, FormatError> {
         let at = &parameter.at;
         let wrong = |wanted: &str| {
             let message = format!("'{}' must be {wanted}", parameter.name);

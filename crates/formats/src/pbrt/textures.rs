@@ -127,7 +127,11 @@ impl Pbrt<'_, '_> {
         Ok(source)
     }
 
-    fn make_texture(&mut self, entity: &Entity, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
+    fn make_texture(
+        &mut self,
+        entity: &Entity,
+        meaning: SpectrumType,
+    ) -> Result<TextureOrValue, FormatError> {
         let list = &entity.parameters;
         if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
             let source = make(self, list, meaning)?;
@@ -210,12 +214,20 @@ impl Pbrt<'_, '_> {
     }
 }
 
-fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
+fn constant(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    meaning: SpectrumType,
+) -> Result<TextureOrValue, FormatError> {
     pbrt.part(list, "value", meaning, 1.0)
 }
 
 /// The product of two textures; in version 4, of a texture and a number.
-fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
+fn scale(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    meaning: SpectrumType,
+) -> Result<TextureOrValue, FormatError> {
     let (a, b) = if list.has("tex1") || list.has("tex2") {
         (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
     } else {
@@ -276,7 +288,11 @@ fn checkerboard(
     })
 }
 
-fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
+fn bilerp(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    meaning: SpectrumType,
+) -> Result<TextureOrValue, FormatError> {
     let mut corner = |name, default| Ok::<_, FormatError>(pbrt.part(list, name, meaning, default)?.mean());
     let (v00, v01, v10, v11) =
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);

@@ -26,7 +26,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    fn named(name: &[u8]) -> Option<Scalar> {
+    fn from_name(name: &[u8]) -> Option<Scalar> {
         Some(match name {
             b"char" | b"int8" => Scalar::I8,
             b"uchar" | b"uint8" => Scalar::U8,
@@ -196,7 +196,7 @@ fn read_element(cursor: &mut Cursor, places: &Places, offset: usize) -> Result<E
 fn read_property(cursor: &mut Cursor, places: &Places) -> Result<Property, FormatError> {
     let scalar = |cursor: &mut Cursor| {
         let word = cursor.word();
-        Scalar::named(word).ok_or_else(|| {
+        Scalar::from_name(word).ok_or_else(|| {
             let message = format!(
                 "{} is not a PLY type: use char, uchar, short, ushort, int, uint, float or double",
                 quoted(word)

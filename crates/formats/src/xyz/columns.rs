@@ -26,7 +26,7 @@ const NAMES: [&[&str]; 7] = [
 
 impl Columns {
     /// From the names in a header line; `None` if it does not name x, y and z.
-    pub(super) fn named(names: &[String]) -> Option<Columns> {
+    pub(super) fn from_header(names: &[String]) -> Option<Columns> {
         let column = |meaning: usize| {
             names.iter().take(MAX).position(|name| {
                 let name = name.trim_matches(['"', '/', '#']).to_lowercase();

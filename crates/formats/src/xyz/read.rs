@@ -76,7 +76,7 @@ impl Xyz<'_, '_, '_> {
                         self.point(&row, columns)?;
                     }
                 }
-                Line::Words(names) if lines == 0 => columns = Columns::named(&names),
+                Line::Words(names) if lines == 0 => columns = Columns::from_header(&names),
                 Line::Words(_) => {
                     let words = "a line has words instead of numbers and is left out";
                     let places = self.places;

@@ -77,7 +77,8 @@ fn damage() -> impl Strategy<Value = Damage> {
         (any::<usize>(), any::<u8>()).prop_map(|(at, byte)| Damage::Set(at, byte)),
         (any::<usize>(), 1usize..40).prop_map(|(at, n)| Damage::Remove(at, n)),
         (any::<usize>(), 1usize..80).prop_map(|(at, n)| Damage::Repeat(at, n)),
-        (any::<usize>(), prop::sample::select(words.to_vec())).prop_map(|(at, word)| Damage::Insert(at, word)),
+        (any::<usize>(), prop::sample::select(words.to_vec()))
+            .prop_map(|(at, word)| Damage::Insert(at, word)),
     ]
 }
 

@@ -46,7 +46,7 @@ pub trait Denoiser {
 }
 
 /// A chosen denoiser, with its expected time and advice.
-pub struct Chosen {
+pub struct DenoiserChoice {
     /// The denoiser.
     pub denoiser: Box<dyn Denoiser>,
     /// Approximate run time.
@@ -75,7 +75,7 @@ impl Task {
     }
 
     /// Number of threads, at least 1.
-    pub fn threads_at_work(&self) -> usize {
+    pub fn thread_count(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         if self.threads == 0 { cores() } else { self.threads }
     }
@@ -103,7 +103,7 @@ impl Preload {
 ///
 /// # Errors
 /// Returns an error when there is no such denoiser, or it is not available here.
-pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
+pub fn denoiser(name: &str, task: &Task) -> Result<DenoiserChoice, PictureError> {
     let is_auto = name == "auto";
     // A denoiser that was requested by name may take as long as it needs.
     let task = &Task { time: task.time.filter(|_| is_auto), ..*task };
@@ -120,7 +120,7 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
                 );
                 advice = advice.or(Some(longer));
             }
-            Ok(denoiser) => return Ok(Chosen { denoiser, time, advice }),
+            Ok(denoiser) => return Ok(DenoiserChoice { denoiser, time, advice }),
             Err(missing) if is_auto => advice = advice.or(Some(missing).filter(|_| !task.sandboxed)),
             Err(missing) => return Err(PictureError::NoDenoiser { what: missing }),
         }

@@ -89,18 +89,18 @@ impl Noisy {
             }
         }
         let variance = rgb(["variance.R", "variance.G", "variance.B"])?;
-        let mut layers = vec![Layer { colour, variance: variance.map(tamed) }];
+        let mut layers = vec![Layer { colour, variance: variance.map(finite_or_black) }];
         if let Some(colour) = light {
             let variance = rgb(["light_variance.R", "light_variance.G", "light_variance.B"])?;
-            layers.push(Layer { colour, variance: variance.map(tamed) });
+            layers.push(Layer { colour, variance: variance.map(finite_or_black) });
         }
-        let normal = rgb(["normal.X", "normal.Y", "normal.Z"])?.map(tamed);
+        let normal = rgb(["normal.X", "normal.Y", "normal.Z"])?.map(finite_or_black);
         Ok(Noisy {
             width,
             height,
             layers,
             albedo: rgb(["albedo.R", "albedo.G", "albedo.B"])?
-                .map(|plane| tamed(plane).into_iter().map(|c| c.clamp(0.0, 1.0)).collect()),
+                .map(|plane| finite_or_black(plane).into_iter().map(|c| c.clamp(0.0, 1.0)).collect()),
             normal: normal.map(|plane| plane.into_iter().map(|n| n.to_array()).collect()),
             depth: picture.channel("depth.Z").map(|depth| depth[pixels.clone()].to_vec()),
         })
@@ -120,7 +120,7 @@ fn joined([r, g, b]: [&[f32]; 3]) -> Result<Vec<Rgb>, PictureError> {
 }
 
 /// Replaces colours that are not finite by black.
-fn tamed(mut plane: Vec<Rgb>) -> Vec<Rgb> {
+fn finite_or_black(mut plane: Vec<Rgb>) -> Vec<Rgb> {
     plane.iter_mut().filter(|c| !c.is_finite()).for_each(|c| *c = Rgb::BLACK);
     plane
 }

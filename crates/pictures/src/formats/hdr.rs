@@ -5,7 +5,7 @@
 
 use super::{PictureFormatEntry, WriteOptions, require_colour};
 use crate::limits::{reserved, zeroed};
-use crate::picture::hold_within;
+use crate::picture::clamp_sample;
 use crate::{Limits, Picture, PictureError};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -298,7 +298,7 @@ fn decode([r, g, b, e]: [u8; 4]) -> Rgb {
 
 /// Rounds to the nearest mantissas. Negative values and NaN become 0; infinity becomes the format's maximum.
 fn encode(colour: Rgb) -> [u8; 4] {
-    let colour = colour.map(|c| hold_within(c, GREATEST));
+    let colour = colour.map(|c| clamp_sample(c, GREATEST));
     let brightest = colour.max_channel();
     if brightest < f32::MIN_POSITIVE {
         return [0; 4];

@@ -25,7 +25,7 @@ pub use guard::{guarded_decoding, is_decoding};
 pub use rgba8::{Rgba8, read_rgba8};
 
 use crate::error::nearest;
-use crate::picture::hold_within;
+use crate::picture::clamp_sample;
 use crate::tonemap::{TONEMAPS, ToneMapEntry, to_display};
 use crate::{Limits, Picture, PictureError};
 use bilux_math::Rgb;
@@ -286,7 +286,7 @@ impl DisplayPlanes {
 
 /// Quantises a sample of 0..=1 to `steps`, rounded half up. In f64, so that every step survives a round trip.
 pub(crate) fn quantise(sample: f32, steps: f64) -> u32 {
-    (f64::from(hold_within(sample, 1.0)) * steps + 0.5).floor() as u32
+    (f64::from(clamp_sample(sample, 1.0)) * steps + 0.5).floor() as u32
 }
 
 /// Splits interleaved samples into planes of `f32`.

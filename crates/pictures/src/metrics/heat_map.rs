@@ -51,7 +51,7 @@ pub fn ramp(error: f32) -> Rgb {
         [254, 194, 135],
         [252, 253, 191],
     ];
-    let place = crate::picture::hold_within(error, 1.0) * (STOPS.len() - 1) as f32;
+    let place = crate::picture::clamp_sample(error, 1.0) * (STOPS.len() - 1) as f32;
     let stop = (place as usize).min(STOPS.len() - 2);
     let [low, high] =
         [STOPS[stop], STOPS[stop + 1]].map(|s| Rgb::from_array(s.map(|c| f32::from(c) / 255.0)));

@@ -12,7 +12,7 @@ pub use exposure::auto_exposure;
 
 use crate::PictureError;
 use crate::error::nearest;
-use crate::picture::{Picture, hold_within};
+use crate::picture::{Picture, clamp_sample};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
@@ -55,7 +55,7 @@ pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Res
     }
     let mut shown = shown.into_linear();
     let gain = bilux_math::transcendental::powf(2.0, exposure);
-    apply(&mut shown, |colour| (curve.map)(colour.map(|c| hold_within(c * gain, f32::MAX))));
+    apply(&mut shown, |colour| (curve.map)(colour.map(|c| clamp_sample(c * gain, f32::MAX))));
     Ok(shown.into_srgb())
 }
 
@@ -76,6 +76,6 @@ fn apply(picture: &mut Picture, map: impl Fn(Rgb) -> Rgb) {
         samples
             .iter_mut()
             .zip(&mapped)
-            .for_each(|(sample, colour)| *sample = hold_within(colour[index], 1.0));
+            .for_each(|(sample, colour)| *sample = clamp_sample(colour[index], 1.0));
     }
 }

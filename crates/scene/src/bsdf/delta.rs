@@ -23,7 +23,7 @@ impl Bsdf {
         u_choice: f32,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
-        if mode == TransportMode::Importance && !self.holds_both_ways(lobe, wo) {
+        if mode == TransportMode::Importance && !self.works_in_both_directions(lobe, wo) {
             return self.sample_delta_importance(lobe, wo, u_choice);
         }
         let about = |frame: &Frame| {
@@ -38,7 +38,7 @@ impl Bsdf {
     /// True when the interpolated normal works for `wo`, and for every other direction that could have led to `wo`.
     ///
     /// That is nearly always so, and much cheaper to test than to compute all probabilities.
-    fn holds_both_ways(&self, lobe: &Lobe, wo: Vec3) -> bool {
+    fn works_in_both_directions(&self, lobe: &Lobe, wo: Vec3) -> bool {
         if self.frame.n == self.n_geom {
             return true;
         }

@@ -28,7 +28,7 @@ impl BsdfForWo<'_> {
     /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the reverse direction, bit for bit; `None` where it is
     /// black.
     #[inline]
-    pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
+    pub fn eval_and_pdfs(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
         let BsdfForWo { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
         if bsdf.is_special() {
             let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);

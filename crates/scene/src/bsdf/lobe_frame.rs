@@ -18,7 +18,7 @@ pub(super) struct Parts([Bsdf; 2]);
 impl Bsdf {
     /// The same BSDF with one of its lobes, by index, about a normal of its own, which [bends](Bsdf::bending) if
     /// `bends` is true.
-    pub fn with_apart(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
+    pub fn with_lobe_frame(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
         let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
         let apart = LobeFrame { index: index as u8, n, bends: bends && n != self.n_geom };
         Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
@@ -27,11 +27,11 @@ impl Bsdf {
     /// The two parts, if a lobe has its own normal.
     #[inline]
     pub(super) fn parts(&self) -> Option<Parts> {
-        self.apart.as_ref().map(|apart| self.parted(apart))
+        self.apart.as_ref().map(|apart| self.split_lobes(apart))
     }
 
     #[inline(never)]
-    fn parted(&self, apart: &LobeFrame) -> Parts {
+    fn split_lobes(&self, apart: &LobeFrame) -> Parts {
         let index = usize::from(apart.index);
         let about = |frame, bends| Bsdf { bends, splits: self.splits, ..Bsdf::empty(frame, self.n_geom) };
         let mut shared = about(self.frame, self.bends);

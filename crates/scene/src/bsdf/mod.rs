@@ -400,8 +400,8 @@ mod tests {
                 let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi, mode));
                 assert_eq!(bsdf.eval_and_pdf(wo, wi, mode), apart);
                 let back = bsdf.pdf_solid_angle(wi, wo, mode.reversed());
-                let both_ways = (!apart.0.is_black()).then_some((apart.0, apart.1, back));
-                assert_eq!(bsdf.facing(wo, mode).both_ways(wi), both_ways);
+                let expected = (!apart.0.is_black()).then_some((apart.0, apart.1, back));
+                assert_eq!(bsdf.facing(wo, mode).eval_and_pdfs(wi), expected);
                 let apart = (a.eval(wo, wi, mode), a.pdf_solid_angle(wo, wi));
                 assert_eq!(a.eval_and_pdf(wo, wi, mode), apart);
             }

@@ -57,9 +57,9 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             .collect::<Result<Vec<_>, SceneError>>()?;
         let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
         let aspect = if mirrored { -aspect } else { aspect };
-        let mut camera = Perspective { keys, aspect, resting: None };
+        let mut camera = Perspective { keys, aspect, static_key: None };
         if camera.keys.len() == 1 {
-            camera.resting = Some(camera.key_at(0.0));
+            camera.static_key = Some(camera.key_at(0.0));
         }
         Ok(Arc::new(camera))
     },
@@ -82,7 +82,7 @@ struct Perspective {
     /// Width over height; negative when mirrored.
     aspect: f32,
     /// The constant result of [`Perspective::key_at`] when there is only one key.
-    resting: Option<(Key, [Vec3; 3])>,
+    static_key: Option<(Key, [Vec3; 3])>,
 }
 
 #[derive(Clone, Copy)]
@@ -134,8 +134,8 @@ impl Key {
 
 impl Perspective {
     fn key_at(&self, time: f32) -> (Key, [Vec3; 3]) {
-        if let Some(resting) = self.resting {
-            return resting;
+        if let Some(static_key) = self.static_key {
+            return static_key;
         }
         let (low, high, t) = around(&self.keys, time);
         let key = if t == 0.0 { *low } else { low.lerp(high, t) };

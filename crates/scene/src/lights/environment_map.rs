@@ -56,7 +56,7 @@ impl EnvironmentMap {
     /// A map whose colours are multiplied by `scale`, rotated to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
         // Densities are defined per texel.
-        let texture = texture.pictured(false).map_or(texture, |(picture, _)| Arc::new(picture));
+        let texture = texture.baked(false).map_or(texture, |(picture, _)| Arc::new(picture));
         let (columns, rows) = (texture.width().min(MAX.0), texture.height().min(MAX.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
         let mut map = EnvironmentMap {

@@ -23,7 +23,7 @@ pub struct MeshLight {
     middle: Vec3,
     motion: Motion,
     /// The triangles in world space; empty when they move.
-    resting: Vec<LightTriangle>,
+    static_triangles: Vec<LightTriangle>,
     /// The mean radiance over its area.
     radiance: Rgb,
     picture: Option<Picture>,
@@ -114,7 +114,7 @@ impl MeshLight {
         }
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
-        let resting = Vec::new();
+        let static_triangles = Vec::new();
         let turn = if mirrored { -1.0 } else { 1.0 };
         let mut light = MeshLight {
             triangles,
@@ -122,7 +122,7 @@ impl MeshLight {
             first,
             middle,
             motion,
-            resting,
+            static_triangles,
             radiance,
             picture,
             sides,
@@ -130,7 +130,7 @@ impl MeshLight {
             classic,
         };
         if light.motion.is_still() {
-            light.resting = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
+            light.static_triangles = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
         Some(light)
     }
@@ -150,8 +150,8 @@ impl MeshLight {
     }
 
     fn facet(&self, triangle: usize, time: f32) -> LightTriangle {
-        if let Some(resting) = self.resting.get(triangle) {
-            return *resting;
+        if let Some(stored) = self.static_triangles.get(triangle) {
+            return *stored;
         }
         let corners @ [a, b, c] = self.corners(triangle, time);
         let normal = (b - a).cross(c - a);
@@ -329,7 +329,7 @@ impl Light for MeshLight {
         pdf_direct * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
     }
 
-    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
         let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
         self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
     }

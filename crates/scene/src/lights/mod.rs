@@ -120,7 +120,7 @@ impl Sides {
     }
 
     /// The sides with one of [`Sides::NAMES`].
-    pub(crate) fn named(name: &str) -> Sides {
+    pub(crate) fn from_name(name: &str) -> Sides {
         if name == "front" { Sides::Front } else { Sides::Both }
     }
 
@@ -207,7 +207,7 @@ pub trait Light: Send + Sync {
     fn is_infinite(&self) -> bool;
 
     /// False where a point of its surface emits no light towards `wo`, because the light is one-sided.
-    fn shines(&self, _hit: &Surface, _wo: Vec3) -> bool {
+    fn emits_towards(&self, _hit: &Surface, _wo: Vec3) -> bool {
         true
     }
 

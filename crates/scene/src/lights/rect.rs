@@ -57,7 +57,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         };
-        let sides = Sides::named(&reader.text("sides"));
+        let sides = Sides::from_name(&reader.text("sides"));
         Ok(BuiltLight::Surface { mesh: Arc::new(mesh), emission, sides, classic: given_classic(reader) })
     },
 };

@@ -162,8 +162,8 @@ impl Light for SphereLight {
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
-        let is_met = hit.is_some_and(|hit| hit.primitive == self.primitive && hit.n_geom.dot(wi) < 0.0);
-        let cone = if is_met { self.cone(from) } else { None };
+        let is_hit = hit.is_some_and(|hit| hit.primitive == self.primitive && hit.n_geom.dot(wi) < 0.0);
+        let cone = if is_hit { self.cone(from) } else { None };
         cone.map_or(0.0, |cone| warp::cap_pdf_solid_angle(cone.height))
     }
 
@@ -209,7 +209,7 @@ impl Light for SphereLight {
         self.uniform_pdf_area() * warp::cosine_hemisphere_pdf_solid_angle(cos)
     }
 
-    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
         hit.n_geom.dot(wo) > 0.0
     }
 

@@ -52,7 +52,7 @@ pub(super) fn read(
     let picture = texture(reader, "emission", ingredients)?;
     let scale = reader.colour(if picture.is_some() { "emission_scale" } else { "emission" });
     let brightest = picture.as_deref().map_or(scale, |picture| brightest(picture) * scale);
-    let sides = Sides::named(&reader.text("emission_sides"));
+    let sides = Sides::from_name(&reader.text("emission_sides"));
     let map = ColourMap { colour: scale, texture: picture };
     Ok((!brightest.is_black()).then_some(SurfaceEmission { map, brightest, sides }))
 }

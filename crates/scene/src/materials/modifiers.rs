@@ -26,8 +26,11 @@ pub(super) fn dress(
     let normals = normal_map::read(reader, ingredients)?;
     let glow = if has(emission::EMISSION.name) { emission::read(reader, ingredients)? } else { None };
     let opacity = opacity::read(reader, ingredients)?;
-    let visible =
-        if has(VISIBLE_SIDES.name) { Sides::named(&reader.text(VISIBLE_SIDES.name)) } else { Sides::Both };
+    let visible = if has(VISIBLE_SIDES.name) {
+        Sides::from_name(&reader.text(VISIBLE_SIDES.name))
+    } else {
+        Sides::Both
+    };
     if normals.is_none() && glow.is_none() && opacity.is_none() && visible == Sides::Both {
         return Ok(material);
     }

@@ -28,7 +28,7 @@ impl Axis {
     pub const ALL: [Axis; 6] = [Axis::X, Axis::Y, Axis::Z, Axis::NegX, Axis::NegY, Axis::NegZ];
 
     /// The axis of a name, with an optional leading `+`.
-    pub fn named(name: &str) -> Option<Axis> {
+    pub fn from_name(name: &str) -> Option<Axis> {
         let name = name.trim().to_lowercase();
         let name = name.strip_prefix('+').unwrap_or(&name);
         Axis::ALL.into_iter().find(|axis| axis.name() == name)
@@ -95,12 +95,12 @@ pub struct Orientation {
     /// The axis that points to the front.
     pub front: Axis,
     /// How this is known.
-    pub because: Because,
+    pub source: OrientationSource,
 }
 
 /// How the orientation of a model is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Because {
+pub enum OrientationSource {
     /// The user asked for it.
     Asked,
     /// The file's format specifies it.
@@ -111,14 +111,14 @@ pub enum Because {
     Shape,
 }
 
-impl Because {
+impl OrientationSource {
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
-            Because::Asked => "as asked",
-            Because::Format => "as its format defines",
-            Because::Usual => "as is usual in its format",
-            Because::Shape => "guessed from its shape",
+            OrientationSource::Asked => "as asked",
+            OrientationSource::Format => "as its format defines",
+            OrientationSource::Usual => "as is usual in its format",
+            OrientationSource::Shape => "guessed from its shape",
         }
     }
 }
@@ -142,13 +142,13 @@ impl Orientation {
         let before = front_of(found);
         let looks_back = || shape.as_ref().is_some_and(|shape| shape.looks_back(found, before));
         let turned = front.unwrap_or_else(|| if looks_back() { before.opposite() } else { before });
-        let because = match (up.is_some() || front.is_some(), is_open) {
-            (true, _) => Because::Asked,
-            (false, false) => Because::Format,
-            (false, true) if found == usual && turned == before => Because::Usual,
-            (false, true) => Because::Shape,
+        let source = match (up.is_some() || front.is_some(), is_open) {
+            (true, _) => OrientationSource::Asked,
+            (false, false) => OrientationSource::Format,
+            (false, true) if found == usual && turned == before => OrientationSource::Usual,
+            (false, true) => OrientationSource::Shape,
         };
-        (turned.index() != found.index()).then_some(Orientation { up: found, front: turned, because })
+        (turned.index() != found.index()).then_some(Orientation { up: found, front: turned, source })
     }
 
     /// The rotation that takes up to +y and the front to +z.

@@ -61,7 +61,7 @@ impl SceneParts {
         materials: Vec<Arc<dyn Material>>,
         mut lights: Vec<SceneLight>,
         panels: &[(usize, Rgb)],
-        lamps: &[(String, Option<Rgb>)],
+        sphere_lights: &[(String, Option<Rgb>)],
         cameras: Vec<(String, Arc<dyn Camera>)>,
         textures: Vec<Vec<Arc<Texture>>>,
     ) -> SceneParts {
@@ -85,7 +85,7 @@ impl SceneParts {
                 lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
             }
         }
-        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(lamps).enumerate() {
+        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(sphere_lights).enumerate() {
             let material = &materials[sphere.material as usize];
             let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
             let primitive = geometry.sphere_primitive(i as u32);
@@ -165,7 +165,7 @@ impl Scene {
         let bounds = |o: &crate::geometry::Placed| {
             let bounds = o.motion.bounds_over(&o.mesh.bounds(), shutter);
             // Surfaces that lie on the bounds are inside, whatever is rounded.
-            bounds.grown(1e-3 * bounds.radius())
+            bounds.expanded(1e-3 * bounds.radius())
         };
         let absorbers = parts.geometry.objects().iter().filter(absorbs).map(bounds).collect();
         Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets, absorbers }
@@ -262,7 +262,7 @@ impl Scene {
             None => material.emission(),
         };
         let shines = || match self.light_index_of(surface.object) {
-            Some(light) => self.lights()[light].light.shines(surface, wo),
+            Some(light) => self.lights()[light].light.emits_towards(surface, wo),
             None => true,
         };
         if emission.is_black() || !shines() { Rgb::BLACK } else { emission }
@@ -276,7 +276,7 @@ impl Scene {
 
     /// How far a ray may travel inside an object that absorbs light and whose medium has no priority, if it begins in
     /// one: up to where it leaves the objects' bounds. `None` where it begins in none.
-    pub fn absorbed_up_to(&self, ray: &Ray) -> Option<f32> {
+    pub fn absorption_distance(&self, ray: &Ray) -> Option<f32> {
         let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
         let around = self.absorbers.iter().filter(|bounds| bounds.contains(origin));
         let exit = |bounds: &Aabb| {

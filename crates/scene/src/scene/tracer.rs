@@ -34,7 +34,7 @@ impl Scene {
 
     /// True when a camera in the direction `towards` from a surface sees through it.
     #[inline]
-    pub fn hides(&self, surface: &Surface, towards: Vec3) -> bool {
+    pub fn camera_sees_through(&self, surface: &Surface, towards: Vec3) -> bool {
         self.parts.hides_backs
             && self.material(surface).visible_sides() == Sides::Front
             && self.front(surface).dot(towards) <= 0.0

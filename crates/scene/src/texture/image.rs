@@ -82,14 +82,14 @@ impl Image {
                 Rgb::grey(alpha.get(index).copied().unwrap_or(1.0))
             }
             Texels::Floats { colours, .. } => Channel::of(channel, colours[index]),
-            Texels::Formula(formula) => self.worked_out(formula, index, channel),
+            Texels::Formula(formula) => self.eval_procedural(formula, index, channel),
         }
     }
 
     /// The texel of a procedural texture; a separate function, to keep look-ups of stored texels small.
     #[cold]
     #[inline(never)]
-    fn worked_out(&self, formula: &Formula, index: usize, channel: Option<Channel>) -> Rgb {
+    fn eval_procedural(&self, formula: &Formula, index: usize, channel: Option<Channel>) -> Rgb {
         Channel::of(channel, formula.at(centre(index, self.width, self.height)))
     }
 }

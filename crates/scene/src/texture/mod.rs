@@ -230,7 +230,7 @@ impl Texture {
     #[inline]
     fn look_up(&self, image: &Image, uv: Vec2) -> Rgb {
         if let Texels::Formula(formula) = &image.texels {
-            return self.worked_out(formula, uv);
+            return self.eval_procedural(formula, uv);
         }
         if !image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
@@ -257,7 +257,7 @@ impl Texture {
 
     /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
     #[inline(never)]
-    fn worked_out(&self, formula: &Formula, uv: Vec2) -> Rgb {
+    fn eval_procedural(&self, formula: &Formula, uv: Vec2) -> Rgb {
         let downwards = |uv: Vec2| Vec2::new(uv.x, 1.0 - uv.y);
         let uv = self.transform.map_or(uv, |transform| downwards(transform.apply(downwards(uv))));
         if !uv.is_finite() {

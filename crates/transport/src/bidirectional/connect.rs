@@ -17,7 +17,7 @@ pub(crate) fn to_camera<const N: usize>(
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
     let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
-    if scattered.is_black() || task.scene().hides(&y.surface, seen.wi) {
+    if scattered.is_black() || task.scene().camera_sees_through(&y.surface, seen.wi) {
         return None;
     }
     let media = y.media_towards(task.scene(), seen.wi);
@@ -43,7 +43,7 @@ pub(crate) fn show_to_camera<const N: usize>(
         task.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, found)) = to_camera(task, y, techniques) {
-            tally.there(film, Technique::Joined { s: y.count(), t: 1 }, &found);
+            tally.add_splat(film, Technique::Joined { s: y.count(), t: 1 }, &found);
         }
     }
 }
@@ -76,7 +76,7 @@ pub(crate) fn to_light<const N: usize>(
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
     let pdf_emission =
         task.emission.pdf(scene, index, z.surface.p, pdf_direct / area_to_angle, -sample.wi, cos_light);
-    let met = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
+    let ratio = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
@@ -84,8 +84,8 @@ pub(crate) fn to_light<const N: usize>(
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
     let light = task.seen(light, z.is_split());
     Some(Contribution {
-        others: Lanes::ONE * met + from_light,
-        favour: favour(met),
+        others: Lanes::ONE * ratio + from_light,
+        favour: favour(ratio),
         ..Contribution::only(light)
     })
 }
@@ -135,7 +135,7 @@ pub(crate) fn merged<const N: usize>(
         if z.depth + spot.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
-        let Some((scattered, pdf, back)) = facing.both_ways(y.wo) else { return };
+        let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };
         // Photons arrive per area of the surface that they fell on, and grazing ones are rare; `eval` contains the
         // cosine to the shading normal. With the normal at `z`, a grazing photon from around a bend could have any
         // brightness.

@@ -144,7 +144,7 @@ pub(crate) fn light_vertices<const N: usize>(
 ) -> Vec<Vertex<N>> {
     let mut vertices = Vec::new();
     let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
-    while let Some(vertex) = walk.meet(task) {
+    while let Some(vertex) = walk.next_vertex(task) {
         // The last event of the longest path is on the camera's side.
         let ends = vertex.depth + 1 >= task.max_depth;
         let stream = LIGHT_STREAM + 1 + u64::from(vertex.depth);

@@ -77,9 +77,9 @@ pub(crate) trait Tally<const N: usize> {
     fn spend(&mut self, _step: Step, _count: usize) {}
 
     /// Adds to the pixel of the camera subpath.
-    fn here(&mut self, technique: Technique, found: &Contribution<N>);
+    fn add_sample(&mut self, technique: Technique, found: &Contribution<N>);
     /// Adds at a point of the film (0..=1 on both axes), as an integral over the whole film.
-    fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
+    fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 
 impl TechniqueCounts {
@@ -107,7 +107,7 @@ impl TechniqueCounts {
 
 impl<const N: usize> TechniqueCounts<N> {
     /// Packs single sets into lanes; they treat direct light alike.
-    pub(crate) fn together(mut sets: impl Iterator<Item = TechniqueCounts>) -> TechniqueCounts<N> {
+    pub(crate) fn pack(mut sets: impl Iterator<Item = TechniqueCounts>) -> TechniqueCounts<N> {
         let mut all =
             TechniqueCounts { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
         for k in 0..N {

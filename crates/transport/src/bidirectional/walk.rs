@@ -126,7 +126,7 @@ impl<'w, const N: usize> Walk<'w, N> {
     }
 
     /// Traces to the next surface; `None` where the ray leaves the scene.
-    pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex<N>> {
+    pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
         let mut media = self.media.unwrap_or_else(|| Media::at_start(task.tracer, &self.ray));
         let Some((surface, passed)) = media.closest(task.tracer, &self.ray) else {
             task.note(self.depth, || {

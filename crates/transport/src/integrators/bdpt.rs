@@ -105,10 +105,10 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.techniques);
         loop {
             tally.spend(Step::Camera, 1);
-            let Some(mut z) = walk.meet(task) else {
+            let Some(mut z) = walk.next_vertex(task) else {
                 let technique = Technique::Joined { s: 0, t: count(walk.depth) };
-                from_infinity(task, &walk, |met| {
-                    tally.here(technique, &met.by(walk.seen(task), &walk.partial))
+                from_infinity(task, &walk, |hit| {
+                    tally.add_sample(technique, &hit.by(walk.seen(task), &walk.partial))
                 });
                 return;
             };
@@ -118,12 +118,12 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 walk.partial = z.partial;
             }
             // s = 0: the subpath has hit a light by itself.
-            if let Some(met) = emitted(task, &z.surface, z.wo) {
-                let seen = || Contribution::only(walk.seen(task) * met.radiance);
+            if let Some(hit) = emitted(task, &z.surface, z.wo) {
+                let seen = || Contribution::only(walk.seen(task) * hit.radiance);
                 let technique = Technique::Joined { s: 0, t: z.count() };
-                tally.here(
+                tally.add_sample(
                     technique,
-                    &if z.depth == 0 { seen() } else { met.by(walk.seen(task), &z.partial) },
+                    &if z.depth == 0 { seen() } else { hit.by(walk.seen(task), &z.partial) },
                 );
             }
             if z.depth >= task.max_depth {
@@ -135,7 +135,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 self.joins(&z, light_path, task, tally);
                 if let Some(photons) = self.photons {
                     tally.spend(Step::Lookup, 1);
-                    merged(task, photons, &z, |technique, found| tally.here(technique, found));
+                    merged(task, photons, &z, |technique, found| tally.add_sample(technique, found));
                 }
             }
             if !walk.scatter(&z, self.roulette_depth, task) {
@@ -155,7 +155,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             }
             tally.spend(Step::Picked, 1);
             if let Some(found) = to_light(task, z, index, u, self.techniques) {
-                tally.here(Technique::Joined { s: 1, t: z.count() }, &found);
+                tally.add_sample(Technique::Joined { s: 1, t: z.count() }, &found);
             }
         }
     }
@@ -166,7 +166,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
             tally.spend(Step::Joined, 1);
             if let Some(found) = to_vertex(task, z, y, self.techniques) {
-                tally.here(Technique::Joined { s: y.count(), t: z.count() }, &found);
+                tally.add_sample(Technique::Joined { s: y.count(), t: z.count() }, &found);
             }
         }
     }
@@ -182,10 +182,10 @@ pub(super) fn of_camera_path(
     /// Sums the light of the pixel itself.
     struct PixelSum(Rgb);
     impl Tally<1> for PixelSum {
-        fn here(&mut self, _way: Technique, found: &Contribution) {
+        fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
             self.0 += found.weighted();
         }
-        fn there(&mut self, _film: Vec2, _way: Technique, _found: &Contribution) {}
+        fn add_splat(&mut self, _film: Vec2, _technique: Technique, _found: &Contribution) {}
     }
     let mut sum = PixelSum(Rgb::BLACK);
     BothEnds::new(techniques, roulette_depth).camera_path(ray, &[], task, &mut sum);
@@ -199,10 +199,10 @@ pub(super) struct Sum<'a, 's> {
 }
 
 impl Tally<1> for Sum<'_, '_> {
-    fn here(&mut self, _way: Technique, found: &Contribution) {
+    fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
         self.here += found.weighted();
     }
-    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution) {
         self.splats.add(film, found.weighted());
     }
 }

@@ -46,13 +46,13 @@ impl PixelIntegrator for Sppm {
         );
         let mut sum = Rgb::BLACK;
         loop {
-            let Some(z) = walk.meet(task) else {
+            let Some(z) = walk.next_vertex(task) else {
                 // Lights that are visible, in mirrors too; photons bring the light that they give to other surfaces.
-                from_infinity(task, &walk, |met| sum += walk.seen(task) * met.radiance);
+                from_infinity(task, &walk, |hit| sum += walk.seen(task) * hit.radiance);
                 return sum;
             };
-            if let Some(met) = emitted(task, &z.surface, z.wo) {
-                sum += walk.seen(task) * met.radiance;
+            if let Some(hit) = emitted(task, &z.surface, z.wo) {
+                sum += walk.seen(task) * hit.radiance;
             }
             if z.depth >= task.max_depth {
                 return sum;

@@ -123,7 +123,10 @@ impl<'a> NodePairs<'a> {
     pub(super) fn split(self, pairs: usize) -> (NodePairs<'a>, NodePairs<'a>) {
         let (front, back) = self.nodes.split_at_mut(2 * pairs);
         let first_pair = self.first_pair;
-        (NodePairs { nodes: front, first_pair }, NodePairs { nodes: back, first_pair: first_pair + pairs as u32 })
+        (
+            NodePairs { nodes: front, first_pair },
+            NodePairs { nodes: back, first_pair: first_pair + pairs as u32 },
+        )
     }
 
     pub(super) fn lend(&mut self) -> NodePairs<'_> {

@@ -2,7 +2,7 @@
 
 use super::level::{Boxes, Level, lanes};
 use super::node_format::NodeFormat;
-use super::stack::{StackStorage, Stack};
+use super::stack::{Stack, StackStorage};
 use super::{TreeView, leaf, plain};
 use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
@@ -249,7 +249,8 @@ unsafe fn count_early_outs<L: Level, F: NodeFormat, C: Count>(
 ) {
     if count.counters().is_some() {
         // SAFETY: as the caller promises.
-        let (all, _) = unsafe { L::intersect_children::<F, _>(boxes, node, L::splat(f32::INFINITY.to_bits())) };
+        let (all, _) =
+            unsafe { L::intersect_children::<F, _>(boxes, node, L::splat(f32::INFINITY.to_bits())) };
         for _ in 0..(all & !mask).count_ones() {
             count.early_out();
         }

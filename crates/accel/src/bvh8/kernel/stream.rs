@@ -9,7 +9,7 @@ use super::body::{self, choose, prefetch, start, start_any};
 use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
 use super::packet::{Lane, Packet, Ready};
-use super::stack::{StackStorage, Stack};
+use super::stack::{Stack, StackStorage};
 use super::{TreeView, leaf};
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::counters::NoCounters;
@@ -174,7 +174,8 @@ impl<'r> Walk<'r> {
         unsafe {
             let place = base.add(self.current.byte());
             if self.current.is_node() {
-                let (mask, enter) = L::intersect_children::<Wide, _>(&self.lane, place, L::splat(self.limit_bits));
+                let (mask, enter) =
+                    L::intersect_children::<Wide, _>(&self.lane, place, L::splat(self.limit_bits));
                 if mask != 0 {
                     self.current = if ANY {
                         L::push::<Wide>(place, mask, &mut self.stack);

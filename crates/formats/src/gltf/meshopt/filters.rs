@@ -15,7 +15,7 @@ pub(super) enum Filter {
 }
 
 impl Filter {
-    pub(super) fn named(name: &str) -> Option<Filter> {
+    pub(super) fn from_name(name: &str) -> Option<Filter> {
         Some(match name {
             "NONE" => Filter::None,
             "OCTAHEDRAL" => Filter::Octahedral,

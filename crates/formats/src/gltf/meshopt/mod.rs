@@ -56,7 +56,7 @@ pub(super) fn unpacked(
             );
         }
     };
-    let filter = Filter::named(extension.text("filter")?.unwrap_or("NONE")).ok_or_else(|| {
+    let filter = Filter::from_name(extension.text("filter")?.unwrap_or("NONE")).ok_or_else(|| {
         extension.error("this is not a filter: use NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL")
     })?;
     let strides_fit = match mode {

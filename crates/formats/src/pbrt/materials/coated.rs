@@ -14,8 +14,9 @@ use bilux_scene::Spec;
 /// A diffuse base below a dielectric boundary: `principled`, with a base colour that accounts for internal
 /// reflection.
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflectance =
-        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
+    let reflectance = pbrt
+        .texture_or_value(list, "reflectance", SpectrumType::Surface)?
+        .unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
     pbrt.read_layer_medium(list)?;
     Ok(Some(pbrt.below_dielectric(list, reflectance, index, 0.0, false)?))
@@ -116,8 +117,10 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
         list.has(name);
     }
     let named = list.text("name")?.and_then(measured);
-    let scattering = pbrt.texture_or_value(list, "sigma_s", SpectrumType::Number)?.map(|source| source.mean());
-    let absorption = pbrt.texture_or_value(list, "sigma_a", SpectrumType::Number)?.map(|source| source.mean());
+    let scattering =
+        pbrt.texture_or_value(list, "sigma_s", SpectrumType::Number)?.map(|source| source.mean());
+    let absorption =
+        pbrt.texture_or_value(list, "sigma_a", SpectrumType::Number)?.map(|source| source.mean());
     let multiple_scattering_colour = |[scattering, absorption]: [Rgb; 2], g: f32| {
         let channel = |c: usize| {
             let reduced = scattering[c] * (1.0 - g);
@@ -125,7 +128,11 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
         };
         TextureOrValue::Colour(Rgb::new(channel(0), channel(1), channel(2)))
     };
-    let colour = match (named, scattering.zip(absorption), pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?) {
+    let colour = match (
+        named,
+        scattering.zip(absorption),
+        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?,
+    ) {
         (Some(known), ..) => multiple_scattering_colour(known, 0.0),
         (None, Some((scattering, absorption)), _) => {
             multiple_scattering_colour([scattering, absorption], asymmetry)

@@ -11,8 +11,9 @@ use bilux_math::Rgb;
 use bilux_scene::Spec;
 
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflectance =
-        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
+    let reflectance = pbrt
+        .texture_or_value(list, "reflectance", SpectrumType::Surface)?
+        .unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let mut spec = Spec::new("", "diffuse");
     pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
     Ok(Some(spec))
@@ -37,8 +38,9 @@ pub(super) fn diffuse_transmission(
     let share = transmitted_fraction(&reflectance, &transmittance);
     let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
     spec.parameters.set("diffuse_transmission_weight", share);
-    let part =
-        |source: TextureOrValue, share: f32| if share > 0.0 { source.scaled(Rgb::grey(1.0 / share)) } else { source };
+    let part = |source: TextureOrValue, share: f32| {
+        if share > 0.0 { source.scaled(Rgb::grey(1.0 / share)) } else { source }
+    };
     let (front, behind) = (part(reflectance, 1.0 - share), part(transmittance, share));
     for (key, source, name) in
         [("base_color", front, "reflectance"), ("diffuse_transmission_color", behind, "transmittance")]

@@ -16,7 +16,9 @@ impl Pbrt<'_, '_> {
         name: &'static str,
         default: f32,
     ) -> Result<TextureOrValue, FormatError> {
-        Ok(self.texture_or_value(list, name, SpectrumType::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
+        Ok(self
+            .texture_or_value(list, name, SpectrumType::Surface)?
+            .unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
     /// An index of refraction under one of its two names.

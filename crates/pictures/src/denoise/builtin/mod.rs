@@ -28,7 +28,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Dammertz 2010",
         parameters: &[],
     },
-    time: |task| Duration::from_nanos(task.pixels().saturating_mul(1600) / task.threads_at_work() as u64),
+    time: |task| Duration::from_nanos(task.pixels().saturating_mul(1600) / task.thread_count() as u64),
     is_library: false,
     find: |task| match Builtin::new(task.threads) {
         Ok(builtin) => Ok(Box::new(builtin)),

@@ -25,7 +25,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Áfra 2025",
         parameters: &[],
     },
-    time: |task| Effort::within(task.time, task.pixels(), task.threads_at_work()).1,
+    time: |task| Effort::within(task.time, task.pixels(), task.thread_count()).1,
     is_library: true,
     find,
 };
@@ -37,12 +37,12 @@ pub(super) fn load(threads: usize) {
 
 fn find(task: &Task) -> Result<Box<dyn Denoiser>, String> {
     let device = shared::device(task.threads, !task.sandboxed)?;
-    let (effort, _) = Effort::within(task.time, task.pixels(), task.threads_at_work());
+    let (effort, _) = Effort::within(task.time, task.pixels(), task.thread_count());
     Ok(Box::new(Oidn {
         device: device.clone(),
         effort,
         threads: task.threads,
-        ahead: Ahead::begin(task, device, effort),
+        ahead: PendingFilters::begin(task, device, effort),
     }))
 }
 
@@ -53,7 +53,7 @@ struct Oidn {
     device: Arc<Device>,
     effort: Effort,
     threads: usize,
-    ahead: Ahead,
+    ahead: PendingFilters,
 }
 
 /// The filters for a picture: for albedo and normals, where they are denoised, and for light.
@@ -101,14 +101,14 @@ impl Filters {
 }
 
 /// Filters that are prepared on a separate thread while the picture is rendered; `None` where its size is not known.
-struct Ahead(std::sync::Mutex<Option<JoinHandle<Option<Filters>>>>, (usize, usize));
+struct PendingFilters(std::sync::Mutex<Option<JoinHandle<Option<Filters>>>>, (usize, usize));
 
-impl Ahead {
-    fn begin(task: &Task, device: Arc<Device>, effort: Effort) -> Ahead {
+impl PendingFilters {
+    fn begin(task: &Task, device: Arc<Device>, effort: Effort) -> PendingFilters {
         let size = task.size;
         let worth_it = size.0.min(size.1) >= MIN_SIDE;
         let begin = || std::thread::spawn(move || Filters::new(&device, size, effort, [true; 2]).ok());
-        Ahead(std::sync::Mutex::new(worth_it.then(begin)), size)
+        PendingFilters(std::sync::Mutex::new(worth_it.then(begin)), size)
     }
 
     /// The filters, if they suit this picture; they can be taken only once.

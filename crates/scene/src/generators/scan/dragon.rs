@@ -48,8 +48,8 @@ impl Dragon {
     /// A bounding box with some margin.
     pub(super) fn bounds(&self) -> Aabb {
         let ends = self.cones.iter().flat_map(|c| [(c.from, c.radius[0]), (c.to, c.radius[1])]);
-        let boxes = ends.map(|(p, r)| Aabb::of_points([p]).grown(r));
-        boxes.fold(Aabb::EMPTY, Aabb::union).grown(2.0 * (SKIN + SOFTNESS))
+        let boxes = ends.map(|(p, r)| Aabb::of_points([p]).expanded(r));
+        boxes.fold(Aabb::EMPTY, Aabb::union).expanded(2.0 * (SKIN + SOFTNESS))
     }
 
     /// The parts that matter within `radius` of a point, or none where the surface is further away.

@@ -43,7 +43,7 @@ impl Ground {
     pub const NAMES: &'static [&'static str] = &["shadow", "mirror", "none"];
 
     /// The ground of a name.
-    pub fn named(name: &str) -> Option<Ground> {
+    pub fn from_name(name: &str) -> Option<Ground> {
         let all = [Ground::Shadow, Ground::Mirror, Ground::None];
         Ground::NAMES.iter().position(|n| *n == name).map(|i| all[i])
     }
@@ -121,9 +121,9 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
     let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
-    let has_lamps_alone =
+    let has_lights_only =
         has_light && scene.environment_unspecified && has_lights && !glows && !has_surroundings(scene);
-    let lit = has_light && !has_lamps_alone;
+    let lit = has_light && !has_lights_only;
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
     let bare = !lit && !seen && !behind;
@@ -141,7 +141,7 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     if !lit {
         // An existing camera may be close, and show what is behind the model; so does a mirror.
         let is_in_view = |spec: &Spec| spec.name == RIM && (seen && !asked || ground == Ground::Mirror);
-        let is_wanted = |spec: &Spec| if has_lamps_alone { spec.name == ROOM } else { !is_in_view(spec) };
+        let is_wanted = |spec: &Spec| if has_lights_only { spec.name == ROOM } else { !is_in_view(spec) };
         scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
     }
     if !lit && !seen {
@@ -254,8 +254,8 @@ fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
     let [right, up, forward] = framing.axes;
     let warm = Rgb::new(1.0, 0.96, 0.90);
     let cool = Rgb::new(0.86, 0.93, 1.0);
-    let key = Lamp { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
-    let rim = Lamp { name: RIM, towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
+    let key = Panel { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
+    let rim = Panel { name: RIM, towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
     [
         key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
         rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
@@ -267,13 +267,13 @@ fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
 }
 
 /// A panel at a distance of five radii; its size is given for a distance of 1.
-struct Lamp {
+struct Panel {
     name: &'static str,
     towards: DVec3,
     size: [f64; 2],
 }
 
-impl Lamp {
+impl Panel {
     fn spec(&self, framing: &Framing, radiance: Rgb) -> Spec {
         let towards = self.towards.normalize();
         // The light of a panel depends only on its solid angle, so a tiny model may have a relatively large panel,

@@ -134,7 +134,7 @@ impl Texture {
     /// An image of a procedural texture, and whether it is identical everywhere; `None` for an image.
     ///
     /// It can be identical if the image may be placed elsewhere than from 0 to 1 (`may_move`).
-    pub fn pictured(&self, may_move: bool) -> Option<(Texture, bool)> {
+    pub fn baked(&self, may_move: bool) -> Option<(Texture, bool)> {
         let formula = self.formula()?;
         let kept = |picture: Texture| Texture {
             name: self.name.clone(),

@@ -45,7 +45,7 @@ fn checkers_and_their_images_have_squares_in_place() {
         ("v_offset", number(dv)),
     ];
     let board = texture("checker", &lies, &[]);
-    let (picture, is_same) = board.pictured(true).unwrap();
+    let (picture, is_same) = board.baked(true).unwrap();
     assert!(is_same && picture.width() == 2);
     for (i, k) in (0..40).flat_map(|i| (0..40).map(move |k| (i, k))) {
         let uv = Vec2::new(i as f32 * 0.073 - 1.0, k as f32 * 0.0513 - 0.7);
@@ -161,7 +161,7 @@ fn texture_options_apply_to_procedural_textures() {
     let upwards = texture("ramp", &[("stops", red_green()), ("along", "v".into())], &[]);
     let moved = Texture { transform: Some(UvTransform::new([0.25, 0.25], 0.0, [1.0; 2])), ..upwards };
     near(moved.at(Vec2::new(0.25, 0.75)), [0.5, 0.5, 0.0]);
-    let (picture, is_same) = moved.pictured(true).unwrap();
+    let (picture, is_same) = moved.baked(true).unwrap();
     assert!(!is_same && picture.formula().is_none() && picture.width() == 1024);
     for uv in [Vec2::new(0.3, 0.75), Vec2::new(0.1, 0.9)] {
         let (a, b) = (picture.at(uv), moved.at(uv));

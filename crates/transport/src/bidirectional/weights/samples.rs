@@ -23,13 +23,13 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     let y = followed(walk, task, techniques, false);
     let walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, techniques);
     let z = followed(walk, task, techniques, true);
-    seen(task, verdict, start, &y);
-    met(task, verdict, &z);
-    picked(task, verdict, &z);
+    seen_by_camera(task, verdict, start, &y);
+    hit_emitters(task, verdict, &z);
+    sampled_lights(task, verdict, &z);
     joined(task, verdict, start, (&y, &z));
 }
 
-fn seen(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
+fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
     let techniques = &{ verdict.techniques };
     let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || techniques.direct);
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
@@ -45,7 +45,7 @@ fn seen(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
     }
 }
 
-fn met(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
         let Some(found) = emitted(task, &vertex.surface, vertex.wo) else { continue };
         let found = found.by(vertex.beta, &vertex.partial);
@@ -62,7 +62,7 @@ fn met(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
         return;
     };
     let mut founds = Vec::new();
-    from_infinity(task, walk, |met| founds.push(met.by(walk.beta, &walk.partial)));
+    from_infinity(task, walk, |hit| founds.push(hit.by(walk.beta, &walk.partial)));
     for found in founds {
         let nodes = z.nodes(last, false, walk.ray.direction.into(), z.is_delta[last]);
         let path =
@@ -71,7 +71,7 @@ fn met(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
     }
 }
 
-fn picked(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
     let techniques = &{ verdict.techniques };
     for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
         for index in 0..task.scene().lights().len() {
@@ -161,7 +161,7 @@ fn followed<'w>(
 ) -> Subpath<'w> {
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
     loop {
-        let Some(mut vertex) = walk.meet(task) else {
+        let Some(mut vertex) = walk.next_vertex(task) else {
             left = Some(walk);
             break;
         };

@@ -51,8 +51,8 @@ pub(super) fn learn(
     (eta, near): (f32, f64),
 ) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
-    let Some(untaught) = Guide::untaught(turn.eye.scene) else { return (None, counters) };
-    let turn = turn.guided(&Some(Arc::new(untaught.clone())));
+    let Some(untrained) = Guide::untrained(turn.eye.scene) else { return (None, counters) };
+    let turn = turn.guided(&Some(Arc::new(untrained.clone())));
     let grid = Grid::of(turn.eye.settings);
     let tiles = grid.tiles();
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
@@ -85,15 +85,15 @@ pub(super) fn learn(
         }
         halves.push(lessons.finds.len());
     }
-    let starts = starts(&turn, untaught.cells());
+    let starts = starts(&turn, untrained.cells());
     let middle = halves[halves.len() / 2 - 1];
     let parts = [0..middle, middle..lessons.finds.len()].map(|part| lessons.squares(part, starts.len()));
-    let gains = [0, 1].map(|i| untaught.gain(&starts, &parts[i], &parts[1 - i]));
+    let gains = [0, 1].map(|i| untrained.gain(&starts, &parts[i], &parts[1 - i]));
     if gains.map(f64::recip).iter().sum::<f64>() > 2.0 / WORTH_AIMING {
         return (None, counters);
     }
     let all: Vec<f64> = parts[0].iter().zip(&parts[1]).map(|(a, b)| a + b).collect();
-    (untaught.taught(&worth(&starts, &all)), counters)
+    (untrained.trained(&worth(&starts, &all)), counters)
 }
 
 /// How often a subpath begins in each cell, times the root mean square of what it contributes.
@@ -118,10 +118,10 @@ fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
 impl Guide {
     /// The factor by which a guide learned from others would reduce the squares of light subpaths' contributions.
     fn gain(&self, starts: &[f64], learned: &[f64], squares: &[f64]) -> f64 {
-        let Some(taught) = self.clone().taught(&worth(starts, learned)) else { return 0.0 };
+        let Some(trained) = self.clone().trained(&worth(starts, learned)) else { return 0.0 };
         let often = |cell: usize| starts[cell].max(1.0 / f64::from(STARTS));
         let aimed =
-            |(cell, square): (usize, &f64)| square * often(cell) / taught.probability(cell, often(cell));
+            |(cell, square): (usize, &f64)| square * often(cell) / trained.probability(cell, often(cell));
         squares.iter().sum::<f64>() / squares.iter().enumerate().map(aimed).sum::<f64>()
     }
 }
@@ -176,7 +176,7 @@ fn square(found: &Contribution<LANES>, lane: usize) -> Option<(f64, f64)> {
 }
 
 impl Tally<LANES> for Contributions {
-    fn here(&mut self, technique: Technique, found: &Contribution<LANES>) {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution<LANES>) {
         let Some((light, square)) = square(found, 1) else { return };
         self.light += light;
         if matches!(technique, Technique::Merged { .. }) {
@@ -184,7 +184,7 @@ impl Tally<LANES> for Contributions {
         }
     }
 
-    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<LANES>) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<LANES>) {
         if let Some((light, square)) = square(found, 2) {
             self.there.push(VisibleContribution { film, cell: found.origin, square, light });
         }

@@ -215,7 +215,7 @@ impl PixelIntegrator for Auto {
         }
         let lanes = |own: f32| {
             let all = std::iter::once(merging.techniques(own, 1.0)).chain(SETS.iter().map(techniques));
-            TechniqueCounts::together(all)
+            TechniqueCounts::pack(all)
         };
         let turns: Vec<PilotRound> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
         let seen = pilot::look(&turns, &merging, lanes);

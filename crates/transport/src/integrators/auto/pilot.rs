@@ -329,7 +329,7 @@ impl Tally<LANES> for PilotSample {
         self.steps.count(step, count);
     }
 
-    fn here(&mut self, technique: Technique, found: &Contribution<LANES>) {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution<LANES>) {
         if matches!(technique, Technique::Merged { .. }) {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
@@ -340,7 +340,7 @@ impl Tally<LANES> for PilotSample {
         }
     }
 
-    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<LANES>) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<LANES>) {
         self.seen.push((film, *found));
     }
 }

@@ -113,7 +113,11 @@ impl Frustum {
     /// # Safety
     /// The machine must have the level, and `node` must point to a node.
     #[inline(always)]
-    pub(super) unsafe fn intersect_children<L: BatchLevel>(&self, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+    pub(super) unsafe fn intersect_children<L: BatchLevel>(
+        &self,
+        node: *const u8,
+        limit: __m256i,
+    ) -> (u32, __m256i) {
         // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
         unsafe {
             let enter = |k: usize| {

@@ -24,7 +24,7 @@ use super::body::{prefetch, reference};
 use super::leaf::block_bytes;
 use super::level::BatchLevel;
 use super::node_format;
-use super::stack::{StackStorage, Stack};
+use super::stack::{Stack, StackStorage};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
@@ -181,8 +181,8 @@ impl Walk<'_> {
             let from = group * W::LANES;
             // SAFETY: as the caller promises.
             unsafe {
-                let mut mask =
-                    self.packet.intersect_child::<W>(from, &self.frustum, node, child) & self.active::<W>(from);
+                let mut mask = self.packet.intersect_child::<W>(from, &self.frustum, node, child)
+                    & self.active::<W>(from);
                 if mask == 0 {
                     continue;
                 }

@@ -8,7 +8,7 @@ use super::{Measured, Row};
 /// not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Compared {
-    pub(super) foreseen: Option<f64>,
+    pub(super) predicted: Option<f64>,
     /// By relMSE.
     pub(super) measured: Option<f64>,
     /// By relMSE without the worst 0.1% of the pixels.
@@ -23,7 +23,7 @@ impl Measured {
             Some((_, techniques)) => techniques,
             None => &row.integrator,
         };
-        let foreseen = auto.choice.as_ref().and_then(|choice| {
+        let predicted = auto.choice.as_ref().and_then(|choice| {
             let best = choice.best();
             let candidate = choice.candidates.iter().find(|candidate| candidate.techniques == techniques);
             let candidate = if techniques == "auto" { Some(best) } else { candidate };
@@ -31,7 +31,7 @@ impl Measured {
         });
         let time = row.took / auto.took;
         Compared {
-            foreseen,
+            predicted,
             measured: Some(time * row.relmse / auto.relmse),
             measured_trimmed: Some(time * row.relmse_trimmed / auto.relmse_trimmed),
         }
