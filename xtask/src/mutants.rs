@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_are_ours_up_to_two_dashes() {
+    fn arguments_after_two_dashes_are_passed_on() {
         assert_eq!(read(&[]).unwrap(), Arguments { since: "HEAD^", more: &[] });
         let given = words("--since main -- --in-place -j 2");
         assert_eq!(read(&given).unwrap(), Arguments { since: "main", more: &words("--in-place -j 2") });
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn survivors_fail_the_chore() {
+    fn surviving_mutants_fail_the_chore() {
         assert!(report(&[]).is_ok());
         let error = report(&words("a.rs:1:replace b.rs:2:replace")).unwrap_err().to_string();
         assert!(error.starts_with("2 planted bugs survived"), "{error}");

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn every_integrator_ends_when_nothing_is_said() {
+    fn every_integrator_ends_with_default_settings() {
         for row in INTEGRATORS {
             let mut user = Parameters::default();
             user.set("integrator", row.entry.name);

@@ -107,7 +107,7 @@ fn closed_box(emission: f32) -> SceneBuilder {
 }
 
 #[test]
-fn a_closed_box_is_lit_by_its_own_lamp() {
+fn a_closed_box_is_lit_by_its_own_light() {
     let scene = closed_box(15.0);
     assert_decided("a box", &scene, false);
     assert_eq!(job(&scene).scene().lights().len(), 1, "nothing is added");

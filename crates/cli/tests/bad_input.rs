@@ -84,7 +84,7 @@ fn errors_in_scene_files_report_their_location() {
 }
 
 #[test]
-fn what_can_be_rendered_is_rendered_with_a_warning() {
+fn renderable_oddities_give_a_warning() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     let drawn = |name: &str, text: &str, parts: &[&str]| {

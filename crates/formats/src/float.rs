@@ -158,7 +158,7 @@ mod tests {
         }
 
         #[test]
-        fn what_lies_between_two_numbers_rounds_as_the_standard_library_says(bits in 0u32..0x7f00_0000) {
+        fn decimals_between_floats_round_as_in_the_standard_library(bits in 0u32..0x7f00_0000) {
             let low = f32::from_bits(bits);
             let middle = (f64::from(low) + f64::from(low.next_up())) * 0.5;
             for value in [middle, middle.next_up(), middle.next_down()] {

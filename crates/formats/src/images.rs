@@ -80,7 +80,7 @@ mod tests {
 
     /// Covers every 8-bit form of PNG, and those that are not 8-bit.
     #[test]
-    fn bytes_decoded_at_once_are_those_by_way_of_planes() {
+    fn bytes_decoded_directly_equal_those_decoded_via_planes() {
         let plane =
             |k: usize| (0..35).map(|i| ((i * 37 + k * 91) % 256) as f32 / 255.0).collect::<Vec<f32>>();
         for channels in [&["Y"][..], &["Y", "A"], &["R", "G", "B"], &["R", "G", "B", "A"]] {

@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn halfway_is_half_the_way_half_the_angle_and_the_mean_scale() {
+    fn midway_is_half_the_distance_half_the_angle_and_the_mean_scale() {
         let p = spin().at(2.0).point(Vec3::X);
         // Half of a half turn about z takes x to y, scaled by 2, moved by 2.
         assert!((p - Vec3::new(2.0, 2.0, 0.0)).length() < 1e-6, "{p}");

@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_counted_located_and_not_black() {
+    fn non_finite_samples_are_counted_located_and_not_black() {
         let mut film = Film::new(3, 2, 20).unwrap();
         film.add(2, 1, 7, Rgb::new(0.0, f32::NAN, 0.0));
         film.add(1, 1, 5, Rgb::grey(f32::INFINITY));

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_samples_the_standard_error_is_half_of_their_distance() {
+    fn the_standard_error_of_two_samples_is_half_their_difference() {
         let mut interval = Interval::new(Window::whole(2, 1)).unwrap();
         interval.add(0, &film([1.0, 3.0]));
         assert_eq!(interval.channel(&Window::whole(2, 1), 1).half_width, f64::INFINITY);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_that_is_no_number_makes_the_interval_wider() {
+    fn a_nan_sample_widens_the_interval() {
         let mut interval = Interval::new(Window::whole(2, 1)).unwrap();
         for sample in 0..REPLICATES {
             interval.add(sample, &film([1.0, if sample == 3 { f32::NAN } else { 1.0 }]));

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_belong_together_is_refused() {
+    fn mismatched_parts_are_refused() {
         let left = Window { x: 0, y: 0, width: 5, height: 7 };
         let right = Window { x: 4, y: 0, width: 5, height: 7 };
         let error = film(left).merge(&film(right)).unwrap_err();

@@ -80,7 +80,7 @@ fn spheres_in_glass_and_mirrors_look_the_same_from_both_ends() {
 }
 
 #[test]
-fn spheres_and_photons_come_to_the_same() {
+fn spheres_and_photons_agree() {
     let scene = built(&without_mirrors(sphere(Vec3::new(-0.5, 2.0, 0.5), 0.5)));
     let path = blocks(&scene, &*integrator("path"), 0);
     for (i, name) in ["vcm", "sppm"].into_iter().enumerate() {
@@ -327,7 +327,7 @@ fn without_merging_vcm_is_bdpt_to_the_bit() {
 }
 
 #[test]
-fn merging_comes_to_the_same() {
+fn merging_agrees_with_path() {
     // Its blur is far below what these pictures can resolve.
     let scene = built(&without_mirrors(
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),

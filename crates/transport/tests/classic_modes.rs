@@ -98,7 +98,7 @@ fn blocked_lights_are_off_unless_shadows_are() {
 }
 
 #[test]
-fn by_the_papers_rule_all_is_off_where_all_are_blocked_and_nothing_else() {
+fn the_papers_rule_switches_lights_off_only_where_all_are_blocked() {
     let paper = whitted().with("shadow_rule", "paper");
     assert_near(seen(&sheet_before_left(), &paper, 16), equation_1(false));
     let mut both = sheet_before_left();

@@ -168,7 +168,7 @@ fn in_glass(eta: f32, inside: bool) -> Scene {
 /// Radiance grows by η² on its way into glass, importance does not: an integrator that mixes them up is wrong by a
 /// factor of 2.25 where an odd number of boundaries lies between the light and the camera.
 #[test]
-fn what_is_seen_from_within_glass_is_the_same_from_both_ends() {
+fn cameras_inside_glass_look_the_same_from_both_ends() {
     for inside in [true, false] {
         let scene = in_glass(1.5, inside);
         let path = blocks(&scene, &*integrator("path"), 0);

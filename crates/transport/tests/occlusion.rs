@@ -34,6 +34,6 @@ fn a_wall_closes_its_form_factor() {
 }
 
 #[test]
-fn what_is_beyond_the_distance_closes_nothing() {
+fn surfaces_beyond_the_distance_occlude_nothing() {
     assert_eq!(mean(Some(Spec::new("", "occlusion").with("distance", 0.9f32))), 1.0);
 }

@@ -50,7 +50,7 @@ fn a_convex_diffuse_body_under_a_uniform_sky_shows_its_albedo() {
 }
 
 #[test]
-fn inside_a_glowing_shell_light_adds_up_to_the_geometric_series() {
+fn light_in_a_glowing_shell_sums_to_the_geometric_series() {
     for albedo in [0.0f32, 0.5, 0.8] {
         let mut builder = SceneBuilder::default();
         let glowing = diffuse(albedo).with("emission", 1.0f32);
@@ -175,7 +175,7 @@ fn a_backdrop_is_seen_and_lights_nothing() {
 }
 
 #[test]
-fn glass_absorbs_along_the_way_and_also_what_it_holds() {
+fn glass_and_its_contents_absorb_along_the_ray() {
     // A black, glowing square in a ball of glass is dimmed by the glass in front of it.
     let sigma = Rgb::new(0.2, 0.6, 1.2);
     let mut builder = SceneBuilder::default();

@@ -23,10 +23,10 @@ pub struct LightCase {
 /// The checks, by name.
 pub const CHECKS: [(&str, Check); 8] = [
     ("samples are sound", samples_are_sound),
-    ("densities match the samples", densities_are_as_said),
-    ("emitted samples add up to the power", what_is_sent_is_the_power),
+    ("densities match the samples", densities_are_as_stated),
+    ("emitted samples add up to the power", emitted_flux_is_the_power),
     ("aimed rays hit their target", aimed_rays_go_where_they_should),
-    ("rays aimed everywhere add up to the power", what_is_aimed_everywhere_is_the_power),
+    ("rays aimed everywhere add up to the power", flux_aimed_everywhere_is_the_power),
     ("direct sampling finds the emitted light", direct_light_finds_what_was_sent),
     ("sampled points are hit with the same density", sampled_points_are_hit),
     ("flux through a plane agrees in both directions", flux_agrees_in_both_directions),
@@ -84,7 +84,7 @@ pub fn samples_are_sound(case: &LightCase) -> Result<(), String> {
 }
 
 /// `emission_pdf` for a sample's own values is the density that the sample states.
-pub fn densities_are_as_said(case: &LightCase) -> Result<(), String> {
+pub fn densities_are_as_stated(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     for sample in case.samples(2, 2000).flatten() {
         let EmissionSample { pdf_emission, pdf_direct, direction, .. } = sample;
@@ -97,7 +97,7 @@ pub fn densities_are_as_said(case: &LightCase) -> Result<(), String> {
 }
 
 /// All rays together carry the power.
-pub fn what_is_sent_is_the_power(case: &LightCase) -> Result<(), String> {
+pub fn emitted_flux_is_the_power(case: &LightCase) -> Result<(), String> {
     let mut sent = Tally::default();
     case.samples(4, SAMPLES).for_each(|sample| sent.add(sample.as_ref().map_or(0.0, power_of)));
     let power = case.power.unwrap_or_else(|| f64::from(case.light.power(&case.scene.bounds())));
@@ -134,7 +134,7 @@ pub fn aimed_rays_go_where_they_should(case: &LightCase) -> Result<(), String> {
 }
 
 /// Uniformly aimed rays carry the power; for an infinite light, those that pass through the scene's sphere.
-pub fn what_is_aimed_everywhere_is_the_power(case: &LightCase) -> Result<(), String> {
+pub fn flux_aimed_everywhere_is_the_power(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     let aim_pdf = f64::from(case.light.aim_pdf(&bounds));
     let passes = |aim: Vec2| !case.light.is_infinite() || (aim * 2.0 - Vec2::ONE).length() < 1.0;

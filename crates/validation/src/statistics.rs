@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn evenness_is_that_of_its_table() {
+    fn uniformity_matches_the_table() {
         // The usual critical values: 1.358 / √n for 0.05, 1.628 / √n for 0.01.
         for (x, wanted) in [(1.358, 0.05), (1.628, 0.01)] {
             let n = 10_000;
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_of_many_is_corrected() {
+    fn the_minimum_of_many_is_corrected() {
         assert!((sidak(0.01, 100) - 0.633_967_658_7).abs() < 1e-9);
         assert!((sidak(1e-12, 100) / 1e-10 - 1.0).abs() < 1e-6);
         assert_eq!(sidak(1.0, 5), 1.0);

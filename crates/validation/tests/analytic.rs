@@ -95,7 +95,7 @@ fn all() -> Vec<Spec> {
 }
 
 #[test]
-fn in_a_furnace_light_adds_up_to_the_geometric_series() {
+fn light_in_a_furnace_sums_to_the_geometric_series() {
     let albedo = Rgb::new(0.2, 0.4, 0.6);
     let mut builder = SceneBuilder::default();
     let glowing = diffuse(albedo).with("emission", Rgb::WHITE);

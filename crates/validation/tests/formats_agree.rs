@@ -111,7 +111,7 @@ fn there(scene: &SceneBuilder, folder: &Path, file: &str) -> SceneBuilder {
 }
 
 #[test]
-fn what_formats_hold_looks_the_same_in_all_of_them() {
+fn scenes_look_the_same_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
     let original = scene();
     let ours = blocks(&original, 0);

@@ -77,7 +77,7 @@ fn its_parameters_keep_the_contract() {
 }
 
 #[test]
-fn what_disperses_keeps_it_at_every_wavelength() {
+fn dispersive_bsdfs_keep_their_contract_at_every_wavelength() {
     let parted = ("transmission_dispersion_scale", 1.0);
     let frosted = [("transmission_weight", 0.8), ("specular_roughness", 0.4), ("coat_weight", 0.5), parted];
     let clear = [("transmission_weight", 1.0), ("specular_roughness", 0.0), parted, ("specular_ior", 1.9)];

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shortest_choice_is_taken_with_what_goes_along() {
+    fn the_shortest_choice_is_taken_with_its_dependents() {
         assert_eq!(chosen_of(&["Cargo.toml", "LICENSE-APACHE", "LICENSE-MIT"]), ["LICENSE-MIT"]);
         let names = ["LICENSE-APACHE", "LICENSE-MIT", "LICENSE-UNICODE"];
         assert_eq!(chosen_of(&names), ["LICENSE-MIT", "LICENSE-UNICODE"]);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_notice_stands_once_whatever_its_line_ends() {
+    fn equal_notices_are_listed_once_whatever_their_line_ends() {
         let folder = std::env::temp_dir().join(format!("bilux-notices-{}", std::process::id()));
         let write = |name: &str, text: &str| {
             fs::create_dir_all(folder.join(name))

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_stands_once() {
+    fn keys_are_unique() {
         let cites = ("b.rs", "// [Woop 2013]\n");
         let twice = Repository::planted(&[("REFERENCES.md", &FOUND.repeat(2)), cites]);
         assert_eq!(check(&twice), [Violation::new("REFERENCES.md", 2, "[Woop 2013] stands here twice")]);

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn bias_is_what_stays_when_noise_is_taken_away() {
+    fn bias_is_the_error_without_noise() {
         let reference = two_blocks(1.0, 1.0);
         // The left block is unbiased, 1 ± 0.2; the right one is 1.5 ± 0.1: by hand, b² = 0.25, v / n = 0.02 / 2.
         let pictures = [two_blocks(0.8, 1.4), two_blocks(1.2, 1.6)];

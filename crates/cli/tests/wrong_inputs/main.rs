@@ -106,11 +106,11 @@ fn check_table(cases: &[Case], text: &str) {
 }
 
 #[test]
-fn wrong_command_lines_are_answered_as_in_the_text() {
+fn wrong_command_lines_give_the_recorded_messages() {
     check_table(command_lines::CASES, "command_lines.txt");
 }
 
 #[test]
-fn wrong_files_are_answered_as_in_the_text() {
+fn wrong_files_give_the_recorded_messages() {
     check_table(files::CASES, "files.txt");
 }

@@ -156,7 +156,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn steps_give_back_what_they_were_given(numbers in prop::collection::vec(0u64..4, 0..200)) {
+        fn steps_return_the_numbers_they_compress(numbers in prop::collection::vec(0u64..4, 0..200)) {
             let mut steps = Steps::default();
             numbers.iter().for_each(|&n| steps.push(n));
             for (face, &number) in numbers.iter().enumerate() {

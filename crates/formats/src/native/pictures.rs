@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_lies_as_it_is_said_with_v_upwards() {
+    fn pictures_are_placed_as_stated_with_v_upwards() {
         let placement = Placement { scale: [2.0, -3.0], turn: 0.5, offset: [0.25, -0.5] };
         let (transform, uv) = (placement.transform(), Vec2::new(0.3, 0.8));
         let (s, c) = (sin(0.5), cos(0.5));

@@ -363,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn where_blocks_end_does_not_show() {
+    fn block_boundaries_change_nothing() {
         let head = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\r\nv 1 1 0 1 .5 .2\rv 0 1 \\\n 0\nv 2 2 2\nvt 0 0\nvt 1 1\nvn 0 0 1\n\n";
         let faces = "f 1 2 3\ns 1\nf -5 -4 -3 -2\ng a b\nf 1/1/1 -4/-1/-1 3//1\nf 1 2\nusemtl x\n  f 4/2 3/9 9\ng c\nv 9 9 nan\n";
         let middle = "f 6 1 2\nl 1 2\nv 3 3 3\nv 4 4 4\nv 5 5 5\nf -1 -2 -9\n";

@@ -199,7 +199,7 @@ mod tests {
 
     /// Worked out by hand from the book's formulas, to detect mirrored or swapped axes. [pbrt 2023, 3.8.3]
     #[test]
-    fn places_on_the_square_are_where_the_book_has_them() {
+    fn positions_on_the_square_match_the_book() {
         let r = 0.661_438; // 0.5 √1.75
         for ([u, v], wanted) in [
             ([0.75, 0.5], DVec3::new(r, 0.0, 0.75)),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_it_is_the_same_place() {
+    fn directions_round_trip_through_the_square() {
         for (i, j) in (0..32).flat_map(|i| (0..32).map(move |j| (i, j))) {
             let [u, v] = [i, j].map(|k| (f64::from(k) + 0.4) / 32.0);
             let [x, y] = Mapping::Square.place(on_the_sphere(u, v));

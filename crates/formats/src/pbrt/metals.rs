@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn even_spectra_give_their_own_index_back() {
+    fn constant_spectra_keep_their_index() {
         let Reduced { indices: [eta, k], is_cut } = from_spectra(&Spectrum::even(1.5), &Spectrum::even(4.0));
         assert!(!is_cut);
         for c in 0..3 {

@@ -89,7 +89,7 @@ fn a_ninth_number_is_left_out_with_a_warning() {
 }
 
 #[test]
-fn numbers_that_are_none_are_kept_and_counted() {
+fn nans_are_kept_and_counted() {
     let text = triangle("triangle", " ", "\n").replace("1e0", "nan").repeat(3);
     let scene = read_text("asc", text).unwrap();
     assert!(scene.objects[0].mesh.positions[2].y.is_nan());

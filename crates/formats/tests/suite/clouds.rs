@@ -69,7 +69,7 @@ fn points_and_lines_of_an_obj_are_objects_beside_its_faces() {
 }
 
 #[test]
-fn xyz_has_its_columns_by_name_or_by_what_stands_in_them() {
+fn xyz_columns_are_found_by_name_or_by_content() {
     let kd = |text: &str| read_text("xyz", text).unwrap().objects[0].mesh.vertex_kd.clone();
     assert_eq!(kd("0 0 0\n1 1 1\n"), []);
     assert_eq!(kd("0 0 0 255 0 0\n1 1 1 0 51 0\n")[1], Rgb::new(0.0, srgb_decode(0.2), 0.0));

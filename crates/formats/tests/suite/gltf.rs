@@ -156,7 +156,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
 }
 
 #[test]
-fn what_is_broken_is_refused_with_its_pointer() {
+fn broken_content_is_refused_with_its_pointer() {
     let cases = [
         (
             "POSITION\":0",
@@ -226,7 +226,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
 }
 
 #[test]
-fn what_is_not_understood_is_told_where_it_stands() {
+fn unknown_content_is_reported_with_its_location() {
     let text = TRIANGLE.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"extensions":{"EXT_odd":{}}}"#);
     let reported = warnings(&read(&text));
     assert!(

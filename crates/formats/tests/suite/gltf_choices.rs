@@ -155,7 +155,7 @@ fn lights_get_a_size_and_areas_shine_forwards() {
 }
 
 #[test]
-fn glossiness_is_roughness_the_other_way_round() {
+fn glossiness_is_one_minus_roughness() {
     let text = tetrahedron(
         r#""indices":3,"material":0"#,
         r#""materials":[{"extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0,0,0,1],

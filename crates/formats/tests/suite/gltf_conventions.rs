@@ -399,7 +399,7 @@ fn factors_count_beside_pictures_and_without() {
 }
 
 #[test]
-fn a_picture_that_is_turned_lies_as_the_extension_says() {
+fn rotated_pictures_are_placed_as_the_extension_says() {
     // Coordinates rotate counter-clockwise about the upper left corner, and so the image rotates clockwise.
     // [KHR_texture_transform]
     let texels = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [188, 188, 188]];

@@ -75,7 +75,7 @@ fn errors(report: &serde_json::Value) -> Vec<String> {
 }
 
 #[test]
-fn broken_files_are_refused_or_told_of() {
+fn broken_files_are_refused_or_give_warnings() {
     let options = ReadOptions { max_memory: 64 << 20, ..ReadOptions::default() };
     let (mut broken, mut count) = (0, 0);
     for path in found("broken") {

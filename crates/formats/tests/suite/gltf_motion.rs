@@ -80,7 +80,7 @@ fn moving() -> String {
 }
 
 #[test]
-fn nodes_stand_where_the_animation_has_them() {
+fn nodes_follow_the_animation() {
     let place = |time: f32, p: Vec3| at_time(&moving(), time).objects[0].motion.at(0.0).point(p);
     assert!(near(place(0.0, Vec3::X), [1.0, 0.0, 7.0]), "before the first key");
     // Halfway along the translation and the quarter turn; the scale is still that of the first key.
@@ -113,7 +113,7 @@ fn animations_are_chosen_by_name_or_number() {
 }
 
 #[test]
-fn what_is_wrong_with_an_animation_is_told_and_left_out() {
+fn faulty_animations_are_left_out_with_a_warning() {
     let cases = [
         ("[1.0, 3.0]", [3.0, 1.0], "the times of an animation must be numbers that increase"),
         ("NaN", [1.0, f32::NAN], "the times of an animation must be numbers that increase"),
@@ -180,7 +180,7 @@ fn skins_bend_meshes_and_the_place_of_their_node_does_not_matter() {
 }
 
 #[test]
-fn skins_that_are_broken_are_refused_or_told_of() {
+fn broken_skins_are_refused_or_give_warnings() {
     let text = bent(false);
     let too_few = text.replace(r#""joints":[1,2]"#, r#""joints":[1]"#);
     let error = read_text("gltf", &too_few).unwrap_err().to_string();

@@ -20,7 +20,7 @@ fn read(text: &str) -> SceneBuilder {
 
 /// The seeds are a grid of 4 by 4 points over the unit square, with height x y / 2 and uv = (x, y).
 #[test]
-fn draco_gives_back_points_texture_coordinates_and_triangles() {
+fn draco_round_trips_points_texture_coordinates_and_triangles() {
     for text in seeds_of_draco() {
         let scene = read(&text);
         let mesh = &scene.objects[0].mesh;
@@ -41,7 +41,7 @@ fn draco_gives_back_points_texture_coordinates_and_triangles() {
 }
 
 #[test]
-fn what_is_broken_in_draco_is_refused_with_its_pointer() {
+fn broken_draco_data_is_refused_with_its_pointer() {
     let text = &seeds_of_draco()[1];
     let cases = [
         (r#""TEXCOORD_0":0"#, r#""TEXCOORD_0":7"#, "TEXCOORD_0: the compressed data have no attribute 7"),

@@ -121,7 +121,7 @@ fn reported(text: &str) -> String {
 }
 
 #[test]
-fn of_a_sound_file_nothing_is_reported() {
+fn valid_files_give_no_reports() {
     assert_eq!(reported(&sound()), "");
 }
 

@@ -39,7 +39,7 @@ fn the_corpus_reads_and_its_broken_files_are_refused() {
 }
 
 #[test]
-fn every_beginning_of_every_file_is_survived() {
+fn truncated_files_do_not_panic() {
     for format in formats() {
         for (_, bytes) in corpus(format) {
             (0..bytes.len().min(3000)).for_each(|length| drop(survive(format, &bytes[..length])));
@@ -133,7 +133,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn arbitrary_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+    fn arbitrary_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         for format in formats() {
             survive(format, &bytes);
         }
@@ -141,7 +141,7 @@ proptest! {
     }
 
     #[test]
-    fn harmed_files_are_survived(pick: usize, damages in prop::collection::vec(damage(), 1..6)) {
+    fn damaged_files_do_not_panic(pick: usize, damages in prop::collection::vec(damage(), 1..6)) {
         for format in formats() {
             let files = corpus(format);
             let (_, bytes) = &files[pick % files.len()];
@@ -150,7 +150,7 @@ proptest! {
     }
 
     #[test]
-    fn harmed_materials_are_survived(pick: usize, damages in prop::collection::vec(damage(), 0..6)) {
+    fn damaged_materials_do_not_panic(pick: usize, damages in prop::collection::vec(damage(), 0..6)) {
         let files = corpus("mtl");
         let (_, library) = &files[pick % files.len()];
         if let Ok(scene) = with_materials(&damaged(library.clone(), &damages)) {

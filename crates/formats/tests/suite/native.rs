@@ -259,7 +259,7 @@ fn nothing_outside_the_folder_is_opened() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
+fn errors_state_the_location_and_the_nearest_name() {
     let cases = [
         (
             "[[modle]]\nshape = \"box\"\n",
@@ -372,7 +372,7 @@ fn textures_are_read_and_missing_ones_are_warnings() {
 }
 
 #[test]
-fn pictures_lie_as_they_are_said_to_and_come_back() {
+fn picture_placements_round_trip() {
     let folder = tempfile::tempdir().unwrap();
     let texels = (0..6).map(|i| Rgb::grey(i as f32 / 5.0)).collect();
     let picture = bilux_pictures::Picture::from_rgb(3, 2, texels).unwrap();

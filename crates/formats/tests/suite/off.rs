@@ -30,7 +30,7 @@ fn every_spelling_of_a_square_is_that_square() {
 }
 
 #[test]
-fn normals_colours_and_uvs_stand_in_this_order() {
+fn normals_colours_and_uvs_come_in_this_order() {
     let text = "STCNOFF\n3 1 0\n0 0 0  0 0 1  1 0.5 0  .25 .75\n1 0 0  0 0 1  0 0 0 1  0 0\n0 1 0  0 0 1  0 0 0  0 0\n3 0 1 2\n";
     let scene = read_text("off", text).unwrap();
     let mesh = &scene.objects[0].mesh;
@@ -43,7 +43,7 @@ fn normals_colours_and_uvs_stand_in_this_order() {
 }
 
 #[test]
-fn what_is_odd_but_can_be_drawn_is_a_warning() {
+fn oddities_that_can_be_drawn_give_a_warning() {
     let cases = [
         (SQUARE.replace("4 0 1 2 3", "4 0 1 2 3 255 0 0"), "scene.off:7:1: a face has a colour of its own"),
         (SQUARE.replace("1 1 0", "1 1 0 9 9"), "scene.off:5:1: a vertex has more numbers"),
@@ -85,7 +85,7 @@ fn broken_files_are_refused_with_their_place() {
 }
 
 #[test]
-fn what_it_can_hold_comes_back_to_the_bit() {
+fn supported_content_round_trips_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.off");
     let coloured = "STCNOFF\n3 1 0\n.1 .2 .3 0 0 1 .1 .2 .3 .4 .5\n1 0 0 0 .6 .8 .7 .8 .9 0 0\n0 1 0 0 0 1 0 0 0 0 0\n3 0 1 2\n";

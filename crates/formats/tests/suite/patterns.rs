@@ -67,7 +67,7 @@ fn nested_procedural_textures_round_trip() {
 }
 
 #[test]
-fn what_is_wrong_has_its_place() {
+fn faults_have_a_location() {
     for (lines, wanted) in [
         (
             "reflectance = { kind = \"nose\" }",

@@ -353,7 +353,7 @@ fn colour_spaces_hold_until_they_change() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn errors_state_their_location() {
     let mut missed = Vec::new();
     for (text, wanted) in [
         ("Shpae \"sphere\"", "scene.pbrt:1:1: there is no directive 'Shpae'; did you mean 'Shape'?"),
@@ -447,7 +447,7 @@ fn glass_disperses_by_its_name_or_its_spectrum() {
 }
 
 #[test]
-fn what_cannot_be_shown_is_told() {
+fn unsupported_features_give_warnings() {
     for (text, wanted) in [
         (
             "Shape \"disk\" \"float raduis\" 2",
@@ -477,7 +477,7 @@ fn what_cannot_be_shown_is_told() {
 }
 
 #[test]
-fn textures_are_worked_out() {
+fn procedural_textures_are_evaluated() {
     let of = |lines: &str| {
         let scene =
             world(&format!("{lines}\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n{TRIANGLE}"));
@@ -585,7 +585,7 @@ fn objects_and_attributes_may_cross() {
 }
 
 #[test]
-fn what_version_2_says_of_its_integrators_is_understood() {
+fn integrators_of_version_2_are_understood() {
     let text = "SurfaceIntegrator \"path\" \"integer maxdepth\" 7\nVolumeIntegrator \"emission\"\nRenderer \"sampler\"\nWorldBegin";
     let scene = scene(text);
     assert_eq!(scene.settings.find("max_depth").unwrap().0, &Value::Integer(7));
@@ -670,7 +670,7 @@ fn gold_by_its_spectra_is_gold() {
 }
 
 #[test]
-fn files_that_would_hurt_are_refused() {
+fn malicious_files_are_refused() {
     let refused = |files: &[(&str, &[u8])]| in_folder(files).1.map(|_| ()).unwrap_err().to_string();
     let reported = refused(&[("a.pbrt", b"Include \"b.pbrt\""), ("b.pbrt", b"\nInclude \"a.pbrt\"")]);
     assert!(reported.contains("b.pbrt:2:9: 'a.pbrt' includes itself"), "{reported}");

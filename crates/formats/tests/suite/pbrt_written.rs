@@ -210,7 +210,7 @@ fn the_environment_map_round_trips_with_its_orientation() {
 }
 
 #[test]
-fn what_stands_there_often_is_one_object() {
+fn repeated_meshes_become_one_object() {
     let (reported, back) = there(
         "[[model]]\nshape = \"sphere\"\nname = \"a\"\n[[model]]\nshape = \"box\"\ntranslate = [3, 0, 0]\nscale = [1, 2, 1]\n",
     );

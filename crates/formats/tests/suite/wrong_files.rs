@@ -92,7 +92,7 @@ impl Case {
 }
 
 #[test]
-fn wrong_files_are_answered_as_in_the_text() {
+fn wrong_files_give_the_recorded_messages() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/wrong_files.txt");
     let mut now = String::new();
     for case in CASES {

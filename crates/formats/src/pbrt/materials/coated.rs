@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn from_afar_white_is_white_and_black_black() {
+    fn white_and_black_stay_white_and_black_from_afar() {
         assert_eq!((multiple_scattering_albedo(1.0), multiple_scattering_albedo(0.0)), (1.0, 0.0));
     }
 }
