@@ -5,12 +5,12 @@ use bilux::prelude::*;
 use std::sync::Arc;
 
 /// A slab above the ground, lit by the studio or by one light of its own.
-fn slab(lamp: Option<Spec>) -> SceneBuilder {
+fn slab(light_spec: Option<Spec>) -> SceneBuilder {
     let mut scene = SceneBuilder::default();
     let red = scene.add_material(Spec::new("", "diffuse").with("reflectance", Rgb::new(0.7, 0.1, 0.1)));
     let bounds = Aabb { min: Vec3::new(-1.0, 0.0, -0.3), max: Vec3::new(1.0, 1.6, 0.3) };
     scene.objects.push(Object::new("slab", Arc::new(bilux::scene::generators::shapes::cuboid(bounds)), red));
-    scene.lights.extend(lamp);
+    scene.lights.extend(light_spec);
     scene
 }
 
@@ -29,12 +29,13 @@ fn alpha(picture: &Picture) -> Vec<f32> {
 
 #[test]
 fn an_invisible_ground_writes_its_shadow_to_alpha() {
-    for lamp in [None, Some(Spec::new("", "directional").with("direction", Vec3::new(0.8, -1.0, 0.1)))] {
-        let has_lamp = lamp.is_some();
-        let cut = picture(&slab(lamp), &[("background", "transparent")]);
+    for light_spec in [None, Some(Spec::new("", "directional").with("direction", Vec3::new(0.8, -1.0, 0.1)))]
+    {
+        let has_light = light_spec.is_some();
+        let cut = picture(&slab(light_spec), &[("background", "transparent")]);
         let (alpha, light) = (alpha(&cut), cut.to_rgb().unwrap());
         assert!(
-            alpha.iter().filter(|a| **a == 0.0).count() > 48 * 48 / 20 || !has_lamp,
+            alpha.iter().filter(|a| **a == 0.0).count() > 48 * 48 / 20 || !has_light,
             "nothing is left of the background"
         );
         assert!(alpha.iter().filter(|a| **a == 1.0).count() > 48 * 48 / 10, "the model is opaque");
@@ -99,9 +100,9 @@ fn the_shadow_over_white_is_that_of_the_ground() {
 
 #[test]
 fn a_mirror_shows_the_model() {
-    let lamp = Spec::new("", "environment").with("radiance", 1.0f32);
+    let light_spec = Spec::new("", "environment").with("radiance", 1.0f32);
     let redness = |ground: &str| {
-        let picture = picture(&slab(Some(lamp.clone())), &[("ground", ground)]);
+        let picture = picture(&slab(Some(light_spec.clone())), &[("ground", ground)]);
         let red = |p: &&Rgb| p.r > 2.0 * p.g && p.r > 0.02;
         picture.to_rgb().unwrap().iter().filter(red).count()
     };

@@ -134,8 +134,8 @@ fn a_bulb_lights_its_lamp_where_it_is_bright() {
 #[test]
 fn a_light_that_reaches_nothing_leaves_the_studio_on() {
     let mut scene = car(0.0);
-    let lamp = Spec::new("mine", "directional").with("direction", Vec3::Y);
-    scene.lights.push(lamp.with("irradiance", 3.0f32));
+    let light = Spec::new("mine", "directional").with("direction", Vec3::Y);
+    scene.lights.push(light.with("irradiance", 3.0f32));
     assert_decided("light from below", &scene, true);
     assert_eq!(job(&scene).scene().lights().len(), 4, "the whole studio is there");
 }

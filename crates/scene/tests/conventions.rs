@@ -168,11 +168,14 @@ fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
 /// From afar every light of intensity I looks like a point: E = I / d² on a surface that faces it, whatever its size.
 #[test]
 fn far_irradiance_is_intensity_over_distance_squared() {
-    let lamp = |kind: &str| Spec::new("", kind).with("position", Vec3::ZERO).with("intensity", 8.0f32);
-    let panel = lamp("rect").with("edge_u", Vec3::X * 0.5).with("edge_v", Vec3::Z * 0.3);
-    for spec in
-        [lamp("point"), lamp("spot").with("look_at", -Vec3::Y), lamp("sphere").with("radius", 0.2f32), panel]
-    {
+    let light_spec = |kind: &str| Spec::new("", kind).with("position", Vec3::ZERO).with("intensity", 8.0f32);
+    let panel = light_spec("rect").with("edge_u", Vec3::X * 0.5).with("edge_v", Vec3::Z * 0.3);
+    for spec in [
+        light_spec("point"),
+        light_spec("spot").with("look_at", -Vec3::Y),
+        light_spec("sphere").with("radius", 0.2f32),
+        panel,
+    ] {
         let kind = spec.kind.clone();
         let light = with_light(spec);
         let from = Vec3::new(0.0, -40.0, 0.0);

@@ -293,10 +293,10 @@ fn the_key_light_is_on_the_side_of_an_existing_camera() {
     complete(&mut seen, &Studio::default());
     let Some((Value::List(position), _)) = seen.lights[0].parameters.find("position") else { panic!() };
     let number = |value: &Value| if let Value::Number(x) = value { *x as f32 } else { panic!() };
-    let lamp = Vec3::new(number(&position[0]), number(&position[1]), number(&position[2]));
+    let light_position = Vec3::new(number(&position[0]), number(&position[1]), number(&position[2]));
     let from = Vec3::new(-6.0, 2.0, -5.0).normalize();
     // On the camera's side of the model, and out of its view.
-    assert!(lamp.dot(from) > 0.0, "{lamp}");
-    let at = seen_at(&seen, lamp);
-    assert!(at.is_none_or(|at| at.abs().max_element() > 1.0), "{lamp}: {at:?}");
+    assert!(light_position.dot(from) > 0.0, "{light_position}");
+    let at = seen_at(&seen, light_position);
+    assert!(at.is_none_or(|at| at.abs().max_element() > 1.0), "{light_position}: {at:?}");
 }

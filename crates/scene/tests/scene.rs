@@ -68,9 +68,9 @@ fn misspelt_names_suggest_the_nearest() {
 
 /// A scene with a single sphere light.
 fn lone_sphere(position: Vec3, radius: f32) -> bilux_scene::Scene {
-    let lamp =
+    let light_spec =
         Spec::new("", "sphere").with("position", position).with("radius", radius).with("radiance", 1.0f32);
-    let builder = SceneBuilder { lights: vec![lamp], ..SceneBuilder::default() };
+    let builder = SceneBuilder { lights: vec![light_spec], ..SceneBuilder::default() };
     builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
 }
 
@@ -125,8 +125,8 @@ fn a_sphere_light_needs_a_size_and_a_strength() {
 fn the_single_tree_shortcut_matches_the_top_level() {
     let mut builder = builder();
     for (position, radius) in [(Vec3::new(0.3, 0.2, 0.0), 0.4), (Vec3::new(-0.5, 0.6, 0.4), 0.3)] {
-        let lamp = Spec::new("", "sphere").with("position", position).with("radius", radius);
-        builder.lights.push(lamp.with("radiance", 1.0f32));
+        let light_spec = Spec::new("", "sphere").with("position", position).with("radius", radius);
+        builder.lights.push(light_spec.with("radiance", 1.0f32));
     }
     let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
     // The counting tracer uses the top level.

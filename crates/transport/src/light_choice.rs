@@ -65,7 +65,7 @@ impl LightChoice {
 
 /// Number of points at which lights are compared.
 const PLACES: u64 = 64;
-/// Number of points to leave out, those where a light is strongest: nothing but its own shade is that close to a lamp.
+/// Number of points to leave out, those where a light is strongest: nothing but its own shade is that close to a light.
 const CLOSEST: usize = 8;
 
 /// Vertices of some objects, each object equally likely. Power would be no measure: for infinite lights it grows with

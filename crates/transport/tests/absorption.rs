@@ -49,8 +49,8 @@ fn mean(scene: &Scene, name: &str, settings: &RenderSettings) -> Rgb {
 fn follows_beers_law(has_priority: bool) {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
-    let lamp = Vec3::new(0.4, 1.1, -0.3);
-    builder.lights.push(Spec::new("", "point").with("position", lamp).with("intensity", 2.0f32));
+    let light = Vec3::new(0.4, 1.1, -0.3);
+    builder.lights.push(Spec::new("", "point").with("position", light).with("intensity", 2.0f32));
     look(&mut builder, Vec3::new(-0.5, 1.6, 1.4), Vec3::ZERO, 25.0);
     block(&mut builder, SIGMA, has_priority);
     let scene = built(&builder);
@@ -59,10 +59,10 @@ fn follows_beers_law(has_priority: bool) {
             let film = Vec2::new((i % 64) as f32 + 0.5, (i / 64) as f32 + 0.5) / 64.0;
             let ray = scene.cameras()[0].1.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
             let seen = f64::from(-ray.origin[1] / ray.direction[1]);
-            let to_lamp = (lamp - Vec3::from(ray.at(seen as f32))).as_dvec3();
-            let distance = to_lamp.length();
+            let to_light = (light - Vec3::from(ray.at(seen as f32))).as_dvec3();
+            let distance = to_light.length();
             let passed = exp_f64(-f64::from(SIGMA[channel]) * (distance + techniques * seen));
-            0.5 / PI * 2.0 * to_lamp.y / (distance * distance * distance) * passed
+            0.5 / PI * 2.0 * to_light.y / (distance * distance * distance) * passed
         };
         (0..4096).map(at).sum::<f64>() / 4096.0
     };

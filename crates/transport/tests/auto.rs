@@ -110,8 +110,9 @@ fn burning_glass() -> SceneBuilder {
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
     let globe = ball(Vec3::new(0.0, 1.7, 0.0), 1.0, 24, true);
     put(&mut builder, "glass", globe, Spec::new("", "dielectric"));
-    let lamp = Spec::new("", "rect").with("position", Vec3::new(0.5, 6.0, 0.5)).with("intensity", 40.0f32);
-    builder.lights.push(lamp.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
+    let light_spec =
+        Spec::new("", "rect").with("position", Vec3::new(0.5, 6.0, 0.5)).with("intensity", 40.0f32);
+    builder.lights.push(light_spec.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
     look(&mut builder, Vec3::new(0.0, 3.0, 5.0), Vec3::ZERO, 40.0);
     builder
 }

@@ -35,8 +35,8 @@ fn one_sided_lights_illuminate_only_their_front() {
         let spec = Spec::new("", "rect").with("position", Vec3::new(0.5, 3.2, 0.5)).with("radiance", 8.0f32);
         built(&without_mirrors(spec.with("edge_u", edge_u).with("sides", sides)))
     };
-    // Its front faces down, like that of a lamp in a ceiling.
-    assert_like_path("lamp in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
+    // Its front faces down, like that of a light in a ceiling.
+    assert_like_path("light in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
     let settings = RenderSettings::new(16, 16, 16);
     let lit = |scene: &Scene, name: &str| shoot(scene, &*integrator(name), &settings).film.to_rgb();
     let [front, both] = ["front", "both"].map(|sides| lit(&panel(Vec3::X, sides), "path"));
@@ -156,7 +156,7 @@ fn normal_maps_look_the_same_from_both_ends() {
         Spec::new("", "principled").with("coat_weight", 1.0f32).with("coat_roughness", 0.4f32);
     let coat_with_bumps = bumps_below_a_coat.clone().with("coat_normal", Value::Texture(0));
     for (name, material) in [
-        ("matt", diffuse(0.8f32)),
+        ("matte", diffuse(0.8f32)),
         ("satin", satin),
         ("frosted", frosted),
         ("bumps below a coat", bumps_below_a_coat),
@@ -265,8 +265,8 @@ fn many_lights_of_which_one_is_chosen() {
     let mut builder = without_mirrors(Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)));
     for i in 0..6 {
         let place = Vec3::new(i as f32 * 0.6 - 1.5, 1.5 + 0.1 * i as f32, 1.0);
-        let lamp = Spec::new("", "rect").with("position", place).with("intensity", 1.0 + i as f32);
-        builder.lights.push(lamp.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
+        let light_spec = Spec::new("", "rect").with("position", place).with("intensity", 1.0 + i as f32);
+        builder.lights.push(light_spec.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
     }
     sky(&mut builder, 0.2);
     assert_like_path("many lights", &built(&builder), &["light", "bdpt"]);

@@ -23,7 +23,7 @@ fn assert_near(found: Rgb, wanted: Rgb) {
     assert!(off < 2e-5, "{found:?}, not {wanted:?}");
 }
 
-fn lamp(name: &str, position: Vec3, colour: Rgb) -> Spec {
+fn light(name: &str, position: Vec3, colour: Rgb) -> Spec {
     Spec::new(name, "point").with("position", position).with("classic", colour)
 }
 
@@ -37,9 +37,9 @@ fn shiny_floor() -> SceneBuilder {
         .with("exponent", 10.0f32)
         .with("reflectivity", 0.0f32);
     put(&mut builder, "floor", floor(0.0, 5.0), phong);
-    builder.lights.push(lamp("left", Vec3::new(-1.0, 2.0, 0.0), Rgb::new(0.4, 0.5, 0.6)));
-    builder.lights.push(lamp("right", Vec3::new(3.0, 3.0, 0.0), Rgb::grey(0.3)));
-    builder.lights.push(lamp("below", Vec3::new(0.0, -2.0, 0.0), Rgb::WHITE));
+    builder.lights.push(light("left", Vec3::new(-1.0, 2.0, 0.0), Rgb::new(0.4, 0.5, 0.6)));
+    builder.lights.push(light("right", Vec3::new(3.0, 3.0, 0.0), Rgb::grey(0.3)));
+    builder.lights.push(light("below", Vec3::new(0.0, -2.0, 0.0), Rgb::WHITE));
     builder.lights.push(Spec::new("", "ambient").with("colour", Rgb::new(0.1, 0.2, 0.3)));
     look(&mut builder, Vec3::new(0.0, 2.0, 2.0), Vec3::ZERO, 0.02);
     builder
@@ -50,9 +50,9 @@ fn equation_1(reflect: bool) -> Rgb {
     let (kd, ka, ks, n) = (Rgb::new(0.5, 0.3, 0.1), 0.2, 0.4, Vec3::Y);
     let eye = Vec3::new(0.0, 1.0, 1.0).normalize();
     let mut sum = Rgb::new(0.1, 0.2, 0.3) * ka;
-    let lamps =
+    let lights =
         [(Vec3::new(-1.0, 2.0, 0.0), Rgb::new(0.4, 0.5, 0.6)), (Vec3::new(3.0, 3.0, 0.0), Rgb::grey(0.3))];
-    for (position, colour) in lamps {
+    for (position, colour) in lights {
         let l = position.normalize();
         let cos = if reflect { (n * (2.0 * n.dot(l)) - l).dot(eye) } else { n.dot((l + eye).normalize()) };
         sum += kd * colour * n.dot(l) + colour * (ks * powf(cos, 10.0));
@@ -90,9 +90,9 @@ fn sheet_before_left() -> SceneBuilder {
 #[test]
 fn blocked_lights_are_off_unless_shadows_are() {
     let blocked = seen(&sheet_before_left(), &Spec::new("", "cast"), 16);
-    let mut one_lamp = sheet_before_left();
-    one_lamp.lights.remove(0);
-    assert_near(blocked, seen(&one_lamp, &Spec::new("", "cast"), 16));
+    let mut one_light = sheet_before_left();
+    one_light.lights.remove(0);
+    assert_near(blocked, seen(&one_light, &Spec::new("", "cast"), 16));
     let unshadowed = Spec::new("", "cast").with("shadows", false);
     assert_near(seen(&sheet_before_left(), &unshadowed, 16), equation_1(false));
 }

@@ -144,7 +144,7 @@ fn dispersive_glass_conserves_every_colour() {
 }
 
 /// What a prism projects on a wall from a distant light: blue on the left, red on the right.
-fn on_a_wall(lamp: Spec, glass: Spec, dispersion: f32) -> Scene {
+fn on_a_wall(light_spec: Spec, glass: Spec, dispersion: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let glass = glass.with("eta", 1.4f32).with("dispersion", dispersion);
     put(&mut builder, "prism", Arc::new(shapes::prism(Vec3::ZERO, 0.7, 8.0, 3)), glass);
@@ -153,12 +153,12 @@ fn on_a_wall(lamp: Spec, glass: Spec, dispersion: f32) -> Scene {
     // No light gets past the prism to where the camera looks.
     let screen = quad(Vec3::new(-4.0, -4.0, 0.0), Vec3::X * 3.65, Vec3::Y * 8.0);
     put(&mut builder, "screen", screen, diffuse(0.0f32));
-    builder.lights.push(lamp.with("position", LAMP));
+    builder.lights.push(light_spec.with("position", LIGHT));
     look(&mut builder, Vec3::new(-0.85, 0.0, -1.9), Vec3::new(-0.85, 0.0, -3.0), 60.0);
     built(&builder)
 }
 
-const LAMP: Vec3 = Vec3::new(-5.7, 0.0, 19.1);
+const LIGHT: Vec3 = Vec3::new(-5.7, 0.0, 19.1);
 
 fn panel() -> Spec {
     let spec = Spec::new("", "rect").with("radiance", 10.0f32);
@@ -184,8 +184,8 @@ fn dispersed_light_is_the_same_from_both_ends() {
         ("clear", panel(), clear(), &["bdpt", "vcm", "auto"]),
         ("frosted", spot(), frosted(), &["light", "bdpt", "vcm", "auto"]),
     ];
-    for (kind, lamp, glass, names) in ends {
-        let scene = on_a_wall(lamp.clone(), glass.clone(), STRONG);
+    for (kind, light_spec, glass, names) in ends {
+        let scene = on_a_wall(light_spec.clone(), glass.clone(), STRONG);
         let path = blocks(&scene, &*integrator("path"), 0);
         for (i, name) in names.iter().enumerate() {
             let other = if *name == "vcm" { merging(name) } else { integrator(name) };
@@ -193,7 +193,7 @@ fn dispersed_light_is_the_same_from_both_ends() {
             assert!(p > UNLIKELY, "{kind}: path and {name}: p = {p}");
         }
         // Otherwise the test could not distinguish it from glass without dispersion.
-        let plain = on_a_wall(lamp, glass, 0.0);
+        let plain = on_a_wall(light_spec, glass, 0.0);
         let right = blocks(&scene, &*integrator("bdpt"), 800);
         let p = agreement(&right, &blocks(&plain, &*integrator("bdpt"), 900));
         assert!(p < UNLIKELY, "{kind}: plain glass passes: p = {p}");

@@ -123,11 +123,11 @@ fn filtered_textures_look_the_same_from_both_ends() {
 fn a_footprint_that_depends_on_the_path_is_detected() {
     let builder = fine_noise();
     let [_, right] = both(&builder, 16);
-    let mut from_lamp = builder.clone();
-    from_lamp.cameras.clear();
-    look(&mut from_lamp, Vec3::new(-0.5, 2.5, 0.0), Vec3::new(-0.4, 0.0, 0.1), 1.0);
-    let lamp = built(&from_lamp).cameras()[0].1.clone();
-    let wrong = built(&builder).filtered(lamp, 16);
+    let mut from_light = builder.clone();
+    from_light.cameras.clear();
+    look(&mut from_light, Vec3::new(-0.5, 2.5, 0.0), Vec3::new(-0.4, 0.0, 0.1), 1.0);
+    let light = built(&from_light).cameras()[0].1.clone();
+    let wrong = built(&builder).filtered(light, 16);
     assert_unlike_path(&right, &wrong, &["light", "bdpt", "vcm"]);
 }
 

@@ -19,11 +19,11 @@ fn sheet(height: f32, half: f32) -> Arc<Mesh> {
 }
 
 /// A sheet over a floor, under a light and a weak sky.
-fn sheet_over_a_floor(material: Spec, lamp: f32) -> SceneBuilder {
+fn sheet_over_a_floor(material: Spec, light: f32) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
     put(&mut builder, "sheet", sheet(0.6, 1.0), material);
-    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.3, 2.5, 0.2)).with("intensity", lamp);
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.3, 2.5, 0.2)).with("intensity", light);
     builder.lights.push(panel);
     sky(&mut builder, 0.2);
     // Cut-outs with soft edges, and a column of partial opacity.
@@ -39,10 +39,10 @@ fn opacity_looks_the_same_from_both_ends() {
     let screen = Spec::new("", "principled").with("opacity", 0.4f32).with("base_color", 0.7f32);
     let sign = diffuse(0.3f32).with("emission", Rgb::new(3.0, 2.0, 1.0)).with("opacity", Value::Texture(0));
     let glow = diffuse(0.3f32).with("emission", 2.0f32).with("opacity", 0.3f32);
-    for (name, material, lamp) in
+    for (name, material, light) in
         [("lace", lace, 12.0), ("gauze", screen, 12.0), ("sign", sign, 1.0), ("glowing gauze", glow, 1.0)]
     {
-        let scene = built(&sheet_over_a_floor(material, lamp));
+        let scene = built(&sheet_over_a_floor(material, light));
         assert_like_path(name, &scene, &["light", "bdpt", "vcm", "auto"]);
     }
 }

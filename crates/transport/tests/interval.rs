@@ -24,7 +24,7 @@ const SEEDS: u64 = 100;
 fn two_balls() -> Scene {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "table", floor(0.0, 1.6), diffuse(Rgb::new(0.7, 0.5, 0.3)));
-    put(&mut builder, "matt", ball(Vec3::new(0.9, 0.6, -0.3), 0.6, 10, true), diffuse(0.6f32));
+    put(&mut builder, "matte", ball(Vec3::new(0.9, 0.6, -0.3), 0.6, 10, true), diffuse(0.6f32));
     let satin = Spec::new("", "phong").with("kd", 0.3f32).with("ks", 0.5f32).with("exponent", 10.0f32);
     let satin = satin.with("reflectivity", 0.0f32);
     put(&mut builder, "satin", ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true), satin);

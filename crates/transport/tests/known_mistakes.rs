@@ -18,7 +18,7 @@ fn crevice() -> Scene {
     put(&mut builder, "leaf", quad(hinge, Vec3::X * 2.0, Vec3::new(0.0, 0.25, 1.0)), diffuse(0.9f32));
     put(&mut builder, "leaf", quad(hinge, Vec3::X * 2.0, Vec3::new(0.0, -0.25, 1.0)), diffuse(0.9f32));
     let glowing = diffuse(0.0f32).with("emission", 1.0f32);
-    put(&mut builder, "lamp", quad(Vec3::new(-1.0, -1.0, 2.5), Vec3::X * 2.0, Vec3::Y * 2.0), glowing);
+    put(&mut builder, "light", quad(Vec3::new(-1.0, -1.0, 2.5), Vec3::X * 2.0, Vec3::Y * 2.0), glowing);
     look(&mut builder, Vec3::Z * 1.5, Vec3::ZERO, 14.0);
     built(&builder)
 }
@@ -54,8 +54,8 @@ fn vertices_that_lie_close_together_give_no_spike() {
 fn photons_from_around_a_bend_give_no_spike() {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 6, true), diffuse(0.8f32));
-    let lamp = Spec::new("", "point").with("position", Vec3::new(2.0, 0.0, 0.5)).with("intensity", 10.0f32);
-    builder.lights.push(lamp);
+    let light = Spec::new("", "point").with("position", Vec3::new(2.0, 0.0, 0.5)).with("intensity", 10.0f32);
+    builder.lights.push(light);
     look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 40.0);
     let scene = built(&builder);
     let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(32, 32, 64) };
@@ -107,8 +107,8 @@ fn under_a_mesh(stretch: f64, instanced: bool) -> SceneBuilder {
         * DMat4::from_rotation_x(0.7)
         * DMat4::from_scale(DVec3::new(-0.9 * stretch, 0.15, 0.5));
     let placed = Motion::still(Transform::from_matrix(matrix).unwrap());
-    let lamp = Object::new("lamp", ball(Vec3::ZERO, 1.0, 5, true), glowing);
-    builder.objects.push(Object { motion: placed, instanced, ..lamp });
+    let light = Object::new("light", ball(Vec3::ZERO, 1.0, 5, true), glowing);
+    builder.objects.push(Object { motion: placed, instanced, ..light });
     builder
 }
 

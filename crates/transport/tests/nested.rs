@@ -84,8 +84,8 @@ fn overlapping(roughness: f32, priorities: [f32; 2]) -> SceneBuilder {
         let material = medium([1.5, 1.33][i], absorption, priorities[i]).with("roughness", roughness);
         put(&mut builder, "", ball(Vec3::new(x, 0.9, 0.0), 0.8, 12, true), material);
     }
-    let lamp = diffuse(0.5f32).with("emission", 20.0f32);
-    put(&mut builder, "lamp", ball(Vec3::new(0.1, 0.9, 0.1), 0.12, 6, false), lamp);
+    let light = diffuse(0.5f32).with("emission", 20.0f32);
+    put(&mut builder, "light", ball(Vec3::new(0.1, 0.9, 0.1), 0.12, 6, false), light);
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
     builder.lights.push(panel);
     sky(&mut builder, 0.2);

@@ -67,8 +67,8 @@ fn roulette_does_not_depend_on_the_lobe_with_interreflection() {
     put(&mut builder, "ball", ball(Vec3::new(0.0, 0.7, 0.0), 0.7, 10, true), material.clone());
     let wall = quad(Vec3::new(-2.0, 0.0, -1.5), Vec3::X * 4.0, Vec3::Y * 3.0);
     put(&mut builder, "wall", wall, material);
-    let lamp = Spec::new("", "sphere").with("position", Vec3::new(0.8, 1.9, 0.6)).with("radius", 0.4f32);
-    builder.lights.push(lamp.with("radiance", 10.0f32));
+    let light = Spec::new("", "sphere").with("position", Vec3::new(0.8, 1.9, 0.6)).with("radius", 0.4f32);
+    builder.lights.push(light.with("radiance", 10.0f32));
     look(&mut builder, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
     let scene = built(&builder);
     let path = found(&scene, "path", "", &RenderSettings::new(12, 12, 128));

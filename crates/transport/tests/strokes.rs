@@ -1,4 +1,4 @@
-//! Points and lines, which rays meet as spheres and capsules, look the same from both ends. See
+//! Points and lines, which rays hit as spheres and capsules, look the same from both ends. See
 //! docs/adr/0025-points-and-curves.md.
 
 mod common;

@@ -200,8 +200,8 @@ fn a_sphere_lights_the_floor_as_if_from_its_middle() {
             PI * radius * radius / distance2 * height / distance2.sqrt()
         });
         check_direct(&format!("sphere of {radius} m"), x as f32, irradiance, |builder| {
-            let lamp = Spec::new("", "sphere").with("radius", radius as f32).with("radiance", 1.0f32);
-            builder.lights.push(lamp.with("position", Vec3::Y * height as f32));
+            let light_spec = Spec::new("", "sphere").with("radius", radius as f32).with("radiance", 1.0f32);
+            builder.lights.push(light_spec.with("position", Vec3::Y * height as f32));
         });
     }
 }

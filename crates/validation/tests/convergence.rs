@@ -37,7 +37,7 @@ const SMALL: f32 = 0.008;
 
 /// Heights of the mirror above the floor, and of the light and the eye below it.
 const MIRROR: f32 = 1.0;
-const LAMP: f32 = 0.9;
+const LIGHT: f32 = 0.9;
 const EYE: f32 = 0.6;
 
 /// The floor, lit and seen in the mirror above it, or directly by a light and from an eye at their mirror images.
@@ -54,8 +54,8 @@ fn floor(mirrored: bool) -> Scene {
     }
     let place = |height: f32| Vec3::Y * if mirrored { height } else { 2.0 * MIRROR - height };
     let towards = Vec3::Y * if mirrored { MIRROR } else { 0.0 };
-    let lamp = Spec::new("", "spot").with("position", place(LAMP)).with("look_at", towards);
-    builder.lights.push(lamp.with("angle", 34.0f32).with("inner_angle", 32.0f32).with("intensity", 1.0f32));
+    let light = Spec::new("", "spot").with("position", place(LIGHT)).with("look_at", towards);
+    builder.lights.push(light.with("angle", 34.0f32).with("inner_angle", 32.0f32).with("intensity", 1.0f32));
     let eye = Spec::new("", "perspective").with("position", place(EYE)).with("look_at", towards);
     let eye = eye.with("up", Vec3::X).with("fov", 16.0f32);
     builder.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });

@@ -33,7 +33,7 @@ kind = "directional"
 direction = [0, -3, -1]
 irradiance = [0.3, 0.4, 0.3]
 [[material]]
-name = "matt"
+name = "matte"
 kind = "diffuse"
 reflectance = [0.6, 0.5, 0.4]
 [[material]]
@@ -55,7 +55,7 @@ emission = [2, 4, 2]
 shape = "quad"
 u = [8, 0, 0]
 v = [0, 0, -8]
-material = "matt"
+material = "matte"
 [[model]]
 shape = "box"
 translate = [1, 0.5, 0.5]

@@ -273,7 +273,7 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
         kind = "environment"
         radiance = [0.1, 0.1, 0.2]
         [[material]]
-        name = "matt"
+        name = "matte"
         kind = "diffuse"
         reflectance = [0.6, 0.5, 0.4]
         [[material]]
@@ -291,7 +291,7 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
         shape = "quad"
         u = [8, 0, 0]
         v = [0, 0, -8]
-        material = "matt"
+        material = "matte"
         [[model]]
         shape = "sphere"
         radius = 0.75

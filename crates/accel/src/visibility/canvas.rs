@@ -1,4 +1,4 @@
-//! The image in progress: the only place where triangles meet pixels.
+//! The image in progress: the only place where triangles are written to pixels.
 
 use super::VisibilityOptions;
 use super::result::{BACKGROUND, VisibilityCounts, VisibilityResult};

@@ -39,7 +39,8 @@ pub fn of(rendered: &Rendered) -> serde_json::Value {
         "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
-        "non_finite_samples": outcome.film.sample_failures().non_finite, "overflows": outcome.film.sample_failures().overflowed,
+        "non_finite_samples": outcome.film.sample_failures().non_finite,
+        "overflows": outcome.film.sample_failures().overflowed,
         "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
             "spp": r.spp, "noise": r.noise, "noise_samples_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
         })),

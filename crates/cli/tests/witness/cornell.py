@@ -83,9 +83,9 @@ def boxes():
         "housing": (*quad([-0.4, 1.97, -0.4], [0.8, 0, 0], [0, 0, 0.8]), 0.0),
     }
     lamp = quad([-0.3, 1.96, -0.3], [0.6, 0, 0], [0, 0, 0.6])
-    matt = {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), 0.6)}
+    matte = {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), 0.6)}
     of = lambda surface: {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), surface)}
-    return lamp, {"matt": matt, **{surface: of(surface) for surface in SURFACES}}
+    return lamp, {"matte": matte, **{surface: of(surface) for surface in SURFACES}}
 
 
 def write_ply(path, points, faces):
@@ -195,7 +195,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--integrators", default="path,bdpt,vcm,auto")
-    parser.add_argument("--boxes", default=",".join(["matt", *SURFACES]))
+    parser.add_argument("--boxes", default=",".join(["matte", *SURFACES]))
     # A planted bug: an error of this size must be detected.
     parser.add_argument("--brighten", type=float, default=1.0)
     options = parser.parse_args()

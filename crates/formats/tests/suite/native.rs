@@ -604,8 +604,8 @@ fn the_examples_of_the_manual_are_scenes() {
 
 #[test]
 fn materials_are_mixed_by_name_in_any_order() {
-    let mix = "[[material]]\nname = \"m\"\nkind = \"mix\"\na = \"matt\"\nb = \"metal\"\namount = 0.3\n";
-    let parts = "[[material]]\nname = \"matt\"\nkind = \"diffuse\"\n\
+    let mix = "[[material]]\nname = \"m\"\nkind = \"mix\"\na = \"matte\"\nb = \"metal\"\namount = 0.3\n";
+    let parts = "[[material]]\nname = \"matte\"\nkind = \"diffuse\"\n\
                  [[material]]\nname = \"metal\"\nkind = \"conductor\"\nmetal = \"gold\"\n";
     let model = "[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n";
     let built = |text: &str| {
@@ -618,13 +618,13 @@ fn materials_are_mixed_by_name_in_any_order() {
     let refusal = |text: &str| built(text).err().unwrap().to_string();
     let misspelt = refusal(&format!("{mix}{}", parts.replace("\"metal\"\nkind", "\"metall\"\nkind")));
     assert!(misspelt.contains("there is no material 'metal'; did you mean 'metall'?"), "{misspelt}");
-    let itself = refusal(&format!("{}{parts}", mix.replace("\"matt\"", "\"m\"")));
+    let itself = refusal(&format!("{}{parts}", mix.replace("\"matte\"", "\"m\"")));
     assert!(itself.contains("or contain themselves"), "{itself}");
     let phongs =
         parts.replace("\"diffuse\"", "\"phong\"").replace("\"conductor\"\nmetal = \"gold\"", "\"phong\"");
     let many = refusal(&format!("{mix}{phongs}"));
     assert!(many.contains("have 6 lobes together"), "{many}");
-    let lamp = parts.replace("\"diffuse\"", "\"diffuse\"\nemission = 1");
-    let glows = refusal(&format!("{mix}{lamp}"));
+    let glowing = parts.replace("\"diffuse\"", "\"diffuse\"\nemission = 1");
+    let glows = refusal(&format!("{mix}{glowing}"));
     assert!(glows.contains("'a' emits light"), "{glows}");
 }

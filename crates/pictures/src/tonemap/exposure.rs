@@ -48,7 +48,7 @@ mod tests {
         for light in [1e-6, 0.18, 3.0, 1e5] {
             let shown = light * bilux_math::transcendental::powf(2.0, stops(|_| light));
             assert!((shown / MIDDLE_GREY - 1.0).abs() < 0.03, "{light}: {shown}");
-            let lamp_and_night = |i| {
+            let light_and_night = |i| {
                 if i < 19 {
                     0.0
                 } else if i < 38 {
@@ -57,7 +57,7 @@ mod tests {
                     light
                 }
             };
-            assert!((stops(lamp_and_night) - stops(|_| light)).abs() < 1e-6);
+            assert!((stops(light_and_night) - stops(|_| light)).abs() < 1e-6);
         }
         assert_eq!(stops(|_| 0.0), 0.0);
         assert_eq!(stops(|_| f32::NAN), 0.0);

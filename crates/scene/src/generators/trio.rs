@@ -25,10 +25,10 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         let teapot = Arc::new(solid.mesh());
         let hollow = Vessel { wall: Some(WALL), ..solid };
         let vessel = Arc::new(hollow.mesh());
-        let clay = Spec::new("matt", "diffuse").with("reflectance", Rgb::new(0.82, 0.70, 0.50));
+        let clay = Spec::new("matte", "diffuse").with("reflectance", Rgb::new(0.82, 0.70, 0.50));
         let mirror = Spec::new("mirror", "mirror").with("reflectance", Rgb::new(0.95, 0.93, 0.90));
         let glass = Spec::new("glass", "dielectric").with("absorption", Rgb::new(1.1, 0.35, 0.45));
-        place(&mut scene, "matt teapot", &teapot, clay, [-1.20, -0.42], 204.0);
+        place(&mut scene, "matte teapot", &teapot, clay, [-1.20, -0.42], 204.0);
         place(&mut scene, "mirror teapot", &teapot, mirror, [1.10, -0.50], -16.0);
         place(&mut scene, "glass teapot", &vessel, glass, [-0.12, 0.70], -16.0);
         let tea =

@@ -85,8 +85,8 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
     }
 }
 
-/// The nearest hit of a ray that is prepared for boxes. `root_hits` says which children of the root it hits; 0 means that
-/// this is unknown.
+/// The nearest hit of a ray that is prepared for boxes. `root_hits` says which children of the root it hits; 0 means
+/// that this is unknown.
 ///
 /// # Safety
 /// As for [`closest`]; the ray must be regular.
