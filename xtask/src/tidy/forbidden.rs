@@ -29,6 +29,22 @@ const WORDS: &[(&str, &str)] = &[
     ("MOST_", OLD_NAME),
     ("Onlooker", OLD_NAME),
     ("tell_faults", OLD_NAME),
+    ("foreseen", OLD_NAME),
+    ("foresaw", OLD_NAME),
+    ("TameRay", OLD_NAME),
+    ("Ingredients", OLD_NAME),
+    ("Spoilt", OLD_NAME),
+    ("spoilt", OLD_NAME),
+    ("Unprinted", OLD_NAME),
+    ("matt\"", OLD_NAME),
+    ("is_told", OLD_NAME),
+    ("are_told", OLD_NAME),
+    ("told_of", OLD_NAME),
+    ("_as_met", OLD_NAME),
+    ("worked_out", OLD_NAME),
+    ("lamps_alone", OLD_NAME),
+    ("trouble_at", OLD_NAME),
+    ("untaught", OLD_NAME),
 ];
 
 /// Files in which such words are unavoidable: this list, and files with text copied from elsewhere.

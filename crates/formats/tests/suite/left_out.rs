@@ -111,7 +111,7 @@ fn lost(entry: &Entry, add: AddSpec, format: &str) -> Vec<String> {
         let has = |key: &str| entry.parameters.iter().any(|parameter| parameter.name == key);
         let beside = beside(parameter.name).filter(|(key, _)| has(key));
         let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
-        let (plain, told_of_plain) = written(base.clone(), add, format);
+        let (plain, reported_of_plain) = written(base.clone(), add, format);
         let (changed, reported) = written(base.with(parameter.name, value.clone()), add, format);
         // If the parameter or its whole layer is left out in any case, no further warning is needed.
         let layer = |message: &String| {
@@ -120,7 +120,7 @@ fn lost(entry: &Entry, add: AddSpec, format: &str) -> Vec<String> {
             [parameter.name, entry.name].contains(&of)
                 || stem.is_some_and(|stem| !stem.is_empty() && parameter.name.starts_with(stem))
         };
-        plain == changed && reported == told_of_plain && !reported.iter().any(layer)
+        plain == changed && reported == reported_of_plain && !reported.iter().any(layer)
     });
     lost.map(|(parameter, value)| format!("{} = {value:?}", parameter.name)).collect()
 }

@@ -124,13 +124,13 @@ fn formats_without_procedural_textures_get_images() {
     let board =
         "reflectance = { kind = \"checker\", a = [1, 0, 0], b = [0, 0, 1], u_scale = 3, v_offset = 0.5 }";
     let clouds = "reflectance = { kind = \"noise\", octaves = 2 }";
-    let is_told = |reported: &str| reported.contains("cannot store procedural textures");
+    let is_reported = |reported: &str| reported.contains("cannot store procedural textures");
     for (extension, key) in [("pbrt", "reflectance"), ("glb", "base_color"), ("obj", "kd")] {
         let scene = read_text("toml", material(board)).unwrap();
         let (reported, back) = written(&scene, folder.path(), extension);
         // If textures can have a placement, a checkerboard needs two texels by two; all else is written as many
         // texels.
-        assert_eq!(is_told(&reported), extension == "obj", "{extension}: {reported}");
+        assert_eq!(is_reported(&reported), extension == "obj", "{extension}: {reported}");
         let (before, after) = (texture(&scene, "reflectance"), texture(&back, key));
         if extension != "obj" {
             let off = |uv| (before.at(uv) - after.at(uv)).map(f32::abs).max_channel();
@@ -139,7 +139,7 @@ fn formats_without_procedural_textures_get_images() {
         let scene = read_text("toml", material(clouds)).unwrap();
         let (reported, back) = written(&scene, folder.path(), extension);
         assert!(
-            is_told(&reported)
+            is_reported(&reported)
                 && reported.contains("'noise' is written as a repeating picture of 1024 x 1024"),
             "{reported}"
         );
@@ -151,10 +151,10 @@ fn formats_without_procedural_textures_get_images() {
     // A checkerboard next to another texture needs many texels too, since both may have to share one image.
     let two = format!("{board}\nroughness = {{ kind = \"checker\" }}");
     let (reported, _) = written(&read_text("toml", material(&two)).unwrap(), folder.path(), "glb");
-    assert!(is_told(&reported), "{reported}");
+    assert!(is_reported(&reported), "{reported}");
     // Formats without textures do not warn about them.
     let (reported, _) = written(&read_text("toml", material(clouds)).unwrap(), folder.path(), "ply");
-    assert!(!is_told(&reported), "{reported}");
+    assert!(!is_reported(&reported), "{reported}");
 }
 
 #[test]

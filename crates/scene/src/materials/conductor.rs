@@ -45,9 +45,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
+    build: |reader, inputs| {
         one_colour(reader)?;
-        let tint = colour_map(reader, "reflectance", ingredients)?;
+        let tint = colour_map(reader, "reflectance", inputs)?;
         let named = reader.text("metal");
         let named = METALS.iter().find(|metal| metal.name == named);
         let colour = match named {
@@ -57,7 +57,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             }
             _ => Colour::Metal(Fresnel::Complex { eta: reader.colour("eta"), k: reader.colour("k") }),
         };
-        Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader, ingredients)? }))
+        Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader, inputs)? }))
     },
 };
 

@@ -40,7 +40,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
+    build: |reader, inputs| {
         let name = reader.text("glass");
         if let (Some(_), Some(key)) =
             (glass_indices(&name), ["eta", "dispersion"].into_iter().find(|key| reader.is_given(key)))
@@ -54,11 +54,11 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         Ok(Arc::new(Glass {
             eta,
             dispersion: if reader.bool("thin") { 0.0 } else { dispersion },
-            tint: colour_map(reader, "tint", ingredients)?,
+            tint: colour_map(reader, "tint", inputs)?,
             sigma_a: reader.colour("absorption"),
             priority: reader.integer("priority") as u32,
             thin: reader.bool("thin"),
-            roughness: Roughness::read(reader, ingredients)?,
+            roughness: Roughness::read(reader, inputs)?,
             gloss: reader.number("gloss").to_radians(),
             translucency: reader.number("translucency").to_radians(),
         }))

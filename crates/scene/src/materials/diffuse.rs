@@ -36,10 +36,10 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
+    build: |reader, inputs| {
         Ok(Arc::new(Diffuse {
-            reflectance: colour_map(reader, "reflectance", ingredients)?,
-            roughness: number_map(reader, "roughness", ingredients)?,
+            reflectance: colour_map(reader, "reflectance", inputs)?,
+            roughness: number_map(reader, "roughness", inputs)?,
         }))
     },
 };

@@ -45,11 +45,8 @@ pub(super) struct SurfaceEmission {
 }
 
 /// Reads the emission of a material, if it has any.
-pub(super) fn read(
-    reader: &Reader,
-    ingredients: &MaterialInputs,
-) -> Result<Option<SurfaceEmission>, SceneError> {
-    let picture = texture(reader, "emission", ingredients)?;
+pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Option<SurfaceEmission>, SceneError> {
+    let picture = texture(reader, "emission", inputs)?;
     let scale = reader.colour(if picture.is_some() { "emission_scale" } else { "emission" });
     let brightest = picture.as_deref().map_or(scale, |picture| brightest(picture) * scale);
     let sides = Sides::from_name(&reader.text("emission_sides"));

@@ -28,9 +28,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
+    build: |reader, inputs| {
         Ok(Arc::new(MirrorMaterial {
-            reflectance: colour_map(reader, "reflectance", ingredients)?,
+            reflectance: colour_map(reader, "reflectance", inputs)?,
             gloss: reader.number("gloss").to_radians(),
         }))
     },

@@ -32,8 +32,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
-        let (a, b) = (read_part(reader, ingredients, "a")?, read_part(reader, ingredients, "b")?);
+    build: |reader, inputs| {
+        let (a, b) = (read_part(reader, inputs, "a")?, read_part(reader, inputs, "b")?);
         let lobes = a.max_lobes() + b.max_lobes();
         if lobes > MAX_LOBES {
             let message = format!(
@@ -42,7 +42,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             );
             return Err(SceneError::invalid(message, reader.span("a")));
         }
-        Ok(Arc::new(Mix { a, b, amount: number_map(reader, "amount", ingredients)? }))
+        Ok(Arc::new(Mix { a, b, amount: number_map(reader, "amount", inputs)? }))
     },
 };
 
@@ -50,14 +50,10 @@ const fn part(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Material, default: "" }
 }
 
-fn read_part(
-    reader: &Reader,
-    ingredients: &MaterialInputs,
-    key: &str,
-) -> Result<Arc<dyn Material>, SceneError> {
+fn read_part(reader: &Reader, inputs: &MaterialInputs, key: &str) -> Result<Arc<dyn Material>, SceneError> {
     let index = reader.material(key);
-    let material = ingredients.material(index, reader.span(key))?;
-    if ingredients.materials[index].parameters.find("normal").is_some() {
+    let material = inputs.material(index, reader.span(key))?;
+    if inputs.materials[index].parameters.find("normal").is_some() {
         let message =
             format!("'{key}' has a normal map, which the mix would ignore: give the map to the mix");
         return Err(SceneError::invalid(message, reader.span(key)));

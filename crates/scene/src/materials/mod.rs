@@ -188,35 +188,31 @@ pub const MATERIALS: &[MaterialEntry] = &[
 ///
 /// # Errors
 /// When no row has its kind, or a parameter is wrong.
-pub fn build(spec: &Spec, ingredients: &MaterialInputs) -> Result<Arc<dyn Material>, SceneError> {
+pub fn build(spec: &Spec, inputs: &MaterialInputs) -> Result<Arc<dyn Material>, SceneError> {
     let names = MATERIALS.iter().map(|row| row.entry.name);
     let row = MATERIALS
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
     let reader = Reader::new(spec, &row.entry)?;
-    modifiers::dress((row.build)(&reader, ingredients)?, row, &reader, ingredients)
+    modifiers::apply((row.build)(&reader, inputs)?, row, &reader, inputs)
 }
 
 /// The colour or texture under a key.
-fn colour_map(reader: &Reader, key: &str, ingredients: &MaterialInputs) -> Result<ColourMap, SceneError> {
-    Ok(ColourMap { colour: reader.colour(key), texture: texture(reader, key, ingredients)? })
+fn colour_map(reader: &Reader, key: &str, inputs: &MaterialInputs) -> Result<ColourMap, SceneError> {
+    Ok(ColourMap { colour: reader.colour(key), texture: texture(reader, key, inputs)? })
 }
 
 /// The number or texture under a key.
-fn number_map(reader: &Reader, key: &str, ingredients: &MaterialInputs) -> Result<NumberMap, SceneError> {
+fn number_map(reader: &Reader, key: &str, inputs: &MaterialInputs) -> Result<NumberMap, SceneError> {
     let range = reader.range(key).map(|x| x as f32);
-    Ok(NumberMap { number: reader.number(key), range, texture: texture(reader, key, ingredients)? })
+    Ok(NumberMap { number: reader.number(key), range, texture: texture(reader, key, inputs)? })
 }
 
-fn texture(
-    reader: &Reader,
-    key: &str,
-    ingredients: &MaterialInputs,
-) -> Result<Option<Arc<Texture>>, SceneError> {
+fn texture(reader: &Reader, key: &str, inputs: &MaterialInputs) -> Result<Option<Arc<Texture>>, SceneError> {
     let Some(index) = reader.texture(key) else { return Ok(None) };
     let missing = || SceneError::invalid(format!("no texture {index}"), reader.span(key));
-    ingredients.textures.get(index).cloned().map(Some).ok_or_else(missing)
+    inputs.textures.get(index).cloned().map(Some).ok_or_else(missing)
 }
 
 const ABSORPTION: Parameter = Parameter {

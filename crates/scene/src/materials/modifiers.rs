@@ -16,16 +16,16 @@ use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
 /// Wraps the material in the modifiers that its parameters ask for; without any it stays the same.
-pub(super) fn dress(
+pub(super) fn apply(
     material: Arc<dyn Material>,
     row: &MaterialEntry,
     reader: &Reader,
-    ingredients: &MaterialInputs,
+    inputs: &MaterialInputs,
 ) -> Result<Arc<dyn Material>, SceneError> {
     let has = |name: &str| row.entry.parameters.iter().any(|parameter| parameter.name == name);
-    let normals = normal_map::read(reader, ingredients)?;
-    let glow = if has(emission::EMISSION.name) { emission::read(reader, ingredients)? } else { None };
-    let opacity = opacity::read(reader, ingredients)?;
+    let normals = normal_map::read(reader, inputs)?;
+    let glow = if has(emission::EMISSION.name) { emission::read(reader, inputs)? } else { None };
+    let opacity = opacity::read(reader, inputs)?;
     let visible = if has(VISIBLE_SIDES.name) {
         Sides::from_name(&reader.text(VISIBLE_SIDES.name))
     } else {

@@ -41,25 +41,25 @@ pub(super) struct NormalMap {
 }
 
 /// The normal map of a material, if any.
-pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NormalMap>, SceneError> {
-    read_named(reader, [NORMAL.name, NORMAL_SCALE.name], ingredients)
+pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Option<NormalMap>, SceneError> {
+    read_named(reader, [NORMAL.name, NORMAL_SCALE.name], inputs)
 }
 
 /// The normal map of its coat, if any.
 pub(super) fn read_of_coat(
     reader: &Reader,
-    ingredients: &MaterialInputs,
+    inputs: &MaterialInputs,
 ) -> Result<Option<NormalMap>, SceneError> {
-    read_named(reader, [COAT_NORMAL.name, COAT_NORMAL_SCALE.name], ingredients)
+    read_named(reader, [COAT_NORMAL.name, COAT_NORMAL_SCALE.name], inputs)
 }
 
 fn read_named(
     reader: &Reader,
     [map, scale]: [&str; 2],
-    ingredients: &MaterialInputs,
+    inputs: &MaterialInputs,
 ) -> Result<Option<NormalMap>, SceneError> {
     let scale = reader.number(scale);
-    let map = texture(reader, map, ingredients)?;
+    let map = texture(reader, map, inputs)?;
     Ok(map.filter(|_| scale > 0.0).map(|map| NormalMap { map, scale }))
 }
 

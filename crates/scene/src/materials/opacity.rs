@@ -20,7 +20,7 @@ pub(super) const OPACITY: Parameter = Parameter {
 };
 
 /// The opacity, if it may be below 1.
-pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NumberMap>, SceneError> {
-    let map = number_map(reader, OPACITY.name, ingredients)?;
+pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Option<NumberMap>, SceneError> {
+    let map = number_map(reader, OPACITY.name, inputs)?;
     Ok((map.texture.is_some() || map.number < 1.0).then_some(map))
 }

@@ -53,14 +53,14 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
+    build: |reader, inputs| {
         let ambient = if reader.is_given("ka") { "ka" } else { "kd" };
         Ok(Arc::new(Phong {
-            ka: colour_map(reader, ambient, ingredients)?,
+            ka: colour_map(reader, ambient, inputs)?,
             ambient_follows_kd: !reader.is_given("ka"),
-            kd: colour_map(reader, "kd", ingredients)?,
-            ks: colour_map(reader, "ks", ingredients)?,
-            kt: colour_map(reader, "kt", ingredients)?,
+            kd: colour_map(reader, "kd", inputs)?,
+            ks: colour_map(reader, "ks", inputs)?,
+            kt: colour_map(reader, "kt", inputs)?,
             constants: ClassicMaterial {
                 exponent: reader.number("exponent"),
                 reflectivity: reader.number("reflectivity"),

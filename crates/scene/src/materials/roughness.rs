@@ -20,9 +20,9 @@ pub(super) struct Roughness {
 }
 
 impl Roughness {
-    pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Roughness, SceneError> {
+    pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Roughness, SceneError> {
         let (roughness, anisotropy) =
-            (number_map(reader, "roughness", ingredients)?, number_map(reader, "anisotropy", ingredients)?);
+            (number_map(reader, "roughness", inputs)?, number_map(reader, "anisotropy", inputs)?);
         let rotation = reader.number("rotation").to_radians();
         let even = (roughness.texture.is_none() && anisotropy.texture.is_none())
             .then(|| Ggx::from_roughness(roughness.number, anisotropy.number, rotation));

@@ -43,9 +43,9 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Maps, SceneError> {
-        let colour = |key| colour_map(reader, key, ingredients);
-        let number = |key| number_map(reader, key, ingredients);
+    pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Maps, SceneError> {
+        let colour = |key| colour_map(reader, key, inputs);
+        let number = |key| number_map(reader, key, inputs);
         let transmission_weight = number("transmission_weight")?;
         let is_solid = is_there(&transmission_weight) && !reader.bool("thin_walled");
         let scale = if is_solid { reader.number("transmission_dispersion_scale") } else { 0.0 };
@@ -68,7 +68,7 @@ impl Maps {
             coat_color: colour("coat_color")?,
             coat_roughness: number("coat_roughness")?,
             coat_ior: number("coat_ior")?,
-            coat_normals: normal_map::read_of_coat(reader, ingredients)?,
+            coat_normals: normal_map::read_of_coat(reader, inputs)?,
             fuzz_weight: number("fuzz_weight")?,
             fuzz_color: colour("fuzz_color")?,
             fuzz_roughness: number("fuzz_roughness")?,

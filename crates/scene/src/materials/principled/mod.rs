@@ -126,8 +126,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             NORMAL_SCALE,
         ],
     },
-    build: |reader, ingredients| {
-        let maps = Maps::read(reader, ingredients)?;
+    build: |reader, inputs| {
+        let maps = Maps::read(reader, inputs)?;
         let even = maps.are_constant().then(|| Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()));
         let depth = reader.number("transmission_depth");
         let is_deep = !maps.tints_surface;
