@@ -26,6 +26,7 @@ const TABLES: &[(&str, &str)] = &[
     ("formats", "Scene formats"),
     ("picture-formats", "Picture formats"),
     ("tonemaps", "Tone curves"),
+    ("denoisers", "Denoisers"),
     ("filters", "Pixel filters"),
     ("aovs", "Arbitrary output variables"),
     ("metrics", "Metrics"),
