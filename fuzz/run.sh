@@ -1,6 +1,6 @@
 #!/bin/sh
 # usage: fuzz/run.sh TARGET [libFuzzer options]     e.g. fuzz/run.sh picture_png -max_total_time=60
-# Builds and runs one target with the stable compiler; finds go to fuzz/artifacts/TARGET.
+# Builds and runs one target with the stable compiler; failing inputs go to fuzz/artifacts/TARGET.
 set -eu
 cd "$(dirname "$0")"
 target=$1

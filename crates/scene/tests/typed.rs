@@ -9,7 +9,7 @@ const WRITE: &str = "BILUX_WRITE_TYPES";
 
 fn source(what: &str, rows: impl Iterator<Item = Entry>) -> String {
     let mut text = format!(
-        "//! {what} by their types. Made from their table by `cargo xtask docs`; not edited by hand.\n\ntyped! {{\n"
+        "//! {what} as Rust types. Generated from their table by `cargo xtask docs`; do not edit by hand.\n\ntyped! {{\n"
     );
     for row in rows {
         let _ = writeln!(text, "    /// {}.", documented(row.summary));

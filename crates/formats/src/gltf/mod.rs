@@ -44,7 +44,7 @@ const SURROUNDINGS: &str = "surroundings";
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "gltf",
-        summary: "glTF 2.0 with its binary files and pictures, or all in one file as GLB",
+        summary: "Khronos glTF 2.0, with its binary and image files or all in one GLB",
         source: "glTF 2.0",
         parameters: &[],
     },

@@ -10,7 +10,7 @@ use bilux_scene::{Axis, UpHint};
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "las",
-        summary: "LAS 1.0 to 1.4, uncompressed: points of laser scanners",
+        summary: "LAS 1.0 to 1.4, uncompressed: point clouds from laser scanners",
         source: "",
         parameters: &[],
     },

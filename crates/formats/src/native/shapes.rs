@@ -31,8 +31,8 @@ pub const SHAPES: &[ShapeEntry] = &[
             summary: "a parallelogram that faces the direction of u × v",
             source: "",
             parameters: &[
-                vector("u", "edge from one side to the other", "1 0 0"),
-                vector("v", "edge from one end to the other", "0 1 0"),
+                vector("u", "one edge, as a vector", "1 0 0"),
+                vector("v", "the other edge, as a vector", "0 1 0"),
             ],
         },
         build: |reader| shapes::quad(Vec3::ZERO, reader.vector("u"), reader.vector("v")),

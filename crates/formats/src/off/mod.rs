@@ -11,7 +11,7 @@ use read::Columns;
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "off",
-        summary: "OFF, the text of Geomview and of collections of shapes",
+        summary: "OFF, text: the format of Geomview and of many shape collections",
         source: "",
         parameters: &[],
     },

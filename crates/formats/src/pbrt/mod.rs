@@ -30,7 +30,7 @@ use bilux_scene::{Axis, SceneError, Span, UpHint};
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "pbrt",
-        summary: "pbrt-v4 scenes, with the files that they include",
+        summary: "scenes of pbrt-v4, with the files that they include",
         source: "pbrt 2023",
         parameters: &[],
     },

@@ -10,7 +10,7 @@ use bilux_scene::{Axis, UpHint};
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "xyz",
-        summary: "XYZ and PTS: points as lines of numbers, with colours or normals or intensities",
+        summary: "XYZ and PTS: point clouds as lines of numbers, with colours, normals or intensities",
         source: "",
         parameters: &[],
     },

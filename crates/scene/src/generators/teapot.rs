@@ -20,7 +20,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         parameters: &[
             Parameter { default: "16", ..TESSELLATION },
             length("height", "height from the table to the top of the lid", "3.15"),
-            switch("bottom", "whether it has a bottom, which Newell's original did not", "true"),
+            switch("bottom", "whether it has a bottom, which Newell's original lacks", "true"),
         ],
     },
     generate: |reader| {

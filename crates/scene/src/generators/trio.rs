@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: Entry {
         name: "trio",
-        summary: "a glass, a mirror and a diffuse teapot in soft light: the first picture of the README",
+        summary: "a glass, a mirror and a diffuse teapot in soft light: the scene of the README's first command",
         source: "Newell 1975",
         parameters: &[Parameter { default: "24", ..TESSELLATION }],
     },

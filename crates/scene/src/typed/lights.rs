@@ -1,4 +1,4 @@
-//! Lights by their types. Made from their table by `cargo xtask docs`; not edited by hand.
+//! Lights as Rust types. Generated from their table by `cargo xtask docs`; do not edit by hand.
 
 typed! {
     /// Isotropic point light.
@@ -38,11 +38,11 @@ typed! {
     }
     /// Rectangular area light, visible to the camera.
     Rect = "rect" {
-        /// Its middle (m); default `0 5 0`.
+        /// Its centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
-        /// Edge from one side to the other (m); default `1 0 0`.
+        /// One edge, as a vector (m); default `1 0 0`.
         edge_u: bilux_math::Vec3,
-        /// Edge from one end to the other (m); default `0 0 1`.
+        /// The other edge, as a vector (m); default `0 0 1`.
         edge_v: bilux_math::Vec3,
         /// Emitted radiance; or give 'intensity' (W/(m² sr)); default `0`.
         radiance: bilux_math::Rgb,
@@ -55,7 +55,7 @@ typed! {
     }
     /// Spherical area light, visible to the camera.
     Sphere = "sphere" {
-        /// Its middle (m); default `0 5 0`.
+        /// Its centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
         /// Radius; above 0 (m); default `0.5`.
         radius: f32,
@@ -80,7 +80,7 @@ typed! {
         horizon: bilux_math::Rgb,
         /// Radiance from straight below; -1 uses 'radiance' (W/(m² sr)); default `-1`.
         ground: bilux_math::Rgb,
-        /// Only visible, in place of the environments that light the scene; it lights nothing itself; default `false`.
+        /// Shown in place of the environments that light the scene; it lights nothing itself; default `false`.
         backdrop: bool,
     }
     /// Analytic daylight sky with the sun, clear or hazy.
@@ -102,7 +102,7 @@ typed! {
     }
     /// The constant light Ia of Equation 1, in cast, whitted and cook only.
     Ambient = "ambient" {
-        /// Light that reaches every point alike; default `0.3`.
+        /// Light that reaches every point equally; default `0.3`.
         colour: bilux_math::Rgb,
     }
 }

@@ -1,4 +1,4 @@
-//! Materials by their types. Made from their table by `cargo xtask docs`; not edited by hand.
+//! Materials as Rust types. Generated from their table by `cargo xtask docs`; do not edit by hand.
 
 typed! {
     /// The paper's material: ambient, diffuse, specular and refracted light, each with its coefficient.

@@ -25,7 +25,7 @@ use bilux_math::{Aabb, registry::Entry};
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bvh8-compact",
-        summary: "bvh8 with quantised boxes and shared vertices: less than half of the memory, slower rays",
+        summary: "8-wide BVH with quantised boxes and shared vertices: less than half of the memory, slower rays",
         source: "Ylitie 2017",
         parameters: &[],
     },

@@ -13,7 +13,7 @@ use bilux_math::{Rgb, Vec3};
 use std::f32::consts::TAU;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
-    entry: about("daylight", "a giant's teapot among columns, in open daylight"),
+    entry: about("daylight", "a giant teapot among columns, in open daylight"),
     generate: |_| Ok(build()),
 };
 

@@ -14,8 +14,8 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         summary: "checkerboard of two colours",
         source: "",
         parameters: &[
-            tone("a", "the colour of the lower left square, and of every second one from there", "1 1 1"),
-            tone("b", "the others", "0 0 0"),
+            tone("a", "colour of the lower left square and of every other square from there", "1 1 1"),
+            tone("b", "colour of the other squares", "0 0 0"),
             u_scale("8"),
             v_scale("8"),
             U_OFFSET,
