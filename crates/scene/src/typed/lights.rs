@@ -38,7 +38,7 @@ typed! {
     }
     /// Rectangular area light, visible to the camera.
     Rect = "rect" {
-        /// Its middle (m); default `0 5 0`.
+        /// Its centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
         /// Edge from one side to the other (m); default `1 0 0`.
         edge_u: bilux_math::Vec3,
@@ -55,7 +55,7 @@ typed! {
     }
     /// Spherical area light, visible to the camera.
     Sphere = "sphere" {
-        /// Its middle (m); default `0 5 0`.
+        /// Its centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
         /// Radius; above 0 (m); default `0.5`.
         radius: f32,

@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
-    entry: about("indirect", "a corner to read in, where all light comes off the ceiling"),
+    entry: about("indirect", "a reading corner, lit only by light that the ceiling reflects"),
     generate: |_| Ok(build()),
 };
 

@@ -15,7 +15,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         source: "",
         parameters: &[
             tone("a", "the colour of the lower left square, and of every second one from there", "1 1 1"),
-            tone("b", "the others", "0 0 0"),
+            tone("b", "the colour of the others", "0 0 0"),
             u_scale("8"),
             v_scale("8"),
             U_OFFSET,

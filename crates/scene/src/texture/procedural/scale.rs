@@ -12,7 +12,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         name: "scale",
         summary: "product of two colours or textures",
         source: "",
-        parameters: &[tone("a", "the one", "1 1 1"), tone("b", "the factor", "1 1 1")],
+        parameters: &[tone("a", "the first factor", "1 1 1"), tone("b", "the second factor", "1 1 1")],
     },
     build: |reader, parts| {
         let [a, b] = ["a", "b"].map(|key| parts.colour(reader, key));
