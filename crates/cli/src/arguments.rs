@@ -100,7 +100,7 @@ pub enum Command {
     #[command(after_help = "Examples:\n  \
         bilux completions bash > ~/.local/share/bash-completion/completions/bilux\n  \
         bilux completions fish > ~/.config/fish/completions/bilux.fish\n  \
-        bilux completions zsh > ~/.zfunc/_bilux  If ~/.zfunc is in fpath")]
+        bilux completions zsh > ~/.zfunc/_bilux")]
     Completions {
         /// The shell
         shell: clap_complete::Shell,
