@@ -9,7 +9,7 @@ use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
     parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
-    parse_vector,
+    parse_time, parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -25,12 +25,13 @@ use std::time::Duration;
     bilux render model.glb -o model.png          Render a model in a photo studio\n  \
     bilux render model.glb -o model.jpg --env sunset.hdr --ground shadow\n  \
     bilux info model.glb                         Show what is in a file\n  \
-    bilux list integrators                       List what --integrator can name")]
+    bilux list integrators                       List what --integrator can name\n  \
+    bilux render --help                          Describe the options of a command")]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
     /// Print the version, the commit, the CPU level in use and whether the kernel enforces --sandbox
-    #[arg(short = 'V', long, action = clap::ArgAction::Version, help_heading = help::OUTPUT)]
+    #[arg(short = 'V', long, action = clap::ArgAction::Version, display_order = help::LAST + 4, help_heading = help::OUTPUT)]
     version: Option<bool>,
     #[command(subcommand)]
     pub command: Command,
@@ -39,6 +40,18 @@ pub struct Arguments {
 /// The options of every command.
 #[derive(Args)]
 pub struct Common {
+    /// Print only errors
+    #[arg(short, long, global = true, display_order = help::LAST, help_heading = help::OUTPUT)]
+    pub quiet: bool,
+    /// Print more detail, such as what `auto` chose and why, and notes on the scene file
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, display_order = help::LAST + 1, help_heading = help::OUTPUT)]
+    pub verbose: u8,
+    /// Show progress as a bar or as lines [default: a bar on a terminal, lines elsewhere]
+    #[arg(long, global = true, value_enum, default_value = "auto", hide_default_value = true, value_name = "HOW", display_order = help::LAST + 2, help_heading = help::OUTPUT)]
+    pub progress: ProgressStyle,
+    /// Print this help
+    #[arg(short, long, global = true, action = clap::ArgAction::Help, display_order = help::LAST + 3, help_heading = help::OUTPUT)]
+    help: Option<bool>,
     /// Limit the memory for reading a file and, approximately, for rendering it
     #[arg(long, global = true, default_value = "8G", value_name = "SIZE", value_parser = parse_bytes, help_heading = help::FILES)]
     pub max_memory: u64,
@@ -52,18 +65,6 @@ pub struct Common {
     /// sources; on Linux the kernel enforces this (see -V)
     #[arg(long, global = true, conflicts_with = "allow_outside", help_heading = help::FILES)]
     pub sandbox: bool,
-    /// Print only errors
-    #[arg(short, long, global = true, help_heading = help::OUTPUT)]
-    pub quiet: bool,
-    /// Print more detail, such as what `auto` chose and why, and notes on the scene file
-    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = help::OUTPUT)]
-    pub verbose: u8,
-    /// Show progress as a bar or as lines [default: a bar on a terminal, lines elsewhere]
-    #[arg(long, global = true, value_enum, default_value = "auto", hide_default_value = true, value_name = "HOW", help_heading = help::OUTPUT)]
-    pub progress: ProgressStyle,
-    /// Print this help
-    #[arg(short, long, global = true, action = clap::ArgAction::Help, help_heading = help::OUTPUT)]
-    help: Option<bool>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -95,18 +96,33 @@ pub enum Command {
     /// List integrators, accelerators, materials, formats and more
     List(List),
     /// Print shell completions
+    #[command(help_template = help::TEMPLATE)]
+    #[command(after_help = "Examples:\n  \
+        bilux completions bash > ~/.local/share/bash-completion/completions/bilux\n  \
+        bilux completions fish > ~/.config/fish/completions/bilux.fish\n  \
+        bilux completions zsh > ~/.zfunc/_bilux")]
     Completions {
         /// The shell
         shell: clap_complete::Shell,
     },
     /// Print the man page, or write the man pages of all commands to a folder
+    #[command(help_template = help::TEMPLATE)]
+    #[command(after_help = "Examples:\n  \
+        bilux man | man -l -                Read the page of bilux\n  \
+        bilux man ~/.local/share/man/man1   Install all pages, for `man bilux-render`")]
     Man {
-        /// The folder for the man pages of all commands
+        /// The folder for the man pages of all commands; it is created if it does not exist
         folder: Option<PathBuf>,
     },
-    /// Print the JSON Schema of scene files, for use in editors
+    /// Print the JSON Schema of TOML scenes, for use in editors
+    #[command(help_template = help::TEMPLATE)]
+    #[command(after_help = "Example:\n  \
+        bilux schema > bilux.schema.json\n\n\
+        Editors with a TOML language server such as Taplo then complete and check scenes that begin with:\n  \
+        #:schema ./bilux.schema.json")]
     Schema,
     /// Print the licences of Bilux and of its dependencies
+    #[command(help_template = help::TEMPLATE)]
     Licenses,
 }
 
@@ -127,24 +143,28 @@ pub enum Command {
     bilux render scene.toml -o b.exr --samples 64..128  and the other half elsewhere:\n  \
     bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
     Exit status:\n  \
-    0 when every picture was written, 1 when something failed, 2 when the command line is wrong,\n  \
-    124 when --timeout, 130 or 143 when a signal ended it early (the picture so far is saved),\n  \
-    141 when standard output was closed")]
+    0         Every picture was written\n  \
+    1         Something failed\n  \
+    2         The command line is wrong\n  \
+    124       --timeout ended it; the picture so far is saved\n  \
+    130, 143  Ctrl-C or SIGTERM ended it; the picture so far is saved\n  \
+    141       The reader of standard output closed it")]
 pub struct Render {
-    /// The scene files to render; `-` reads a scene from standard input
+    /// The scene files to render (`bilux list formats`); `-` reads a scene from standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// The picture to write; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for the
-    /// frame's number, and `-` writes a PNG to standard output
+    /// The picture to write, replacing an older one; its extension sets the format (`bilux list picture-formats`),
+    /// `{stem}` stands for the scene's name, `{frame}` for the frame's number, and `-` writes a PNG to standard output
     #[arg(short, long, value_name = "OUT", help_heading = help::COMMON_OPTIONS)]
     pub output: PathBuf,
     /// The width and height of the picture in pixels [default: 512x512]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub size: Option<String>,
-    /// Take N samples per pixel; the picture is then the same on every machine
+    /// Take N samples per pixel; the picture is then the same on every machine [default: stop at 2% noise or after 5
+    /// seconds, whichever comes first]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::COMMON_OPTIONS)]
     pub spp: Option<u32>,
-    /// Stop when the noise is, on average, at most this fraction of the light; 2% looks smooth
+    /// Stop when the noise is, on average, at most this fraction of the light, such as 2% or 0.02; 2% looks smooth
     #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::COMMON_OPTIONS)]
     pub noise: Option<f32>,
     /// Finish within this time, including reading and denoising; if that is impossible, Bilux says why
@@ -163,16 +183,17 @@ pub struct Render {
     /// The format of the scene on standard input; auto detects it from the first bytes
     #[arg(long, value_name = "NAME|auto", default_value = "auto", help_heading = help::WHAT)]
     pub input_format: String,
-    /// The time to show, for animated scenes
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, help_heading = help::WHAT)]
+    /// The time to show, in seconds, for animated scenes [default: 0]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_time, help_heading = help::WHAT)]
     pub at: Option<f32>,
-    /// Render frames A to B, inclusive
+    /// Render frames A to B, inclusive, at 24 frames per second (`--set fps=30` changes that)
     #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
-    /// Render only a window of the picture
+    /// Render only a window of the picture: its left and upper edge, its width and its height, in pixels
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
     pub crop: Option<[u32; 4]>,
     /// Brighten by this many stops (powers of two), or automatically to the brightness of a photograph
+    /// [default: 0]
     #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Option<Exposure>,
     /// The tone-mapping curve (`bilux list tonemaps`) [default: auto]
@@ -189,7 +210,7 @@ pub struct Render {
     /// Stop the whole command after this time and save the picture so far (exit status 124)
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_duration, help_heading = help::SPEED)]
     pub timeout: Option<Duration>,
-    /// The seed of the random numbers; a different seed gives different noise
+    /// The seed of the random numbers; a different seed gives different noise [default: 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_seed, help_heading = help::PICTURE)]
     pub seed: Option<u64>,
     /// Take only samples A to B (B excluded) of each pixel, for a partial render in an .exr (`bilux merge`)
@@ -198,30 +219,31 @@ pub struct Render {
     /// Change any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
     pub set: Vec<String>,
-    /// The maximum number of bounces; 0 shows only emitters
+    /// The maximum number of bounces; 0 shows only emitters [default: 16, or 8 with --fast]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::LIGHT)]
     pub max_depth: Option<u32>,
-    /// How `cast` and `whitted` compute highlights: from the halfway vector of Eq. 1, or from the reflected ray of
-    /// section 3.1
+    /// How `cast`, `whitted` and `cook` compute highlights: from the halfway vector of the paper's Equation 1, or from
+    /// the reflected ray of its section 3.1 [default: halfway]
     #[arg(long, value_name = "halfway|reflect", help_heading = help::LIGHT)]
     pub specular: Option<String>,
-    /// How `whitted` computes shadows: dark where all lights are blocked, as in the paper, or per light
+    /// How `whitted` and `cook` compute shadows: dark where all lights are blocked, as in the paper, or per light
+    /// [default: per-light]
     #[arg(long, value_name = "paper|per-light", help_heading = help::LIGHT)]
     pub shadow_rule: Option<String>,
-    /// The number of threads; 0 uses all cores
+    /// The number of threads; 0 uses all cores [default: 0]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::SPEED)]
     pub threads: Option<u32>,
-    /// The acceleration structure (`bilux list accels`)
+    /// The acceleration structure (`bilux list accels`) [default: auto]
     #[arg(long, value_name = "NAME", help_heading = help::SPEED)]
     pub accel: Option<String>,
     /// How much time building the acceleration structure may take [default: auto, by the number of samples per
     /// triangle]
     #[arg(long, value_name = "fast|balanced|best", help_heading = help::SPEED)]
     pub build: Option<String>,
-    /// How `bsp` chooses its splitting planes
+    /// How `bsp` chooses its splitting planes [default: mean]
     #[arg(long, value_name = "mean|fuchs", help_heading = help::SPEED)]
     pub bsp_split: Option<String>,
-    /// Whether `bsp` groups polygons or whole objects
+    /// Whether `bsp` groups polygons or whole objects [default: polygons]
     #[arg(long, value_name = "polygons|objects", help_heading = help::SPEED)]
     pub bsp_group: Option<String>,
     /// The bits per channel of PNG and PPM files
@@ -254,7 +276,7 @@ pub struct Render {
 pub struct Info {
     /// The scene file
     pub scene: PathBuf,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
     #[command(flatten)]
@@ -287,7 +309,8 @@ pub struct Convert {
 /// Write a built-in scene to a file
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
-#[command(after_help = "Examples:\n  bilux generate teapots --set count=5 -o five.toml\n  \
+#[command(after_help = "Examples:\n  bilux generate trio -o trio.toml\n  \
+    bilux generate teapots --set count=5 -o five.toml\n  \
     bilux generate teapots --from pot.asc --count 3 --offset 4,0,0 -o three.asc")]
 pub struct Generate {
     /// The built-in scene (`bilux list generators`)
@@ -295,10 +318,10 @@ pub struct Generate {
     /// The file to write; its extension sets the format
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
-    /// The number of copies
+    /// The number of copies [default: 3 for teapots, 1 with --from]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::WHAT)]
     pub count: Option<u32>,
-    /// The offset from each copy to the next
+    /// The offset from each copy to the next [default: 1.6,0,-4.6 for teapots, 1,0,0 with --from]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_vector, help_heading = help::WHAT)]
     pub offset: Option<[f32; 3]>,
     /// Copy the model in this file instead of a built-in one
@@ -325,11 +348,15 @@ pub struct Merge {
 /// List integrators, accelerators, materials, formats and more
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
-#[command(after_help = "Examples:\n  bilux list integrators\n  bilux list materials --json")]
+#[command(
+    after_help = "Examples:\n  bilux list integrators\n  bilux list settings    What --set and [render] accept\n  \
+    bilux list materials --json"
+)]
 pub struct List {
-    /// What to list: integrators, accels, materials, lights, cameras, formats, settings, …
+    /// What to list: integrators, accels, visibility, materials, textures, bsdfs, lights, cameras, generators, presets,
+    /// formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics or settings
     pub what: String,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
 }

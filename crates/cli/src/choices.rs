@@ -1,7 +1,7 @@
 //! The options for the choices that a scene file leaves open.
 
 use crate::help;
-use crate::values::parse_radius;
+use crate::values::{parse_radius, parse_time};
 use clap::{Args, ValueEnum};
 
 /// The choices that a scene file leaves open.
@@ -10,13 +10,13 @@ pub struct Choices {
     /// The animation to show, by name or by number from 0 [default: the first, and any others that move other objects]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub animation: Option<String>,
-    /// The material variant to show, by name or by number from 0
+    /// The material variant to show, by name or by number from 0 [default: the materials of the meshes]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub variant: Option<String>,
     /// How to interpret glass whose thickness the file does not give
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
-    /// Give the file's point lights this radius, in metres
+    /// Give the file's point lights this radius, in metres, which softens their shadows [default: 0]
     #[arg(long, value_name = "RADIUS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
         value_parser = parse_radius, help_heading = help::LIGHT)]
     pub light_radius: f32,
@@ -27,9 +27,9 @@ pub struct Choices {
 pub struct Posed {
     #[command(flatten)]
     pub choices: Choices,
-    /// The time to show, for files whose meshes deform
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, allow_negative_numbers = true,
-        help_heading = help::WHAT)]
+    /// The time to show, in seconds, for files whose meshes deform [default: 0]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
+        value_parser = parse_time, help_heading = help::WHAT)]
     pub at: f32,
 }
 

@@ -1,41 +1,44 @@
 //! The options of `bilux compare`.
 
 use crate::help;
+use crate::values::parse_bound;
 use clap::Args;
 use std::path::PathBuf;
 
 /// Measure how much a picture differs from a reference
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
-#[command(
-    after_help = "Example:\n  bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png\n\n\
+#[command(after_help = "Examples:\n  bilux compare a.png reference.png\n  \
+    bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png\n  \
+    bilux list metrics    What is measured\n\n\
     Exit status:\n  \
-    0 when every bound holds, 1 when one does not, 2 when the pictures cannot be compared"
-)]
+    0  Every bound holds\n  \
+    1  A bound does not hold\n  \
+    2  The pictures cannot be compared")]
 pub struct Compare {
     /// The picture to measure
     pub picture: PathBuf,
     /// The reference picture
     pub reference: PathBuf,
-    /// The maximum mean FLIP error
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    /// The maximum mean FLIP error, from 0 to 1
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub max_flip: Option<f64>,
     /// The maximum root mean square error
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub max_rmse: Option<f64>,
     /// The maximum relative mean square error
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub max_relmse: Option<f64>,
-    /// The maximum error of any sample
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    /// The maximum absolute difference in any pixel
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub max_error: Option<f64>,
-    /// The minimum structural similarity
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    /// The minimum structural similarity, at most 1
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub min_ssim: Option<f64>,
     /// The minimum peak signal-to-noise ratio, in dB
-    #[arg(long, value_name = "X", help_heading = BOUNDS)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub min_psnr: Option<f64>,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
     /// Write a heat map of the FLIP error to this file

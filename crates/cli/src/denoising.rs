@@ -2,7 +2,7 @@
 
 use crate::arguments::{Common, Render};
 use crate::help;
-use crate::values::{Exposure, parse_exposure, parse_quality};
+use crate::values::{Exposure, parse_count, parse_exposure, parse_quality};
 use anyhow::bail;
 use bilux::pictures::denoise::preload;
 use clap::Args;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:\n  bilux denoise noisy.exr -o clean.exr\n  \
     bilux denoise noisy.exr -o clean.png --tonemap agx\n  \
     bilux denoise photo.png -o clean.png --by builtin\n\n\
-    The layers albedo, normal, depth and variance of an .exr help a lot; write them with:\n  \
+    The layers albedo, normal, depth and variance of an .exr help a lot. This writes them:\n  \
     bilux render scene.toml -o noisy.exr --aov albedo,normal,depth,variance")]
 pub struct Denoise {
     /// The noisy picture
@@ -36,8 +36,9 @@ pub struct Denoise {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
     pub quality: Option<u8>,
     /// The number of threads; 0 uses all cores
-    #[arg(long, value_name = "N", default_value = "0", help_heading = help::SPEED)]
-    pub threads: usize,
+    #[arg(long, value_name = "N", allow_hyphen_values = true, default_value = "0", value_parser = parse_count,
+        help_heading = help::SPEED)]
+    pub threads: u32,
 }
 
 /// Refuses a denoiser's name that was taken for a scene because it follows `--denoise` after a space.

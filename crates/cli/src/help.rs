@@ -19,3 +19,6 @@ pub const SPEED: &str = "Speed";
 pub const FILES: &str = "Files";
 /// The heading of options for what is written and printed.
 pub const OUTPUT: &str = "Output";
+
+/// The place of the options of every command: after the command's own under the same heading.
+pub const LAST: usize = 900;

@@ -1,7 +1,7 @@
 //! The options of `bilux bench`.
 
 use crate::help;
-use crate::values::parse_engine;
+use crate::values::{parse_count, parse_cpu_seconds, parse_engine, parse_seeds};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -18,48 +18,52 @@ use std::path::PathBuf;
     bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           Write meshes and rays for other programs\n  \
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
-    bilux bench load                                   Generated files of 100 MB, and a million instances\n  \
+    bilux bench load                                   On files of 100 MB that it generates\n  \
     bilux bench load scan.ply house.glb --json\n  \
     bilux bench render --report measured               Ten minutes, and a page of pictures\n  \
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
-    bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,bdpt,auto:path-photons\n  \
-    bilux bench models                                 A dozen models, in five minutes")]
+    bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,auto:path-photons\n  \
+    bilux bench models                                 At most a dozen models, in five minutes")]
 pub struct Bench {
     /// The benchmark to run
     #[arg(value_enum)]
     pub kind: BenchKind,
     /// `render`: scene files [default: the built-in scenes]. `load`: scene files [default: files that it generates].
-    /// `models`: model files [default: built-in ones, and those in ../shared/scenes]. `rays`: scene files, or the
-    /// built-in scenes teapots3, interior, scan, teapot1m [default: these four], teapot1k, teapot10k, teapot100k and
-    /// teapots10m
+    /// `models`: model files [default: six built-in ones, and public ones if they lie in ../shared/scenes]. `rays`:
+    /// scene files, or the built-in scenes teapots3, interior, scan, teapot1m [default: these four], teapot1k, teapot10k,
+    /// teapot100k and teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Print JSON
+    /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,
-    /// The numbers of teapots
-    #[arg(long, value_name = "N,N,…", value_delimiter = ',')]
+    /// `teapots`, `build`: the numbers of teapots [default: 2,3,4,5 and 1,5,25]. `frames`, `visibility`: one number
+    /// [default: 5]
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', value_parser = parse_count)]
     pub counts: Vec<u32>,
-    /// The acceleration structures
+    /// `teapots`, `frames`, `build`, `rays`: the acceleration structures (`bilux list accels`)
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub accel: Vec<String>,
-    /// The width and height in pixels
+    /// `paper`, `teapots`, `frames`, `visibility`: the width and height in pixels [default: 256x144 for `paper`, else
+    /// 512x512]
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
-    /// The number of repeats; the median is reported
-    #[arg(long, value_name = "N")]
+    /// `teapots`, `visibility`, `build`, `load`: the number of repeats; the median is reported [default: 5 for `load`,
+    /// else 3]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
     pub repeats: Option<u32>,
-    /// Where the teapots stand: at the paper's fixed offset, or so that they always cover the same part of the picture
+    /// `teapots`, `visibility`, `build`: where the teapots stand: at the paper's fixed offset, or so that they always
+    /// cover the same part of the picture [default: paper]
     #[arg(long, value_name = "paper|coverage")]
     pub layout: Option<String>,
-    /// Write a picture of the result, if there is one
+    /// `paper`: write the four panels of Figure 1 as a picture
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// `rays`: the number of rays in each class [default: 1048576], or with --mesh a file of rays
     #[arg(long, value_name = "N|FILE")]
     pub rays: Vec<String>,
     /// `rays`: the number of rounds; every engine takes a turn in each, and the median is reported [default: 5]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_count)]
     pub rounds: Option<u32>,
     /// `rays`: compare with another engine from a shared library, such as embree=libembree4.so.4
     #[arg(long, value_name = "NAME=PATH", value_parser = parse_engine)]
@@ -80,21 +84,21 @@ pub struct Bench {
     /// strategies, such as auto:path-photons
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,
-    /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4]. `models`: the seconds for each half of a
-    /// reference [default: 8]
-    #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
+    /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4, and 60 with --make-references].
+    /// `models`: the seconds for each half of a reference [default: 8]
+    #[arg(long, value_name = "S,S,…", value_delimiter = ',', value_parser = parse_cpu_seconds)]
     pub seconds: Vec<f64>,
     /// `models`: keep the references in this folder, and reuse those that are already there
     #[arg(long, value_name = "DIR")]
     pub references: Option<PathBuf>,
     /// `render`: the CPU seconds for each of the two integrators that make the reference of a scene file [default: 60]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = parse_cpu_seconds)]
     pub reference_seconds: Option<f64>,
     /// `render`: the number of pictures per scene, integrator and budget; the median is reported [default: 5]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = parse_seeds)]
     pub seeds: Option<u32>,
     /// `render`: the number of threads; 0 uses all cores
-    #[arg(long, value_name = "N", default_value = "0")]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = parse_count)]
     pub threads: u32,
     /// `render`: write a page with pictures, error maps and curves to this folder
     #[arg(long, value_name = "DIR")]

@@ -40,6 +40,12 @@ pub fn is_closed_pipe(error: &anyhow::Error) -> bool {
     print_error.is_some_and(|print_error| print_error.0.kind() == io::ErrorKind::BrokenPipe)
 }
 
+/// A number with its noun: `1 sample`, `2 samples`.
+pub fn counted<N: Display + PartialEq + From<u8>>(number: N, one: &str, many: &str) -> String {
+    let noun = if number == N::from(1) { one } else { many };
+    format!("{number} {noun}")
+}
+
 /// Prints a line to standard error.
 pub fn eprint(text: impl Display) {
     // If standard error is closed, there is nowhere to report it.

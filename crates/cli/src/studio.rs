@@ -1,7 +1,7 @@
 //! The options for the studio around a model.
 
 use crate::settings_from::from_flag;
-use crate::values::parse_turntable;
+use crate::values::{parse_focal, parse_turntable};
 use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
@@ -21,25 +21,27 @@ pub struct StudioArguments {
     /// the studio's lights off for a glTF file with lights of its own
     #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
-    /// The background: transparent, a colour (white, '#rrggbb' or R,G,B) or a picture; it lights nothing
+    /// The background: transparent, a colour (white, grey, black, '#rrggbb' or R,G,B from 0 to 1) or a picture; it
+    /// lights nothing [default: the scene's surroundings]
     #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::COMMON_OPTIONS)]
     pub background: Option<String>,
     /// The model's up axis: x, y, z, -x, -y or -z [default: auto, from its format and its shape]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub up: Option<String>,
-    /// The model's front axis, the side that the studio's camera sees [default: auto]
+    /// The model's front axis, the side that the studio's camera sees [default: auto, from its format and its shape]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub front: Option<String>,
     /// A preset for the studio's camera (`bilux list presets`)
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
     pub preset: Option<String>,
     /// The focal length of the studio's camera in mm, for a picture 24 mm high [default: 45]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, help_heading = help::STUDIO)]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = parse_focal, help_heading = help::STUDIO)]
     pub focal: Option<f32>,
-    /// What the model stands on [default: a matte backdrop, if the file has neither camera nor lights]
+    /// What the model stands on: an invisible ground that shows only its shadow, a mirror, or nothing [default: a matte
+    /// backdrop, if the file has neither camera nor lights]
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
-    /// Render N pictures from all around the model
+    /// Render N pictures from all around the model, a full turn
     #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"], allow_hyphen_values = true,
         value_parser = parse_turntable, help_heading = help::STUDIO)]
     pub turntable: Option<u32>,
@@ -90,6 +92,9 @@ impl StudioArguments {
         let env = self.env.as_deref().filter(|path| *path != Path::new("none"));
         for (flag, path) in [("--env", env), ("--background", self.picture_behind())] {
             if let Some(path) = path {
+                if path.is_dir() {
+                    bail!("{flag}: {}: this is a folder: name a picture in it", path.display());
+                }
                 std::fs::File::open(path)
                     .with_context(|| format!("{flag}: {}: cannot open it", path.display()))?;
             }

@@ -11,13 +11,15 @@ pub fn parse_engine(text: &str) -> Result<(String, PathBuf), String> {
 
 pub fn parse_bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let factor = match text[digits.len()..].to_ascii_uppercase().as_str() {
+    let unit = &text[digits.len()..];
+    let factor = match unit.to_ascii_uppercase().as_str() {
         "" | "B" => 1,
         "K" | "KB" | "KIB" => 1 << 10,
         "M" | "MB" | "MIB" => 1 << 20,
         "G" | "GB" | "GIB" => 1u64 << 30,
         "T" | "TB" | "TIB" => 1 << 40,
-        other => return Err(format!("'{other}' is not a unit of memory: write 512M or 8G")),
+        _ if digits.is_empty() => 1,
+        _ => return Err(format!("'{unit}' is not a unit of memory: write 512M or 8G")),
     };
     let number: f64 =
         digits.parse().map_err(|_| format!("'{text}' is not an amount of memory: write 512M or 8G"))?;
@@ -30,6 +32,9 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
 
 /// Parses a number of samples, which cannot be 0.
 pub fn parse_spp(text: &str) -> Result<u32, String> {
+    if text.parse::<u128>().is_ok_and(|samples| samples > 1 << 31) {
+        return Err(format!("this is too many: write at most {}, such as 64", 1u32 << 31));
+    }
     at_least_one(text, "write a whole number of at least 1, such as 64")
 }
 
@@ -45,6 +50,27 @@ fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
 /// Parses a whole number from 0.
 pub fn parse_count(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| "write a whole number, 0 or more".to_owned())
+}
+
+/// Parses the number of pictures that a median is taken of.
+pub fn parse_seeds(text: &str) -> Result<u32, String> {
+    let seeds = text.parse().ok().filter(|seeds| (1..=1000).contains(seeds));
+    seeds.ok_or_else(|| "write a whole number from 1 to 1000, such as 5".to_owned())
+}
+
+/// Parses a bound on a metric.
+pub fn parse_bound(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "write a number, such as 0.02".to_owned())
+}
+
+/// Parses a focal length in millimetres.
+pub fn parse_focal(text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())
+}
+
+/// Parses a point in time in seconds, which may be negative.
+pub fn parse_time(text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| "write a time in seconds, such as 0.5".to_owned())
 }
 
 /// Parses a seed.
@@ -86,6 +112,11 @@ pub fn parse_seconds(text: &str) -> Result<f32, String> {
         .map(|seconds| seconds as f32)
         .filter(|seconds| *seconds > 0.0)
         .ok_or_else(advice_on_seconds)
+}
+
+/// The same in double precision.
+pub fn parse_cpu_seconds(text: &str) -> Result<f64, String> {
+    seconds_of(text).ok_or_else(advice_on_seconds)
 }
 
 fn seconds_of(text: &str) -> Option<f64> {

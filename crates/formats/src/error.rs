@@ -2,7 +2,7 @@
 
 use bilux_pictures::{PictureError, reason};
 use bilux_scene::{SceneError, Span, Warning};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a scene file cannot be read or written. Every message states what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,7 @@ pub enum FormatError {
         at: Span,
     },
     /// A file that another file refers to does not exist.
-    #[error("{at}: there is no file '{name}' in {}; put it there, or correct its name", .folder.display())]
+    #[error("{at}: there is no file '{name}' in {}; put it there, or correct its name", named(.folder))]
     MissingFile {
         /// The name as written.
         name: String,
@@ -119,4 +119,10 @@ impl FormatError {
     pub(crate) fn malformed(message: impl Into<String>, at: Span) -> FormatError {
         FormatError::Malformed { message: message.into(), at }
     }
+}
+
+/// A folder as messages name it.
+fn named(folder: &Path) -> String {
+    let is_current = folder.as_os_str().is_empty() || folder == Path::new(".");
+    if is_current { "the current folder".to_owned() } else { folder.display().to_string() }
 }

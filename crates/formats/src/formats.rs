@@ -281,7 +281,9 @@ pub(crate) fn unknown(
     let known: Vec<String> =
         SCENE_FORMATS.iter().filter(|r| can(r)).flat_map(|r| r.extensions).map(|&e| e.to_owned()).collect();
     let asked = extension(path).unwrap_or_else(|| path.display().to_string());
-    // The formats of other programs are no slips of the finger.
-    let nearest = nearest_name(&asked, &known).filter(|_| !FOREIGN.contains(&&*asked));
+    // The formats of other programs, pictures and names without an extension are not misspelt.
+    let is_bare = wanted == "written" && path.extension().is_none();
+    let is_other = is_bare || FOREIGN.contains(&&*asked) || bilux_pictures::format_named(&asked).is_some();
+    let nearest = nearest_name(&asked, &known).filter(|_| !is_other);
     FormatError::UnknownFormat { name: path.display().to_string(), wanted, nearest, known }
 }

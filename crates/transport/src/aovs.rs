@@ -73,7 +73,11 @@ pub const AOVS: &[AovEntry] = &[
         },
         aov: Aov::Interval,
     },
-    layer(Aov::Albedo, "albedo", "the fraction of light that surfaces scatter, 0..=1: albedo.R, .G, .B"),
+    layer(
+        Aov::Albedo,
+        "albedo",
+        "the fraction of light that surfaces scatter, from 0 to 1: albedo.R, .G, .B",
+    ),
     layer(Aov::Normal, "normal", "shading normals in world space, on the visible side: normal.X, .Y, .Z"),
     layer(
         Aov::Depth,

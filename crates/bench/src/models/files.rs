@@ -51,7 +51,10 @@ pub(super) fn finish(mut command: Command) -> Result<(), Error> {
     };
     match output {
         Ok(output) if output.status.success() => Ok(()),
-        Ok(output) => Err(failed(&String::from_utf8_lossy(&output.stderr))),
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            Err(failed(said.trim().trim_start_matches("error: ")))
+        }
         Err(why) => Err(failed(&why.to_string())),
     }
 }

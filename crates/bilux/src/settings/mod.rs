@@ -35,7 +35,7 @@ pub const RENDER: Entry = Entry {
         integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
         number(
             "noise",
-            "stop when the noise is, on average, at most this fraction of the light; 0 takes all samples",
+            "stop when the noise is, on average, at most this fraction of the light; 0 for no limit",
             "",
             0.0,
             10.0,
@@ -43,7 +43,7 @@ pub const RENDER: Entry = Entry {
         ),
         number(
             "time_limit",
-            "finish within this time, including reading and denoising; 0 takes all samples",
+            "finish within this time, including reading and denoising; 0 for no limit",
             "s",
             0.0,
             1e9,

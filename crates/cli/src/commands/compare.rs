@@ -29,6 +29,7 @@ fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
     let mut confines = SandboxPaths::default().reading(&arguments.picture).reading(&arguments.reference);
     if let Some(path) = &arguments.heat_map {
         check_folder(path)?;
+        bilux::pictures::format_of_path(path)?;
         check_not_input(path, [&*arguments.picture, &*arguments.reference])?;
         confines = confines.writing(path);
         confines.check_written(path, common)?;

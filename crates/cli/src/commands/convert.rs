@@ -1,7 +1,7 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
 use super::{
-    DONE, check_choices, check_folder, check_not_input, check_quality, load, read_options_with,
+    DONE, check_choices, check_folder, check_not_input, check_quality, is_picture, load, read_options_with,
     report_warnings, warn_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
@@ -10,7 +10,6 @@ use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::{WriteOptions, check_not_read};
 use bilux::pictures::Limits;
-use bilux::pictures::format_named;
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
@@ -49,16 +48,13 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             return Err(mismatch(input, output, "a scene", "is a picture: use `bilux render`"));
         }
         (true, false) => {
+            if bilux::formats::format_of_path(output).is_err() {
+                bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
+            }
             return Err(mismatch(input, output, "a picture", "is a scene: write a picture, such as out.png"));
         }
     }
     Ok(DONE)
-}
-
-/// True for files that are read as pictures, even in formats that are never written.
-fn is_picture(path: &Path) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    extension.is_some_and(|extension| format_named(extension).is_some())
 }
 
 fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {

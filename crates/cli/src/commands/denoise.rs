@@ -5,6 +5,7 @@ use crate::arguments::{Common, Denoise};
 use crate::sandbox::SandboxPaths;
 use crate::values::Exposure;
 use crate::{output, usage};
+use anyhow::Context;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoise, denoiser};
 use bilux::pictures::formats::format_of_path;
 use bilux::pictures::{Limits, WriteOptions, auto_exposure, tone_map};
@@ -19,12 +20,13 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     check_quality(arguments.quality, output).map_err(usage::wrong)?;
     let confines = SandboxPaths::default().reading(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
-    let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
+    let tone_map = tone_map(&arguments.tonemap).context("--tonemap").map_err(usage::wrong)?;
+    let threads = arguments.threads as usize;
     if arguments.by != "builtin" {
-        crate::denoising::load(arguments.threads, common);
+        crate::denoising::load(threads, common);
     }
-    let task = Task { threads: arguments.threads, sandboxed: common.sandbox, ..Task::default() };
-    let chosen = denoiser(&arguments.by, &task).map_err(usage::wrong)?;
+    let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
+    let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;
     confines.enter(common)?;
     let noisy = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
     let begun = Instant::now();

@@ -1,16 +1,23 @@
 //! `bilux generate`: the built-in procedural scenes.
 
-use super::{DONE, check_folder, check_not_input, load, read_options, report_warnings};
+use super::{DONE, check_folder, check_not_input, is_picture, load, read_options, report_warnings};
 use crate::arguments::{Common, Generate};
 use crate::sandbox::SandboxPaths;
 use crate::settings_from::{assignment_of, from_flag};
 use crate::usage;
+use anyhow::anyhow;
 use bilux::formats::WriteOptions;
 use bilux::math::Vec3;
 use bilux::scene::{Spec, Value};
 
 pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
+    if is_picture(&arguments.output) {
+        let output = arguments.output.display();
+        return Err(usage::wrong(anyhow!(
+            "{output}: this command writes a scene, not a picture: write a .toml, and render it with `bilux render`"
+        )));
+    }
     bilux::formats::format_of_path(&arguments.output).map_err(usage::wrong)?;
     let mut confines = SandboxPaths::default().writing(&arguments.output);
     confines.check_written(&arguments.output, common).map_err(usage::wrong)?;

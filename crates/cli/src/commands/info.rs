@@ -2,6 +2,7 @@
 
 use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
+use crate::output::counted;
 use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use bilux::formats::ReadOptions;
@@ -92,7 +93,7 @@ fn as_text(scene: &SceneBuilder) -> String {
     };
     let size = bounds.extent();
     format!(
-        "{}triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
+        "{}triangles  {} in {} ({} with {}; {} instanced, {} moving)\n\
          bounds     {:?} to {:?}, {} x {} x {} {}\n\
          materials  {}\n\
          textures   {}\n\
@@ -101,9 +102,9 @@ fn as_text(scene: &SceneBuilder) -> String {
          memory     {}{}",
         strokes(scene),
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
-        scene.objects.len(),
-        own.len(),
-        own.iter().map(|m| m.positions.len()).sum::<usize>(),
+        counted(scene.objects.len(), "object", "objects"),
+        counted(own.len(), "mesh", "meshes"),
+        counted(own.iter().map(|m| m.positions.len()).sum::<usize>(), "vertex", "vertices"),
         scene.objects.iter().filter(|o| o.instanced).count(),
         scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
         (bounds.min.as_dvec3() + scene.origin).to_array().map(|c| c as f32),
@@ -141,7 +142,7 @@ fn strokes(scene: &SceneBuilder) -> String {
     let sum = |count: fn(&Mesh) -> usize| scene.objects.iter().map(|o| count(&o.mesh)).sum::<usize>();
     match (sum(|mesh| mesh.points.len()), sum(|mesh| mesh.lines.len())) {
         (0, 0) => String::new(),
-        (points, lines) => format!("points     {points}; {lines} lines\n"),
+        (points, lines) => format!("points     {points}; {}\n", counted(lines, "line", "lines")),
     }
 }
 

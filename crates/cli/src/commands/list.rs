@@ -49,7 +49,7 @@ const TABLES: &[Table] = &[
         rows: rows!(bilux::scene::bsdf::BSDFS),
     },
     Table { name: "lights", summary: "light sources", rows: rows!(bilux::scene::lights::LIGHTS) },
-    Table { name: "cameras", summary: "cameras", rows: rows!(bilux::scene::cameras::CAMERAS) },
+    Table { name: "cameras", summary: "kinds of camera", rows: rows!(bilux::scene::cameras::CAMERAS) },
     Table {
         name: "generators",
         summary: "built-in scenes",
@@ -57,13 +57,13 @@ const TABLES: &[Table] = &[
     },
     Table {
         name: "presets",
-        summary: "presets for files without a camera or lights",
+        summary: "cameras and surroundings for files without a camera or lights",
         rows: rows!(bilux::presets::PRESETS),
     },
-    Table { name: "formats", summary: "scene files", rows: rows!(bilux::formats::SCENE_FORMATS) },
+    Table { name: "formats", summary: "formats of scene files", rows: rows!(bilux::formats::SCENE_FORMATS) },
     Table {
         name: "picture-formats",
-        summary: "picture files",
+        summary: "formats of picture files",
         rows: rows!(bilux::pictures::formats::PICTURE_FORMATS),
     },
     Table {
@@ -73,7 +73,7 @@ const TABLES: &[Table] = &[
     },
     Table {
         name: "denoisers",
-        summary: "denoisers, the best first",
+        summary: "denoising methods, the best first",
         rows: rows!(bilux::pictures::DENOISERS),
     },
     Table {
@@ -86,7 +86,11 @@ const TABLES: &[Table] = &[
         summary: "arbitrary output variables: what a render can write as well as the picture",
         rows: rows!(bilux::transport::aovs::AOVS),
     },
-    Table { name: "metrics", summary: "image metrics", rows: rows!(bilux::pictures::metrics::METRICS) },
+    Table {
+        name: "metrics",
+        summary: "measures of how much a picture differs from a reference",
+        rows: rows!(bilux::pictures::metrics::METRICS),
+    },
     Table {
         name: "settings",
         summary: "the keys of [render] in scene files and of --set",
@@ -109,7 +113,8 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
         output::print(serde_json::to_string_pretty(&json!({ table.name: rows }))?)?;
     } else {
         output::print(format_args!("{}: {}\n", table.name, table.summary))?;
-        rows.iter().try_for_each(|row| output::print(row_text(row)))?;
+        let width = rows.iter().map(|row| row.name.len()).max().unwrap_or(0);
+        rows.iter().try_for_each(|row| output::print(row_text(row, width)))?;
     }
     Ok(DONE)
 }
@@ -127,13 +132,16 @@ pub fn schema() -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-fn row_text(row: &Entry) -> String {
+/// A row and its parameters, one a line; the names in a column of this width.
+fn row_text(row: &Entry, width: usize) -> String {
     let source = if row.source.is_empty() { String::new() } else { format!(" [{}]", row.source) };
-    let mut text = format!("  {:<14} {}{source}", row.name, row.summary);
+    let mut text = format!("  {:<width$}  {}{source}", row.name, row.summary);
+    let width = row.parameters.iter().map(|p| p.name.len()).max().unwrap_or(0);
     for p in row.parameters {
-        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
-        let default = if p.default.is_empty() { "required".to_owned() } else { format!("= {}", p.default) };
-        text += &format!("\n      {:<18} {} ({}{unit}) {default}", p.name, p.summary, kind_text(p.kind));
+        let unit = if p.unit.is_empty() { String::new() } else { format!(", in {}", p.unit) };
+        let default =
+            if p.default.is_empty() { "required".to_owned() } else { format!("[default: {}]", p.default) };
+        text += &format!("\n      {:<width$}  {} ({}{unit}) {default}", p.name, p.summary, kind_text(p.kind));
     }
     text
 }
@@ -141,13 +149,13 @@ fn row_text(row: &Entry) -> String {
 fn kind_text(kind: ParameterKind) -> String {
     match kind {
         ParameterKind::Bool => "true or false".to_owned(),
-        ParameterKind::Integer { min, max } => format!("{min}..={max}"),
-        ParameterKind::Number { min, max } => format!("{min}..={max}"),
-        ParameterKind::Colour { min, max } => format!("colour {min}..={max}"),
-        ParameterKind::ColourTexture { min, max } => format!("colour {min}..={max}, or a texture"),
-        ParameterKind::NumberTexture { min, max } => format!("{min}..={max}, or a texture"),
+        ParameterKind::Integer { min, max } => format!("{min} to {max}"),
+        ParameterKind::Number { min, max } => format!("{min} to {max}"),
+        ParameterKind::Colour { min, max } => format!("colour {min} to {max}"),
+        ParameterKind::ColourTexture { min, max } => format!("colour {min} to {max}, or a texture"),
+        ParameterKind::NumberTexture { min, max } => format!("{min} to {max}, or a texture"),
         ParameterKind::Texture => "texture".to_owned(),
-        ParameterKind::Stops { min, max } => format!("[position, colour {min}..={max}], several"),
+        ParameterKind::Stops { min, max } => format!("[position, colour {min} to {max}], several"),
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),
         ParameterKind::Text => "text".to_owned(),
@@ -165,4 +173,19 @@ fn parameter_json(p: &Parameter) -> serde_json::Value {
         "name": p.name, "summary": p.summary, "unit": p.unit,
         "values": kind_text(p.kind), "default": p.default,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_help_names_every_table() {
+        let mut command = crate::arguments::Arguments::command();
+        let help = command.find_subcommand_mut("list").unwrap().render_long_help().to_string();
+        for table in TABLES {
+            assert!(help.contains(table.name), "{}", table.name);
+        }
+    }
 }

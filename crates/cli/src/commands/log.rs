@@ -58,10 +58,10 @@ impl Rendered<'_> {
             output::eprint(format_args!("{output}: {overrun}"));
         }
         output::eprint(format_args!(
-            "{output}: {}x{}, {} samples per pixel, {:.1} s{noise}{}{cut}",
+            "{output}: {}x{}, {} per pixel, {:.1} s{noise}{}{cut}",
             s.width,
             s.height,
-            self.spp(),
+            output::counted(self.spp(), "sample", "samples"),
             self.total_seconds,
             denoised.unwrap_or_default(),
         ));
@@ -144,14 +144,20 @@ pub fn report_sample_failures(outcome: &Outcome) {
     let failures = outcome.film.sample_failures();
     if let Some(first) = failures.first_non_finite {
         output::warning(format_args!(
-            "{} samples were not finite and are left out; see the first with --replay {},{},{}",
-            failures.non_finite, first.x, first.y, first.sample
+            "{} not finite and left out; see the first with --replay {},{},{}",
+            output::counted(failures.non_finite, "sample is", "samples are"),
+            first.x,
+            first.y,
+            first.sample
         ));
     }
     if let Some(first) = failures.first_overflowed {
         output::warning(format_args!(
-            "{} samples were brighter than the film can hold; see the first with --replay {},{},{}",
-            failures.overflowed, first.x, first.y, first.sample
+            "{} brighter than the film can hold; see the first with --replay {},{},{}",
+            output::counted(failures.overflowed, "sample is", "samples are"),
+            first.x,
+            first.y,
+            first.sample
         ));
     }
 }

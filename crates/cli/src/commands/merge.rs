@@ -45,8 +45,8 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     layers.push(&mut picture, &film)?;
     bilux::pictures::write(&arguments.output, &picture, &Default::default())?;
     if !common.quiet {
-        let parts = arguments.parts.len();
-        output::eprint(format_args!("{}: {parts} parts merged", arguments.output.display()));
+        let parts = output::counted(arguments.parts.len(), "part", "parts");
+        output::eprint(format_args!("{}: {parts} merged", arguments.output.display()));
     }
     Ok(DONE)
 }

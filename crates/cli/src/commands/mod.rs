@@ -24,6 +24,7 @@ use anyhow::bail;
 use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Rgb;
 use bilux::pictures::Picture;
+use bilux::pictures::format_named;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;
 use bilux::scene::{SceneBuilder, Span, Warning};
@@ -61,6 +62,10 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
 
 /// Reads a scene file; if there is none of this name, suggests the one that is called most like it.
 fn load(path: &Path, options: &ReadOptions) -> anyhow::Result<SceneBuilder> {
+    let text = path.to_string_lossy();
+    if text.starts_with("http://") || text.starts_with("https://") {
+        bail!("{text}: this is an address, not a file: download it first");
+    }
     let result = bilux::load(path, options);
     let (Err(error), false, Some(name)) = (&result, path.exists(), path.file_name()) else {
         return Ok(result?);
@@ -121,6 +126,12 @@ fn check_not_input<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>
         bail!("{}: this file is read, so it is not overwritten: write to another file", output.display());
     }
     Ok(())
+}
+
+/// True for files that are read as pictures, even in formats that are never written.
+pub fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| format_named(extension).is_some())
 }
 
 /// Refuses a quality for a format other than JPEG.

@@ -1,5 +1,6 @@
 //! Whether a picture was done within its time limit, and where the time went if it was not.
 
+use crate::output;
 use bilux::{Job, Outcome};
 use std::time::Duration;
 
@@ -24,9 +25,9 @@ pub fn overrun(
     let limit = limit.as_secs_f32();
     let [before, all] = [before, all].map(|time| time.as_secs_f64());
     let after = (all - before - rendering).max(0.0);
-    let plural = if samples == 1 { "" } else { "s" };
+    let samples = output::counted(samples, "sample", "samples");
     Some(format!(
-        "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} sample{plural} per pixel \
+        "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} per pixel \
          {rendering:.1} s, denoising and writing {after:.1} s"
     ))
 }

@@ -14,8 +14,8 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         source: "",
         parameters: &[
             vector("position", "its centre", "0 5 0"),
-            vector("edge_u", "one edge, as a vector", "1 0 0"),
-            vector("edge_v", "the other edge, as a vector", "0 0 1"),
+            vector("edge_u", "edge from one side to the other", "1 0 0"),
+            vector("edge_v", "edge from one end to the other", "0 0 1"),
             colour("radiance", "emitted radiance; or give 'intensity'", "W/(m² sr)", "0"),
             colour(
                 "intensity",

@@ -11,7 +11,7 @@ use crate::parameters::Spec;
 use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
-    entry: about("many-lights", "a supper in a garden at night under 600 small bulbs"),
+    entry: about("many-lights", "a supper in a garden at night, under 600 small bulbs"),
     generate: |_| Ok(build()),
 };
 

@@ -13,8 +13,8 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         summary: "mixture of two colours or textures",
         source: "",
         parameters: &[
-            tone("a", "the first colour", "0 0 0"),
-            tone("b", "the second colour", "1 1 1"),
+            tone("a", "the first colour or texture", "0 0 0"),
+            tone("b", "the second colour or texture", "1 1 1"),
             Parameter {
                 name: "amount",
                 summary: "weight of `b`",

@@ -17,8 +17,8 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         summary: "fractal Perlin noise between two colours",
         source: "Perlin 2002",
         parameters: &[
-            tone("a", "colour of 0", "0 0 0"),
-            tone("b", "colour of 1", "1 1 1"),
+            tone("a", "colour where the noise is 0", "0 0 0"),
+            tone("b", "colour where the noise is 1", "1 1 1"),
             Parameter {
                 name: "octaves",
                 summary: "number of octaves",
