@@ -40,9 +40,9 @@ typed! {
     Rect = "rect" {
         /// Its centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
-        /// One edge, as a vector (m); default `1 0 0`.
+        /// Edge from one side to the other (m); default `1 0 0`.
         edge_u: bilux_math::Vec3,
-        /// The other edge, as a vector (m); default `0 0 1`.
+        /// Edge from one end to the other (m); default `0 0 1`.
         edge_v: bilux_math::Vec3,
         /// Emitted radiance; or give 'intensity' (W/(m² sr)); default `0`.
         radiance: bilux_math::Rgb,
