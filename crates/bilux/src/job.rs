@@ -4,9 +4,9 @@ use crate::Error;
 use crate::budget::time_for_rendering;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
-use crate::memory::Memory;
 use crate::own_light;
 use crate::scene_warnings::{self, oddities};
+use crate::series::Series;
 use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
@@ -50,8 +50,8 @@ pub struct Job {
     /// large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
-    warnings: Vec<Warning>,
-    notes: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
+    pub(crate) notes: Vec<String>,
     /// The ground of which only the shadow is in the picture.
     pub(crate) catcher: Option<ShadowCatcher>,
 }
@@ -93,21 +93,14 @@ impl Job {
     /// # Errors
     /// As for [`Job::new`]; and, before anything is built, if the picture would take more memory.
     pub fn within(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Job, Error> {
-        let settings = Settings::of(scene, user)?;
-        let needed = Memory::of(scene, &settings);
-        if needed.total() > most {
-            return Err(Error::TooLarge { needed, most });
-        }
-        let mut job = Job::with_settings(scene, settings)?;
-        job.warnings.extend(job.settings.unused_settings(user));
-        Ok(job)
+        Job::in_series(scene, user, most, &Series::default())
     }
 
     /// Builds the scene for settings that have already been checked.
     ///
     /// # Errors
     /// If anything in the scene is wrong.
-    pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
+    pub fn with_settings(scene: &SceneBuilder, mut settings: Settings) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
         scene_warnings::check_not_empty(scene)?;
         let mut studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
@@ -116,8 +109,11 @@ impl Job {
         };
         let mut completed = scene.clone();
         let orientation = crate::presets::set_upright(&mut completed, &studio);
-        let own = own_light::measure(&completed, &studio, &settings, &accel_of(scene))?;
-        studio.lit = own.as_ref().map(|own| own.is_enough);
+        let own = match studio.lit {
+            None => own_light::measure(&completed, &[studio], &settings, &accel_of(scene))?,
+            Some(_) => None,
+        };
+        studio.lit = studio.lit.or(own.as_ref().map(|own| own.is_enough));
         crate::presets::add_missing(&mut completed, &studio);
         let objects = completed.objects.len() as u32;
         let has_ground = completed.objects.len() > scene.objects.len();
@@ -132,6 +128,7 @@ impl Job {
         let size = [settings.width, settings.height];
         bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let accel = accel_of(&completed);
+        settings.studio.lit = studio.lit;
         let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
         let built = match own.map(|own| own.alone) {
             Some((alone, built)) if own_light::is_as_large(&alone, &completed) => built,

@@ -25,6 +25,7 @@ pub mod memory;
 mod own_light;
 pub mod presets;
 mod scene_warnings;
+pub mod series;
 pub mod settings;
 mod shadow;
 pub mod strategies;
@@ -40,6 +41,7 @@ pub use bilux_transport as transport;
 pub use bilux_transport::Silent as Quiet;
 pub use error::Error;
 pub use job::{Job, Outcome};
+pub use series::Series;
 pub use settings::Settings;
 
 use bilux_scene::{SceneBuilder, Spec};

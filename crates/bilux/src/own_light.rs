@@ -22,14 +22,14 @@ pub(crate) struct OwnLight {
     pub(crate) alone: (SceneBuilder, Scene),
 }
 
-/// Measures the own light of a scene whose file says nothing about its surroundings; returns `None` if there is nothing
-/// to decide.
+/// Measures the own light of a scene whose file says nothing about its surroundings, in each of these views; returns
+/// `None` if there is nothing to decide. The view in which it reaches least decides for all.
 ///
 /// # Errors
 /// If anything in the scene is wrong.
 pub(crate) fn measure(
     scene: &SceneBuilder,
-    studio: &Studio,
+    views: &[Studio],
     settings: &Settings,
     accel: &AccelChoice,
 ) -> Result<Option<OwnLight>, Error> {
@@ -37,14 +37,20 @@ pub(crate) fn measure(
         return Ok(None);
     }
     let mut framed = scene.clone();
-    presets::frame(&mut framed, studio);
+    // Every view inserts its camera before those of the following views.
+    views.iter().rev().for_each(|studio| presets::frame(&mut framed, studio));
     let size = [settings.width, settings.height];
     bilux_scene::presets::set_stroke_widths(&mut framed, &settings.camera, size, settings.time);
     let aspect = settings.width as f32 / settings.height as f32;
     let built = framed.build(accel, shutter_at(settings, settings.time), aspect)?;
     let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
-    let measured = illumination(&built, &*camera);
-    let is_enough = measured.surfaces > 0.0 && measured.lit >= ENOUGH;
+    let others = built.cameras().iter().skip(1).take(views.len() - 1).map(|(_, camera)| camera);
+    // If a file has lights, and no surfaces that emit, the studio's surroundings are there for metal to reflect.
+    let gets_surroundings = scene.lights.iter().any(|light| !light.is_backdrop());
+    let others = others.map(|camera| illumination(&built, &**camera, gets_surroundings));
+    let least = |a: Illumination, b: Illumination| if reached(&b) < reached(&a) { b } else { a };
+    let measured = others.fold(illumination(&built, &*camera, gets_surroundings), least);
+    let is_enough = reached(&measured) >= ENOUGH;
     let is_said = is_enough || bilux_scene::presets::seems_lit(scene);
     let decision = is_said.then(|| decision(&measured, is_enough));
     Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
@@ -54,6 +60,11 @@ pub(crate) fn measure(
 pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> bool {
     let counts = |scene: &SceneBuilder| (scene.objects.len(), scene.lights.len(), scene.cameras.len());
     counts(alone) == counts(completed)
+}
+
+/// The fraction of the visible surfaces that light reaches; 0 if there are none.
+fn reached(measured: &Illumination) -> f32 {
+    if measured.surfaces > 0.0 { measured.lit } else { 0.0 }
 }
 
 fn decision(measured: &Illumination, is_enough: bool) -> String {

@@ -1,5 +1,6 @@
 //! Whether a file's own light or the studio lights its picture.
 
+use bilux::Series;
 use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::CameraSpec;
@@ -38,12 +39,16 @@ fn panel(middle: Vec3, u: Vec3, v: Vec3) -> Mesh {
     }
 }
 
-fn job(scene: &SceneBuilder) -> Job {
+fn settings() -> Parameters {
     let mut settings = Parameters::default();
     settings.set("size", "24x24");
     settings.set("spp", Value::Integer(16));
     settings.set("denoise", "off");
-    Job::new(scene, &settings).unwrap()
+    settings
+}
+
+fn job(scene: &SceneBuilder) -> Job {
+    Job::new(scene, &settings()).unwrap()
 }
 
 /// The luminance that a tenth of the pixels reach: the others may show nothing.
@@ -153,4 +158,88 @@ fn the_decision_depends_only_on_the_scene() {
     // Formats that can describe a scene's surroundings have described them.
     let said = SceneBuilder { environment_unspecified: false, ..car(20.0) };
     assert!(job(&said).notes().is_empty());
+}
+
+/// A wall with a light on one side of it.
+fn wall() -> SceneBuilder {
+    let mut scene = file();
+    put(&mut scene, cuboid(Vec3::new(-1.0, 0.0, -0.1), Vec3::new(1.0, 2.0, 0.1)), clay(0.6));
+    put(&mut scene, shapes::icosphere(Vec3::new(0.0, 1.0, 0.6), 0.1, 2), glowing(60.0));
+    scene
+}
+
+#[test]
+fn all_pictures_of_a_turntable_are_lit_alike() {
+    // Each for itself, they differ.
+    let alone = [0, 180].map(|azimuth| {
+        let mut settings = settings();
+        settings.set("orbit", format!("{azimuth},15").as_str());
+        Job::new(&wall(), &settings).unwrap().notes()[0].starts_with("the studio")
+    });
+    assert_eq!(alone, [false, true]);
+    let series = Series::turntable(&wall(), &settings(), u64::MAX, 6).unwrap();
+    let jobs = [0, 1, 3].map(|i| {
+        let series = series.turned(i, 6);
+        Job::in_series(&wall(), &settings(), u64::MAX, &series).unwrap()
+    });
+    for job in &jobs {
+        assert_eq!(job.notes(), jobs[0].notes());
+        assert!(job.notes()[0].starts_with("the studio lights it"), "{:?}", job.notes());
+        assert!(job.scene().lights().iter().any(|light| light.name == "room"));
+    }
+    // A closed box has light enough on all sides.
+    let inside = SceneBuilder { cameras: Vec::new(), ..closed_box(15.0) };
+    let series = Series::turntable(&inside, &settings(), u64::MAX, 6).unwrap();
+    let job = Job::in_series(&inside, &settings(), u64::MAX, &series.turned(2, 6)).unwrap();
+    assert_eq!(job.scene().lights().len(), 1, "{:?}", job.notes());
+}
+
+#[test]
+fn all_frames_of_an_animation_are_lit_as_the_first() {
+    // The light goes out, or on.
+    for (first, then) in [(60.0, 0.2), (0.2, 60.0)] {
+        let is_studio = |job: &Job| job.scene().lights().iter().any(|light| light.name == "room");
+        let start = job(&lamp(first));
+        let next = Job::in_series(&lamp(then), &settings(), u64::MAX, &start.series()).unwrap();
+        assert_ne!(is_studio(&start), is_studio(&job(&lamp(then))));
+        assert_eq!((is_studio(&next), next.notes()), (is_studio(&start), start.notes()));
+    }
+}
+
+/// A shade that is open below, with a small bright bulb in it.
+fn barn_lamp(metalness: f32) -> SceneBuilder {
+    let mut scene = file();
+    let shade = clay(0.8).with("base_metalness", metalness).with("specular_roughness", 0.25f32);
+    let (low, high) = (Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 1.0, 1.0));
+    for (u, v, middle) in [
+        (Vec3::X, Vec3::Z, Vec3::Y),
+        (Vec3::X, Vec3::Y * 0.5, Vec3::new(0.0, 0.5, 1.0)),
+        (Vec3::X, Vec3::Y * 0.5, Vec3::new(0.0, 0.5, -1.0)),
+        (Vec3::Z, Vec3::Y * 0.5, Vec3::new(1.0, 0.5, 0.0)),
+        (Vec3::Z, Vec3::Y * 0.5, Vec3::new(-1.0, 0.5, 0.0)),
+    ] {
+        let sheet = panel(middle.clamp(low, high), u, v);
+        let material = scene.add_material(shade.clone());
+        scene.objects.push(Object::new("shade", Arc::new(sheet), material));
+    }
+    put(&mut scene, shapes::icosphere(Vec3::Y * 0.4, 0.06, 2), glowing(100.0));
+    scene
+}
+
+#[test]
+fn metal_around_a_bulb_counts_by_what_it_reflects() {
+    for (metalness, by_studio) in [(0.0, false), (1.0, true)] {
+        let mut settings = settings();
+        settings.set("orbit", "20,-60");
+        let job = Job::new(&barn_lamp(metalness), &settings).unwrap();
+        assert_eq!(job.notes()[0].starts_with("the studio lights it"), by_studio, "{:?}", job.notes());
+    }
+    // With a light in the file, metal has the studio's surroundings to reflect.
+    let mut helmet = file();
+    put(&mut helmet, shapes::icosphere(Vec3::Y, 1.0, 3), clay(0.8).with("base_metalness", 1.0f32));
+    let sun = Spec::new("mine", "directional").with("direction", Vec3::new(-0.5, -1.0, -0.8));
+    helmet.lights.push(sun.with("irradiance", 3.0f32));
+    let job = job(&helmet);
+    let lights: Vec<&str> = job.scene().lights().iter().map(|light| light.name.as_str()).collect();
+    assert_eq!(lights, ["mine", "room"], "{:?}", job.notes());
 }

@@ -5,8 +5,7 @@ use crate::values::{parse_focal, parse_turntable};
 use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
-use bilux::presets::Studio;
-use bilux::scene::{Parameters, SceneBuilder, SceneError, Value};
+use bilux::scene::{SceneBuilder, SceneError};
 use bilux::settings::Background;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -14,7 +13,8 @@ use std::path::{Path, PathBuf};
 /// The camera and the surroundings of a model.
 #[derive(Args)]
 pub struct StudioArguments {
-    /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8]
+    /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8; a flat
+    /// model from up to 40 degrees above]
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub orbit: Option<String>,
     /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none turns
@@ -110,17 +110,4 @@ impl StudioArguments {
 
 fn extension(path: &Path) -> &str {
     path.extension().and_then(|extension| extension.to_str()).unwrap_or_default()
-}
-
-/// The same settings with the camera moved around the model to the right by a fraction of a turn.
-pub fn turned(user: &Parameters, turns: f32) -> anyhow::Result<Parameters> {
-    let orbit = match user.find("orbit") {
-        Some((Value::Text(text), _)) => bilux::settings::parse_orbit(text)
-            .with_context(|| format!("--orbit {text}: write AZ,EL in degrees, such as 30,15"))?,
-        _ => Studio::ORBIT,
-    };
-    let mut turned = user.clone();
-    let text = format!("{},{}", orbit[0] + 360.0 * turns, orbit[1]);
-    turned.set_at("orbit", Value::Text(text), from_flag("--turntable"));
-    Ok(turned)
 }

@@ -452,6 +452,32 @@ fn a_picture_of_the_surroundings_lights_a_bare_model() {
     assert!(reported.contains("--env") && reported.contains("nowhere.hdr"), "{reported}");
 }
 
+/// A wall with a small, bright light on one side of it.
+#[test]
+fn all_pictures_of_a_turntable_are_lit_alike() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let scene = "mtllib a.mtl\nv -1 0 0\nv 1 0 0\nv 1 2 0\nv -1 2 0\nv -.1 .9 .6\nv .1 .9 .6\nv 0 1.1 .6\nv 0 1 .7\n\
+                 usemtl clay\nf 1 2 3 4\nusemtl light\nf 5 6 8\nf 6 7 8\nf 7 5 8\nf 5 7 6\n";
+    std::fs::write(path.join("wall.obj"), scene).unwrap();
+    let materials = "newmtl clay\nKd .6 .6 .6\nnewmtl light\nKd .5 .5 .5\nKe 90 90 90\n";
+    std::fs::write(path.join("a.mtl"), materials).unwrap();
+    let lit_by = |more: &[&str]| {
+        let always = ["wall.obj", "-o", "a.png", "--size", "16x16", "--spp", "1", "--up", "y", "-v"];
+        let done = bilux(path).arg("render").args(always).args(more).assert().success();
+        let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+        let decisions = said
+            .lines()
+            .filter_map(|line| Some(line.split_once(" light it").or(line.split_once(" lights it"))?.0));
+        decisions.map(|text| text.rsplit(": ").next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        [lit_by(&["--orbit", "0,15"]), lit_by(&["--orbit", "180,15"])].concat(),
+        ["only its own lights", "the studio"]
+    );
+    assert_eq!(lit_by(&["--turntable", "4"]), ["the studio"; 4]);
+}
+
 /// A figure with an arm to its left and a nose in front, written with other axes, looks the same once these are named.
 #[test]
 fn up_and_front_turn_a_model() {

@@ -232,6 +232,13 @@ fn the_log_of_a_picture_is_one_line() {
     assert!(said.lines().count() == 1 && said.contains(", denoised by "), "{said}");
     let more = assert_done(path, &format!("{model} -v"));
     assert!(more.contains("up is y, front is z"), "{more}");
+    // A guess may be wrong, so it is reported: a plate lies flat.
+    let corners = "v 0 0 -2\nv 3 0 -2\nv 3 2 -2\nv 0 2 -2\nv 0 0 -1.9\nv 3 0 -1.9\nv 3 2 -1.9\nv 0 2 -1.9\n";
+    let faces = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    fs::write(path.join("plate.obj"), format!("{corners}{faces}")).unwrap();
+    let said = assert_done(path, &model.replace("bare", "plate"));
+    let guess = "plate.obj: up is z, front is -y, guessed from its shape (change it with --up and --front)";
+    assert!(said.lines().count() == 2 && said.lines().any(|line| line == guess), "{said}");
 }
 
 /// A scene in a folder of its own, next to a file that must be neither read nor written.

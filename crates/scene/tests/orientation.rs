@@ -107,6 +107,59 @@ fn a_model_that_faces_backwards_is_turned_round() {
     assert_eq!((front(1.9), front(-1.9)), (Axis::Z, Axis::NegZ));
 }
 
+/// The front that is found for a shape whose conventional front, +z, is right.
+fn front_of_upright(parts: &[[[f32; 3]; 2]]) -> Axis {
+    let scene = scene(joined(parts), UpHint::Usually(Axis::Y));
+    let found = Orientation::of(&scene, Some(Axis::Y), None).unwrap();
+    found.front
+}
+
+#[test]
+fn a_model_that_hardly_leans_back_is_not_turned_round() {
+    // A bust whose head lies slightly behind its chest.
+    let bust = [
+        [[-1.0, 0.0, -0.9], [1.0, 1.2, 1.1]],
+        [[-0.4, 1.2, -0.5], [0.4, 1.6, 0.3]],
+        [[-0.7, 1.6, -1.1], [0.7, 3.2, 0.6]],
+    ];
+    assert_eq!(front_of_upright(&bust), Axis::Z);
+    // A coarse fish, whose tail has more triangles than its head.
+    let mut fish = vec![[[-0.4, 0.0, -2.0], [0.4, 1.6, 0.0]], [[-0.3, 0.4, 0.0], [0.3, 1.2, 2.0]]];
+    fish.extend((0..30).map(|i| {
+        let y = 0.05 * i as f32;
+        [[-0.35, y, -2.1], [0.35, y + 0.05, -2.0]]
+    }));
+    assert_eq!(front_of_upright(&fish), Axis::Z);
+    // A scorpion: broader than high, with its tail above its back.
+    let mut scorpion = vec![[[-0.5, 0.3, -1.5], [0.5, 0.7, 1.5]], [[-0.15, 0.7, -1.7], [0.15, 2.2, -1.2]]];
+    for x in [-2.0, 0.5] {
+        scorpion.push([[x, 0.0, 0.9], [x + 1.5, 0.3, 1.9]]);
+    }
+    assert_eq!(front_of_upright(&scorpion), Axis::Z);
+}
+
+#[test]
+fn a_figure_on_the_ground_plane_is_not_laid_on_its_face() {
+    // A woman with her arms apart and with straight feet: all of her back is in one plane.
+    let figure = |ground: f32| {
+        let parts = [
+            [[-0.35, 0.0, -0.15], [-0.25, 0.06, 0.09]],
+            [[0.25, 0.0, -0.15], [0.35, 0.06, 0.09]],
+            [[-0.4, 0.06, -0.2], [-0.25, 1.0, 0.0]],
+            [[0.25, 0.06, -0.2], [0.4, 1.0, 0.0]],
+            [[-0.3, 1.0, -0.2], [0.3, 1.7, 0.2]],
+            [[-0.8, 1.45, -0.2], [0.8, 1.6, -0.1]],
+            [[-0.12, 1.7, -0.2], [0.12, 2.0, 0.1]],
+        ];
+        let raised = parts.map(|part| part.map(|[x, y, z]| [x, y + ground, z]));
+        let scene = scene(joined(&raised), UpHint::Usually(Axis::Y));
+        Orientation::of(&scene, None, None).unwrap().up
+    };
+    assert_eq!(figure(0.0), Axis::Y);
+    // Without that, its shape decides.
+    assert_eq!(figure(-1.0), Axis::Z);
+}
+
 #[test]
 fn an_animal_stands_on_its_legs_where_the_usual_axis_would_topple_it() {
     // A bull: legs under a part of its length, a heavy head, and a tail.

@@ -300,3 +300,85 @@ fn the_key_light_is_on_the_side_of_an_existing_camera() {
     let at = seen_at(&seen, light_position);
     assert!(at.is_none_or(|at| at.abs().max_element() > 1.0), "{light_position}: {at:?}");
 }
+
+/// A box on the ground, as triangles between all of its corners.
+fn cuboid(size: [f32; 3]) -> SceneBuilder {
+    let [x, y, z] = size;
+    let corners = [0.0, 1.0].into_iter().flat_map(|a| {
+        [0.0, 1.0].into_iter().flat_map(move |b| [0.0, 1.0].map(|c| [(a - 0.5) * x, b * y, (c - 0.5) * z]))
+    });
+    points(&corners.collect::<Vec<_>>())
+}
+
+/// The position of the first camera.
+fn eye(scene: &SceneBuilder) -> Vec3 {
+    let camera = cameras::build(&scene.cameras[0], 1.0).unwrap();
+    Vec3::from(camera.ray(&CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 }).origin)
+}
+
+#[test]
+fn a_turntable_keeps_its_distance_and_its_axis() {
+    let long = || cuboid([4.0, 1.0, 1.0]);
+    let turned = |turn: f32| {
+        let mut scene = long();
+        complete(&mut scene, &Studio { turn: Some(turn), ..Studio::default() });
+        scene
+    };
+    let first = turned(0.0);
+    let distance = |scene: &SceneBuilder| Vec2::new(eye(scene).x, eye(scene).z).length();
+    let mut farthest = 0.0f32;
+    for i in 0..36 {
+        let scene = turned(i as f32 / 36.0);
+        assert!((distance(&scene) - distance(&first)).abs() < 1e-4, "frame {i}: {}", distance(&scene));
+        assert!((eye(&scene).y - eye(&first).y).abs() < 1e-4);
+        let axis = [0.0, 1.0].map(|y| seen_at(&scene, Vec3::Y * y).unwrap());
+        assert!(axis.iter().all(|p| p.x.abs() < 1e-4), "frame {i}: the axis is in the middle");
+        farthest = farthest.max(reach(&scene));
+    }
+    assert!((0.85..0.89).contains(&farthest), "{farthest}");
+}
+
+#[test]
+fn flat_models_are_seen_from_farther_above_and_centred() {
+    let elevation = |size: [f32; 3]| {
+        let mut scene = cuboid(size);
+        complete(&mut scene, &Studio::default());
+        let camera = cameras::build(&scene.cameras[0], 1.0).unwrap();
+        let ray = camera.ray(&CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 });
+        let seen = (0..8).map(|i| scene.objects[0].mesh.positions[i]).map(|p| seen_at(&scene, p).unwrap().y);
+        let (low, high) = seen.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
+        (-Vec3::from(ray.direction).y.asin().to_degrees(), low + high)
+    };
+    for ordinary in [[1.0, 1.0, 1.0], [4.0, 0.85, 4.0], [1.0, 3.0, 0.1]] {
+        let (above, _) = elevation(ordinary);
+        assert!((above - Studio::ORBIT[1]).abs() < 1e-3, "{ordinary:?}: {above}");
+    }
+    for flat in [[1.0, 0.02, 1.0], [4.0, 0.0, 1.5]] {
+        let (above, off_centre) = elevation(flat);
+        assert!((above - 40.0).abs() < 1e-3, "{flat:?}: {above}");
+        assert!(off_centre.abs() < 2e-3, "{flat:?}: {off_centre}");
+    }
+    let (between, _) = elevation([4.0, 0.6, 4.0]);
+    assert!(between > 20.0 && between < 38.0, "{between}");
+}
+
+#[test]
+fn pale_points_and_lines_stand_on_dark_ground() {
+    let ground = |kd: f32, has_face: bool| {
+        let mut scene = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        scene.materials[0] = Spec::new("ink", "phong").with("kd", kd);
+        let mesh = Arc::make_mut(&mut scene.objects[0].mesh);
+        mesh.triangles.truncate(usize::from(has_face));
+        mesh.points = vec![0, 1];
+        mesh.lines = vec![[0, 1], [1, 2]];
+        complete(&mut scene, &Studio::default());
+        let floor = scene.objects.last().unwrap();
+        let material = scene.materials[floor.material].clone();
+        let reflectance = material.parameters.find("reflectance").unwrap().0.clone();
+        let Value::List(colour) = reflectance else { panic!("{reflectance:?}") };
+        let Value::Number(green) = colour[1] else { panic!("{colour:?}") };
+        green
+    };
+    assert!(ground(1.0, false) < 0.1, "white on dark");
+    assert!(ground(0.05, false) > 0.6 && ground(1.0, true) > 0.6, "ink, or surfaces, on paper");
+}

@@ -6,8 +6,10 @@
 
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
+use bilux_math::frame::reflect;
+use bilux_math::transcendental::cos;
 use bilux_math::{Frame, Vec2, Vec3, warp};
-use bilux_scene::{Camera, CameraSample, Ray, Scene, Surface, Tracer};
+use bilux_scene::{Camera, CameraSample, ClassicMaterial, Ray, Scene, Surface, Tracer};
 use rayon::prelude::*;
 
 /// Rows and columns of points on the film.
@@ -22,6 +24,9 @@ const MAX_PANES: usize = 32;
 const CLAY: f32 = 0.5;
 /// A white surface with less outgoing radiance than this is dark.
 const DARK: f32 = 0.05;
+/// A surface that reflects specularly at least the first part of light, and diffusely at most the second fraction of
+/// that, is metal.
+const METAL: [f32; 2] = [0.1, 0.25];
 
 /// How a scene's own lights illuminate what its camera sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,12 +37,13 @@ pub struct Illumination {
     pub lit: f32,
 }
 
-/// Measures a scene through a camera.
-pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
+/// Measures a scene through a camera. Metal counts as clay if it `gets_surroundings` to reflect, and otherwise as what
+/// it reflects.
+pub fn illumination(scene: &Scene, camera: &dyn Camera, gets_surroundings: bool) -> Illumination {
     let lights = LightChoice::new(scene);
     let of_row = |y: u32| {
         let mut tracer = Tracer::new(scene, false);
-        let row = (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, x, y));
+        let row = (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, gets_surroundings, [x, y]));
         row.fold((0, 0), |(seen, lit), light| match light {
             None => (seen, lit),
             Some(light) => (seen + 1, lit + u32::from(light >= DARK)),
@@ -49,7 +55,13 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
 
 /// The outgoing radiance, as luminance, of a white surface at a point of the film; `None` where the camera sees no such
 /// surface.
-fn at_point(tracer: &mut Tracer, camera: &dyn Camera, lights: &LightChoice, x: u32, y: u32) -> Option<f32> {
+fn at_point(
+    tracer: &mut Tracer,
+    camera: &dyn Camera,
+    lights: &LightChoice,
+    gets_surroundings: bool,
+    [x, y]: [u32; 2],
+) -> Option<f32> {
     let scene = tracer.scene;
     let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / GRID as f32;
     let sample = CameraSample { film, lens: Vec2::splat(0.5), time: scene.shutter()[0] };
@@ -59,13 +71,50 @@ fn at_point(tracer: &mut Tracer, camera: &dyn Camera, lights: &LightChoice, x: u
     if !scene.emission(&surface, wo).is_black() {
         return None;
     }
+    let metal =
+        Some(scene.material(&surface).classic(&surface)).filter(|it| !gets_surroundings && is_metal(it));
     let sum: f32 = (0..SAMPLES)
         .map(|i| {
             let mut sampler = PixelSampler::new(0, x, y, i);
-            path(tracer, lights, &mut sampler, surface, wo)
+            match &metal {
+                Some(metal) => reflected(tracer, lights, &mut sampler, surface, wo, *metal),
+                None => path(tracer, lights, &mut sampler, surface, wo),
+            }
         })
         .sum();
     Some(sum / SAMPLES as f32)
+}
+
+fn is_metal(material: &ClassicMaterial) -> bool {
+    let [specular, diffuse] = METAL;
+    let ks = material.ks.luminance() * material.reflectivity;
+    ks >= specular && material.kd.luminance() <= ks * diffuse
+}
+
+/// The light that metal reflects: from an emitter, or from the first surface that is not metal, as clay.
+fn reflected(
+    tracer: &mut Tracer,
+    lights: &LightChoice,
+    sampler: &mut PixelSampler,
+    mut surface: Surface,
+    mut wo: Vec3,
+    mut metal: ClassicMaterial,
+) -> f32 {
+    for _ in 0..=MAX_BOUNCES {
+        let mirror = Frame::from_normal(reflect(wo, surface.n_shade));
+        let wi = mirror.to_world(warp::sample_cone(sampler.next_2d(), cos(metal.gloss)));
+        let Some(next) = beyond_glass(tracer, surface.spawn(wi)) else { return 0.0 };
+        (surface, wo) = (next, -wi);
+        let emission = tracer.scene.emission(&surface, wo);
+        if !emission.is_black() {
+            return emission.luminance();
+        }
+        metal = tracer.scene.material(&surface).classic(&surface);
+        if !is_metal(&metal) {
+            return path(tracer, lights, sampler, surface, wo);
+        }
+    }
+    0.0
 }
 
 /// The light that one path of scattering events brings to a white surface.

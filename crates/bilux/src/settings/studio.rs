@@ -44,6 +44,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         front,
         ground: Ground::from_name(&reader.text("ground")),
         orbit,
+        turn: None,
         focal: reader.is_given("focal").then(|| reader.number("focal")),
         aspect: None,
         cut_out: false,

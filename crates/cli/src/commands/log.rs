@@ -3,10 +3,12 @@
 use crate::output;
 use bilux::budget::DEFAULT_BUDGET;
 use bilux::pictures::denoise::DenoiserChoice;
+use bilux::scene::OrientationSource;
 use bilux::{Job, Outcome};
 use serde_json::json;
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// A picture that was rendered.
 pub struct Rendered<'a> {
@@ -43,8 +45,8 @@ impl Rendered<'_> {
     /// Prints the report as text: one line, and more with `-v`.
     pub fn print(&self, verbose: u8) {
         let (s, output) = (self.job.settings(), self.output.display());
+        self.report_orientation(verbose);
         if verbose > 0 {
-            self.report_orientation();
             self.report_details();
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
@@ -72,20 +74,25 @@ impl Rendered<'_> {
         }
     }
 
-    /// Reports the orientation if it was decided here; once, however many pictures there are.
-    fn report_orientation(&self) {
-        static SAID: std::sync::Once = std::sync::Once::new();
-        if let Some(orientation) = self.job.orientation() {
-            let (up, front) = (orientation.up.name(), orientation.front.name());
-            let source = orientation.source.words();
-            let scene = self.scene.display();
-            SAID.call_once(|| {
-                output::eprint(format_args!(
-                    "{scene}: up is {up}, front is {front}, {source} (change it with --up and \
-                                          --front)"
-                ));
-            });
+    /// Reports the orientation if it was decided here, or, without `-v`, if it was guessed; once for a scene,
+    /// however many pictures there are.
+    fn report_orientation(&self, verbose: u8) {
+        static SAID: Mutex<Option<PathBuf>> = Mutex::new(None);
+        let is_reported = |source| verbose > 0 || source == OrientationSource::Shape;
+        let Some(orientation) = self.job.orientation().filter(|found| is_reported(found.source)) else {
+            return;
+        };
+        let mut said = SAID.lock().unwrap_or_else(PoisonError::into_inner);
+        if said.as_deref() == Some(self.scene) {
+            return;
         }
+        let (up, front, source) =
+            (orientation.up.name(), orientation.front.name(), orientation.source.words());
+        output::eprint(format_args!(
+            "{}: up is {up}, front is {front}, {source} (change it with --up and --front)",
+            self.scene.display()
+        ));
+        *said = Some(self.scene.to_owned());
     }
 
     fn report_details(&self) {

@@ -17,7 +17,7 @@ use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
-use bilux::{Job, Outcome};
+use bilux::{Job, Outcome, Series};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -161,9 +161,9 @@ impl Input<'_> {
     }
 
     /// Makes the job for a scene, with everything that the command line says about it.
-    fn job(&self, scene: &SceneBuilder, user: &Parameters) -> anyhow::Result<Job> {
+    fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
         let arguments = self.arguments;
-        let mut job = Job::within(scene, user, self.common.max_memory)?;
+        let mut job = Job::in_series(scene, user, self.common.max_memory, series)?;
         if self.common.sandbox {
             job.sandbox();
         }
@@ -208,11 +208,12 @@ fn render_one(
     report_notes(&scene.notes, common);
     input.warn(&still_frames(arguments, &scene))?;
     let Some(count) = arguments.studio.turntable else {
-        return render_scene(&input, &mut scene, target, user);
+        return render_scene(&input, &mut scene, target, user, &Series::default());
     };
+    let series = Series::turntable(&scene, user, common.max_memory, count)?;
     for frame in 0..count {
-        let turned = crate::studio::turned(user, frame as f32 / count as f32)?;
-        let status = render_scene(&input, &mut scene, &numbered(target, frame), &turned)?;
+        let series = series.turned(frame, count);
+        let status = render_scene(&input, &mut scene, &numbered(target, frame), user, &series)?;
         if status != DONE {
             return Ok(status);
         }
@@ -235,6 +236,7 @@ fn render_scene(
     scene: &mut SceneBuilder,
     target: &Target,
     user: &Parameters,
+    series: &Series,
 ) -> anyhow::Result<u8> {
     let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
@@ -244,11 +246,11 @@ fn render_scene(
         with_fast_budget(&scene.settings, &mut user);
     }
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
-    let mut job = input.job(scene, &user)?;
+    let mut job = input.job(scene, &user, series)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was set otherwise than by --at.
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
-        job = input.job(scene, &user)?;
+        job = input.job(scene, &user, series)?;
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
@@ -267,6 +269,7 @@ fn render_scene(
     let Some((first, last)) = arguments.frames else {
         return finish(input, &mut job, target, build_seconds);
     };
+    let series = job.series();
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
         if frame > first {
@@ -276,7 +279,7 @@ fn render_scene(
         if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
             posed.inventory.movement = scene.inventory.movement.clone();
-            job = input.job(&posed, &user)?;
+            job = input.job(&posed, &user, &series)?;
         }
         job.at_time(time);
         let status = finish(input, &mut job, &numbered(target, frame), build_seconds)?;

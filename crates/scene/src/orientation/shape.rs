@@ -14,11 +14,16 @@ struct Sample {
 
 /// The number of points that are sampled.
 const SAMPLES: usize = 1 << 14;
+/// A mesh of at most so many triangles is too coarse to have finer and coarser parts.
+const FEW: usize = 1000;
 /// Cells along the longest side of the bounding box, for measuring symmetry.
 const CELLS: usize = 24;
 
 /// The part of the bounding box that a foot has to cover for a shape to stand on it.
 const STEADY: f64 = 0.1;
+
+/// How far from 0, relative to its height, the lowest point of a shape on the ground plane may be.
+const ON_GROUND: f64 = 0.005;
 
 /// The measurements.
 pub(super) struct Shape {
@@ -29,6 +34,8 @@ pub(super) struct Shape {
     samples: Vec<Sample>,
     /// For each axis, how much of the shape its mirror image across the centre of the box contains, 0..=1.
     symmetry: [f64; 3],
+    /// Whether it has so few triangles that their sizes say nothing.
+    is_coarse: bool,
     /// Triangles per area on the lower and upper half of each axis.
     density: [[f64; 2]; 3],
 }
@@ -44,7 +51,9 @@ impl Shape {
         }
         let middle = (low + high) * 0.5;
         let samples = samples(scene);
-        let mut shape = Shape { extent, low, middle, samples, symmetry: [0.0; 3], density: [[1.0; 2]; 3] };
+        let is_coarse = triangles(scene).nth(FEW).is_none();
+        let (symmetry, density) = ([0.0; 3], [[1.0; 2]; 3]);
+        let mut shape = Shape { extent, low, middle, samples, symmetry, is_coarse, density };
         shape.symmetry = shape.symmetries();
         shape.density = shape.densities(scene);
         (!shape.samples.is_empty()).then_some(shape)
@@ -113,6 +122,10 @@ impl Shape {
         if self.extent[axis] == sides[0] && flatness > 0.01 {
             score += 4.0 * (1.0 - flatness / 0.16).max(0.0);
         }
+        // Modellers put things on the ground plane.
+        if up.sign() > 0.0 && self.low[axis].abs() < self.extent[axis] * ON_GROUND {
+            score += 0.2;
+        }
         // Up lies in the plane of symmetry of an object.
         let others = (0..3).filter(|other| *other != axis).map(|other| self.symmetry[other]);
         score += 0.44 * ((others.fold(0.0, f64::max) - self.symmetry[axis]) * 4.0).clamp(-1.0, 1.0);
@@ -179,15 +192,17 @@ impl Shape {
     /// True when the front is on the other side.
     ///
     /// A room without a wall, or a relief, that shows its backs on one side and none on the other is made to be seen
-    /// from the other. A shape with left-right symmetry looks backwards if its upper half and its finer triangles tend
-    /// to lie behind the centre.
+    /// from the other. A shape with left-right symmetry looks backwards if its upper half and its finer triangles
+    /// tend to lie behind the centre, one of them clearly, unless it is broader than high: then its highest part may be
+    /// a tail.
     pub(super) fn looks_back(&self, up: Axis, front: Axis) -> bool {
         if self.backs(front) > 0.8 && self.backs(front.opposite()) < 0.1 {
             return true;
         }
         let [up_axis, axis] = [up.index(), front.index()];
         let across = 3 - up_axis - axis;
-        if self.symmetry[across] < 0.97 || self.symmetry[axis] > 0.97 {
+        let is_broad = self.extent[across] > self.extent[up_axis];
+        if self.symmetry[across] < 0.97 || self.symmetry[axis] > 0.97 || is_broad {
             return false;
         }
         let forward = |p: DVec3| (p[axis] - self.middle[axis]) * front.sign() / self.extent[axis];
@@ -201,8 +216,10 @@ impl Shape {
         let [lower, upper] = halves.map(|[sum, area]| sum / area.max(f64::MIN_POSITIVE));
         let [behind, before] = self.density[axis];
         let finer = bilux_math::transcendental::ln(((before / behind) as f32).max(f32::MIN_POSITIVE));
-        let finer = f64::from(finer) * front.sign();
-        (upper - lower) + 0.5 * finer.clamp(-1.5, 1.5) < -0.1
+        let finer =
+            if self.is_coarse { 0.0 } else { 0.5 * (f64::from(finer) * front.sign()).clamp(-1.5, 1.5) };
+        let shift = upper - lower;
+        shift + finer < -0.1 && (shift < -0.15 || finer < -0.1)
     }
 }
 

@@ -1,6 +1,7 @@
 //! `studio`: any model, well framed and lit. [`complete`] gives it to scenes without a camera or a light.
 
 mod cove;
+mod drawings;
 mod framing;
 mod standing;
 
@@ -56,6 +57,9 @@ pub struct Studio {
     pub ground: Option<Ground>,
     /// The view direction: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
+    /// The part of a full turn by which the camera has moved to the right, around a model that is framed for the whole
+    /// turn.
+    pub turn: Option<f32>,
     /// The model's up axis.
     pub up: Option<Axis>,
     /// The model's front axis.
@@ -72,14 +76,18 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Slightly from the right and from above.
+    /// Slightly from the right and from above. A flat model is seen from farther above.
     pub const ORBIT: [f32; 2] = [26.5, 17.8];
     /// The lens of a portrait, or slightly longer.
     pub const FOCAL: f32 = 45.0;
 
     /// True when the user asked for the studio's own camera, whatever cameras the scene has.
     fn has_camera(&self) -> bool {
-        self.orbit.is_some() || self.focal.is_some() || self.up.is_some() || self.front.is_some()
+        self.orbit.is_some()
+            || self.turn.is_some()
+            || self.focal.is_some()
+            || self.up.is_some()
+            || self.front.is_some()
     }
 }
 
@@ -133,7 +141,8 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
         return;
     }
     // An existing camera sees the studio from the front.
-    let looks = Studio { orbit: studio.orbit.or_else(|| orbit_of(scene)), ..*studio };
+    let own = || if studio.turn.is_none() { orbit_of(scene) } else { None };
+    let looks = Studio { orbit: studio.orbit.or_else(own), ..*studio };
     let framing = Framing::of(scene, &looks);
     if !seen || asked {
         scene.cameras.insert(0, framing.camera());
@@ -145,7 +154,7 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
         scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
     }
     if !lit && !seen {
-        of_clay(scene);
+        drawings::of_clay(scene);
     }
     furnish(scene, &framing, ground, studio.cut_out);
 }
@@ -182,30 +191,14 @@ fn orbit_of(scene: &SceneBuilder) -> Option<[f32; 2]> {
     Some([atan2(towards.x, towards.z).to_degrees(), asin(towards.y.clamp(-1.0, 1.0)).to_degrees()])
 }
 
-/// Gives objects without a material one of clay, or of ink on pale ground if they are only lines or a few points.
-fn of_clay(scene: &mut SceneBuilder) {
-    const FEW: usize = 5000;
-    let is_drawing = |object: &Object| {
-        let mesh = &object.mesh;
-        mesh.triangles.is_empty() && mesh.points.len() < FEW && mesh.stroke_count() > 0
-    };
-    let drawings: Vec<usize> =
-        scene.objects.iter().filter(|object| is_drawing(object)).map(|object| object.material).collect();
-    let bare = |m: &Spec| m.kind == "phong" && m.parameters.0.is_empty();
-    for (i, material) in scene.materials.iter_mut().enumerate().filter(|(_, m)| bare(m)) {
-        let kd = if drawings.contains(&i) { Rgb::grey(0.06) } else { Rgb::new(0.62, 0.59, 0.55) };
-        let clay = Spec::new(&material.name, "phong").with("kd", kd);
-        *material = clay.with("ks", 0.05f32).with("exponent", 40.0f32).with("reflectivity", 0.0f32);
-    }
-}
-
 /// Puts the ground under the model.
 fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out: bool) {
     // A camera below the ground would see nothing else.
     if ground == Ground::None || scene.objects.is_empty() || framing.is_below() {
         return;
     }
-    let paper = Spec::new(GROUND, "diffuse").with("reflectance", Rgb::new(0.72, 0.71, 0.70));
+    let colour = if drawings::is_pale(scene) { Rgb::grey(0.05) } else { Rgb::new(0.72, 0.71, 0.70) };
+    let paper = Spec::new(GROUND, "diffuse").with("reflectance", colour);
     let (material, mesh) = match ground {
         Ground::Mirror => {
             (Spec::new(GROUND, "mirror").with("reflectance", 0.85f32), cove::level(framing, false))
