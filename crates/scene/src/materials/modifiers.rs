@@ -55,6 +55,14 @@ impl Material for ModifiedMaterial {
         if self.normals.is_some() { bsdf.bending() } else { bsdf }
     }
 
+    fn is_lambertian(&self) -> bool {
+        self.normals.is_none() && self.material.is_lambertian()
+    }
+
+    fn lambertian_reflectance(&self, surface: &Surface) -> Rgb {
+        self.material.lambertian_reflectance(surface)
+    }
+
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         self.material.classic(surface)
     }
