@@ -120,10 +120,10 @@ impl Media {
         Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
     }
 
-    /// The BSDF at a wavelength of a surface that separates these media from others.
+    /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
     #[inline]
     pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface, wavelength: &Wavelength) -> Bsdf {
-        let bsdf = scene.material(surface).bsdf(surface);
+        let bsdf = scene.material(surface).bsdf(surface).bending();
         if !scene.has_nested() && !scene.disperses() {
             return bsdf;
         }

@@ -51,8 +51,7 @@ impl Material for ModifiedMaterial {
     }
 
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let bsdf = self.material.bsdf(surface);
-        if self.normals.is_some() { bsdf.bending() } else { bsdf }
+        self.material.bsdf(surface)
     }
 
     fn is_lambertian(&self) -> bool {
