@@ -27,8 +27,6 @@ pub struct Geometry {
     still: Option<Arc<TriangleMesh>>,
     /// The index in `still` of each static object's first triangle, with the object; ascending.
     still_objects: Vec<(u32, u32)>,
-    /// For each triangle of `still`, its place in `still_objects`; empty if there is only one.
-    still_places: Vec<u32>,
     /// The object of each instance; the entry of `still` is unused.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
@@ -65,10 +63,6 @@ impl Geometry {
             corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
             groups.push(first..corners.len() as u32);
         }
-        let still_places = match groups.len() {
-            0 | 1 => Vec::new(),
-            _ => (0u32..).zip(&groups).flat_map(|(place, group)| group.clone().map(move |_| place)).collect(),
-        };
         let make = |mesh: Arc<TriangleMesh>| -> Result<Arc<dyn Accelerator>, SceneError> {
             Ok(Arc::from(bilux_accel::build(&accel.name, mesh, &accel.options).map_err(|e| failed(&e))?))
         };
@@ -112,7 +106,6 @@ impl Geometry {
             objects,
             still,
             still_objects,
-            still_places,
             instance_objects,
             instances,
             strokes,
@@ -250,8 +243,8 @@ impl Geometry {
     /// The object and the triangle within its mesh, or the sphere.
     fn locate(&self, Primitive { instance, index }: Primitive) -> (u32, u32) {
         if self.still.is_some() && instance == 0 {
-            let place = self.still_places.get(index as usize).copied().unwrap_or(0);
-            let (first, object) = self.still_objects[place as usize];
+            let after = self.still_objects.partition_point(|(first, _)| *first <= index);
+            let (first, object) = self.still_objects[after - 1];
             (object, index - first)
         } else if instance == self.spheres.instance() {
             (self.spheres.object(index), index)

@@ -117,11 +117,7 @@ impl SceneParts {
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
-        let is_lambertian = |o: &crate::geometry::Placed| {
-            let material = &materials[o.material as usize];
-            !o.gives_light && material.is_lambertian() && material.emission().is_black()
-        };
-        let lambertian = geometry.objects().iter().map(is_lambertian).collect();
+        let lambertian = geometry.objects().iter().map(|o| is_lambertian(o, &materials)).collect();
         SceneParts {
             geometry,
             materials,
@@ -140,6 +136,14 @@ impl SceneParts {
             lambertian,
         }
     }
+}
+
+/// See [`Scene::is_lambertian`].
+fn is_lambertian(object: &crate::geometry::Placed, materials: &[Arc<dyn Material>]) -> bool {
+    let material = &materials[object.material as usize];
+    // Interpolated normals may face away from the viewer, which bends them.
+    let is_flat = object.mesh.normals.is_empty();
+    is_flat && !object.gives_light && material.is_lambertian() && material.emission().is_black()
 }
 
 /// A scene at a time, ready for ray queries.
@@ -324,8 +328,8 @@ impl Scene {
         self.cpu_level
     }
 
-    /// True when an object emits nothing and its BSDF is a single Lambertian lobe: its surfaces are shaded many at a
-    /// time.
+    /// True when an object has no normals of its own, emits nothing, and its BSDF is a single Lambertian lobe: its
+    /// surfaces are shaded many at a time.
     #[inline]
     pub fn is_lambertian(&self, object: u32) -> bool {
         self.parts.lambertian.get(object as usize).copied().unwrap_or(false)

@@ -3,7 +3,7 @@
 //! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of one
 //! Lambertian lobe), in the same order, so that the bits are the same.
 
-use super::lanes::{Column, LANES, Stage, run_at};
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::{PathQueue, ShadowRay};
 use crate::integrators::path::{Path, power_heuristic};
 use crate::sampler;
@@ -12,9 +12,6 @@ use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
 use bilux_scene::surface::{leaving, offset_origin};
 use bilux_scene::{Primitive, Ray};
 use std::f32::consts::FRAC_1_PI;
-
-/// Three columns: vectors, or colours.
-type Columns3 = [Column; 3];
 
 /// The vertices of up to [`LANES`] paths, in columns.
 pub(super) struct DiffuseVertices {
@@ -75,8 +72,6 @@ struct NextRays {
     goes_on: Column,
 }
 
-const ZERO3: Columns3 = [Column::ZERO; 3];
-
 impl Default for DiffuseVertices {
     fn default() -> DiffuseVertices {
         DiffuseVertices {
@@ -115,21 +110,6 @@ impl Default for DiffuseVertices {
             },
         }
     }
-}
-
-#[inline(always)]
-fn vec3(columns: &Columns3, i: usize) -> Vec3 {
-    Vec3::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
-}
-
-#[inline(always)]
-fn rgb(columns: &Columns3, i: usize) -> Rgb {
-    Rgb::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
-}
-
-#[inline(always)]
-fn put(columns: &mut Columns3, i: usize, [x, y, z]: [f32; 3]) {
-    (columns[0].0[i], columns[1].0[i], columns[2].0[i]) = (x, y, z);
 }
 
 impl PathQueue {
@@ -374,10 +354,10 @@ impl Stage for Scatter<'_> {
         for i in 0..LANES {
             let (wo, wi, colour) = (vec3(wo, i), vec3(&next.direction, i), rgb(reflectance, i));
             let (scattered, pdf) = eval_and_pdf(colour, [vec3(n_geom, i), vec3(n_shade, i)], wo, wi);
-            let keeps_side = !(wo.dot(vec3(n_geom, i)) * wi.dot(vec3(n_geom, i)) < 0.0);
+            let changes_side = wo.dot(vec3(n_geom, i)) * wi.dot(vec3(n_geom, i)) < 0.0;
             let beta = rgb(&next.beta, i) * (scattered / pdf);
             let is_black = (beta.r == 0.0) & (beta.g == 0.0) & (beta.b == 0.0);
-            let goes_on = keeps_side & (pdf > 0.0) & !is_black & (colour.luminance() > 0.0);
+            let goes_on = !changes_side & (pdf > 0.0) & !is_black & (colour.luminance() > 0.0);
             next.goes_on.0[i] = if goes_on { next.goes_on.0[i] } else { 0.0 };
             next.pdf.0[i] = pdf;
             put(&mut next.beta, i, beta.to_array());

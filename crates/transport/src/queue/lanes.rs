@@ -5,6 +5,7 @@
 //! nothing is contracted into fused products, so every level computes the same bits.
 #![allow(unsafe_code)] // One call for each level, after a check that the machine supports it.
 
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::CpuLevel;
 
 /// The length of a column: enough to hide the latency of divisions and square roots, small enough for the first cache.
@@ -17,6 +18,26 @@ pub(super) struct Column(pub(super) [f32; LANES]);
 
 impl Column {
     pub(super) const ZERO: Column = Column([0.0; LANES]);
+}
+
+/// Three columns: vectors, or colours.
+pub(super) type Columns3 = [Column; 3];
+
+pub(super) const ZERO3: Columns3 = [Column::ZERO; 3];
+
+#[inline(always)]
+pub(super) fn vec3(columns: &Columns3, i: usize) -> Vec3 {
+    Vec3::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
+}
+
+#[inline(always)]
+pub(super) fn rgb(columns: &Columns3, i: usize) -> Rgb {
+    Rgb::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
+}
+
+#[inline(always)]
+pub(super) fn put(columns: &mut Columns3, i: usize, [x, y, z]: [f32; 3]) {
+    (columns[0].0[i], columns[1].0[i], columns[2].0[i]) = (x, y, z);
 }
 
 /// A loop over columns. `run` has to be `#[inline(always)]`.
