@@ -30,7 +30,7 @@ pub(crate) struct Media {
 
 impl Media {
     /// No media.
-    const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
+    pub(crate) const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
 
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {

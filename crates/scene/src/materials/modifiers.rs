@@ -54,6 +54,14 @@ impl Material for ModifiedMaterial {
         self.material.bsdf(surface)
     }
 
+    fn is_lambertian(&self) -> bool {
+        self.normals.is_none() && self.material.is_lambertian()
+    }
+
+    fn lambertian_reflectance(&self, surface: &Surface) -> Rgb {
+        self.material.lambertian_reflectance(surface)
+    }
+
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         self.material.classic(surface)
     }
