@@ -34,8 +34,8 @@ pub struct Job {
     integrator: Box<dyn PixelIntegrator>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
-    /// Whether the studio's lights are on.
-    pub(crate) studio_lit: bool,
+    /// The tone curve that `auto` means here.
+    pub(crate) auto_curve: &'static str,
     /// Whether albedo and the like are wanted.
     pub(crate) features: bool,
     /// The time set aside for denoising.
@@ -129,7 +129,8 @@ impl Job {
         bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let accel = accel_of(&completed);
         settings.studio.lit = studio.lit;
-        let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
+        let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
+        let notes = own.iter().filter_map(|own| own.decision.clone()).chain(of_curve).collect();
         let built = match own.map(|own| own.alone) {
             Some((alone, built)) if own_light::is_as_large(&alone, &completed) => built,
             _ => completed.build(&accel, shutter_at(&settings, settings.time), aspect)?,
@@ -143,7 +144,7 @@ impl Job {
             warnings: oddities(scene, &built, &*camera).into_iter().chain(of_ground).collect(),
             camera,
             render: render_settings(&settings)?,
-            studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,
+            auto_curve,
             features: false,
             denoising: Duration::ZERO,
             begun: None,

@@ -98,6 +98,43 @@ fn scenes_of_emitters_only_get_the_studio() {
     assert_decided("glowing cubes", &scene, true);
 }
 
+/// A square in front of the camera's eye with one colour, as glTF has it.
+fn square(material: &str) -> SceneBuilder {
+    let corners: [[f32; 3]; 4] = [[-1., -1., 0.], [1., -1., 0.], [1., 1., 0.], [-1., 1., 0.]];
+    let floats = corners.iter().flatten().flat_map(|x| x.to_le_bytes());
+    let bytes: Vec<u8> = floats.chain([0u8, 1, 2, 0, 2, 3]).collect();
+    let uri: String = bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"extensionsUsed":["KHR_materials_unlit"],"nodes":[{{"mesh":0}}],
+        "scenes":[{{"nodes":[0]}}],"materials":[{{{material}}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1,"material":0}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]}},
+        {{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":6}}],
+        "buffers":[{{"byteLength":54,"uri":"data:application/octet-stream,{uri}"}}]}}"#
+    );
+    bilux::formats::read_bytes(text.as_bytes(), "gltf", None, "a.gltf", &Default::default()).unwrap()
+}
+
+#[test]
+fn unlit_colours_are_shown_as_they_are() {
+    let colour = r#""pbrMetallicRoughness":{"baseColorFactor":[1.0,0.2158605,0.0,1.0]}"#;
+    let unlit = format!(r#"{colour},"extensions":{{"KHR_materials_unlit":{{}}}}"#);
+    let unlit_job = job(&square(&unlit));
+    let notes = unlit_job.notes();
+    assert!(notes.iter().any(|note| note.starts_with("the whole model is unlit")), "{notes:?}");
+    let picture = unlit_job.render(&Quiet).unwrap().picture().unwrap();
+    let options = unlit_job.write_options_for(&picture).unwrap();
+    let shown = bilux::pictures::tonemap::to_display(&picture, options.exposure, options.tone_map).unwrap();
+    let middle = shown.to_rgb().unwrap()[12 * 24 + 12].map(|c| (c * 255.0).round());
+    assert_eq!(middle, Rgb::new(255.0, 128.0, 0.0));
+    let curve = |scene: &SceneBuilder| job(scene).write_options().unwrap().tone_map.entry.name;
+    assert_eq!(curve(&square(colour)), "neutral", "a lit model");
+    let mut mixed = square(&unlit);
+    put(&mut mixed, cuboid(Vec3::NEG_ONE, Vec3::ONE), clay(0.5));
+    assert_eq!(curve(&mixed), "neutral", "a model of which a part is lit");
+}
+
 /// A closed room, seen through the back of one of its walls, with a light below the ceiling.
 fn closed_box(emission: f32) -> SceneBuilder {
     let mut scene = file();

@@ -159,7 +159,7 @@ fn command_lines_that_name_missing_things_are_refused() {
     assert_reports(
         bilux(&["generate", "teapots", "-o", "a.png"]),
         2,
-        &["not a scene format that can be written"],
+        &["this command writes a scene, not a picture"],
     );
 }
 

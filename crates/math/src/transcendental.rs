@@ -9,3 +9,33 @@ pub use libm::{
     logf as ln, pow as powf_f64, powf, sin as sin_f64, sincos as sin_cos_f64, sincosf as sin_cos,
     sinf as sin, tan as tan_f64, tanf as tan,
 };
+
+/// Sine and cosine for `|x| <= π/4`, without a branch, so that loops over many angles can be vectorised. The error is at
+/// most one unit in the last place. [Moshier 1992, sinf]
+#[inline(always)]
+pub fn sin_cos_near_zero(x: f32) -> (f32, f32) {
+    let z = x * x;
+    let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * x + x;
+    let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
+    (sin, cos)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_short_sine_and_cosine_are_right_to_the_last_place() {
+        for i in -100_000..=100_000 {
+            let x = i as f32 * (std::f32::consts::FRAC_PI_4 / 100_000.0);
+            let (sin, cos) = sin_cos_near_zero(x);
+            let (exact_sin, exact_cos) = sin_cos_f64(f64::from(x));
+            let places = |found: f32, exact: f64| {
+                let place = f64::from((exact as f32).abs().next_up() - (exact as f32).abs());
+                (f64::from(found) - exact).abs() / place.max(f64::from(f32::MIN_POSITIVE))
+            };
+            assert!(places(sin, exact_sin) <= 1.0, "sin {x}: {sin}, {exact_sin}");
+            assert!(places(cos, exact_cos) <= 1.0, "cos {x}: {cos}, {exact_cos}");
+        }
+    }
+}

@@ -1,21 +1,21 @@
 //! Warps of the unit square: each `sample_x` with its density, and its inverse where the tests use one.
 
-use crate::transcendental::{atan2, cos, powf, sin, sin_cos};
+use crate::transcendental::{atan2, powf, sin_cos, sin_cos_near_zero};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, PI, TAU};
 
-/// Maps the unit square to the unit disc and keeps neighbours close together. [Shirley 1997]
+/// Maps the unit square to the unit disc and keeps neighbours close together. It has no branch, so that loops over many
+/// points can be vectorised. [Shirley 1997]
+#[inline(always)]
 pub fn sample_disc(u: Vec2) -> Vec2 {
     let p = u * 2.0 - Vec2::ONE;
-    if p == Vec2::ZERO {
-        return Vec2::ZERO;
-    }
-    let (radius, angle) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
-    } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    Vec2::new(radius * cos(angle), radius * sin(angle))
+    let is_wide = p.x.abs() > p.y.abs();
+    let (radius, across) = if is_wide { (p.x, p.y) } else { (p.y, p.x) };
+    let ratio = if radius == 0.0 { 0.0 } else { across / radius };
+    // In the upper and lower quarters the angle is π/2 minus this one.
+    let (sin, cos) = sin_cos_near_zero(FRAC_PI_4 * ratio);
+    let (x, y) = if is_wide { (cos, sin) } else { (sin, cos) };
+    Vec2::new(radius * x, radius * y)
 }
 
 /// Density of [`sample_disc`] over the disc's area.
@@ -24,6 +24,7 @@ pub fn disc_pdf_area() -> f32 {
 }
 
 /// Directions about +z with density cosθ/π, by Malley's method: points of the disc, projected up onto the sphere.
+#[inline(always)]
 pub fn sample_cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = sample_disc(u);
     Vec3::new(d.x, d.y, (1.0 - d.length_squared()).max(0.0).sqrt())

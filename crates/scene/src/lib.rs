@@ -31,7 +31,7 @@ pub mod texture;
 pub mod typed;
 pub mod wavelength;
 
-pub use bilux_accel::{Counters, Primitive, Query, Ray};
+pub use bilux_accel::{Counters, CpuLevel, Primitive, Query, Ray};
 pub use bsdf::{Bsdf, BsdfSample, TransportMode};
 pub use builder::{AccelChoice, Object, SceneBuilder};
 pub use cameras::{CAMERAS, Camera, CameraConnection, CameraSample};

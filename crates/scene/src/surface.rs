@@ -92,7 +92,7 @@ impl Surface {
 
 /// A ray from `origin` that leaves a triangle.
 #[inline]
-pub(crate) fn leaving(origin: Vec3, direction: Vec3, primitive: Primitive, time: f32) -> Ray {
+pub fn leaving(origin: Vec3, direction: Vec3, primitive: Primitive, time: f32) -> Ray {
     let ray = Ray::new(origin.to_array(), direction.to_array());
     Ray { time, exclude: primitive, t_min: AWAY, ..ray }
 }
@@ -104,6 +104,7 @@ pub(crate) fn leaving(origin: Vec3, direction: Vec3, primitive: Primitive, time:
 const AWAY: f32 = 1.0 / (1u128 << 80) as f32;
 
 /// `p` offset beyond its error bounds along the normal, to the side that `direction` points to. [pbrt 2023, 6.8.6]
+#[inline(always)]
 pub fn offset_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Vec3 {
     let distance = n.abs().dot(p_error);
     let offset = if direction.dot(n) < 0.0 { -n * distance } else { n * distance };

@@ -26,6 +26,7 @@ mod media;
 pub mod partial;
 mod passes;
 pub mod plan;
+mod queue;
 pub mod render;
 pub mod replay;
 pub mod sampler;

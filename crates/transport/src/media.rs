@@ -30,7 +30,7 @@ pub(crate) struct Media {
 
 impl Media {
     /// No media.
-    const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
+    pub(crate) const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
 
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
@@ -120,10 +120,10 @@ impl Media {
         Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
     }
 
-    /// The BSDF at a wavelength of a surface that separates these media from others.
+    /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
     #[inline]
     pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface, wavelength: &Wavelength) -> Bsdf {
-        let bsdf = scene.material(surface).bsdf(surface);
+        let bsdf = scene.material(surface).bsdf(surface).bending();
         if !scene.has_nested() && !scene.disperses() {
             return bsdf;
         }

@@ -3,6 +3,8 @@
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
+use crate::integrators::path::Path;
+use crate::queue::{PATHS, PathQueue};
 use crate::render::{Progress, Rendered};
 use crate::splats::{Iterations, Splats};
 use crate::window::Window;
@@ -80,6 +82,7 @@ impl<'a> Work<'a> {
         let scale = scale_exponent(self.eye.scene);
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
+        let mut queue = PathQueue::default();
         let jobs = (self.tiles.len() * self.passes.len()) as u64;
         loop {
             let job = self.next.fetch_add(1, Ordering::Relaxed);
@@ -91,7 +94,13 @@ impl<'a> Work<'a> {
             let samples = self.passes[pass].clone();
             part.restart(tile.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
-            if !self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)) {
+            let finished = match PathQueue::integrator(&self.eye) {
+                Some(path) => {
+                    self.queue_tile(path, tile, samples.clone(), &mut tracer, (&mut part, &mut queue))
+                }
+                None => self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)),
+            };
+            if !finished {
                 self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
                 return tracer.counters;
             }
@@ -128,6 +137,29 @@ impl<'a> Work<'a> {
                     part.add(x, y, sample, light);
                 }
             }
+        }
+        true
+    }
+
+    /// The same for an integrator that follows many paths at once.
+    fn queue_tile(
+        &self,
+        path: &Path,
+        tile: Window,
+        samples: Range<u32>,
+        tracer: &mut Tracer<'a>,
+        (part, queue): (&mut Film, &mut PathQueue),
+    ) -> bool {
+        let rows = tile.y..tile.y + tile.height;
+        let pixels = rows.flat_map(|y| (tile.x..tile.x + tile.width).map(move |x| (x, y)));
+        let all: Vec<_> = pixels.flat_map(|(x, y)| samples.clone().map(move |i| (x, y, i))).collect();
+        for samples in all.chunks(PATHS) {
+            if self.progress.is_cancelled() {
+                return false;
+            }
+            queue.take(path, &self.eye, tracer, samples, |(x, y, sample), light| {
+                part.add(x, y, sample, light)
+            });
         }
         true
     }

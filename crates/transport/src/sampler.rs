@@ -43,28 +43,47 @@ impl PixelSampler {
     /// The next number in `[0, 1)`.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        let key = self.key();
-        let index = scramble_reversed(self.reversed_index, key as u32).reverse_bits();
-        unit_f32(scramble_reversed(reversed_sobol_0(index), (key >> 32) as u32).reverse_bits())
+        self.dimension += 1;
+        number(key(self.stream, self.dimension), self.reversed_index)
     }
 
     /// The next point in `[0, 1)²`.
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
-        let key = self.key();
-        let index = scramble_reversed(self.reversed_index, key as u32).reverse_bits();
-        let scramble = mix64(key);
-        Vec2::new(
-            unit_f32(scramble_reversed(reversed_sobol_0(index), scramble as u32).reverse_bits()),
-            unit_f32(scramble_reversed(reversed_sobol_1(index), (scramble >> 32) as u32).reverse_bits()),
-        )
+        self.dimension += 1;
+        point(key(self.stream, self.dimension), self.reversed_index)
     }
 
+    /// The state from which [`number`] and [`point`] draw for many paths at once: the stream, and the sample's index
+    /// with its bits reversed.
     #[inline]
-    fn key(&mut self) -> u64 {
-        self.dimension += 1;
-        mix64(self.stream.wrapping_add(u64::from(self.dimension).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+    pub(crate) fn state(&self) -> (u64, u32) {
+        (self.stream, self.reversed_index)
     }
+}
+
+/// The key of a dimension of a stream; the first dimension is 1.
+#[inline(always)]
+pub(crate) fn key(stream: u64, dimension: u32) -> u64 {
+    mix64(stream.wrapping_add(u64::from(dimension).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+}
+
+/// The number of a dimension in `[0, 1)`.
+#[inline(always)]
+pub(crate) fn number(key: u64, reversed_index: u32) -> f32 {
+    let index = scramble_reversed(reversed_index, key as u32).reverse_bits();
+    unit_f32(scramble_reversed(reversed_sobol_0(index), (key >> 32) as u32).reverse_bits())
+}
+
+/// The point of a dimension in `[0, 1)²`.
+#[inline(always)]
+pub(crate) fn point(key: u64, reversed_index: u32) -> Vec2 {
+    let index = scramble_reversed(reversed_index, key as u32).reverse_bits();
+    let scramble = mix64(key);
+    Vec2::new(
+        unit_f32(scramble_reversed(reversed_sobol_0(index), scramble as u32).reverse_bits()),
+        unit_f32(scramble_reversed(reversed_sobol_1(index), (scramble >> 32) as u32).reverse_bits()),
+    )
 }
 
 /// A regular pattern over the pixel, for integrators that use no random numbers: multiples of the inverse powers of the
@@ -76,13 +95,13 @@ pub fn regular_pattern(index: u32) -> Vec2 {
 }
 
 /// First dimension of the sequence, bit-reversed: the index itself. [Sobol 1967]
-#[inline]
+#[inline(always)]
 fn reversed_sobol_0(index: u32) -> u32 {
     index
 }
 
 /// Second dimension, bit-reversed: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
-#[inline]
+#[inline(always)]
 fn reversed_sobol_1(index: u32) -> u32 {
     let mut x = index;
     x ^= x >> 16;
@@ -95,7 +114,7 @@ fn reversed_sobol_1(index: u32) -> u32 {
 
 /// A nested uniform scrambling of bit-reversed numbers: each bit is flipped by a hash of the bits below it.
 /// [Burley 2020, listing 3; constants of Vegdahl 2021]
-#[inline]
+#[inline(always)]
 fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);

@@ -4,7 +4,7 @@ mod common;
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Texture, Value};
+use bilux_scene::{CameraSample, Object, Ray, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{UNLIKELY, agreement, assert_like_path, blocks};
 use common::{
@@ -175,6 +175,30 @@ fn normal_maps_look_the_same_from_both_ends() {
         builder.cameras.clear();
         look(&mut builder, Vec3::new(0.0, 0.6, 4.0), Vec3::new(0.0, 0.4, 0.0), 40.0);
         assert_like_path(name, &built(&builder), &["light", "bdpt"]);
+    }
+}
+
+#[test]
+fn normals_that_face_away_look_the_same_from_both_ends() {
+    let satin = Spec::new("", "phong").with("kd", 0.3f32).with("ks", 0.5f32).with("exponent", 20.0f32);
+    let plastic = Spec::new("", "principled").with("base_color", Rgb::new(0.7, 0.3, 0.2));
+    for (name, material) in [
+        ("matte", diffuse(0.8f32)),
+        ("satin", satin.with("reflectivity", 0.0f32)),
+        ("plastic", plastic.clone().with("specular_roughness", 0.3f32)),
+        ("coated", plastic.with("coat_weight", 0.8f32).with("coat_roughness", 0.3f32)),
+    ] {
+        let mut builder = panel_over(material);
+        builder.objects.truncate(2);
+        let last = builder.materials.len() - 1;
+        for x in [-0.8, 0.8] {
+            let coarse = ball(Vec3::new(x, 0.7, 0.3), 0.7, 3, true);
+            builder.objects.push(Object::new("coarse", coarse, last));
+        }
+        assert_like_path(name, &built(&builder), &["light", "bdpt"]);
+        let path = blocks(&built(&builder), &*integrator("path"), 0);
+        let p = agreement(&path, &blocks(&built(&builder), &*with_radius("vcm", 0.01), 300));
+        assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
     }
 }
 

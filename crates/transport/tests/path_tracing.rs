@@ -110,6 +110,24 @@ impl PixelIntegrator for Wrong {
     }
 }
 
+/// Near its silhouette, interpolated normals of a coarse mesh face away from the camera.
+#[test]
+fn a_coarse_smooth_ball_has_no_black_edge() {
+    let clay = Spec::new("", "phong").with("kd", 0.6f32).with("ks", 0.05f32).with("reflectivity", 0.0f32);
+    let plastic = Spec::new("", "principled").with("base_color", 0.6f32);
+    for material in [clay, diffuse(0.6f32), plastic] {
+        let name = material.kind.clone();
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 4, true), material);
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::new(0.0, 0.3, 4.0), Vec3::ZERO, 32.0);
+        let settings = RenderSettings::new(48, 48, 64);
+        let pixels = shoot(&built(&builder), &*path("mis"), &settings).film.to_rgb();
+        let darkest = pixels.iter().map(|pixel| pixel.g).fold(f32::INFINITY, f32::min);
+        assert!(darkest > 0.25, "{name}: {darkest}");
+    }
+}
+
 #[test]
 fn all_sampling_techniques_agree() {
     let scene = built(&mixed());

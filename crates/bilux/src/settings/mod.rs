@@ -115,7 +115,8 @@ pub const RENDER: Entry = Entry {
         ),
         text(
             "tonemap",
-            "the tone-mapping curve for display formats; auto is neutral if the studio lights the model, else none",
+            "the tone-mapping curve for display formats; auto is neutral if the studio lights the model, unless \
+             all of it is unlit, else none",
             "auto",
         ),
         choice(

@@ -295,17 +295,18 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     input.check_outputs(target).map_err(usage::wrong)?;
     let output = &target.output;
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
-    let report = Report::new(&label, common, interrupt.clone());
     let for_display = is_stdout(output) || format_of_path(output)?.for_display;
     let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
     let before = input.begun.get().elapsed();
+    let report = Report::new(&label, common, interrupt.clone());
     interrupt.renders(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
+    let rendered = input.begun.get().elapsed();
     let denoiser = denoiser.filter(|_| !outcome.cancelled);
     let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
     interrupt.renders(false);
-    let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
+    let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     let rendered = log::Rendered {

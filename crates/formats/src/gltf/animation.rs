@@ -67,7 +67,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 taken.extend(targets);
             } else if chosen.is_none() {
                 let what = "an animation is not played because an earlier one moves the same nodes; choose it by its name";
-                self.oddities.note(what, || node.at());
+                self.oddities.remark(what, || node.at());
             }
             let name = node.name().to_owned();
             self.scene.inventory.animations.push(Animation { name, seconds, plays });

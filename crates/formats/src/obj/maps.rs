@@ -36,7 +36,7 @@ impl Map {
 }
 
 impl Library<'_, '_, '_> {
-    /// Reads a file name and the options before it.
+    /// Reads a file name and its options, which belong before it, but which some programs write after it.
     pub(super) fn map(&mut self, start: usize) -> Map {
         let mut map = Map {
             file: String::new(),
@@ -47,15 +47,27 @@ impl Library<'_, '_, '_> {
             bump: 1.0,
             channel: None,
         };
+        self.map_options(start, &mut map);
+        self.cursor.skip_blanks();
+        let mut rest = self.cursor.clone();
+        let line = rest.rest_of_line();
+        let name_length = without_options(line);
+        if name_length < line.len() {
+            self.cursor.seek(self.cursor.offset() + name_length);
+            self.map_options(start, &mut map);
+        }
+        let is_all = self.cursor.peek_word().is_empty();
+        // What is no option is part of the name, and so is what precedes it.
+        map.file = name_of(if is_all { &line[..name_length] } else { line });
+        self.cursor = rest;
+        map
+    }
+
+    /// Reads the options of a texture, as far as they go.
+    fn map_options(&mut self, start: usize, map: &mut Map) {
         loop {
             let option = self.cursor.peek_word();
-            let numbers = match option {
-                b"-o" | b"-s" | b"-t" => 3,
-                b"-mm" => 2,
-                b"-bm" | b"-boost" | b"-texres" => 1,
-                b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-imfchan" | b"-type" | b"-colorspace" => 0,
-                _ => break,
-            };
+            let Some(numbers) = numbers_of_option(option) else { return };
             self.cursor.word();
             let word = if numbers == 0 { self.cursor.word() } else { b"" };
             let mut given = Vec::new();
@@ -86,9 +98,6 @@ impl Library<'_, '_, '_> {
                 }
             }
         }
-        self.cursor.skip_blanks();
-        map.file = name_of(self.cursor.rest_of_line());
-        map
     }
 
     /// Replaces numbers and colours of a material by its textures.
@@ -171,6 +180,29 @@ impl Library<'_, '_, '_> {
             }
         }
     }
+}
+
+/// The maximum count of numbers after an option of a texture; zero if a word follows it, and `None` if it is no option.
+fn numbers_of_option(word: &[u8]) -> Option<usize> {
+    match word {
+        b"-o" | b"-s" | b"-t" => Some(3),
+        b"-mm" => Some(2),
+        b"-bm" | b"-boost" | b"-texres" => Some(1),
+        b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-imfchan" | b"-type" | b"-colorspace" => Some(0),
+        _ => None,
+    }
+}
+
+/// The length of what precedes the first option in the rest of a line; all of it if there is none.
+fn without_options(line: &[u8]) -> usize {
+    let mut before = 0;
+    for word in line.split(u8::is_ascii_whitespace) {
+        if before > 0 && numbers_of_option(word).is_some() {
+            return line[..before].trim_ascii_end().len();
+        }
+        before += word.len() + 1;
+    }
+    line.len()
 }
 
 fn put(scene: &mut SceneBuilder, spec: &mut Spec, key: &str, texture: Texture, map: &Map) {

@@ -167,6 +167,10 @@ impl<'a> Off<'a, '_, '_> {
             let start = self.next_line("all of its faces")?;
             corners.clear();
             for _ in 0..self.index("a face begins with its number of corners")? {
+                if matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
+                    // Some programs break the lines of long faces.
+                    self.next_line("all of its faces")?;
+                }
                 let vertex = self.index("a face lists the indices of its vertices, counted from 0")?;
                 self.reading.budget.take::<Corner>(1, self.source.name)?;
                 let (uv, normal) = (of_vertex(columns.uvs, vertex), of_vertex(columns.normals, vertex));

@@ -12,8 +12,9 @@ use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
-use bilux_scene::{SceneBuilder, Value};
+use bilux_scene::{SceneBuilder, Texture, Value};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let places = Places::new(source.name, source.bytes);
@@ -363,17 +364,20 @@ impl Ply<'_, '_, '_> {
         materials: &mut HashMap<String, usize>,
     ) -> Result<(), FormatError> {
         let at = self.places.at(offset);
-        match self.reading.texture(self.source.folder, file, Texels::Colours, &at) {
-            Ok(texture) => {
-                let mut spec = plain_material(false, !self.indexed.specular.is_empty());
-                spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);
-                scene.textures.push(texture);
-                let index = scene.add_material(spec);
-                materials.insert(String::new(), index);
-            }
+        let texture = match self.reading.texture(self.source.folder, file, Texels::Colours, &at) {
+            Ok(texture) => texture,
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-            Err(error) => scene.warn(format!("a texture is left out: {}", error.without_place()), at),
-        }
+            Err(error) => {
+                let reason = error.without_place();
+                scene.warn(format!("a texture is replaced by a magenta checker: {reason}"), at.clone());
+                Arc::new(Texture::missing(file))
+            }
+        };
+        let mut spec = plain_material(false, !self.indexed.specular.is_empty());
+        spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);
+        scene.textures.push(texture);
+        let index = scene.add_material(spec);
+        materials.insert(String::new(), index);
         Ok(())
     }
 }

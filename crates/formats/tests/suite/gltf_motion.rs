@@ -90,7 +90,10 @@ fn nodes_follow_the_animation() {
     let scene = at_time(&moving(), 2.0);
     let animations = &scene.inventory.animations;
     assert_eq!((&*animations[0].name, animations[0].seconds, animations[0].plays), ("walk", 3.0, true));
-    assert!(!animations[1].plays && warnings(&scene).contains("#/animations/1: an animation is not played"));
+    assert!(!animations[1].plays);
+    let [note] = &scene.notes[..] else { panic!("{:?}", scene.notes) };
+    assert!(note.to_string().contains("#/animations/1: an animation is not played"), "{note}");
+    assert_eq!(warnings(&scene), "", "a file with several animations is in order");
     assert!(scene.inventory.movement.is_none());
     let options = ReadOptions { time: 2.0, whole_movement: true, ..ReadOptions::default() };
     let movement =

@@ -252,6 +252,33 @@ fn a_principled_surface_comes_back() {
 }
 
 #[test]
+fn options_may_follow_the_file_name() {
+    let picture = |name: &str, options: [&str; 2]| {
+        let library = format!("newmtl m\nKd .5 .5 .5\nmap_Kd {}{name}{}\n", options[0], options[1]);
+        let scene = of_material(&library, |folder| write_picture(&folder.join("a -b.png"), Rgb::BLACK));
+        assert_eq!(warnings(&scene), "", "{library}");
+        scene.textures[0].clone()
+    };
+    let options = " -s 2 3 1 -clamp on -o .1 .2";
+    let [before, after] =
+        [["-s 2 3 1 -clamp on -o .1 .2 ", ""], ["", options]].map(|o| picture("a -b.png", o));
+    assert_eq!((before.transform, before.wrap), (after.transform, after.wrap));
+    assert_eq!(picture("a -b.png", ["-clamp on ", " -s 2 3 1 -o .1 .2 "]).transform, before.transform);
+    // What is followed by more than options belongs to the name.
+    let scene = of_material("newmtl m\nmap_Kd a -s 1.png\nmap_bump b.jpg -bm 1.5\n", |_| {});
+    let said = warnings(&scene);
+    assert!(said.contains("no file 'a -s 1.png'") && said.contains("no file 'b.jpg'"), "{said}");
+}
+
+#[test]
+fn a_missing_texture_does_not_take_the_tint() {
+    for tint in ["0 0 0", ".1 .1 .1"] {
+        let scene = of_material(&format!("newmtl m\nKd {tint}\nmap_Kd no.png\n"), |_| {});
+        assert_eq!(scene.textures[0].texel(0, 0), Rgb::new(1.0, 0.0, 1.0), "{tint}");
+    }
+}
+
+#[test]
 fn pictures_of_numbers_holes_light_and_bumps_are_read() {
     use bilux_pictures::{Picture, write as write_picture};
     let library = "newmtl m\nKe 3 3 3\nmap_Ke glow.png\nmap_Pr -clamp on rough.png\nmap_d -imfchan g holes.png\nbump -bm 0.5 up.png\n";

@@ -20,6 +20,8 @@ fn every_spelling_of_a_square_is_that_square() {
         // As in a well-known collection of shapes.
         SQUARE.replace("OFF\n4 1 4", "OFF4 1 4"),
         SQUARE.replace("4 1 4", "4 1"),
+        // As in the data of libigl's tutorial.
+        SQUARE.replace("4 0 1 2 3", "4 0\n1 # here\n\n2\n3"),
         SQUARE.trim_end().replace("0 1 0\n", "\n\t0  1 0 # the last\n\n"),
     ];
     for text in spellings {
@@ -72,8 +74,9 @@ fn broken_files_are_refused_with_their_place() {
         (SQUARE.replace("1 1 0", "1 1"), "scene.off:5:1: a vertex has 3 numbers here, but this line has 2"),
         (SQUARE.replace("2 3\n", "2 4\n"), "scene.off:7:1: this face refers to vertex"),
         (SQUARE.replace("2 3\n", "2 -1\n"), "scene.off:7:9: '-1' is not expected here"),
-        (SQUARE.replace("2 3\n", "2\n"), "scene.off:7:8: the line ends too early"),
-        (SQUARE.replace("4 0 1", "4000000000 0 1"), "the line ends too early"),
+        (SQUARE.replace("2 3\n", "2\n"), "the file ends before all of its faces: it was cut off"),
+        (SQUARE.replace("4 0 1", "4000000000 0 1"), "the file ends before all of its faces: it was cut off"),
+        (SQUARE.replace("4 0 1 2 3", ""), "the file ends before all of its faces: it was cut off"),
     ];
     for (text, part) in cases {
         let message = refusal("off", &text);

@@ -115,6 +115,23 @@ fn broken_files_are_refused_with_their_place() {
 }
 
 #[test]
+fn a_missing_texture_is_hard_to_overlook() {
+    let text = "ply\nformat ascii 1.0\ncomment TextureFile gone.png\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.ply");
+    std::fs::write(&path, text).unwrap();
+    let scene = bilux_formats::read(&path, &ReadOptions::default()).unwrap();
+    let said = warnings(&scene);
+    assert!(
+        said.contains("scene.ply:3:1: a texture is replaced by a magenta checker: there is no file"),
+        "{said}"
+    );
+    assert_eq!(scene.textures[0].texel(0, 0), Rgb::new(1.0, 0.0, 1.0));
+    let kd = scene.materials[scene.objects[0].material].parameters.find("kd");
+    assert_eq!(kd.map(|(value, _)| value), Some(&bilux_scene::Value::Texture(0)));
+}
+
+#[test]
 fn headers_that_promise_the_world_take_nothing() {
     let little = ReadOptions { max_memory: 100_000, ..ReadOptions::default() };
     for text in [

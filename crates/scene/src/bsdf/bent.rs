@@ -1,28 +1,72 @@
-//! Shading normals of a normal map that face away from the viewer. They are bent back, because the surface would be
-//! black there otherwise. The normal is mirrored about the plane perpendicular to the view direction, so that a normal
-//! exactly perpendicular to the view stays as it is.
+//! Shading normals that face away from the viewer: interpolated ones at the edges of coarse meshes, and those of normal
+//! maps. They are bent back, because the surface would be black there otherwise. The normal is mirrored about the plane
+//! perpendicular to the view direction, so that a normal exactly perpendicular to the view stays as it is.
 //!
 //! The viewer is at the camera's end of the path: along `wo` for radiance, along `wi` for importance. So the BSDF is
 //! the same whichever end a path starts at. A path from a light does not know the viewer yet when it samples a
 //! direction, so it samples some of its directions about the geometric normal, to cover those that a bent normal makes
 //! visible.
 
-use super::{Bsdf, BsdfSample, TransportMode};
-use bilux_math::{Frame, Vec3};
+use super::{Bsdf, BsdfSample, Lambert, Lobe, TransportMode};
+use bilux_math::{Frame, Rgb, Vec3};
 
 /// The maximum fraction of directions from a light that are sampled about the geometric normal.
 const MAX_FLAT: f32 = 0.25;
 
+/// The cosine between the shading normal and the triangle's above which nothing bends: what faces away then is seen
+/// within a tenth of a degree of the surface.
+pub(super) const NEARLY_FLAT: f32 = 1.0 - 1e-6;
+
+/// Reaches every direction on a side.
+const DIFFUSE: Lobe = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });
+
 impl Bsdf {
+    /// The same BSDF, with the shading normal, and that of a lobe with its own, bent back for a viewer behind it
+    /// instead of scattering black.
+    #[inline]
+    pub fn bending(mut self) -> Bsdf {
+        self.bends = self.frame.n.dot(self.n_geom) < NEARLY_FLAT;
+        if let Some(apart) = &mut self.apart {
+            apart.bend(self.n_geom);
+        }
+        self
+    }
+
+    /// True when the shading normal is to be bent for this view direction.
+    #[inline]
+    fn faces_away(&self, view: Vec3) -> bool {
+        self.bends && view.dot(self.frame.n) * view.dot(self.n_geom) < 0.0
+    }
+
+    /// The frame of the normal as seen along a view direction from which it faces away.
+    #[cold]
+    fn bent(&self, view: Vec3) -> Frame {
+        let n = (self.frame.n - view * (2.0 * view.dot(self.frame.n))).normalize();
+        Frame::from_normal(n).along(self.frame.s)
+    }
+
     /// Calls `about` with the frame of the normal as seen along `view`.
     #[inline(always)]
     pub(super) fn seen_along<T>(&self, view: Vec3, about: impl FnOnce(&Frame) -> T) -> T {
-        let cos = view.dot(self.frame.n);
-        if !self.bends || cos * view.dot(self.n_geom) >= 0.0 {
-            return about(&self.frame);
+        let bent;
+        about(if self.faces_away(view) {
+            bent = self.bent(view);
+            &bent
+        } else {
+            &self.frame
+        })
+    }
+
+    /// [`Bsdf::eval_and_pdf`] of a BSDF that bends its normal.
+    pub(super) fn bent_eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        if mode == TransportMode::Radiance {
+            return self.seen_along(wo, |frame| self.eval_and_pdf_about(frame, wo, wi, mode));
         }
-        let n = (self.frame.n - view * (2.0 * cos)).normalize();
-        about(&Frame::from_normal(n).along(self.frame.s))
+        if self.faces_away(wi) {
+            return (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode));
+        }
+        let (scattered, pdf) = self.eval_and_pdf_about(&self.frame, wo, wi, mode);
+        (scattered, if self.total_strength > 0.0 { self.with_flat(pdf, wo, wi) } else { 0.0 })
     }
 
     /// [`Bsdf::pdf_solid_angle`] of a BSDF that bends its normal.
@@ -30,26 +74,33 @@ impl Bsdf {
         if mode == TransportMode::Radiance {
             return self.seen_along(wo, |frame| self.pdf_about(frame, wo, wi));
         }
-        let (flat, share) = self.flat();
-        (1.0 - share) * self.pdf_about(&self.frame, wo, wi) + share * self.pdf_about(&flat, wo, wi)
+        self.with_flat(self.pdf_about(&self.frame, wo, wi), wo, wi)
     }
 
-    /// Samples a non-delta lobe, with `about` sampling about a given frame.
+    /// The density of directions from a light, of which `pdf` is that about the shading normal.
+    fn with_flat(&self, pdf: f32, wo: Vec3, wi: Vec3) -> f32 {
+        let (flat, share) = self.flat();
+        (1.0 - share) * pdf + share * self.pdf_of(wide, &flat, wo, wi)
+    }
+
+    /// Samples a non-delta lobe, with `about` sampling one about a given frame.
+    #[inline]
     pub(super) fn sample_bent(
         &self,
+        lobe: &Lobe,
         wo: Vec3,
         u_choice: f32,
         mode: TransportMode,
-        about: impl Fn(&Frame, f32) -> Option<BsdfSample>,
+        about: impl Fn(&Lobe, &Frame, f32) -> Option<BsdfSample>,
     ) -> Option<BsdfSample> {
         if mode == TransportMode::Radiance {
-            return self.seen_along(wo, |frame| about(frame, u_choice));
+            return self.seen_along(wo, |frame| about(lobe, frame, u_choice));
         }
         let (flat, share) = self.flat();
         if u_choice < share {
-            about(&flat, u_choice / share)
+            about(wide(lobe), &flat, u_choice / share)
         } else {
-            about(&self.frame, (u_choice - share) / (1.0 - share))
+            about(lobe, &self.frame, (u_choice - share) / (1.0 - share))
         }
     }
 
@@ -60,4 +111,11 @@ impl Bsdf {
         let sin = self.frame.n.cross(self.n_geom).length().min(1.0);
         (Frame::from_normal(self.n_geom).along(self.frame.s), MAX_FLAT * sin)
     }
+}
+
+/// The lobe that is sampled about the geometric normal: a lobe that excludes directions, as Phong's does, might exclude
+/// some that are visible about a bent normal.
+#[inline]
+fn wide(lobe: &Lobe) -> &Lobe {
+    if matches!(lobe, Lobe::Phong(_)) { &DIFFUSE } else { lobe }
 }

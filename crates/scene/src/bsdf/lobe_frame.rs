@@ -1,6 +1,7 @@
 //! A lobe with a normal of its own, such as a smooth coat over a rough base: a [`Bsdf`] split into two parts, each
 //! about a single normal. Their sum keeps every guarantee of a [`Bsdf`].
 
+use super::bent::NEARLY_FLAT;
 use super::{Bsdf, BsdfSample, TransportMode};
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
@@ -12,15 +13,21 @@ pub(super) struct LobeFrame {
     bends: bool,
 }
 
+impl LobeFrame {
+    /// [`Bsdf::bending`] of the lobe.
+    pub(super) fn bend(&mut self, n_geom: Vec3) {
+        self.bends = self.n.dot(n_geom) < NEARLY_FLAT;
+    }
+}
+
 /// The lobes about the shared normal, and the lobe about its own.
 pub(super) struct Parts([Bsdf; 2]);
 
 impl Bsdf {
-    /// The same BSDF with one of its lobes, by index, about a normal of its own, which [bends](Bsdf::bending) if
-    /// `bends` is true.
-    pub fn with_lobe_frame(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
+    /// The same BSDF with one of its lobes, by index, about a normal of its own.
+    pub fn with_lobe_frame(self, index: usize, n: Vec3) -> Bsdf {
         let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
-        let apart = LobeFrame { index: index as u8, n, bends: bends && n != self.n_geom };
+        let apart = LobeFrame { index: index as u8, n, bends: false };
         Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
     }
 

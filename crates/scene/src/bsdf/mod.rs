@@ -199,14 +199,6 @@ impl Bsdf {
         self
     }
 
-    /// The same BSDF, with the shading normal bent back for a viewer behind it instead of scattering black. It has no
-    /// effect if a lobe excludes directions, as Phong's does: sampling about one normal might not reach directions
-    /// visible about another.
-    pub fn bending(self) -> Bsdf {
-        let is_narrow = self.weighted().any(|(_, lobe)| matches!(lobe, Lobe::Phong(_)));
-        Bsdf { bends: self.frame.n != self.n_geom && !is_narrow, ..self }
-    }
-
     /// The same BSDF for light of one wavelength, where the outside has this refractive index rather than that of air.
     /// If the wavelength matters, the BSDF [splits](Bsdf::splits) paths.
     pub fn refracting(mut self, wavelength: &Wavelength, eta_outside: f32) -> Bsdf {
@@ -264,11 +256,17 @@ impl Bsdf {
 
     #[inline]
     fn pdf_about(&self, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
+        self.pdf_of(|lobe| lobe, frame, wo, wi)
+    }
+
+    /// The density if each lobe is sampled by the one that `sampled` gives for it.
+    #[inline(always)]
+    fn pdf_of(&self, sampled: impl Fn(&Lobe) -> &Lobe, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
         let risen = self.risen(wo);
         let (wo, wi) = (frame.to_local(wo), frame.to_local(wi));
         let mut pdf = 0.0;
         for (i, lobe) in self.lobes.iter().map_while(|lobe| lobe.as_ref()).enumerate() {
-            pdf += (self.strengths[i] + self.rises[i] * risen) * lobe.pdf_solid_angle(wo, wi);
+            pdf += (self.strengths[i] + self.rises[i] * risen) * sampled(lobe).pdf_solid_angle(wo, wi);
         }
         pdf / (self.total_strength + self.total_rise * risen)
     }
@@ -279,19 +277,24 @@ impl Bsdf {
         if self.is_special() {
             return match self.parts() {
                 Some(parts) => parts.eval_and_pdf(wo, wi, mode),
-                None => (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode)),
+                None => self.bent_eval_and_pdf(wo, wi, mode),
             };
         }
+        self.eval_and_pdf_about(&self.frame, wo, wi, mode)
+    }
+
+    #[inline(always)]
+    fn eval_and_pdf_about(&self, frame: &Frame, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         let risen = self.risen(wo);
-        let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let (local_wo, local_wi) = (frame.to_local(wo), frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
         for (i, (weight, lobe)) in self.weighted().enumerate() {
             let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
             scattered += f * weight;
             pdf += (self.strengths[i] + self.rises[i] * risen) * p;
         }
-        let scattered = if self.sides_agree(self.frame.n, wo, wi) {
-            self.carried(scattered, self.frame.n, wo, wi, mode)
+        let scattered = if self.sides_agree(frame.n, wo, wi) {
+            self.carried(scattered, frame.n, wo, wi, mode)
         } else {
             Rgb::BLACK
         };
@@ -313,14 +316,14 @@ impl Bsdf {
             sample.pdf_solid_angle *= share;
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
-        let about = |frame: &Frame, u_choice: f32| {
-            let sample = chosen.sample(frame.to_local(wo), u_choice, u, mode)?;
+        let about = |lobe: &Lobe, frame: &Frame, u_choice: f32| {
+            let sample = lobe.sample(frame.to_local(wo), u_choice, u, mode)?;
             Some(BsdfSample { wi: frame.to_world(sample.wi).normalize(), ..sample })
         };
         let mut sample = if self.bends {
-            self.sample_bent(wo, u_choice, mode, about)
+            self.sample_bent(chosen, wo, u_choice, mode, about)
         } else {
-            about(&self.frame, u_choice)
+            about(chosen, &self.frame, u_choice)
         }?;
         let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
         (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
@@ -396,6 +399,7 @@ mod tests {
             let (wo, wi, n) = (direction(i, 0), direction(i, 3), direction(i, 6));
             for (a, b) in cases.iter().zip(cases.iter().cycle().skip(i as usize % cases.len())) {
                 let bsdf = Bsdf::new(n, direction(i, 9), [Some(*a), Some(*b), None]);
+                let bsdf = if i % 2 == 0 { bsdf } else { bsdf.bending() };
                 let mode = TransportMode::Importance;
                 let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi, mode));
                 assert_eq!(bsdf.eval_and_pdf(wo, wi, mode), apart);

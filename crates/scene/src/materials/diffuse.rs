@@ -70,6 +70,14 @@ impl Material for Diffuse {
         Bsdf::of(surface.n_shade, surface.n_geom, lobe)
     }
 
+    fn is_lambertian(&self) -> bool {
+        self.roughness.texture.is_none() && self.roughness.number <= 0.0
+    }
+
+    fn lambertian_reflectance(&self, surface: &Surface) -> Rgb {
+        self.albedo(surface)
+    }
+
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let kd = self.albedo(surface);
         ClassicMaterial { ka: kd, kd, ..ClassicMaterial::default() }

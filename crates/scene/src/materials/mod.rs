@@ -55,6 +55,14 @@ use visible::VISIBLE_SIDES;
 pub trait Material: Send + Sync {
     /// How light scatters at a point.
     fn bsdf(&self, surface: &Surface) -> Bsdf;
+    /// True when its [`Bsdf`] is, everywhere, a single Lambertian lobe about the shading normal.
+    fn is_lambertian(&self) -> bool {
+        false
+    }
+    /// The reflectance of that lobe at a point.
+    fn lambertian_reflectance(&self, _surface: &Surface) -> Rgb {
+        Rgb::BLACK
+    }
     /// The same point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
     /// The shading normal at a point, on the same side as `n_geom`: interpolated, or from a normal map.

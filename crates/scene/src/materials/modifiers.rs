@@ -51,8 +51,15 @@ impl Material for ModifiedMaterial {
     }
 
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let bsdf = self.material.bsdf(surface);
-        if self.normals.is_some() { bsdf.bending() } else { bsdf }
+        self.material.bsdf(surface)
+    }
+
+    fn is_lambertian(&self) -> bool {
+        self.normals.is_none() && self.material.is_lambertian()
+    }
+
+    fn lambertian_reflectance(&self, surface: &Surface) -> Rgb {
+        self.material.lambertian_reflectance(surface)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

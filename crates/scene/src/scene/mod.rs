@@ -13,7 +13,7 @@ use crate::materials::Material;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
-use bilux_accel::{Accelerator, Query, Ray};
+use bilux_accel::{Accelerator, CpuLevel, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
 use sheets::Sheets;
 use std::sync::Arc;
@@ -53,6 +53,9 @@ pub(crate) struct SceneParts {
     has_holes: bool,
     hides_backs: bool,
     disperses: bool,
+    absorbs: bool,
+    /// For each object of triangles, see [`Scene::is_lambertian`].
+    lambertian: Vec<bool>,
 }
 
 impl SceneParts {
@@ -113,6 +116,8 @@ impl SceneParts {
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let disperses = materials.iter().any(|material| material.disperses());
+        let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
+        let lambertian = geometry.objects().iter().map(|o| is_lambertian(o, &materials)).collect();
         SceneParts {
             geometry,
             materials,
@@ -127,8 +132,18 @@ impl SceneParts {
             has_holes,
             hides_backs,
             disperses,
+            absorbs,
+            lambertian,
         }
     }
+}
+
+/// See [`Scene::is_lambertian`].
+fn is_lambertian(object: &crate::geometry::Placed, materials: &[Arc<dyn Material>]) -> bool {
+    let material = &materials[object.material as usize];
+    // Interpolated normals may face away from the viewer, which bends them.
+    let is_flat = object.mesh.normals.is_empty();
+    is_flat && !object.gives_light && material.is_lambertian() && material.emission().is_black()
 }
 
 /// A scene at a time, ready for ray queries.
@@ -146,6 +161,7 @@ pub struct Scene {
     sheets: Option<Sheets>,
     /// The bounds of the objects that absorb light and whose medium has no priority.
     absorbers: Vec<Aabb>,
+    cpu_level: CpuLevel,
 }
 
 impl Scene {
@@ -168,7 +184,18 @@ impl Scene {
             bounds.expanded(1e-3 * bounds.radius())
         };
         let absorbers = parts.geometry.objects().iter().filter(absorbs).map(bounds).collect();
-        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets, absorbers }
+        let cpu_level = accel.options.cpu_level.available();
+        Scene {
+            parts,
+            accelerator,
+            alone,
+            query: accel.query,
+            shutter,
+            view: None,
+            sheets,
+            absorbers,
+            cpu_level,
+        }
     }
 
     /// The same scene at another time: rebuilds only the top level.
@@ -288,6 +315,24 @@ impl Scene {
                 .fold(f32::INFINITY, |t, axis| t.min(axis.abs()))
         };
         around.map(exit).reduce(f32::max)
+    }
+
+    /// True when no medium changes what light carries: none absorbs, has a priority or disperses.
+    #[inline]
+    pub fn has_clear_media(&self) -> bool {
+        !self.parts.absorbs && !self.parts.has_nested && !self.parts.disperses
+    }
+
+    /// The instruction set of the acceleration structures, which loops over many paths use too.
+    pub fn cpu_level(&self) -> CpuLevel {
+        self.cpu_level
+    }
+
+    /// True when an object has no normals of its own, emits nothing, and its BSDF is a single Lambertian lobe: its
+    /// surfaces are shaded many at a time.
+    #[inline]
+    pub fn is_lambertian(&self, object: u32) -> bool {
+        self.parts.lambertian.get(object as usize).copied().unwrap_or(false)
     }
 
     /// True when some material refracts each wavelength differently.

@@ -128,17 +128,50 @@ impl<'s> Tracer<'s> {
     /// The closest hit of a ray.
     #[inline]
     pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
-        let scene = self.scene;
+        let hit = self.hit(ray)?;
+        Some(self.surface(ray, &hit))
+    }
+
+    /// The closest hit of a ray, as [`Tracer::surface`] takes it.
+    #[inline]
+    pub fn hit(&mut self, ray: &Ray) -> Option<Hit> {
         let hit = self.ask(ray, Tracer::closest_hit)?;
-        let hit = scene.behind_shells(ray, hit, |ray| self.ask(ray, Tracer::closest_hit));
-        let mut surface = scene.parts.geometry.surface(ray, &hit);
+        Some(self.scene.behind_shells(ray, hit, |ray| self.ask(ray, Tracer::closest_hit)))
+    }
+
+    /// The closest hits of many rays: the hit of `rays[i]` goes to `hits[i]`.
+    ///
+    /// They are those of [`Tracer::hit`], bit for bit, and often found sooner than one by one.
+    pub fn hits(&mut self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        match self.batch_tree(rays) {
+            Some(tree) => {
+                self.counters.rays += rays.len() as u64;
+                tree.closest_hits(rays, &self.scene.query, hits);
+            }
+            None => rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.hit(ray)),
+        }
+    }
+
+    /// The tree of the whole scene, if it answers these rays without a filter.
+    fn batch_tree(&self, rays: &[Ray]) -> Option<&'s dyn Accelerator> {
+        let scene = self.scene;
+        let is_plain = !self.counting && scene.sheets.is_none() && scene.parts.geometry.spheres().is_empty();
+        let tree = scene.alone.as_deref().filter(|_| is_plain)?;
+        rays.iter().all(|ray| ray.mask != 0 && !scene.parts.may_pass(ray)).then_some(tree)
+    }
+
+    /// The surface at a hit of a ray.
+    #[inline]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let scene = self.scene;
+        let mut surface = scene.parts.geometry.surface(ray, hit);
         if let Some(view) = &scene.view {
             view.put_on(&mut surface, &scene.parts.geometry);
         }
         if surface.tangent != Vec3::ZERO {
             surface.n_shade = scene.material(&surface).n_shade(&surface);
         }
-        Some(surface)
+        surface
     }
 
     #[inline]
@@ -158,6 +191,23 @@ impl<'s> Tracer<'s> {
     #[inline]
     pub fn occluded(&mut self, ray: &Ray) -> bool {
         self.ask(ray, Tracer::any_hit)
+    }
+
+    /// For each ray, whether anything is between its ends: [`Tracer::occluded`] for many rays.
+    ///
+    /// `n` gives the normal at the end of each, see [`Tracer::ending_on`].
+    pub fn all_occluded(&mut self, rays: &[Ray], n: impl Fn(usize) -> Vec3, occluded: &mut [bool]) {
+        match self.batch_tree(rays) {
+            Some(tree) => {
+                self.counters.rays += rays.len() as u64;
+                tree.any_hits(rays, &self.scene.query, occluded);
+            }
+            None => {
+                for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+                    *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
+                }
+            }
+        }
     }
 
     #[inline]

@@ -7,7 +7,7 @@ mod cook;
 mod light;
 mod merging;
 mod occlusion;
-mod path;
+pub(crate) mod path;
 mod sppm;
 mod vcm;
 mod whitted;
@@ -22,6 +22,7 @@ use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Ray, Reader, Scene, SceneError, Spec};
+use path::Path;
 use std::sync::Arc;
 
 /// Estimates the light along camera rays; [`crate::render()`] handles pixels, tiles and threads.
@@ -70,6 +71,12 @@ pub trait PixelIntegrator: Send + Sync {
 
     /// The same sample as [`PixelIntegrator::sample`], technique by technique.
     fn sample_strategies(&self, _ray: &Ray, _is_wanted: bool, _task: &mut Task, _layers: &mut Layers) {}
+
+    /// The path tracer that this integrator is, which can follow many paths at once.
+    #[doc(hidden)]
+    fn as_path(&self) -> Option<&Path> {
+        None
+    }
 
     /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).
     fn is_random(&self) -> bool {

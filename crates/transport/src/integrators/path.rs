@@ -38,7 +38,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     },
 };
 
-pub(super) struct Path {
+pub struct Path {
     sampling: Sampling,
     roulette_depth: u32,
 }
@@ -62,68 +62,79 @@ enum Sampling {
 }
 
 /// A path as it grows from the camera.
-struct Walk {
-    ray: Ray,
+pub(crate) struct Walk {
+    pub(crate) ray: Ray,
+    /// What it has found.
+    pub(crate) light: Rgb,
     /// Scattering events so far.
-    depth: u32,
+    pub(crate) depth: u32,
     /// Throughput: the weight of all events, over their density.
-    beta: Rgb,
+    pub(crate) beta: Rgb,
     /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
-    eta_scale: f32,
+    pub(crate) eta_scale: f32,
     /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
     /// where no light can be sampled.
-    last: Option<(Vec3, f32)>,
+    pub(crate) last: Option<(Vec3, f32)>,
     /// True while all events have been delta events: what only the camera sees may still be visible.
-    specular: bool,
+    pub(crate) specular: bool,
     /// The path carries a single wavelength.
     is_split: bool,
     /// The media that the ray travels in.
     media: Media,
 }
 
+/// A connection from a vertex to a sample of a light, before it is known whether something lies between.
+pub(crate) struct LightConnection {
+    /// The ray to the light.
+    pub(crate) ray: Ray,
+    /// Its length in metres; 0 for light from infinity, since beyond the last surface there is no absorbing glass: its
+    /// boundary would have blocked the ray.
+    distance: f32,
+    /// The normal of the light at the end of the ray.
+    pub(crate) n_light: Vec3,
+    /// The media at the start of the ray.
+    media: Media,
+    /// The light that the vertex would scatter along the path, without the factor.
+    light: Rgb,
+    /// MIS weight over density.
+    factor: f32,
+}
+
+impl LightConnection {
+    /// What it brings if nothing lies between its ends, nor anything that absorbs.
+    #[inline]
+    pub(crate) fn unoccluded(&self) -> Rgb {
+        self.light * self.factor
+    }
+
+    /// What it brings.
+    #[inline]
+    fn trace(&self, task: &mut Task) -> Rgb {
+        match self.media.visible(task.tracer, &self.ray, self.distance, self.n_light) {
+            Some(passed) => self.light * passed * self.factor,
+            None => Rgb::BLACK,
+        }
+    }
+}
+
 impl PixelIntegrator for Path {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut walk = Walk {
-            ray: *ray,
-            depth: 0,
-            beta: Rgb::WHITE,
-            eta_scale: 1.0,
-            last: None,
-            specular: true,
-            is_split: false,
-            media: Media::at_start(task.tracer, ray),
-        };
-        let mut sum = Rgb::BLACK;
+        let mut walk = Walk::new(ray, Media::at_start(task.tracer, ray));
         loop {
             let Some((surface, passed)) = walk.media.closest(task.tracer, &walk.ray) else {
-                return sum + task.seen(walk.beta, walk.is_split) * self.background(task, &walk);
+                self.escape(&mut walk, task);
+                return walk.light;
             };
-            let direction = Vec3::from(walk.ray.direction);
             walk.beta *= passed;
-            sum += task.seen(walk.beta, walk.is_split) * self.emitted(task, &walk, &surface);
-            if walk.depth >= task.max_depth {
-                return sum;
-            }
-            task.sampler.enter(u64::from(walk.depth) + 1);
-            let bsdf = walk.media.bsdf(task.scene(), &surface, &task.wavelength);
-            walk.is_split |= bsdf.splits();
-            let from = Vertex { surface: &surface, bsdf: &bsdf, wo: -direction, media: &walk.media };
-            sum += task.seen(walk.beta, walk.is_split) * self.direct(task, &from);
-            let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
-            let Some(sample) = bsdf.sample(-direction, u_choice, u, TransportMode::Radiance) else {
-                task.note(walk.depth, || format!("is absorbed at {}", surface.p));
-                return sum;
-            };
-            walk.scatter(task.scene(), &surface, &sample);
-            task.note(walk.depth, || {
-                let kind = if sample.transmits { "transmitted" } else { "scattered" };
-                let object = surface.object;
-                format!("{kind} by object {object} at {} towards {}", surface.p, sample.wi)
-            });
-            if !self.survives(&mut walk, task) {
-                return sum;
+            let connect = |connection: LightConnection, task: &mut Task| connection.trace(task);
+            if !self.interact(&mut walk, &surface, task, connect) {
+                return walk.light;
             }
         }
+    }
+
+    fn as_path(&self) -> Option<&Path> {
+        Some(self)
     }
 }
 
@@ -131,6 +142,55 @@ impl Path {
     /// With multiple importance sampling.
     pub(super) fn new(roulette_depth: u32) -> Path {
         Path { sampling: Sampling::Mis, roulette_depth }
+    }
+
+    /// True when light is sampled by both techniques.
+    pub(crate) fn is_mis(&self) -> bool {
+        self.sampling == Sampling::Mis
+    }
+
+    /// The number of scattering events before Russian roulette starts.
+    pub(crate) fn roulette_depth(&self) -> u32 {
+        self.roulette_depth
+    }
+
+    /// The end of a path that leaves the scene.
+    pub(crate) fn escape(&self, walk: &mut Walk, task: &mut Task) {
+        walk.light += task.seen(walk.beta, walk.is_split) * self.background(task, walk);
+    }
+
+    /// What happens to a path at a surface: it collects the light that is emitted there, connects to lights, and goes
+    /// on in another direction; false when it ends. `connect` returns what a connection brings.
+    #[inline]
+    pub(crate) fn interact(
+        &self,
+        walk: &mut Walk,
+        surface: &Surface,
+        task: &mut Task,
+        connect: impl FnMut(LightConnection, &mut Task) -> Rgb,
+    ) -> bool {
+        let wo = -Vec3::from(walk.ray.direction);
+        walk.light += task.seen(walk.beta, walk.is_split) * self.emitted(task, walk, surface);
+        if walk.depth >= task.max_depth {
+            return false;
+        }
+        task.sampler.enter(u64::from(walk.depth) + 1);
+        let bsdf = walk.media.bsdf(task.scene(), surface, &task.wavelength);
+        walk.is_split |= bsdf.splits();
+        let from = Vertex { surface, bsdf: &bsdf, wo, media: &walk.media };
+        walk.light += task.seen(walk.beta, walk.is_split) * self.direct(task, &from, connect);
+        let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
+        let Some(sample) = bsdf.sample(wo, u_choice, u, TransportMode::Radiance) else {
+            task.note(walk.depth, || format!("is absorbed at {}", surface.p));
+            return false;
+        };
+        walk.scatter(task.scene(), surface, &sample);
+        task.note(walk.depth, || {
+            let kind = if sample.transmits { "transmitted" } else { "scattered" };
+            let object = surface.object;
+            format!("{kind} by object {object} at {} towards {}", surface.p, sample.wi)
+        });
+        self.survives(walk, task)
     }
 
     /// Light from infinity that the ray reaches, weighted against light sampling.
@@ -174,7 +234,12 @@ impl Path {
     }
 
     /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`.
-    fn direct(&self, task: &mut Task, from: &Vertex) -> Rgb {
+    fn direct(
+        &self,
+        task: &mut Task,
+        from: &Vertex,
+        mut connect: impl FnMut(LightConnection, &mut Task) -> Rgb,
+    ) -> Rgb {
         let lights = task.lights;
         let chosen = if lights.takes_all() {
             task.sampler.skip(1);
@@ -186,38 +251,40 @@ impl Path {
             task.sampler.skip(chosen.len() as u32);
             return Rgb::BLACK;
         }
-        chosen.fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, from))
+        chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
+            Some(connection) => sum + connect(connection, task),
+            None => sum,
+        })
     }
 
-    /// Samples one light.
-    fn light(&self, task: &mut Task, index: usize, from: &Vertex) -> Rgb {
+    /// Samples one light; `None` if it brings nothing.
+    fn connection(&self, task: &mut Task, index: usize, from: &Vertex) -> Option<LightConnection> {
         let Vertex { surface, bsdf, wo, media } = *from;
         let probability = task.lights.probability(index);
         let light = &task.scene().lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
             task.sampler.skip(1);
-            return Rgb::BLACK;
+            return None;
         }
         let u = task.sampler.next_2d();
-        let Some(sample) = light.sample_li(surface.p, surface.time, u) else {
-            return Rgb::BLACK;
-        };
+        let sample = light.sample_li(surface.p, surface.time, u)?;
         let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
         if scattered.is_black() {
-            return Rgb::BLACK;
+            return None;
         }
         let light_pdf = sample.pdf_solid_angle * probability;
         let weight = match self.sampling {
             Sampling::Mis if !light.is_delta() => power_heuristic(light_pdf, pdf),
             _ => 1.0,
         };
-        // Beyond the last surface there is no absorbing glass: its boundary would have blocked the ray.
-        let distance = sample.point.map_or(0.0, |point| point.distance(surface.p));
-        let media = media.towards(task.scene(), surface, wo, sample.wi);
-        match media.visible(task.tracer, &surface.spawn_to_light(&sample), distance, sample.n_light) {
-            Some(passed) => scattered * sample.li * passed * (weight / light_pdf),
-            None => Rgb::BLACK,
-        }
+        Some(LightConnection {
+            ray: surface.spawn_to_light(&sample),
+            distance: sample.point.map_or(0.0, |point| point.distance(surface.p)),
+            n_light: sample.n_light,
+            media: media.towards(task.scene(), surface, wo, sample.wi),
+            light: scattered * sample.li,
+            factor: weight / light_pdf,
+        })
     }
 
     /// MIS weight of light that BSDF sampling has found and light sampling could have found.
@@ -249,6 +316,21 @@ impl Path {
 }
 
 impl Walk {
+    /// A path with only its camera ray, which travels in these media.
+    pub(crate) fn new(ray: &Ray, media: Media) -> Walk {
+        Walk {
+            ray: *ray,
+            light: Rgb::BLACK,
+            depth: 0,
+            beta: Rgb::WHITE,
+            eta_scale: 1.0,
+            last: None,
+            specular: true,
+            is_split: false,
+            media,
+        }
+    }
+
     /// Sets up the next ray.
     fn scatter(&mut self, scene: &Scene, surface: &Surface, sample: &BsdfSample) {
         let wo = -Vec3::from(self.ray.direction);
@@ -263,7 +345,8 @@ impl Walk {
 }
 
 /// MIS weight of a sample of density `a` against another technique of density `b`. [Veach 1997, eq. 9.17]
-fn power_heuristic(a: f32, b: f32) -> f32 {
+#[inline(always)]
+pub(crate) fn power_heuristic(a: f32, b: f32) -> f32 {
     // The ratio is used so that squares of large densities do not overflow.
     if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
 }

@@ -188,7 +188,7 @@ impl Principled {
         let (place, is_coated) = (usize::from(fuzz.is_some()), coat.is_some());
         let [a, b, c] = rest;
         let bsdf = Bsdf::new(surface.n_shade, surface.n_geom, [fuzz, coat, a, b, c]).along(surface.tangent);
-        if is_coated { bsdf.with_lobe_frame(place, n, self.maps.coat_normals.is_some()) } else { bsdf }
+        if is_coated { bsdf.with_lobe_frame(place, n) } else { bsdf }
     }
 
     /// The coat's normal at a point.

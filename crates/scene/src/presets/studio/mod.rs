@@ -175,6 +175,22 @@ pub fn seems_lit(scene: &SceneBuilder) -> bool {
         || scene.objects.iter().any(|o| gives_light(scene, o))
 }
 
+/// True when every surface emits its colour and reflects nothing, as in models with baked light.
+pub fn is_unlit(scene: &SceneBuilder) -> bool {
+    let is_zero = |value: &Value| matches!(value, Value::Integer(0)) || *value == Value::Number(0.0);
+    let of = |object: &Object| {
+        let Some(material) = scene.materials.get(object.material) else { return false };
+        let value = |key: &str| material.parameters.find(key).map(|(value, _)| value);
+        let is_black = |key: &str| value(key).is_some_and(is_zero);
+        material.kind == "principled"
+            && value("emission").is_some()
+            && value("emission_scale").is_none()
+            && is_black("base_color")
+            && is_black("specular_weight")
+    };
+    !scene.objects.is_empty() && scene.objects.iter().all(of)
+}
+
 /// Adds only the camera that [`complete`] would add.
 pub fn frame(scene: &mut SceneBuilder, studio: &Studio) {
     if scene.cameras.is_empty() || studio.has_camera() {

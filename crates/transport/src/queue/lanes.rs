@@ -1,0 +1,87 @@
+//! Loops over many paths, compiled for each level of instructions.
+//!
+//! A stage works on columns: one array of [`LANES`] numbers for each quantity. Its loops have no branches and no calls
+//! that are not inlined, so the compiler turns them into vector instructions. All operations are exactly rounded and
+//! nothing is contracted into fused products, so every level computes the same bits.
+#![allow(unsafe_code)] // One call for each level, after a check that the machine supports it.
+
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::CpuLevel;
+
+/// The length of a column: enough to hide the latency of divisions and square roots, small enough for the first cache.
+pub(super) const LANES: usize = 64;
+
+/// A quantity of [`LANES`] paths.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Column(pub(super) [f32; LANES]);
+
+impl Column {
+    pub(super) const ZERO: Column = Column([0.0; LANES]);
+}
+
+/// Three columns: vectors, or colours.
+pub(super) type Columns3 = [Column; 3];
+
+pub(super) const ZERO3: Columns3 = [Column::ZERO; 3];
+
+#[inline(always)]
+pub(super) fn vec3(columns: &Columns3, i: usize) -> Vec3 {
+    Vec3::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
+}
+
+#[inline(always)]
+pub(super) fn rgb(columns: &Columns3, i: usize) -> Rgb {
+    Rgb::new(columns[0].0[i], columns[1].0[i], columns[2].0[i])
+}
+
+#[inline(always)]
+pub(super) fn put(columns: &mut Columns3, i: usize, [x, y, z]: [f32; 3]) {
+    (columns[0].0[i], columns[1].0[i], columns[2].0[i]) = (x, y, z);
+}
+
+/// A loop over columns. `run` has to be `#[inline(always)]`.
+pub(super) trait Stage {
+    fn run(self);
+}
+
+/// Runs a stage with the instructions of a level, or of the highest that the machine supports if that is lower.
+#[inline]
+pub(super) fn run_at(level: CpuLevel, stage: impl Stage) {
+    #[cfg(target_arch = "x86_64")]
+    match level.available() {
+        // SAFETY: the machine supports the level.
+        CpuLevel::Avx512 => return unsafe { avx512(stage) },
+        // SAFETY: as above.
+        CpuLevel::Avx2 => return unsafe { avx2(stage) },
+        // SAFETY: as above.
+        CpuLevel::Sse42 => return unsafe { sse42(stage) },
+        CpuLevel::Baseline => {}
+    }
+    let _ = level;
+    baseline(stage);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx512(stage: impl Stage) {
+    stage.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx2(stage: impl Stage) {
+    stage.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "sse4.2,popcnt")]
+fn sse42(stage: impl Stage) {
+    stage.run();
+}
+
+/// A function of its own: inlined into its caller, a loop loses the information that its columns do not overlap.
+#[inline(never)]
+fn baseline(stage: impl Stage) {
+    stage.run();
+}

@@ -1,0 +1,161 @@
+//! Many paths at a time. A queue advances all of its paths by one event, then by the next: their rays are traced in
+//! batches, and surfaces of the most common kind are shaded in vector loops. An integrator says what happens to *one*
+//! path ([`Path::interact`]); the queue decides which paths come next, in which order. It gives the same light as
+//! following one path after the other, bit for bit. See docs/adr/0011-one-path-or-waves.md.
+
+mod diffuse;
+mod lanes;
+
+use crate::camera_rays::CameraRays;
+use crate::integrators::path::{Path, Walk};
+use crate::media::Media;
+use crate::sampler::PixelSampler;
+use crate::task::Task;
+use bilux_accel::Hit;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Ray, Tracer};
+use diffuse::DiffuseVertices;
+
+/// The number of paths in a queue. Their state fits into the second cache.
+pub(crate) const PATHS: usize = 1024;
+
+/// A path in the queue.
+struct QueuedPath {
+    walk: Walk,
+    sampler: PixelSampler,
+    /// Light that connections of its current vertex bring, and the throughput there.
+    direct: Rgb,
+    beta: Rgb,
+}
+
+/// A connection from a path's vertex to a light.
+#[derive(Clone, Copy)]
+struct ShadowRay {
+    /// Index of the path.
+    path: u32,
+    light: Rgb,
+    /// The normal of the light at its end.
+    n_light: Vec3,
+}
+
+/// A queue of paths, and the memory that it works in.
+#[derive(Default)]
+pub(crate) struct PathQueue {
+    paths: Vec<QueuedPath>,
+    /// Indices of the paths that go on.
+    active: Vec<u32>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    shadow_rays: Vec<Ray>,
+    shadows: Vec<ShadowRay>,
+    occluded: Vec<bool>,
+    diffuse: Option<Box<DiffuseVertices>>,
+    diffuse_hits: Vec<(u32, Hit)>,
+    next: Vec<u32>,
+    /// Paths that connect to lights at this event.
+    shaded: Vec<u32>,
+}
+
+impl PathQueue {
+    /// The integrator whose paths can be followed in a queue: in a scene whose media leave light as it is, since a path
+    /// in a queue keeps no record of the media that it is in.
+    pub(crate) fn integrator<'a>(rays: &CameraRays<'a>) -> Option<&'a Path> {
+        let scene = rays.scene;
+        rays.integrator.as_path().filter(|path| path.is_mis() && scene.has_clear_media())
+    }
+
+    /// Takes samples, at most [`PATHS`] of them: a pixel's column and row, and the sample's index. `add` receives the
+    /// light of each, in the same order.
+    pub(crate) fn take<'a>(
+        &mut self,
+        path: &Path,
+        rays: &CameraRays<'a>,
+        tracer: &mut Tracer<'a>,
+        samples: &[(u32, u32, u32)],
+        mut add: impl FnMut((u32, u32, u32), Rgb),
+    ) {
+        self.paths.clear();
+        let mut task = None;
+        for &(x, y, index) in samples {
+            let (ray, new_task) = rays.sample(tracer, x, y, index);
+            let sampler = new_task.sampler;
+            let walk = Walk::new(&ray, Media::AIR);
+            self.paths.push(QueuedPath { walk, sampler, direct: Rgb::BLACK, beta: Rgb::WHITE });
+        }
+        if let Some(&(x, y, index)) = samples.first() {
+            task = Some(rays.sample(tracer, x, y, index).1);
+        }
+        let Some(mut task) = task else { return };
+        self.active.clear();
+        self.active.extend(0..samples.len() as u32);
+        while !self.active.is_empty() {
+            self.advance(path, &mut task);
+        }
+        for (sample, path) in samples.iter().zip(&self.paths) {
+            add(*sample, path.walk.light);
+        }
+    }
+
+    /// Advances every path to its next surface, and past it.
+    fn advance(&mut self, path: &Path, task: &mut Task) {
+        let paths = &self.paths;
+        self.rays.clear();
+        self.rays.extend(self.active.iter().map(|&i| paths[i as usize].walk.ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        task.tracer.hits(&self.rays, &mut self.hits);
+        self.next.clear();
+        self.shadow_rays.clear();
+        self.shadows.clear();
+        self.diffuse_hits.clear();
+        self.shaded.clear();
+        for (&index, hit) in self.active.iter().zip(&self.hits) {
+            let one = &mut self.paths[index as usize];
+            let Some(hit) = hit else {
+                path.escape(&mut one.walk, task);
+                continue;
+            };
+            let object = task.scene().geometry().object_of(hit);
+            if task.scene().is_lambertian(object) {
+                self.diffuse_hits.push((index, *hit));
+                continue;
+            }
+            let surface = task.tracer.surface(&one.walk.ray, hit);
+            task.sampler = one.sampler.clone();
+            (one.direct, one.beta) = (Rgb::BLACK, one.walk.beta);
+            self.shaded.push(index);
+            let (shadow_rays, shadows) = (&mut self.shadow_rays, &mut self.shadows);
+            let goes_on = path.interact(&mut one.walk, &surface, task, |connection, _| {
+                shadow_rays.push(connection.ray);
+                shadows.push(ShadowRay {
+                    path: index,
+                    light: connection.unoccluded(),
+                    n_light: connection.n_light,
+                });
+                Rgb::BLACK
+            });
+            if goes_on {
+                self.next.push(index);
+            }
+        }
+        self.shade_diffuse(path, task);
+        self.add_direct_light(task);
+        std::mem::swap(&mut self.active, &mut self.next);
+    }
+
+    /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
+    /// before it is weighted by the throughput, as in a single path.
+    fn add_direct_light(&mut self, task: &mut Task) {
+        self.occluded.clear();
+        self.occluded.resize(self.shadow_rays.len(), false);
+        let n_light = |i: usize| self.shadows[i].n_light;
+        task.tracer.all_occluded(&self.shadow_rays, n_light, &mut self.occluded);
+        for (shadow, _) in self.shadows.iter().zip(&self.occluded).filter(|(_, occluded)| !**occluded) {
+            self.paths[shadow.path as usize].direct += shadow.light;
+        }
+        for &index in &self.shaded {
+            let one = &mut self.paths[index as usize];
+            one.walk.light += one.beta * one.direct;
+        }
+    }
+}

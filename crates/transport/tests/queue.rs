@@ -1,0 +1,92 @@
+//! Paths that are followed many at a time bring the same light, bit for bit, as paths that are followed one by one.
+
+mod common;
+
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::generators::GENERATORS;
+use bilux_scene::{AccelChoice, Counters, CpuLevel, Ray, Scene, SceneBuilder, Spec};
+use bilux_transport::{Film, PixelIntegrator, RenderSettings, Task};
+use common::{ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life};
+
+/// An integrator that does not say that it is a path tracer.
+struct OneByOne(Box<dyn PixelIntegrator>);
+
+impl PixelIntegrator for OneByOne {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        self.0.radiance(ray, task)
+    }
+}
+
+fn settings() -> RenderSettings {
+    RenderSettings { threads: 2, seed: 3, ..RenderSettings::new(37, 29, 6) }
+}
+
+fn one_by_one(scene: &Scene) -> (Film, Counters) {
+    let rendered = shoot(scene, &OneByOne(integrator("path")), &settings());
+    (rendered.film, rendered.counters)
+}
+
+fn assert_same(name: &str, scene: &Scene) {
+    let together = shoot(scene, &*integrator("path"), &settings());
+    let (film, counters) = one_by_one(scene);
+    let same = film.to_rgb().iter().zip(together.film.to_rgb()).filter(|(a, b)| **a == *b).count();
+    assert!(film == together.film, "{name}: {same} of {} pixels are the same", 37 * 29);
+    assert_eq!(counters, together.counters, "{name}");
+}
+
+#[test]
+fn every_built_in_scene_is_the_same() {
+    for row in GENERATORS {
+        let spec = Spec::new("", row.entry.name);
+        let mut builder = bilux_scene::generators::generate(&spec).unwrap();
+        if builder.cameras.is_empty() {
+            look(&mut builder, Vec3::new(2.0, 2.0, 5.0), Vec3::ZERO, 40.0);
+        }
+        if builder.lights.is_empty() {
+            sky(&mut builder, 1.0);
+        }
+        assert_same(row.entry.name, &built(&builder));
+    }
+}
+
+#[test]
+fn every_kind_of_surface_and_light_is_the_same() {
+    assert_same("mixed", &built(&mixed()));
+    assert_same("still life", &built(&still_life()));
+    let mut one_sided = mixed();
+    let material = diffuse(Rgb::new(0.6, 0.3, 0.2)).with("visible_sides", "front");
+    put(&mut one_sided, "one-sided", ball(Vec3::new(0.2, 0.5, 1.2), 0.5, 8, true), material.clone());
+    put(&mut one_sided, "shell", ball(Vec3::new(0.2, 0.5, 1.2), 0.4999, 8, false), material);
+    assert_same("one-sided", &built(&one_sided));
+    let mut holes = mixed();
+    let lace = diffuse(0.8f32).with("opacity", 0.5f32);
+    put(&mut holes, "lace", ball(Vec3::new(0.0, 0.5, 1.0), 0.5, 8, true), lace);
+    assert_same("holes", &built(&holes));
+    let mut many = mixed();
+    for i in 0..7 {
+        let panel = Spec::new("", "rect").with("position", Vec3::new(i as f32 - 3.0, 2.5, -1.0));
+        let panel = panel.with("edge_u", Vec3::X * 0.4).with("edge_v", Vec3::Z * 0.4);
+        many.lights.push(panel.with("intensity", 1.0 + i as f32));
+    }
+    assert_same("many lights", &built(&many));
+    let mut black = SceneBuilder::default();
+    put(&mut black, "floor", floor(0.0, 3.0), diffuse(0.0f32));
+    put(&mut black, "ball", ball(Vec3::Y, 1.0, 8, true), diffuse(Rgb::new(0.0, 1.0, 0.0)));
+    sky(&mut black, 1.0);
+    look(&mut black, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
+    assert_same("black", &built(&black));
+}
+
+#[test]
+fn every_level_of_instructions_gives_the_same() {
+    let at = |cpu_level: CpuLevel| {
+        let mut accel = AccelChoice::default();
+        accel.options.cpu_level = cpu_level;
+        let scene = mixed().build(&accel, [0.0, 0.0], 1.0).unwrap();
+        shoot(&scene, &*integrator("path"), &settings()).film
+    };
+    let truth = one_by_one(&built(&mixed())).0;
+    for level in CpuLevel::ALL {
+        assert!(at(level) == truth, "{}", level.name());
+    }
+}
