@@ -1,6 +1,7 @@
 //! Presets: the framed model is visible, missing parts are added, and existing ones are kept.
 
 use bilux_math::motion::Motion;
+use bilux_math::transcendental::asin;
 use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use bilux_scene::cameras::{self, CameraSpec};
 use bilux_scene::generators::teapot::Teapot;
@@ -347,7 +348,7 @@ fn flat_models_are_seen_from_farther_above_and_centred() {
         let ray = camera.ray(&CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 });
         let seen = (0..8).map(|i| scene.objects[0].mesh.positions[i]).map(|p| seen_at(&scene, p).unwrap().y);
         let (low, high) = seen.fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
-        (-Vec3::from(ray.direction).y.asin().to_degrees(), low + high)
+        (asin(-Vec3::from(ray.direction).y).to_degrees(), low + high)
     };
     for ordinary in [[1.0, 1.0, 1.0], [4.0, 0.85, 4.0], [1.0, 3.0, 0.1]] {
         let (above, _) = elevation(ordinary);
