@@ -1,5 +1,6 @@
 //! Emissive triangle meshes. Not in the table: objects with an emissive material become mesh lights.
 
+use super::cumulative::Cumulative;
 use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
@@ -15,8 +16,7 @@ use std::f32::consts::PI;
 /// Points are uniform within each triangle.
 pub struct MeshLight {
     triangles: Vec<[Vec3; 3]>,
-    /// `cdf[i]` is the total probability of triangles `0..=i`; the last is 1.
-    cdf: Vec<f32>,
+    choice: Cumulative,
     /// The object's first triangle, as in a hit.
     first: Primitive,
     /// Centroid of the area, in object space.
@@ -76,9 +76,6 @@ struct LightTriangle {
     pdf_area: f32,
 }
 
-/// Up to this many triangles, compare with all of them: that avoids unpredictable branches.
-const FEW: usize = 8;
-
 impl MeshLight {
     /// A light from an object's object-space triangles; `None` when they have no area.
     ///
@@ -101,24 +98,14 @@ impl MeshLight {
             None => (radiance, areas.clone()),
             Some(picture) => weights_by_brightness(picture, &areas),
         };
-        let (mut sum, all) = (0.0, weights.iter().sum::<f64>());
-        let mut cdf: Vec<f32> = weights
-            .iter()
-            .map(|weight| {
-                sum += weight;
-                (sum / all) as f32
-            })
-            .collect();
-        if let Some(last) = cdf.last_mut() {
-            *last = 1.0;
-        }
+        let choice = Cumulative::new(&weights);
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
         let static_triangles = Vec::new();
         let turn = if mirrored { -1.0 } else { 1.0 };
         let mut light = MeshLight {
             triangles,
-            cdf,
+            choice,
             first,
             middle,
             motion,
@@ -133,10 +120,6 @@ impl MeshLight {
             light.static_triangles = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
         Some(light)
-    }
-
-    fn share(&self, triangle: usize) -> f32 {
-        self.cdf[triangle] - if triangle == 0 { 0.0 } else { self.cdf[triangle - 1] }
     }
 
     /// The emitted radiance at a point of a triangle.
@@ -155,26 +138,13 @@ impl MeshLight {
         }
         let corners @ [a, b, c] = self.corners(triangle, time);
         let normal = (b - a).cross(c - a);
-        let pdf_area = self.share(triangle) / (0.5 * normal.length());
+        let pdf_area = self.choice.probability(triangle) / (0.5 * normal.length());
         LightTriangle { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
-    }
-
-    /// Picks a triangle by its probability.
-    fn choose(&self, u: f32) -> usize {
-        let below = if self.cdf.len() <= FEW {
-            self.cdf.iter().map(|&c| usize::from(c <= u)).sum()
-        } else {
-            self.cdf.partition_point(|&c| c <= u)
-        };
-        below.min(self.cdf.len() - 1)
     }
 
     /// Picks a triangle, and barycentric coordinates uniform over it.
     fn sample_weights(&self, u: Vec2) -> (usize, [f32; 3]) {
-        let triangle = self.choose(u.x);
-        let share = self.share(triangle);
-        let below = self.cdf[triangle] - share;
-        let rest = if share > 0.0 { ((u.x - below) / share).clamp(0.0, 1.0) } else { 0.0 };
+        let (triangle, rest) = self.choice.sample(u.x);
         let weights = warp::sample_triangle(Vec2::new(rest, u.y));
         (triangle, [1.0 - weights.x - weights.y, weights.x, weights.y])
     }

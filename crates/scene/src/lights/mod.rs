@@ -5,6 +5,7 @@
 //! π, so that a diffuse surface there looks the same in both; the parameter `classic` overrides it.
 
 mod ambient;
+mod cumulative;
 mod directional;
 mod distant;
 mod environment;

@@ -59,6 +59,6 @@ fn brightest(picture: &Texture) -> Rgb {
     let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
     match picture.formula() {
         Some(_) => picture.spread(256).fold(Rgb::BLACK, greater),
-        None => picture.texels().fold(Rgb::BLACK, greater),
+        None => picture.maximum(),
     }
 }

@@ -27,6 +27,12 @@ impl Scene {
         if self.parts.hides_backs { Ray { mask: TO_CAMERA, ..ray } } else { ray }
     }
 
+    /// True when some rays pass surfaces that they hit.
+    #[inline]
+    fn may_pass_surfaces(&self) -> bool {
+        self.parts.has_holes || self.parts.hides_backs || self.sheets.is_some()
+    }
+
     /// Along the normal of a surface's front.
     fn front(&self, surface: &Surface) -> Vec3 {
         self.parts.geometry.front(surface.primitive, surface.time).unwrap_or(surface.n_geom)
@@ -51,15 +57,9 @@ impl SceneParts {
     /// True when the surface stops a ray that hits it.
     ///
     /// It does not where the camera sees through its back, nor where the ray starts or ends on the other shell of a
-    /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray's `number` and the hit, and of
-    /// nothing else.
-    fn stops(
-        &self,
-        ray: &Ray,
-        number: u64,
-        hit: &Hit,
-        (sheets, end): (Option<&Sheets>, Option<End>),
-    ) -> bool {
+    /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray and the hit, and of nothing
+    /// else.
+    fn stops(&self, ray: &Ray, hit: &Hit, (sheets, end): (Option<&Sheets>, Option<End>)) -> bool {
         let (material, uv) = self.geometry.material_and_uv(hit);
         let material = &self.materials[material as usize];
         if (ray.mask != u32::MAX || sheets.is_some()) && material.visible_sides() == Sides::Front {
@@ -76,7 +76,7 @@ impl SceneParts {
         }
         let Some(opacity) = material.opacity() else { return true };
         let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
-        let number = hash_words([number, place, u64::from(hit.t.to_bits())]) as u32;
+        let number = hash_words([ray_hash(ray), place, u64::from(hit.t.to_bits())]) as u32;
         unit_f32(number) < opacity.at(uv)
     }
 }
@@ -120,8 +120,8 @@ impl<'s> Tracer<'s> {
         if !scene.parts.may_pass(ray) && scene.sheets.is_none() {
             return question(self, ray, &scene.query);
         }
-        let (number, shells) = (ray_hash(ray), (scene.sheets.as_ref(), self.end));
-        let stops = |hit: &Hit| scene.parts.stops(ray, number, hit, shells);
+        let shells = (scene.sheets.as_ref(), self.end);
+        let stops = |hit: &Hit| scene.parts.stops(ray, hit, shells);
         question(self, ray, &Query { filter: Some(&stops), ..scene.query })
     }
 
@@ -143,21 +143,43 @@ impl<'s> Tracer<'s> {
     ///
     /// They are those of [`Tracer::hit`], bit for bit, and often found sooner than one by one.
     pub fn hits(&mut self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        match self.batch_tree(rays) {
-            Some(tree) => {
-                self.counters.rays += rays.len() as u64;
-                tree.closest_hits(rays, &self.scene.query, hits);
+        let Some(tree) = self.batch_tree(rays) else {
+            rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.hit(ray));
+            return;
+        };
+        self.counters.rays += rays.len() as u64;
+        tree.closest_hits(rays, &self.scene.query, hits);
+        if !self.scene.may_pass_surfaces() {
+            return;
+        }
+        // The closest of all hits is the closest that stops the ray, unless the ray passes it.
+        for (ray, hit) in rays.iter().zip(hits) {
+            if let Some(closest) = *hit {
+                *hit = if self.is_stopped(ray, &closest) {
+                    Some(self.scene.behind_shells(ray, closest, |ray| self.ask(ray, Tracer::closest_hit)))
+                } else {
+                    self.counters.rays -= 1;
+                    self.hit(ray)
+                };
             }
-            None => rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.hit(ray)),
         }
     }
 
-    /// The tree of the whole scene, if it answers these rays without a filter.
+    /// True when the surface at a hit stops the ray.
+    fn is_stopped(&self, ray: &Ray, hit: &Hit) -> bool {
+        let (parts, sheets) = (&self.scene.parts, self.scene.sheets.as_ref());
+        if !parts.may_pass(ray) && sheets.is_none() {
+            return true;
+        }
+        parts.stops(ray, hit, (sheets, self.end))
+    }
+
+    /// The tree of the whole scene, if it can be asked in batches.
     fn batch_tree(&self, rays: &[Ray]) -> Option<&'s dyn Accelerator> {
         let scene = self.scene;
-        let is_plain = !self.counting && scene.sheets.is_none() && scene.parts.geometry.spheres().is_empty();
+        let is_plain = !self.counting && scene.parts.geometry.spheres().is_empty();
         let tree = scene.alone.as_deref().filter(|_| is_plain)?;
-        rays.iter().all(|ray| ray.mask != 0 && !scene.parts.may_pass(ray)).then_some(tree)
+        rays.iter().all(|ray| ray.mask != 0).then_some(tree)
     }
 
     /// The surface at a hit of a ray.
@@ -197,16 +219,19 @@ impl<'s> Tracer<'s> {
     ///
     /// `n` gives the normal at the end of each, see [`Tracer::ending_on`].
     pub fn all_occluded(&mut self, rays: &[Ray], n: impl Fn(usize) -> Vec3, occluded: &mut [bool]) {
-        match self.batch_tree(rays) {
-            Some(tree) => {
-                self.counters.rays += rays.len() as u64;
-                tree.any_hits(rays, &self.scene.query, occluded);
+        occluded.fill(true);
+        if let Some(tree) = self.batch_tree(rays) {
+            tree.any_hits(rays, &self.scene.query, occluded);
+            let all = !self.scene.may_pass_surfaces();
+            self.counters.rays +=
+                if all { rays.len() } else { occluded.iter().filter(|o| !**o).count() } as u64;
+            if all {
+                return;
             }
-            None => {
-                for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                    *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
-                }
-            }
+        }
+        // A ray that hits nothing is free. One that hits something may pass it.
+        for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate().filter(|(_, (_, hit))| **hit) {
+            *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
         }
     }
 

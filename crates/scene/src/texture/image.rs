@@ -36,6 +36,23 @@ pub enum Texels {
 /// The linear values of sRGB bytes.
 static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| srgb_decode(i as f32 / 255.0)));
 
+/// Bytes as fractions of 255.
+static PLAIN: [f32; 256] = {
+    let mut values = [0.0; 256];
+    let mut i = 0;
+    while i < 256 {
+        values[i] = i as f32 / 255.0;
+        i += 1;
+    }
+    values
+};
+
+/// Interpolates between four colours, the upper two first.
+#[inline(always)]
+fn mean_of_four([a, b, c, d]: [Rgb; 4], [x, y]: [f32; 2]) -> Rgb {
+    a.lerp(b, x).lerp(c.lerp(d, x), y)
+}
+
 impl Image {
     /// True when it has the full number of texels, and at least one.
     #[inline]
@@ -59,6 +76,32 @@ impl Image {
             Texels::Bytes(bytes) => size_of_val(&bytes[..]) as u64,
             Texels::Floats { colours, alpha } => (size_of_val(&colours[..]) + size_of_val(&alpha[..])) as u64,
             Texels::Formula(_) => 0,
+        }
+    }
+
+    /// Interpolates between four texels, given by their indices, the upper two first; or one channel of them, as a grey.
+    #[inline]
+    pub(super) fn bilinear(
+        &self,
+        indices: [usize; 4],
+        at: [f32; 2],
+        channel: Option<Channel>,
+        is_data: bool,
+    ) -> Rgb {
+        let Texels::Bytes(bytes) = &self.texels else {
+            return mean_of_four(indices.map(|index| self.texel(index, channel, is_data)), at);
+        };
+        let texels = indices.map(|index| bytes[index]);
+        let decode: &[f32; 256] = if is_data || channel == Some(Channel::A) { &PLAIN } else { &LIGHT };
+        let decode = |byte: u8| decode[usize::from(byte)];
+        match channel {
+            None => mean_of_four(texels.map(|[r, g, b, _]| Rgb::new(decode(r), decode(g), decode(b))), at),
+            Some(channel) => {
+                let [[a, b], [c, d]] =
+                    [[0, 1], [2, 3]].map(|row| row.map(|i| decode(texels[i][channel as usize])));
+                let lerp = |a: f32, b: f32, t: f32| Rgb::grey(a).lerp(Rgb::grey(b), t).r;
+                Rgb::grey(lerp(lerp(a, b, at[0]), lerp(c, d, at[0]), at[1]))
+            }
         }
     }
 

@@ -170,6 +170,21 @@ impl Texture {
         (0..count).map(|i| self.texel(i % self.width(), i / self.width()))
     }
 
+    /// The maximum of each channel over all texels, at least 0.
+    pub(crate) fn maximum(&self) -> Rgb {
+        let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
+        let rises = self.factor.to_array().iter().all(|c| *c >= 0.0);
+        match &self.image.texels {
+            // Larger bytes are larger numbers, so that only the largest need to be decoded.
+            Texels::Bytes(bytes) if rises && self.image.is_whole() => {
+                let most = bytes.iter().fold([0; 4], |a, b| std::array::from_fn(|i| a[i].max(b[i])));
+                let image = Image { width: 1, height: 1, texels: Texels::Bytes(vec![most]) };
+                self.finished(self.raw(&image, 0, 0))
+            }
+            _ => self.texels().fold(Rgb::BLACK, greater),
+        }
+    }
+
     /// The colour at texture coordinates, v upwards; white if there is no image.
     ///
     /// For a wide patch, if there are coarser levels, it comes from a level whose texels are at most half as wide:
@@ -250,9 +265,9 @@ impl Texture {
         let (x, y) = (x - 0.5, y - 0.5);
         let (fx, fy) = (x - x.floor(), y - y.floor());
         let ([x0, x1], [y0, y1]) = (wrap_x.pair(x, width), wrap_y.pair(y, height));
-        let raw = |x: usize, y: usize| self.raw(image, x, y);
-        let (above, below) = (raw(x0, y0).lerp(raw(x1, y0), fx), raw(x0, y1).lerp(raw(x1, y1), fx));
-        self.finished(above.lerp(below, fy))
+        let (above, below) = (y0 * width, y1 * width);
+        let indices = [above + x0, above + x1, below + x0, below + x1];
+        self.finished(image.bilinear(indices, [fx, fy], self.channel, self.is_data))
     }
 
     /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
@@ -379,6 +394,19 @@ mod tests {
             ..Texture::of("", image, true)
         };
         assert_eq!(green.number(Vec2::new(0.25, 0.5)), 32.0 / 255.0);
+    }
+
+    #[test]
+    fn the_maximum_is_that_of_all_texels() {
+        let bytes = [[0u8, 64, 200, 128], [10, 20, 30, 255], [9, 65, 1, 7]];
+        let image = Arc::new(Image { width: 3, height: 1, texels: Texels::Bytes(bytes.to_vec()) });
+        for factor in [Rgb::WHITE, Rgb::new(0.5, 0.0, 3.0), Rgb::new(-1.0, 1.0, 1.0)] {
+            for (is_data, channel) in [(false, None), (true, None), (true, Some(Channel::A))] {
+                let texture = Texture { factor, channel, ..Texture::of("", image.clone(), is_data) };
+                let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
+                assert_eq!(texture.maximum(), texture.texels().fold(Rgb::BLACK, greater));
+            }
+        }
     }
 
     #[test]

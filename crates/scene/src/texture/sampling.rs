@@ -29,6 +29,16 @@ impl Wrap {
     /// The indices, in a row of `n` texels, at a coordinate rounded down and at the next one.
     #[inline]
     pub(super) fn pair(self, x: f32, n: usize) -> [usize; 2] {
+        // Most look-ups are inside the image, where nothing wraps.
+        if x >= 0.0 && x < (n.min(1 << 23) as f32) - 1.0 {
+            let first = x as usize;
+            return [first, first + 1];
+        }
+        self.wrapped_pair(x, n)
+    }
+
+    #[inline(never)]
+    fn wrapped_pair(self, x: f32, n: usize) -> [usize; 2] {
         let n = n as i64;
         // Beyond this, 32-bit numbers are even, and sums of two do not overflow.
         let first = (x.floor() as i64).clamp(-1 << 40, 1 << 40);

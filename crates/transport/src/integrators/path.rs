@@ -85,6 +85,8 @@ pub(crate) struct Walk {
 
 /// A connection from a vertex to a sample of a light, before it is known whether something lies between.
 pub(crate) struct LightConnection {
+    /// The index of the light.
+    pub(crate) index: usize,
     /// The ray to the light.
     pub(crate) ray: Ray,
     /// Its length in metres; 0 for light from infinity, since beyond the last surface there is no absorbing glass: its
@@ -267,7 +269,7 @@ impl Path {
             return None;
         }
         let u = task.sampler.next_2d();
-        let sample = light.sample_li(surface.p, surface.time, u)?;
+        let sample = light.sample_li(surface.p, surface.time, u).filter(|sample| !sample.li.is_black())?;
         let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
         if scattered.is_black() {
             return None;
@@ -278,6 +280,7 @@ impl Path {
             _ => 1.0,
         };
         Some(LightConnection {
+            index,
             ray: surface.spawn_to_light(&sample),
             distance: sample.point.map_or(0.0, |point| point.distance(surface.p)),
             n_light: sample.n_light,

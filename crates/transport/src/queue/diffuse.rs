@@ -4,7 +4,7 @@
 //! Lambertian lobe), in the same order, so that the bits are the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
-use super::{PathQueue, ShadowRay};
+use super::{PathQueue, Unoccluded};
 use crate::integrators::path::{Path, power_heuristic};
 use crate::sampler;
 use crate::task::Task;
@@ -190,8 +190,8 @@ impl PathQueue {
                 }
                 let (origin, direction) = (vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
                 let ray = leaving(origin, direction, v.primitives[i], v.times[i]);
-                self.shadow_rays.push(Ray { t_max: v.shadow.t_max.0[i], ..ray });
-                self.shadows.push(ShadowRay { path: v.paths[i], light, n_light: v.light.n_light[i] });
+                let brought = Unoccluded { path: v.paths[i], light, n_light: v.light.n_light[i] };
+                self.connections.push(picked[i], Ray { t_max: v.shadow.t_max.0[i], ..ray }, brought);
             }
         }
     }

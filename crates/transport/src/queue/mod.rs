@@ -28,14 +28,46 @@ struct QueuedPath {
     beta: Rgb,
 }
 
-/// A connection from a path's vertex to a light.
+/// What the connection of a path's vertex with a light brings if its shadow ray hits nothing.
 #[derive(Clone, Copy)]
-struct ShadowRay {
+struct Unoccluded {
     /// Index of the path.
     path: u32,
     light: Rgb,
     /// The normal of the light at its end.
     n_light: Vec3,
+}
+
+/// Connections with lights. Rays towards the same light are next to each other, since these are traced fastest.
+#[derive(Default)]
+struct Connections {
+    lists: [ConnectionList; LISTS],
+}
+
+/// A light has a list of its own if it is one of few.
+const LISTS: usize = 4;
+
+#[derive(Default)]
+struct ConnectionList {
+    rays: Vec<Ray>,
+    brought: Vec<Unoccluded>,
+}
+
+impl Connections {
+    fn clear(&mut self) {
+        for list in &mut self.lists {
+            list.rays.clear();
+            list.brought.clear();
+        }
+    }
+
+    /// Adds the connection of a path's vertex with a light. Those of one vertex come in the order of the lights.
+    #[inline]
+    fn push(&mut self, index: usize, ray: Ray, brought: Unoccluded) {
+        let list = &mut self.lists[index.min(LISTS - 1)];
+        list.rays.push(ray);
+        list.brought.push(brought);
+    }
 }
 
 /// A queue of paths, and the memory that it works in.
@@ -46,8 +78,7 @@ pub(crate) struct PathQueue {
     active: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
-    shadow_rays: Vec<Ray>,
-    shadows: Vec<ShadowRay>,
+    connections: Connections,
     occluded: Vec<bool>,
     diffuse: Option<Box<DiffuseVertices>>,
     diffuse_hits: Vec<(u32, Hit)>,
@@ -105,8 +136,7 @@ impl PathQueue {
         self.hits.resize(self.rays.len(), None);
         task.tracer.hits(&self.rays, &mut self.hits);
         self.next.clear();
-        self.shadow_rays.clear();
-        self.shadows.clear();
+        self.connections.clear();
         self.diffuse_hits.clear();
         self.shaded.clear();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
@@ -124,14 +154,14 @@ impl PathQueue {
             task.sampler = one.sampler.clone();
             (one.direct, one.beta) = (Rgb::BLACK, one.walk.beta);
             self.shaded.push(index);
-            let (shadow_rays, shadows) = (&mut self.shadow_rays, &mut self.shadows);
+            let connections = &mut self.connections;
             let goes_on = path.interact(&mut one.walk, &surface, task, |connection, _| {
-                shadow_rays.push(connection.ray);
-                shadows.push(ShadowRay {
-                    path: index,
-                    light: connection.unoccluded(),
-                    n_light: connection.n_light,
-                });
+                let (light, n_light) = (connection.unoccluded(), connection.n_light);
+                connections.push(
+                    connection.index,
+                    connection.ray,
+                    Unoccluded { path: index, light, n_light },
+                );
                 Rgb::BLACK
             });
             if goes_on {
@@ -146,12 +176,13 @@ impl PathQueue {
     /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
     /// before it is weighted by the throughput, as in a single path.
     fn add_direct_light(&mut self, task: &mut Task) {
-        self.occluded.clear();
-        self.occluded.resize(self.shadow_rays.len(), false);
-        let n_light = |i: usize| self.shadows[i].n_light;
-        task.tracer.all_occluded(&self.shadow_rays, n_light, &mut self.occluded);
-        for (shadow, _) in self.shadows.iter().zip(&self.occluded).filter(|(_, occluded)| !**occluded) {
-            self.paths[shadow.path as usize].direct += shadow.light;
+        for ConnectionList { rays, brought } in &self.connections.lists {
+            self.occluded.clear();
+            self.occluded.resize(rays.len(), false);
+            task.tracer.all_occluded(rays, |i| brought[i].n_light, &mut self.occluded);
+            for (brought, _) in brought.iter().zip(&self.occluded).filter(|(_, occluded)| !**occluded) {
+                self.paths[brought.path as usize].direct += brought.light;
+            }
         }
         for &index in &self.shaded {
             let one = &mut self.paths[index as usize];

@@ -1,0 +1,91 @@
+//! Choosing among many by given weights.
+
+/// A cumulative distribution.
+pub(super) struct Cumulative {
+    /// `sums[i]` is the total probability of `0..=i`; the last is 1.
+    sums: Vec<f32>,
+    /// For equal parts of 0..1, about where the search among many begins: [Chen 1974]'s guide table.
+    guide: Vec<u32>,
+}
+
+/// Up to this many, compare with all of them: that avoids unpredictable branches.
+const FEW: usize = 8;
+
+impl Cumulative {
+    /// The distribution with probabilities in proportion to weights, which are at least 0; at least one is above.
+    pub(super) fn new(weights: &[f64]) -> Cumulative {
+        let (mut sum, all) = (0.0, weights.iter().sum::<f64>());
+        let add = |weight: &f64| {
+            sum += weight;
+            (sum / all) as f32
+        };
+        let mut sums: Vec<f32> = weights.iter().map(add).collect();
+        if let Some(last) = sums.last_mut() {
+            *last = 1.0;
+        }
+        let parts = if sums.len() > FEW { sums.len() } else { 0 };
+        let first = |part: usize| sums.partition_point(|&sum| sum <= part as f32 / parts as f32) as u32;
+        let guide = (0..parts).map(first).collect();
+        Cumulative { sums, guide }
+    }
+
+    /// The probability of one.
+    #[inline]
+    pub(super) fn probability(&self, index: usize) -> f32 {
+        self.sums[index] - if index == 0 { 0.0 } else { self.sums[index - 1] }
+    }
+
+    /// The index for a number from 0 to 1, and the position of that number within the index's part, from 0 to 1.
+    #[inline]
+    pub(super) fn sample(&self, u: f32) -> (usize, f32) {
+        let index = self.find(u);
+        let probability = self.probability(index);
+        let below = self.sums[index] - probability;
+        (index, if probability > 0.0 { ((u - below) / probability).clamp(0.0, 1.0) } else { 0.0 })
+    }
+
+    /// The number of sums that are at most `u`, but never all of them.
+    #[inline]
+    fn find(&self, u: f32) -> usize {
+        let last = self.sums.len() - 1;
+        let Some(most) = self.guide.len().checked_sub(1) else {
+            return self.sums.iter().map(|&sum| usize::from(sum <= u)).sum::<usize>().min(last);
+        };
+        let mut at = self.guide[((u * self.guide.len() as f32) as usize).min(most)] as usize;
+        // The part may have been rounded up.
+        while at > 0 && self.sums[at - 1] > u {
+            at -= 1;
+        }
+        while at < last && self.sums[at] <= u {
+            at += 1;
+        }
+        at
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::hash::{hash_words, unit_f32};
+
+    #[test]
+    fn the_guide_finds_what_a_search_finds() {
+        for count in [1usize, 3, 8, 9, 100, 1000] {
+            // Many have no weight; a few have nearly all of it.
+            let number = |i: usize| unit_f32(hash_words([count as u64, i as u64]) as u32);
+            let weight = |i: usize| if number(i) < 0.4 { 0.0 } else { f64::from(number(i + 5000)).powi(9) };
+            let mut weights: Vec<f64> = (0..count).map(weight).collect();
+            weights[count / 2] += 1.0;
+            let cumulative = Cumulative::new(&weights);
+            let sums = &cumulative.sums;
+            let exact = sums.iter().flat_map(|&sum| [sum.next_down(), sum, sum.next_up()]);
+            let even = (0..=5000).map(|i| i as f32 / 5000.0);
+            for u in exact.chain(even).filter(|u| (0.0..=1.0).contains(u)) {
+                let wanted = sums.partition_point(|&sum| sum <= u).min(count - 1);
+                let (found, within) = cumulative.sample(u);
+                assert_eq!(found, wanted, "{count}: {u}");
+                assert!((0.0..=1.0).contains(&within));
+            }
+        }
+    }
+}
