@@ -110,6 +110,7 @@ pub fn power_cosine_pdf_solid_angle(cos_alpha: f32, exponent: f32) -> f32 {
 }
 
 /// Barycentric weights (of the second and third vertex), uniform over a triangle's area.
+#[inline]
 pub fn sample_triangle(u: Vec2) -> Vec2 {
     let root = u.x.sqrt();
     Vec2::new(root * (1.0 - u.y), root * u.y)

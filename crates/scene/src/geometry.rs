@@ -1,6 +1,8 @@
 //! The surfaces of a scene: static triangles in one tree of the whole scene, moving or instanced ones in trees of their
 //! own, points and lines in separate trees, and spheres in a last one.
 
+mod corners_in_world;
+
 use crate::builder::{AccelChoice, unit_or};
 use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
@@ -280,27 +282,6 @@ impl Geometry {
                 (Cow::Owned(to_world), to_world.mirrors())
             }
         }
-    }
-
-    /// Along the normal of a triangle's front (corners counter-clockwise) at a time; `None` for other primitives.
-    pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        if primitive == Primitive::NONE || !self.is_triangle(primitive) {
-            return None;
-        }
-        let (_, [a, b, c], mirrors) = self.in_world(primitive, time);
-        Some((b - a).cross(c - a) * if mirrors { -1.0 } else { 1.0 })
-    }
-
-    /// A triangle's index in its mesh, its world-space corners at a time, and whether it is mirrored.
-    pub(crate) fn in_world(&self, primitive: Primitive, time: f32) -> (u32, [Vec3; 3], bool) {
-        let (object, triangle) = self.locate(primitive);
-        let mesh = &*self.objects[object as usize].mesh;
-        let (to_world, mirrors) = self.place(object, time);
-        let corners = match self.still.as_ref().filter(|_| primitive.instance == 0) {
-            Some(still) => still.triangles()[primitive.index as usize].map(Vec3::from),
-            None => mesh.triangles[triangle as usize].map(|i| to_world.point(mesh.positions[i as usize])),
-        };
-        (triangle, corners, mirrors)
     }
 
     /// All that shading needs about a hit, except for the texture footprint.

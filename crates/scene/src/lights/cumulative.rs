@@ -73,7 +73,9 @@ mod tests {
         for count in [1usize, 3, 8, 9, 100, 1000] {
             // Many have no weight; a few have nearly all of it.
             let number = |i: usize| unit_f32(hash_words([count as u64, i as u64]) as u32);
-            let weight = |i: usize| if number(i) < 0.4 { 0.0 } else { f64::from(number(i + 5000)).powi(9) };
+            let cube = |x: f64| x * x * x;
+            let some = |i: usize| cube(cube(f64::from(number(i + 5000))));
+            let weight = |i: usize| if number(i) < 0.4 { 0.0 } else { some(i) };
             let mut weights: Vec<f64> = (0..count).map(weight).collect();
             weights[count / 2] += 1.0;
             let cumulative = Cumulative::new(&weights);

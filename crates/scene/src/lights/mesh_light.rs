@@ -1,6 +1,7 @@
 //! Emissive triangle meshes. Not in the table: objects with an emissive material become mesh lights.
 
 use super::cumulative::Cumulative;
+use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
 use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
@@ -66,16 +67,6 @@ impl Picture {
 /// The minimum brightness of a triangle, relative to the mean: a few points may miss the bright parts of a triangle.
 const MIN_SHARE: f64 = 0.1;
 
-/// A triangle in world space at a time.
-#[derive(Clone, Copy)]
-struct LightTriangle {
-    corners: [Vec3; 3],
-    /// Unit, towards the front; zero for a triangle without area.
-    normal: Vec3,
-    /// Density of its points over area.
-    pdf_area: f32,
-}
-
 impl MeshLight {
     /// A light from an object's object-space triangles; `None` when they have no area.
     ///
@@ -122,8 +113,21 @@ impl MeshLight {
         Some(light)
     }
 
-    /// The emitted radiance at a point of a triangle.
-    fn radiance(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
+    /// Picks a triangle in proportion to its probability; returns its index, and the rest of the random number.
+    #[inline]
+    pub fn choose(&self, u: f32) -> (usize, f32) {
+        self.choice.sample(u)
+    }
+
+    /// The sides that emit.
+    #[inline]
+    pub fn sides(&self) -> Sides {
+        self.sides
+    }
+
+    /// The emitted radiance at a point of a triangle, given by its barycentric weights.
+    #[inline]
+    pub fn radiance(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
         self.picture.as_ref().map_or(self.radiance, |picture| picture.at(triangle, weights))
     }
 
@@ -132,7 +136,9 @@ impl MeshLight {
         self.triangles[triangle].map(|p| to_world.point(p))
     }
 
-    fn facet(&self, triangle: usize, time: f32) -> LightTriangle {
+    /// A triangle in world space at a time.
+    #[inline]
+    pub fn facet(&self, triangle: usize, time: f32) -> LightTriangle {
         if let Some(stored) = self.static_triangles.get(triangle) {
             return *stored;
         }
@@ -145,8 +151,7 @@ impl MeshLight {
     /// Picks a triangle, and barycentric coordinates uniform over it.
     fn sample_weights(&self, u: Vec2) -> (usize, [f32; 3]) {
         let (triangle, rest) = self.choice.sample(u.x);
-        let weights = warp::sample_triangle(Vec2::new(rest, u.y));
-        (triangle, [1.0 - weights.x - weights.y, weights.x, weights.y])
+        (triangle, barycentric(Vec2::new(rest, u.y)))
     }
 
     /// Samples a point; returns it, its triangle and the emitted radiance.
@@ -206,21 +211,8 @@ fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
     (mean, weights)
 }
 
-fn blend(corners: &[Vec3; 3], weights: [f32; 3]) -> Vec3 {
-    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
-}
-
 fn area(t: &[Vec3; 3]) -> f32 {
     (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
-}
-
-/// See [`LightSample::clearance`]: a hit lies within a few rounding errors of its triangle's plane. They are relative
-/// to the distances of its corners and of the ray's origin from each other and from the world's origin (see the lemma
-/// of [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and grow by `1 / cos` along the ray.
-fn clearance(from: Vec3, point: Vec3, corners: &[Vec3; 3], cos: f32) -> f32 {
-    let far = corners.iter().map(|c| c.distance_squared(from)).fold(0.0, f32::max).sqrt();
-    let size = far + from.abs().max_element().max(point.abs().max_element());
-    (64.0 * f32::EPSILON * size / (cos * point.distance(from))).min(0.5)
 }
 
 fn finite_or_zero(x: f64) -> f64 {
@@ -229,23 +221,21 @@ fn finite_or_zero(x: f64) -> f64 {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (point, LightTriangle { corners, normal, pdf_area }, li) = self.sample_point(time, u);
-        let to_light = point - from;
-        let distance2 = to_light.length_squared();
-        let wi = to_light.try_normalize()?;
-        let cos = normal.dot(wi);
-        if self.sides == Sides::Front && cos >= 0.0 {
-            return None;
-        }
-        let pdf_solid_angle = pdf_area * distance2 / cos.abs();
-        (pdf_solid_angle.is_finite() && pdf_solid_angle > 0.0).then(|| LightSample {
-            wi,
-            li,
-            point: Some(point),
-            n_light: if cos < 0.0 { normal } else { -normal },
-            pdf_solid_angle,
-            clearance: clearance(from, point, &corners, cos.abs()),
+        let (triangle, rest) = self.choice.sample(u.x);
+        let weights = barycentric(Vec2::new(rest, u.y));
+        let sample = TriangleSample::new(from, &self.facet(triangle, time), weights, self.sides);
+        (sample.pdf_solid_angle > 0.0).then(|| LightSample {
+            wi: sample.wi,
+            li: self.radiance(triangle, weights),
+            point: Some(sample.point),
+            n_light: sample.n_light,
+            pdf_solid_angle: sample.pdf_solid_angle,
+            clearance: sample.clearance,
         })
+    }
+
+    fn as_mesh(&self) -> Option<&MeshLight> {
+        Some(self)
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {

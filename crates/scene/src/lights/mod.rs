@@ -10,6 +10,7 @@ mod directional;
 mod distant;
 mod environment;
 mod environment_map;
+mod light_triangle;
 mod mesh_light;
 mod point;
 mod rect;
@@ -18,6 +19,7 @@ mod sphere;
 mod spot;
 mod sun;
 
+pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
 pub use mesh_light::{MeshLight, Picture};
 pub use sphere::SphereLight;
 
@@ -138,6 +140,12 @@ impl Sides {
 pub trait Light: Send + Sync {
     /// Samples a direction from which light arrives at `from`; `None` if none does.
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample>;
+
+    /// The mesh light that this one is: integrators that sample many points at once sample its triangles themselves.
+    #[doc(hidden)]
+    fn as_mesh(&self) -> Option<&MeshLight> {
+        None
+    }
 
     /// The density of [`Light::sample_li`] for the direction `wi`; zero for delta lights.
     ///

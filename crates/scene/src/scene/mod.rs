@@ -1,5 +1,6 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
+mod may_pass;
 mod sheets;
 mod tracer;
 
@@ -15,6 +16,7 @@ use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
+use may_pass::MayPass;
 use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
@@ -52,6 +54,8 @@ pub(crate) struct SceneParts {
     has_nested: bool,
     has_holes: bool,
     hides_backs: bool,
+    /// For each object, then for each sphere.
+    passes: Vec<MayPass>,
     disperses: bool,
     absorbs: bool,
     /// For each object of triangles, see [`Scene::is_lambertian`].
@@ -115,6 +119,9 @@ impl SceneParts {
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
+        let count = geometry.objects().len() + geometry.spheres().len();
+        let passes = (0..count as u32).map(|o| MayPass::of(&*materials[geometry.material_of(o) as usize]));
+        let passes = passes.collect();
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
         let lambertian = geometry.objects().iter().map(|o| is_lambertian(o, &materials)).collect();
@@ -131,6 +138,7 @@ impl SceneParts {
             has_nested,
             has_holes,
             hides_backs,
+            passes,
             disperses,
             absorbs,
             lambertian,

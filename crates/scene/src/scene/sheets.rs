@@ -6,7 +6,6 @@
 //! end it is traced from. See docs/adr/0023-shells.md.
 
 use super::{Scene, SceneParts};
-use crate::lights::Sides;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::{Aabb, Vec3};
@@ -124,14 +123,16 @@ impl Sheets {
 
 impl SceneParts {
     fn is_one_sided_object(&self, object: u32) -> bool {
-        self.materials[self.geometry.material_of(object) as usize].visible_sides() == Sides::Front
+        self.passes[object as usize].is_one_sided
     }
 
     /// Along the front normal of a one-sided triangle, if the ray hits its back.
     fn is_back(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let object = self.geometry.object_of(hit);
-        let front =
-            self.geometry.front(hit.primitive(), ray.time).filter(|_| self.is_one_sided_object(object))?;
+        if !self.is_one_sided_object(object) {
+            return None;
+        }
+        let front = self.geometry.front_of(object, hit.primitive(), ray.time)?;
         (front.dot(ray.direction.into()) > 0.0).then_some(front)
     }
 
@@ -152,14 +153,18 @@ impl SceneParts {
         &self,
         sheets: &Sheets,
         ray: &Ray,
-        hit: &Hit,
+        (hit, object): (&Hit, u32),
         front: Vec3,
         end: Option<End>,
     ) -> bool {
         let direction = Vec3::from(ray.direction);
-        let gap = sheets.gap(self.geometry.object_of(hit), front);
         let along = front.dot(direction);
-        let near = along < 0.0 && hit.t * -along <= gap * front.length();
+        let enters = along < 0.0;
+        if end.is_none() && !enters {
+            return false;
+        }
+        let gap = sheets.gap(object, front);
+        let near = enters && hit.t * -along <= gap * front.length();
         let back = |p| Back { p, front, gap };
         if near {
             let Some(begins) = self.geometry.front(ray.exclude, ray.time).and_then(Vec3::try_normalize)

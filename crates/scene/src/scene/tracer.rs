@@ -1,7 +1,7 @@
 //! Ray queries: what rays hit, and what they pass.
 
 use super::sheets::{End, Sheets};
-use super::{Scene, SceneParts};
+use super::{MayPass, Scene, SceneParts};
 use crate::lights::Sides;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
@@ -60,21 +60,25 @@ impl SceneParts {
     /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray and the hit, and of nothing
     /// else.
     fn stops(&self, ray: &Ray, hit: &Hit, (sheets, end): (Option<&Sheets>, Option<End>)) -> bool {
-        let (material, uv) = self.geometry.material_and_uv(hit);
-        let material = &self.materials[material as usize];
-        if (ray.mask != u32::MAX || sheets.is_some()) && material.visible_sides() == Sides::Front {
+        let object = self.geometry.object_of(hit);
+        let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
+        if is_one_sided && (ray.mask != u32::MAX || sheets.is_some()) {
             let outwards = || self.geometry.surface(ray, hit).n_geom;
-            let front = self.geometry.front(hit.primitive(), ray.time).unwrap_or_else(outwards);
+            let front = self.geometry.front_of(object, hit.primitive(), ray.time).unwrap_or_else(outwards);
             let along = front.dot(ray.direction.into());
             let towards_camera = if ray.mask == TO_CAMERA { along } else { -along };
             if ray.mask != u32::MAX && towards_camera <= 0.0 {
                 return false;
             }
-            if sheets.is_some_and(|sheets| self.is_between_shells(sheets, ray, hit, front, end)) {
+            if sheets.is_some_and(|sheets| self.is_between_shells(sheets, ray, (hit, object), front, end)) {
                 return false;
             }
         }
-        let Some(opacity) = material.opacity() else { return true };
+        if !has_holes {
+            return true;
+        }
+        let (material, uv) = self.geometry.material_and_uv(hit);
+        let Some(opacity) = self.materials[material as usize].opacity() else { return true };
         let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
         let number = hash_words([ray_hash(ray), place, u64::from(hit.t.to_bits())]) as u32;
         unit_f32(number) < opacity.at(uv)

@@ -5,7 +5,7 @@ use super::{IntegratorEntry, PixelIntegrator};
 use crate::media::Media;
 use crate::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -84,16 +84,14 @@ pub(crate) struct Walk {
 }
 
 /// A connection from a vertex to a sample of a light, before it is known whether something lies between.
-pub(crate) struct LightConnection {
-    /// The index of the light.
-    pub(crate) index: usize,
+struct LightConnection {
     /// The ray to the light.
-    pub(crate) ray: Ray,
+    ray: Ray,
     /// Its length in metres; 0 for light from infinity, since beyond the last surface there is no absorbing glass: its
     /// boundary would have blocked the ray.
     distance: f32,
     /// The normal of the light at the end of the ray.
-    pub(crate) n_light: Vec3,
+    n_light: Vec3,
     /// The media at the start of the ray.
     media: Media,
     /// The light that the vertex would scatter along the path, without the factor.
@@ -103,12 +101,6 @@ pub(crate) struct LightConnection {
 }
 
 impl LightConnection {
-    /// What it brings if nothing lies between its ends, nor anything that absorbs.
-    #[inline]
-    pub(crate) fn unoccluded(&self) -> Rgb {
-        self.light * self.factor
-    }
-
     /// What it brings.
     #[inline]
     fn trace(&self, task: &mut Task) -> Rgb {
@@ -128,8 +120,7 @@ impl PixelIntegrator for Path {
                 return walk.light;
             };
             walk.beta *= passed;
-            let connect = |connection: LightConnection, task: &mut Task| connection.trace(task);
-            if !self.interact(&mut walk, &surface, task, connect) {
+            if !self.interact(&mut walk, &surface, task) {
                 return walk.light;
             }
         }
@@ -162,26 +153,48 @@ impl Path {
     }
 
     /// What happens to a path at a surface: it collects the light that is emitted there, connects to lights, and goes
-    /// on in another direction; false when it ends. `connect` returns what a connection brings.
+    /// on in another direction; false when it ends.
     #[inline]
-    pub(crate) fn interact(
-        &self,
-        walk: &mut Walk,
-        surface: &Surface,
-        task: &mut Task,
-        connect: impl FnMut(LightConnection, &mut Task) -> Rgb,
-    ) -> bool {
+    fn interact(&self, walk: &mut Walk, surface: &Surface, task: &mut Task) -> bool {
         let wo = -Vec3::from(walk.ray.direction);
+        let Some(bsdf) = self.arrive(walk, surface, task) else { return false };
+        let from = Vertex { surface, bsdf: &bsdf, wo, media: &walk.media };
+        walk.light += task.seen(walk.beta, walk.is_split) * self.direct(task, &from);
+        self.scatter(walk, surface, &bsdf, task)
+    }
+
+    /// The first part of [`Path::interact`]: collects the light that is emitted here; returns how the surface scatters,
+    /// or `None` where the path ends.
+    #[inline]
+    pub(crate) fn arrive(&self, walk: &mut Walk, surface: &Surface, task: &mut Task) -> Option<Bsdf> {
         walk.light += task.seen(walk.beta, walk.is_split) * self.emitted(task, walk, surface);
         if walk.depth >= task.max_depth {
-            return false;
+            return None;
         }
         task.sampler.enter(u64::from(walk.depth) + 1);
         let bsdf = walk.media.bsdf(task.scene(), surface, &task.wavelength);
         walk.is_split |= bsdf.splits();
-        let from = Vertex { surface, bsdf: &bsdf, wo, media: &walk.media };
-        walk.light += task.seen(walk.beta, walk.is_split) * self.direct(task, &from, connect);
-        let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
+        Some(bsdf)
+    }
+
+    /// The last part of [`Path::interact`]: goes on in another direction, or ends.
+    #[inline]
+    pub(crate) fn scatter(&self, walk: &mut Walk, surface: &Surface, bsdf: &Bsdf, task: &mut Task) -> bool {
+        let u = (task.sampler.next_1d(), task.sampler.next_2d());
+        self.scatter_by(walk, surface, bsdf, task, u) && self.survives(walk, || task.sampler.next_1d())
+    }
+
+    /// Samples a direction by these random numbers; false where there is none.
+    #[inline]
+    pub(crate) fn scatter_by(
+        &self,
+        walk: &mut Walk,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        task: &mut Task,
+        (u_choice, u): (f32, Vec2),
+    ) -> bool {
+        let wo = -Vec3::from(walk.ray.direction);
         let Some(sample) = bsdf.sample(wo, u_choice, u, TransportMode::Radiance) else {
             task.note(walk.depth, || format!("is absorbed at {}", surface.p));
             return false;
@@ -192,7 +205,7 @@ impl Path {
             let object = surface.object;
             format!("{kind} by object {object} at {} towards {}", surface.p, sample.wi)
         });
-        self.survives(walk, task)
+        true
     }
 
     /// Light from infinity that the ray reaches, weighted against light sampling.
@@ -236,12 +249,11 @@ impl Path {
     }
 
     /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`.
-    fn direct(
-        &self,
-        task: &mut Task,
-        from: &Vertex,
-        mut connect: impl FnMut(LightConnection, &mut Task) -> Rgb,
-    ) -> Rgb {
+    fn direct(&self, task: &mut Task, from: &Vertex) -> Rgb {
+        if from.bsdf.is_delta() {
+            self.skip_lights(task);
+            return Rgb::BLACK;
+        }
         let lights = task.lights;
         let chosen = if lights.takes_all() {
             task.sampler.skip(1);
@@ -249,14 +261,16 @@ impl Path {
         } else {
             lights.sample(task.sampler.next_1d())
         };
-        if from.bsdf.is_delta() {
-            task.sampler.skip(chosen.len() as u32);
-            return Rgb::BLACK;
-        }
         chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
-            Some(connection) => sum + connect(connection, task),
+            Some(connection) => sum + connection.trace(task),
             None => sum,
         })
+    }
+
+    /// Leaves out the random numbers of light samples.
+    pub(crate) fn skip_lights(&self, task: &mut Task) {
+        let count = if task.lights.takes_all() { task.lights.sample(0.0).len() as u32 } else { 1 };
+        task.sampler.skip(1 + count);
     }
 
     /// Samples one light; `None` if it brings nothing.
@@ -271,7 +285,8 @@ impl Path {
         let u = task.sampler.next_2d();
         let sample = light.sample_li(surface.p, surface.time, u).filter(|sample| !sample.li.is_black())?;
         let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
-        if scattered.is_black() {
+        let light_brought = scattered * sample.li;
+        if light_brought.is_black() {
             return None;
         }
         let light_pdf = sample.pdf_solid_angle * probability;
@@ -280,12 +295,11 @@ impl Path {
             _ => 1.0,
         };
         Some(LightConnection {
-            index,
             ray: surface.spawn_to_light(&sample),
             distance: sample.point.map_or(0.0, |point| point.distance(surface.p)),
             n_light: sample.n_light,
             media: media.towards(task.scene(), surface, wo, sample.wi),
-            light: scattered * sample.li,
+            light: light_brought,
             factor: weight / light_pdf,
         })
     }
@@ -300,14 +314,15 @@ impl Path {
     }
 
     /// Russian roulette by the path's throughput. [Arvo 1990]
-    fn survives(&self, walk: &mut Walk, task: &mut Task) -> bool {
+    #[inline]
+    pub(crate) fn survives(&self, walk: &mut Walk, u: impl FnOnce() -> f32) -> bool {
         if walk.beta.is_black() {
             return false;
         }
         if walk.depth <= self.roulette_depth {
             return true;
         }
-        let u = task.sampler.next_1d();
+        let u = u();
         let survival = (walk.beta.max_channel() * walk.eta_scale).min(0.95);
         if u < survival {
             walk.beta = walk.beta / survival;

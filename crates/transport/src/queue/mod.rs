@@ -1,10 +1,14 @@
 //! Many paths at a time. A queue advances all of its paths by one event, then by the next: their rays are traced in
-//! batches, and surfaces of the most common kind are shaded in vector loops. An integrator says what happens to *one*
+//! batches, and what surfaces and lights have in common is computed in
+//! vector loops. An integrator says what happens to *one*
 //! path ([`Path::interact`]); the queue decides which paths come next, in which order. It gives the same light as
 //! following one path after the other, bit for bit. See docs/adr/0011-one-path-or-waves.md.
 
 mod diffuse;
+mod general;
 mod lanes;
+mod light_samples;
+mod vertices;
 
 use crate::camera_rays::CameraRays;
 use crate::integrators::path::{Path, Walk};
@@ -14,7 +18,9 @@ use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Ray, Tracer};
-use diffuse::DiffuseVertices;
+use diffuse::Diffuse;
+use general::General;
+use vertices::Vertices;
 
 /// The number of paths in a queue. Their state fits into the second cache.
 pub(crate) const PATHS: usize = 1024;
@@ -80,8 +86,11 @@ pub(crate) struct PathQueue {
     hits: Vec<Option<Hit>>,
     connections: Connections,
     occluded: Vec<bool>,
-    diffuse: Option<Box<DiffuseVertices>>,
+    vertices: Box<Vertices>,
+    diffuse: Box<Diffuse>,
     diffuse_hits: Vec<(u32, Hit)>,
+    general: General,
+    general_hits: Vec<(u32, Hit)>,
     next: Vec<u32>,
     /// Paths that connect to lights at this event.
     shaded: Vec<u32>,
@@ -138,6 +147,7 @@ impl PathQueue {
         self.next.clear();
         self.connections.clear();
         self.diffuse_hits.clear();
+        self.general_hits.clear();
         self.shaded.clear();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
             let one = &mut self.paths[index as usize];
@@ -146,28 +156,11 @@ impl PathQueue {
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
-            if task.scene().is_lambertian(object) {
-                self.diffuse_hits.push((index, *hit));
-                continue;
-            }
-            let surface = task.tracer.surface(&one.walk.ray, hit);
-            task.sampler = one.sampler.clone();
-            (one.direct, one.beta) = (Rgb::BLACK, one.walk.beta);
-            self.shaded.push(index);
-            let connections = &mut self.connections;
-            let goes_on = path.interact(&mut one.walk, &surface, task, |connection, _| {
-                let (light, n_light) = (connection.unoccluded(), connection.n_light);
-                connections.push(
-                    connection.index,
-                    connection.ray,
-                    Unoccluded { path: index, light, n_light },
-                );
-                Rgb::BLACK
-            });
-            if goes_on {
-                self.next.push(index);
-            }
+            let is_diffuse = task.scene().is_lambertian(object);
+            let hits = if is_diffuse { &mut self.diffuse_hits } else { &mut self.general_hits };
+            hits.push((index, *hit));
         }
+        self.shade_general(path, task);
         self.shade_diffuse(path, task);
         self.add_direct_light(task);
         std::mem::swap(&mut self.active, &mut self.next);

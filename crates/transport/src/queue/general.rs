@@ -1,0 +1,108 @@
+//! Surfaces of every other kind: their BSDFs are evaluated and sampled one by one, and all else in columns.
+
+use super::PathQueue;
+use super::lanes::{LANES, put, vec3};
+use super::vertices::Vertices;
+use crate::integrators::path::Path;
+use crate::task::Task;
+use bilux_accel::Hit;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{Bsdf, CpuLevel, Surface, TransportMode};
+
+/// What these vertices have beyond the others.
+#[derive(Default)]
+pub(super) struct General {
+    surfaces: Vec<Surface>,
+    bsdfs: Vec<Bsdf>,
+}
+
+impl PathQueue {
+    /// Shades these hits: fills the lists of shadow rays and of paths that go on.
+    pub(super) fn shade_general(&mut self, path: &Path, task: &mut Task) {
+        let (mut v, mut g) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.general));
+        let hits = std::mem::take(&mut self.general_hits);
+        let mut begin = 0;
+        while begin < hits.len() {
+            begin += self.arrive(&mut v, &mut g, &hits[begin..], path, task);
+            if v.count > 0 {
+                self.connect(&mut v, task, |v, _: CpuLevel| g.eval(v));
+                self.leave(&mut v, &g, path, task);
+            }
+        }
+        (self.vertices, self.general, self.general_hits) = (v, g, hits);
+    }
+
+    /// Fills the columns with vertices; returns the number of hits used. Paths that end here are done, and those that
+    /// meet only delta lobes, which no light sample finds, go on at once.
+    fn arrive(
+        &mut self,
+        v: &mut Vertices,
+        g: &mut General,
+        hits: &[(u32, Hit)],
+        path: &Path,
+        task: &mut Task,
+    ) -> usize {
+        v.count = 0;
+        g.surfaces.clear();
+        g.bsdfs.clear();
+        for (used, (index, hit)) in hits.iter().enumerate() {
+            if v.count == LANES {
+                return used;
+            }
+            let one = &mut self.paths[*index as usize];
+            one.begin_event();
+            let surface = task.tracer.surface(&one.walk.ray, hit);
+            task.sampler = one.sampler.clone();
+            let wo = -Vec3::from(one.walk.ray.direction);
+            let Some(bsdf) = path.arrive(&mut one.walk, &surface, task) else { continue };
+            if bsdf.is_delta() {
+                path.skip_lights(task);
+                if path.scatter(&mut one.walk, &surface, &bsdf, task) {
+                    self.next.push(*index);
+                }
+                continue;
+            }
+            v.push(*index, &surface, wo, &task.sampler);
+            g.surfaces.push(surface);
+            g.bsdfs.push(bsdf);
+            self.shaded.push(*index);
+        }
+        hits.len()
+    }
+
+    /// Sends every path on in a new direction, and lists those that survive.
+    fn leave(&mut self, v: &mut Vertices, g: &General, path: &Path, task: &mut Task) {
+        let level = task.scene().cpu_level();
+        let dimension = v.dimension;
+        v.draw_numbers(level, dimension + 1);
+        let u_choice = v.u[0];
+        v.draw_points(level, dimension + 2);
+        let u = v.u;
+        v.draw_numbers(level, dimension + 3);
+        for (i, (surface, bsdf)) in g.surfaces.iter().zip(&g.bsdfs).enumerate() {
+            let walk = &mut self.paths[v.paths[i] as usize].walk;
+            let point = Vec2::new(u[0].0[i], u[1].0[i]);
+            let goes_on = path.scatter_by(walk, surface, bsdf, task, (u_choice.0[i], point))
+                && path.survives(walk, || v.u[0].0[i]);
+            if goes_on {
+                self.next.push(v.paths[i]);
+            }
+        }
+    }
+}
+
+impl General {
+    /// The BSDFs for the light samples.
+    fn eval(&self, v: &mut Vertices) {
+        let Vertices { wo, light, scattered, pdf, .. } = v;
+        for (i, bsdf) in self.bsdfs.iter().enumerate() {
+            let is_wanted = light.pdf.0[i] > 0.0 && !super::lanes::rgb(&light.li, i).is_black();
+            let (found, density) = match is_wanted {
+                true => bsdf.eval_and_pdf(vec3(wo, i), vec3(&light.wi, i), TransportMode::Radiance),
+                false => (Rgb::BLACK, 0.0),
+            };
+            put(scattered, i, found.to_array());
+            pdf.0[i] = density;
+        }
+    }
+}

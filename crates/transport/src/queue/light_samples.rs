@@ -1,0 +1,130 @@
+//! Samples of lights, one for each vertex.
+
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
+use super::vertices::Vertices;
+use crate::light_choice::LightChoice;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::CpuLevel;
+use bilux_scene::lights::{LightTriangle, MeshLight, Sides, TriangleSample, barycentric};
+use bilux_scene::scene::SceneLight;
+
+/// The samples.
+pub(super) struct LightSamples {
+    pub(super) wi: Columns3,
+    pub(super) li: Columns3,
+    /// Where the ray ends: the point on the light; `wi` for light from infinity.
+    pub(super) towards: Columns3,
+    pub(super) n_light: Columns3,
+    /// 1 for light from infinity, otherwise 0.
+    pub(super) is_infinite: Column,
+    pub(super) clearance: Column,
+    /// Density over solid angle times the probability of the light; 0 where there is no sample.
+    pub(super) pdf: Column,
+    /// 1 for delta lights, otherwise 0.
+    pub(super) is_delta: Column,
+    triangles: Triangles,
+}
+
+/// The triangles of a mesh light on which the samples are.
+struct Triangles {
+    corners: [Columns3; 3],
+    normal: Columns3,
+    pdf_area: Column,
+}
+
+impl Default for LightSamples {
+    fn default() -> LightSamples {
+        LightSamples {
+            wi: ZERO3,
+            li: ZERO3,
+            towards: ZERO3,
+            n_light: ZERO3,
+            is_infinite: Column::ZERO,
+            clearance: Column::ZERO,
+            pdf: Column::ZERO,
+            is_delta: Column::ZERO,
+            triangles: Triangles { corners: [ZERO3; 3], normal: ZERO3, pdf_area: Column::ZERO },
+        }
+    }
+}
+
+impl Vertices {
+    /// Samples the light that was picked for each vertex.
+    pub(super) fn sample_lights(
+        &mut self,
+        picked: &[usize; LANES],
+        choice: &LightChoice,
+        lights: &[SceneLight],
+    ) {
+        let Vertices { p, u, light: samples, times, .. } = self;
+        for i in 0..self.count {
+            let (light, probability) = (&lights[picked[i]].light, choice.probability(picked[i]));
+            let u = Vec2::new(u[0].0[i], u[1].0[i]);
+            let sample = light.sample_li(vec3(p, i), times[i], u).filter(|_| probability > 0.0);
+            let Some(sample) = sample else {
+                samples.pdf.0[i] = 0.0;
+                continue;
+            };
+            put(&mut samples.wi, i, sample.wi.to_array());
+            put(&mut samples.li, i, sample.li.to_array());
+            put(&mut samples.towards, i, sample.point.unwrap_or(sample.wi).to_array());
+            put(&mut samples.n_light, i, sample.n_light.to_array());
+            samples.is_infinite.0[i] = if sample.point.is_none() { 1.0 } else { 0.0 };
+            samples.clearance.0[i] = sample.clearance;
+            samples.pdf.0[i] = sample.pdf_solid_angle * probability;
+            samples.is_delta.0[i] = if light.is_delta() { 1.0 } else { 0.0 };
+        }
+    }
+
+    /// The same where every vertex samples the same mesh light.
+    pub(super) fn sample_mesh(&mut self, mesh: &MeshLight, probability: f32, level: CpuLevel) {
+        let mut indices = [0; LANES];
+        let Vertices { p, u, light: samples, times, count, .. } = self;
+        for i in 0..*count {
+            (indices[i], u[0].0[i]) = mesh.choose(u[0].0[i]);
+            let LightTriangle { corners, normal, pdf_area } = mesh.facet(indices[i], times[i]);
+            for (columns, corner) in samples.triangles.corners.iter_mut().zip(corners) {
+                put(columns, i, corner.to_array());
+            }
+            put(&mut samples.triangles.normal, i, normal.to_array());
+            samples.triangles.pdf_area.0[i] = pdf_area;
+        }
+        (samples.is_infinite, samples.is_delta) = (Column::ZERO, Column::ZERO);
+        run_at(level, SampleTriangles { samples, p, u, probability, sides: mesh.sides() });
+        for (i, &triangle) in indices.iter().enumerate().take(*count) {
+            let is_there = samples.pdf.0[i] > 0.0;
+            let weights = || barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
+            let li = if is_there { mesh.radiance(triangle, weights()) } else { Rgb::BLACK };
+            put(&mut samples.li, i, li.to_array());
+        }
+    }
+}
+
+/// Points on the triangles; the first number of each is what is left after a triangle was chosen.
+struct SampleTriangles<'a> {
+    samples: &'a mut LightSamples,
+    p: &'a Columns3,
+    u: &'a [Column; 2],
+    probability: f32,
+    sides: Sides,
+}
+
+impl Stage for SampleTriangles<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let SampleTriangles { samples, p, u, probability, sides } = self;
+        let LightSamples { wi, towards, n_light, clearance, pdf, triangles, .. } = samples;
+        for i in 0..LANES {
+            let corners: [Vec3; 3] = [0, 1, 2].map(|corner: usize| vec3(&triangles.corners[corner], i));
+            let normal = vec3(&triangles.normal, i);
+            let triangle = LightTriangle { corners, normal, pdf_area: triangles.pdf_area.0[i] };
+            let weights = barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
+            let sample = TriangleSample::new(vec3(p, i), &triangle, weights, sides);
+            put(wi, i, sample.wi.to_array());
+            put(towards, i, sample.point.to_array());
+            put(n_light, i, sample.n_light.to_array());
+            clearance.0[i] = sample.clearance;
+            pdf.0[i] = sample.pdf_solid_angle * probability;
+        }
+    }
+}

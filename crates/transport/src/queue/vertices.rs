@@ -1,0 +1,223 @@
+//! Vertices of up to [`LANES`] paths, in columns: what all kinds of surface have in common.
+//!
+//! Every expression is the one that a single path evaluates ([`crate::integrators::path::Path::interact`]), in the same
+//! order, so that the bits are the same.
+
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
+use super::light_samples::LightSamples;
+use super::{PathQueue, QueuedPath, Unoccluded};
+use crate::integrators::path::power_heuristic;
+use crate::sampler::{self, PixelSampler};
+use crate::task::Task;
+use bilux_math::Vec3;
+use bilux_scene::surface::{leaving, offset_origin};
+use bilux_scene::{CpuLevel, Primitive, Ray, Surface};
+
+/// The vertices, and what light samples bring them.
+pub(super) struct Vertices {
+    pub(super) count: usize,
+    /// The dimension of the sampler that was drawn last.
+    pub(super) dimension: u32,
+    /// Indices of the paths.
+    pub(super) paths: [u32; LANES],
+    pub(super) primitives: [Primitive; LANES],
+    pub(super) times: [f32; LANES],
+    streams: [u64; LANES],
+    reversed_indices: [u32; LANES],
+    pub(super) p: Columns3,
+    pub(super) p_error: Columns3,
+    pub(super) n_geom: Columns3,
+    pub(super) wo: Columns3,
+    /// The sampler's current numbers.
+    pub(super) u: [Column; 2],
+    pub(super) light: LightSamples,
+    /// f·|cosθ| and density of the BSDF for the light samples.
+    pub(super) scattered: Columns3,
+    pub(super) pdf: Column,
+    shadow: ShadowRays,
+}
+
+/// The ray to the light sample, and the light that it brings; black where there is none.
+struct ShadowRays {
+    origin: Columns3,
+    direction: Columns3,
+    t_max: Column,
+    light: Columns3,
+}
+
+impl Default for Vertices {
+    fn default() -> Vertices {
+        Vertices {
+            count: 0,
+            dimension: 0,
+            paths: [0; LANES],
+            primitives: [Primitive::NONE; LANES],
+            times: [0.0; LANES],
+            streams: [0; LANES],
+            reversed_indices: [0; LANES],
+            p: ZERO3,
+            p_error: ZERO3,
+            n_geom: ZERO3,
+            wo: ZERO3,
+            u: [Column::ZERO; 2],
+            light: LightSamples::default(),
+            scattered: ZERO3,
+            pdf: Column::ZERO,
+            shadow: ShadowRays { origin: ZERO3, direction: ZERO3, t_max: Column::ZERO, light: ZERO3 },
+        }
+    }
+}
+
+impl Vertices {
+    /// Adds the vertex of a path whose sampler has entered it; returns its lane.
+    pub(super) fn push(&mut self, path: u32, surface: &Surface, wo: Vec3, sampler: &PixelSampler) -> usize {
+        let i = self.count;
+        self.paths[i] = path;
+        (self.primitives[i], self.times[i]) = (surface.primitive, surface.time);
+        (self.streams[i], self.reversed_indices[i]) = sampler.state();
+        put(&mut self.p, i, surface.p.to_array());
+        put(&mut self.p_error, i, surface.p_error.to_array());
+        put(&mut self.n_geom, i, surface.n_geom.to_array());
+        put(&mut self.wo, i, wo.to_array());
+        self.count += 1;
+        i
+    }
+
+    /// Draws a number for each path, into the first column of `u`.
+    pub(super) fn draw_numbers(&mut self, level: CpuLevel, dimension: u32) {
+        run_at(level, Numbers { v: self, dimension });
+    }
+
+    /// Draws a point for each path.
+    pub(super) fn draw_points(&mut self, level: CpuLevel, dimension: u32) {
+        run_at(level, Points { v: self, dimension });
+    }
+
+    /// The ray that leaves a lane's surface.
+    pub(super) fn leaving(&self, i: usize, origin: Vec3, direction: Vec3) -> Ray {
+        leaving(origin, direction, self.primitives[i], self.times[i])
+    }
+}
+
+impl PathQueue {
+    /// Samples lights from every vertex, and lists the shadow rays to them. `eval` fills `scattered` and `pdf` for the
+    /// directions of the light samples.
+    pub(super) fn connect(
+        &mut self,
+        v: &mut Vertices,
+        task: &mut Task,
+        mut eval: impl FnMut(&mut Vertices, CpuLevel),
+    ) {
+        let (choice, level) = (task.lights, task.scene().cpu_level());
+        let mut picked = [0; LANES];
+        let rounds = if choice.takes_all() {
+            choice.sample(0.0)
+        } else {
+            v.draw_numbers(level, 1);
+            for (picked, u) in picked.iter_mut().zip(&v.u[0].0).take(v.count) {
+                *picked = choice.sample(*u).start;
+            }
+            0..1
+        };
+        v.dimension = 1;
+        for round in rounds {
+            v.dimension += 1;
+            if choice.takes_all() {
+                if choice.probability(round) == 0.0 {
+                    continue;
+                }
+                picked = [round; LANES];
+            }
+            v.draw_points(level, v.dimension);
+            let lights = task.scene().lights();
+            match lights[picked[0]].light.as_mesh() {
+                Some(mesh) if choice.takes_all() => v.sample_mesh(mesh, choice.probability(round), level),
+                _ => v.sample_lights(&picked, choice, lights),
+            }
+            eval(v, level);
+            run_at(level, Weigh { v });
+            self.list_shadow_rays(v, &picked);
+        }
+    }
+
+    fn list_shadow_rays(&mut self, v: &Vertices, picked: &[usize; LANES]) {
+        for (i, &light) in picked.iter().enumerate().take(v.count) {
+            let brought = rgb(&v.shadow.light, i);
+            if brought.is_black() {
+                continue;
+            }
+            let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
+            let brought = Unoccluded { path: v.paths[i], light: brought, n_light: vec3(&v.light.n_light, i) };
+            self.connections.push(light, Ray { t_max: v.shadow.t_max.0[i], ..ray }, brought);
+        }
+    }
+}
+
+impl QueuedPath {
+    /// Starts an event: no connection has brought anything yet.
+    #[inline]
+    pub(super) fn begin_event(&mut self) {
+        (self.direct, self.beta) = (bilux_math::Rgb::BLACK, self.walk.beta);
+    }
+}
+
+struct Numbers<'a> {
+    v: &'a mut Vertices,
+    dimension: u32,
+}
+
+impl Stage for Numbers<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for i in 0..LANES {
+            let key = sampler::key(self.v.streams[i], self.dimension);
+            self.v.u[0].0[i] = sampler::number(key, self.v.reversed_indices[i]);
+        }
+    }
+}
+
+struct Points<'a> {
+    v: &'a mut Vertices,
+    dimension: u32,
+}
+
+impl Stage for Points<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for i in 0..LANES {
+            let key = sampler::key(self.v.streams[i], self.dimension);
+            let u = sampler::point(key, self.v.reversed_indices[i]);
+            (self.v.u[0].0[i], self.v.u[1].0[i]) = (u.x, u.y);
+        }
+    }
+}
+
+/// From light samples to shadow rays and the light that they bring.
+struct Weigh<'a> {
+    v: &'a mut Vertices,
+}
+
+impl Stage for Weigh<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Vertices { p, p_error, n_geom, light, scattered, pdf, shadow, .. } = self.v;
+        for i in 0..LANES {
+            let light_pdf = light.pdf.0[i];
+            let weighted = power_heuristic(light_pdf, pdf.0[i]);
+            let weight = if light.is_delta.0[i] != 0.0 { 1.0 } else { weighted };
+            let brought = rgb(scattered, i) * rgb(&light.li, i) * (weight / light_pdf);
+            let of = |c: f32| if light_pdf > 0.0 { c } else { 0.0 };
+            put(&mut shadow.light, i, [of(brought.r), of(brought.g), of(brought.b)]);
+        }
+        for i in 0..LANES {
+            let (from, towards) = (vec3(p, i), vec3(&light.towards, i));
+            let is_infinite = light.is_infinite.0[i] != 0.0;
+            let aside = if is_infinite { towards } else { towards - from };
+            let origin = offset_origin(from, vec3(p_error, i), vec3(n_geom, i), aside);
+            let direction = if is_infinite { towards } else { towards - origin };
+            put(&mut shadow.origin, i, origin.to_array());
+            put(&mut shadow.direction, i, direction.to_array());
+            shadow.t_max.0[i] = if is_infinite { f32::INFINITY } else { 1.0 - light.clearance.0[i] };
+        }
+    }
+}
