@@ -20,6 +20,12 @@ pub(super) const NEARLY_FLAT: f32 = 1.0 - 1e-6;
 /// Reaches every direction on a side.
 const DIFFUSE: Lobe = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });
 
+/// True when a shading normal faces away from a viewer in this direction, so that it is bent.
+#[inline]
+pub fn faces_away(n_shade: Vec3, n_geom: Vec3, view: Vec3) -> bool {
+    n_shade.dot(n_geom) < NEARLY_FLAT && view.dot(n_shade) * view.dot(n_geom) < 0.0
+}
+
 impl Bsdf {
     /// The same BSDF, with the shading normal, and that of a lobe with its own, bent back for a viewer behind it
     /// instead of scattering black.

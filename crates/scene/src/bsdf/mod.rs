@@ -32,6 +32,7 @@ mod sample;
 mod thin_film;
 
 pub use albedo::Albedo;
+pub use bent::faces_away;
 pub use coated_dielectric::CoatedDielectric;
 pub use coated_diffuse::CoatedDiffuse;
 pub use coating::Coating;

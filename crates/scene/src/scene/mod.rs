@@ -149,9 +149,7 @@ impl SceneParts {
 /// See [`Scene::is_lambertian`].
 fn is_lambertian(object: &crate::geometry::Placed, materials: &[Arc<dyn Material>]) -> bool {
     let material = &materials[object.material as usize];
-    // Interpolated normals may face away from the viewer, which bends them.
-    let is_flat = object.mesh.normals.is_empty();
-    is_flat && !object.gives_light && material.is_lambertian() && material.emission().is_black()
+    !object.gives_light && material.is_lambertian() && material.emission().is_black()
 }
 
 /// A scene at a time, ready for ray queries.
@@ -336,8 +334,8 @@ impl Scene {
         self.cpu_level
     }
 
-    /// True when an object has no normals of its own, emits nothing, and its BSDF is a single Lambertian lobe: its
-    /// surfaces are shaded many at a time.
+    /// True when an object emits nothing, and its BSDF is a single Lambertian lobe: its surfaces are shaded many at a
+    /// time.
     #[inline]
     pub fn is_lambertian(&self, object: u32) -> bool {
         self.parts.lambertian.get(object as usize).copied().unwrap_or(false)

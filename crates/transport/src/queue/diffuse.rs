@@ -10,6 +10,7 @@ use crate::integrators::path::Path;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
+use bilux_scene::bsdf::faces_away;
 use bilux_scene::surface::offset_origin;
 use std::f32::consts::FRAC_1_PI;
 
@@ -74,8 +75,14 @@ impl PathQueue {
                 continue;
             }
             let surface = task.tracer.surface(&one.walk.ray, hit);
+            let wo = -Vec3::from(one.walk.ray.direction);
+            if faces_away(surface.n_shade, surface.n_geom, wo) {
+                // Few normals do, and are bent.
+                self.general_hits.push((*index, *hit));
+                continue;
+            }
             one.sampler.enter(u64::from(one.walk.depth) + 1);
-            let i = v.push(*index, &surface, -Vec3::from(one.walk.ray.direction), &one.sampler);
+            let i = v.push(*index, &surface, wo, &one.sampler);
             put(&mut d.n_shade, i, surface.n_shade.to_array());
             let reflectance = task.scene().material(&surface).lambertian_reflectance(&surface);
             put(&mut d.reflectance, i, reflectance.to_array());

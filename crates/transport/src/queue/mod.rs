@@ -160,8 +160,8 @@ impl PathQueue {
             let hits = if is_diffuse { &mut self.diffuse_hits } else { &mut self.general_hits };
             hits.push((index, *hit));
         }
-        self.shade_general(path, task);
         self.shade_diffuse(path, task);
+        self.shade_general(path, task);
         self.add_direct_light(task);
         std::mem::swap(&mut self.active, &mut self.next);
     }
