@@ -9,11 +9,14 @@
 //! operation. So the hits are the same.
 
 mod frustum;
+mod masked;
+mod orientation;
 mod rays;
 mod ready;
 mod triangle;
 mod wide;
 
+pub(super) use masked::Tails;
 pub(super) use rays::{Packet, RAYS};
 pub(super) use ready::{Lane, Ready};
 pub(super) use wide::{Wide, declare, define};
@@ -186,7 +189,7 @@ impl Walk<'_> {
                 if mask == 0 {
                     continue;
                 }
-                let mut group = Group::<W>::new(self.packet, &self.frustum, self.query, from);
+                let mut group = Group::<W, _>::new(self.packet, &self.frustum, self.query, from);
                 let mut hits = 0;
                 for index in 0..leaf.blocks() {
                     let block = base.add(leaf.byte() + index * block_bytes::<node_format::Wide>());
