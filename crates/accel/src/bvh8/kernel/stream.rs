@@ -19,7 +19,7 @@ use crate::ray::{Hit, Query, Ray};
 const RAYS_IN_FLIGHT: usize = 8;
 
 /// Units of a tree that fit into the near caches: a megabyte and a half.
-const NEAR_UNITS: usize = 3 << 14;
+const NEAR_UNITS: usize = 8 << 14;
 
 /// Answers the rays of a packet that are regular.
 ///
