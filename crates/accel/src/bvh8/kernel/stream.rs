@@ -143,7 +143,10 @@ unsafe fn interleaved<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
         // SAFETY: as the caller promises.
         match unsafe { Walk::next::<ANY>(base, rest, walk.stack.cleared(), answer) } {
-            Some(next) => *walk = next,
+            Some(next) => {
+                *walk = next;
+                slot += 1;
+            }
             None => {
                 active -= 1;
                 walks.swap(slot, active);

@@ -32,9 +32,9 @@ const TAILS: usize = 24;
 /// What is left to do for each ray.
 pub(in crate::bvh8::kernel) struct Tails {
     counts: [u8; RAYS],
-    references: [MaybeUninit<[u32; TAILS]>; RAYS],
+    references: [MaybeUninit<[u32; RAYS]>; TAILS],
     /// The bits of the distances at which the ray enters them.
-    enters: [MaybeUninit<[u32; TAILS]>; RAYS],
+    enters: [MaybeUninit<[u32; RAYS]>; TAILS],
     /// A bit for each ray that has hit something, where any hit is enough.
     pub(in crate::bvh8::kernel) found: u64,
 }
@@ -100,8 +100,8 @@ impl Tails {
     pub(in crate::bvh8::kernel) fn new() -> Tails {
         Tails {
             counts: [0; RAYS],
-            references: [const { MaybeUninit::uninit() }; RAYS],
-            enters: [const { MaybeUninit::uninit() }; RAYS],
+            references: [const { MaybeUninit::uninit() }; TAILS],
+            enters: [const { MaybeUninit::uninit() }; TAILS],
             found: 0,
         }
     }
@@ -121,12 +121,12 @@ impl Tails {
         // SAFETY: as the caller promises; as many tails have been written as are counted, and a stack has space for
         // more than that.
         unsafe {
-            let from_references = self.references.as_ptr().add(lane).cast::<u32>();
-            let from_enters = self.enters.as_ptr().add(lane).cast::<u32>();
+            let from_references = self.references.as_ptr().cast::<u32>().add(lane);
+            let from_enters = self.enters.as_ptr().cast::<u32>().add(lane);
             let (references, enters) = (stack.references(), stack.distances());
             let mut size = 0;
             for tail in 0..usize::from(*self.counts.as_ptr().add(lane)) {
-                let (reference, enter) = (*from_references.add(tail), *from_enters.add(tail));
+                let (reference, enter) = (*from_references.add(tail * RAYS), *from_enters.add(tail * RAYS));
                 if enter > limit_bits {
                     continue;
                 }
@@ -164,9 +164,9 @@ impl Tails {
                     continue;
                 }
                 *count += 1;
-                self.references.as_mut_ptr().add(lane).cast::<u32>().add(place).write(tail.0);
+                self.references.as_mut_ptr().cast::<u32>().add(place * RAYS + lane).write(tail.0);
                 let enter = (*enters.at(lane)).to_bits();
-                self.enters.as_mut_ptr().add(lane).cast::<u32>().add(place).write(enter);
+                self.enters.as_mut_ptr().cast::<u32>().add(place * RAYS + lane).write(enter);
             }
         }
         full

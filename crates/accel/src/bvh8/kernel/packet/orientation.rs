@@ -156,19 +156,34 @@ unsafe fn sheared<W: Wide>([x, y, z]: [W; 3], [along_x, along_y]: [W::Mask; 2]) 
     }
 }
 
+impl<W: Wide> MixedLanes<W> {
+    /// A corner whose x is given, relative to the origins. Not a closure, which would be compiled without the level's
+    /// instructions, and called.
+    ///
+    /// # Safety
+    /// The machine must have the level, and the number must belong to a block.
+    #[inline(always)]
+    unsafe fn corner(self, packet: &Packet, from: usize, x: *const f32) -> [W; 3] {
+        // SAFETY: as the caller promises; the numbers along the other axes are three rows of four further on, and six.
+        unsafe {
+            let (y, z) = (x.add(3 * LANES), x.add(6 * LANES));
+            let x = W::splat(*x).sub(W::load(packet.origin[0].at(from)));
+            let y = W::splat(*y).sub(W::load(packet.origin[1].at(from)));
+            let z = W::splat(*z).sub(W::load(packet.origin[2].at(from)));
+            sheared::<W>([x, y, z], self.steep)
+        }
+    }
+}
+
 impl<W: Wide> Orientation<W> for MixedLanes<W> {
     // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn corners(self, packet: &Packet, from: usize, block: *const u8, lane: usize) -> Corners<W> {
         // SAFETY: as the trait demands.
         unsafe {
-            let origin = |axis: usize| W::load(packet.origin[axis].at(from));
-            let origin = [origin(0), origin(1), origin(2)];
-            let corner = |k: usize| {
-                let away = |axis: usize| splat::<W>(block, axis, k, lane).sub(origin[axis]);
-                sheared::<W>([away(0), away(1), away(2)], self.steep)
-            };
-            let [a, b, c] = [corner(0), corner(1), corner(2)];
+            let a = self.corner(packet, from, block.cast::<f32>().add(lane));
+            let b = self.corner(packet, from, block.cast::<f32>().add(LANES + lane));
+            let c = self.corner(packet, from, block.cast::<f32>().add(2 * LANES + lane));
             [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
         }
     }
