@@ -125,7 +125,9 @@ impl Tails {
             let from_enters = self.enters.as_ptr().cast::<u32>().add(lane);
             let (references, enters) = (stack.references(), stack.distances());
             let mut size = 0;
-            for tail in 0..usize::from(*self.counts.as_ptr().add(lane)) {
+            let count = usize::from(*self.counts.as_ptr().add(lane));
+            for tail in 0..count {
+                let tail = if ANY { count - 1 - tail } else { tail };
                 let (reference, enter) = (*from_references.add(tail * RAYS), *from_enters.add(tail * RAYS));
                 if enter > limit_bits {
                     continue;
