@@ -18,7 +18,7 @@ use crate::ray::{Hit, Query, Ray};
 /// Rays in traversal at once.
 const RAYS_IN_FLIGHT: usize = 8;
 
-/// Units of a tree that fit into the near caches: a megabyte and a half.
+/// Units of a tree that fit into the near caches: four megabytes.
 const NEAR_UNITS: usize = 8 << 14;
 
 /// Answers the rays of a packet that are regular.

@@ -1,9 +1,12 @@
-//! Incoherent rays: up to 64 of them on one path through the upper levels of the tree.
+//! Incoherent rays: up to 64 of them traverse the upper levels of the tree together.
 //!
-//! Each entry of the stack is a node or a leaf with a mask of the rays that hit its box. A node is tested by those
-//! rays, a group at a time; a leaf's triangles one by one, by a group at a time. The deeper the walk, the fewer rays
-//! share an entry. Where they are so few that lanes would be wasted, the entry becomes a *tail* of each: a subtree
-//! that the ray visits later, on its own, if it has found nothing nearer by then.
+//! Each entry of the stack is a node or a leaf with a mask of the rays that hit its box. A node is tested against
+//! those rays, a group at a time, and so is each triangle of a leaf. The deeper the traversal, the fewer rays share an
+//! entry. Where they are so few that most lanes would be idle, the entry becomes a *tail* of each of them: a subtree
+//! that the ray visits afterwards, on its own, unless it has found something nearer by then.
+//!
+//! The boxes are tested as in [`super::super::lane_ray`], and the triangles as in [`super::super::block`], operation by
+//! operation. So the hits are the same.
 
 use super::super::TreeView;
 use super::super::body::{prefetch, reference};
@@ -20,18 +23,25 @@ use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
 use crate::ray::{Hit, Query};
 use std::mem::MaybeUninit;
 
-/// Fewer rays than this visit a node one by one.
+/// Fewer rays than this visit a node one by one. A node costs a packet the same whether one or all rays of a group hit
+/// it; any number from 8 to 24 is as fast.
 const LEAST_AT_NODE: u32 = 16;
 
-/// Fewer rays than this visit a leaf one by one.
+/// Fewer rays than this visit a leaf one by one: a ray on its own tests four triangles at once. Any number from 4 to 9
+/// is as fast.
 const LEAST_AT_LEAF: u32 = 6;
 
-/// Tails of a ray. One that has as many stays in the shared walk, however few rays are with it.
+/// Maximum number of tails of a ray; most have one to three. A ray that has as many stays in the shared traversal,
+/// however few rays are with it.
 const TAILS: usize = 24;
+
+// All tails of a ray fit onto its stack, with space for another node's children.
+const _: () = assert!(TAILS + WIDTH <= CAPACITY);
 
 /// What is left to do for each ray.
 pub(in crate::bvh8::kernel) struct Tails {
     counts: [u8; RAYS],
+    /// The first tail of each ray, then the second of each, and so on.
     references: [MaybeUninit<[u32; RAYS]>; TAILS],
     /// The bits of the distances at which the ray enters them.
     enters: [MaybeUninit<[u32; RAYS]>; TAILS],
@@ -45,7 +55,7 @@ type Entry = (Ref, u64);
 /// For each child of a node, the distance at which each ray enters its box.
 type Enters = [Row<f32>; WIDTH];
 
-/// The shared walk.
+/// A packet in traversal.
 struct Walk<'p> {
     packet: &'p mut Packet,
     mixed: Mixed,
@@ -56,7 +66,7 @@ struct Walk<'p> {
 }
 
 impl Packet {
-    /// Traces the regular rays of a packet as far as they share their path; what is left of each becomes its tails.
+    /// Traces the regular rays of a packet as far as they share nodes and leaves; the rest becomes their tails.
     ///
     /// # Safety
     /// The machine must have the level, the view must be sound, and the packet must be prepared.
@@ -106,8 +116,8 @@ impl Tails {
         }
     }
 
-    /// Puts the tails of a ray onto an empty stack, except those beyond its limit. Where the order matters, nearer
-    /// ones come on top.
+    /// Puts the tails of a ray onto an empty stack, except those beyond its limit: the nearest on top or, where any hit
+    /// is enough, the first.
     ///
     /// # Safety
     /// The lane must be one of a packet.
@@ -119,7 +129,7 @@ impl Tails {
         stack: &mut Stack,
     ) {
         // SAFETY: as the caller promises; as many tails have been written as are counted, and a stack has space for
-        // more than that.
+        // all of them.
         unsafe {
             let from_references = self.references.as_ptr().cast::<u32>().add(lane);
             let from_enters = self.enters.as_ptr().cast::<u32>().add(lane);
@@ -191,7 +201,8 @@ impl Walk<'_> {
         let mut enters: Enters = [const { Row::uninit() }; WIDTH];
         let (mut top, mut current, mut mask) = (0, view.outline.root, all);
         // SAFETY: as the caller promises; references lead to whole nodes and leaves, everything below the top of the
-        // stack has been written, and each node on the way down leaves at most seven others there.
+        // stack has been written. Each node on the way down leaves at most seven others there, so a tree is never too
+        // deep for it.
         unsafe {
             if are_few(current, mask) {
                 // No box has been tested, so nothing is known of the distance.

@@ -5,6 +5,8 @@
 //! its turn comes, by which time it is often behind what they have hit; for a node, one group of rays that hits it is
 //! enough. Triangles are tested one by one, by a group of rays at a time [Wald 2001], [Overbeck 2008].
 //!
+//! Rays that are not coherent share the upper levels only: see [`masked`].
+//!
 //! All of this skips only what [`super::body`] would skip too, or less; the triangle test is the same, operation by
 //! operation. So the hits are the same.
 

@@ -125,7 +125,7 @@ impl Wide for __m512 {
         copy_sign(self, of: Self) -> Self = _mm512_or_ps(self, _mm512_and_ps(of, _mm512_set1_ps(-0.0)));
         by_sign(self, plus: Self, minus: Self) -> Self =
             _mm512_mask_blend_ps(_mm512_movepi32_mask(_mm512_castps_si512(self)), plus, minus);
-        mask(bits: u32) -> __mmask16 = bits as __mmask16;
+        mask(bits: u32) -> __mmask16 = _cvtu32_mask16(bits);
         select(self, mask: __mmask16, other: Self) -> Self = _mm512_mask_blend_ps(mask, self, other);
         signs(self) -> u32 = u32::from(_mm512_movepi32_mask(_mm512_castps_si512(self)));
         lt(self, other: Self) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self, other));
