@@ -29,20 +29,6 @@ impl BatchLevel for Avx2 {
 
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let top = _mm_cvtsi32_si128(63 - bit as i32);
-            let four = |from: usize| {
-                let masks = _mm256_loadu_si256(masks.as_ptr().add(from).cast());
-                _mm256_movemask_pd(_mm256_castsi256_pd(_mm256_sll_epi64(masks, top))) as u32
-            };
-            four(0) | four(4) << 4
-        }
-    }
-
-    // SAFETY: as the trait demands.
-    #[inline(always)]
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {

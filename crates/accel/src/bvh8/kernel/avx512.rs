@@ -49,16 +49,6 @@ impl Level for Avx512 {
 impl BatchLevel for Avx512 {
     type Wide = __m512;
 
-    // SAFETY: as the trait demands.
-    #[inline(always)]
-    unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let masks = _mm512_loadu_si512(masks.as_ptr().cast());
-            u32::from(_mm512_test_epi64_mask(masks, _mm512_set1_epi64(1 << bit)))
-        }
-    }
-
     // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {

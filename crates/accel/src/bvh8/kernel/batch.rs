@@ -41,9 +41,9 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
                 if !packet::each::<L, ANY>(view, (&mut packet, &ready), chunk, query, &mut answer) {
                     irregular::<ANY>(view, (ready.irregular, chunk), query, &mut answer);
                     if query.is_plain() {
-                        stream::each::<L, ANY, true>(view, (&packet, &ready), chunk, query, &mut answer);
+                        stream::each::<L, ANY, true>(view, (&mut packet, &ready), chunk, query, &mut answer);
                     } else {
-                        stream::each::<L, ANY, false>(view, (&packet, &ready), chunk, query, &mut answer);
+                        stream::each::<L, ANY, false>(view, (&mut packet, &ready), chunk, query, &mut answer);
                     }
                 }
             }

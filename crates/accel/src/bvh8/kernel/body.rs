@@ -79,32 +79,53 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::prepare(ray, &view) {
-            Some(lane_ray) => search::<L, F, C, PLAIN>(view, (ray, &lane_ray, 0), query, count),
+            Some(lane_ray) => {
+                let mut storage = StackStorage::uninit();
+                let start = Start::at_root(&view, ray, &lane_ray, &mut storage);
+                search::<L, F, C, PLAIN>(view, (ray, &lane_ray), start, query, count)
+            }
             None => plain::closest::<F, C>(view, ray, query, count),
         }
     }
 }
 
-/// The nearest hit of a ray that is prepared for boxes. `root_hits` says which children of the root it hits; 0 means
-/// that this is unknown.
+/// Where a search begins.
+pub(super) struct Start {
+    pub(super) current: Ref,
+    /// What comes later.
+    pub(super) stack: Stack,
+    /// The nearest hit so far.
+    pub(super) nearest: Hit,
+    /// The bits of the distance up to which nodes count.
+    pub(super) limit_bits: u32,
+}
+
+impl Start {
+    /// At the root, with an empty stack.
+    #[inline(always)]
+    fn at_root(view: &TreeView<'_>, ray: &Ray, boxes: &impl Boxes, storage: &mut StackStorage) -> Start {
+        let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
+        let limit_bits = boxes.limit_bits(nearest.t);
+        Start { current: view.outline.root, stack: Stack::new(storage), nearest, limit_bits }
+    }
+}
+
+/// The nearest hit of a ray that is prepared for boxes.
 ///
 /// # Safety
-/// As for [`closest`]; the ray must be regular.
+/// As for [`closest`]; the ray must be regular, and the start must hold references of the tree.
 #[inline(always)]
 pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     view: TreeView<'_>,
-    (ray, lane_ray, root_hits): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
+    (ray, lane_ray): (&Ray, &impl Boxes<Eight = L::Eight>),
+    start: Start,
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();
-        let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
-        let mut storage = StackStorage::uninit();
-        let mut stack = Stack::new(&mut storage);
-        let mut current = start::<F>(base, view.outline.root, root_hits);
-        let mut limit_bits = lane_ray.limit_bits(nearest.t);
+        let Start { mut current, mut stack, mut nearest, mut limit_bits } = start;
         let mut limit = L::splat(limit_bits);
         loop {
             count.node();
@@ -140,40 +161,6 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
     }
 }
 
-/// Where a search begins: at the root, or at the only child that the ray hits.
-///
-/// # Safety
-/// `root` must be a root.
-#[inline(always)]
-pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, root_hits: u32) -> Ref {
-    if root_hits != 0 && root_hits & (root_hits - 1) == 0 {
-        // SAFETY: hits are known only for nodes.
-        return unsafe { reference::<F>(base.add(root.byte()), root_hits.trailing_zeros() as usize) };
-    }
-    root
-}
-
-/// The same where the order does not matter.
-///
-/// # Safety
-/// The machine must have the level, and `root` must be a root.
-#[inline(always)]
-pub(super) unsafe fn start_any<L: Level, F: NodeFormat>(
-    base: *const u8,
-    root: Ref,
-    root_hits: u32,
-    stack: &mut Stack,
-) -> Ref {
-    if root_hits == 0 {
-        return root;
-    }
-    // SAFETY: as above.
-    unsafe {
-        L::push::<F>(base.add(root.byte()), root_hits, stack);
-        stack.take_reference()
-    }
-}
-
 /// See [`super::any`].
 ///
 /// # Safety
@@ -188,30 +175,33 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::prepare(ray, &view) {
-            Some(lane_ray) => search_any::<L, F, C, PLAIN>(view, (ray, &lane_ray, 0), query, count),
+            Some(lane_ray) => {
+                let mut storage = StackStorage::uninit();
+                let start = Start::at_root(&view, ray, &lane_ray, &mut storage);
+                search_any::<L, F, C, PLAIN>(view, (ray, &lane_ray), start, query, count)
+            }
             None => plain::any::<F, C>(view, ray, query, count),
         }
     }
 }
 
-/// Whether a ray that is prepared for boxes hits anything; `root_hits` is as in [`search`].
+/// Whether a ray that is prepared for boxes hits anything.
 ///
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
 pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     view: TreeView<'_>,
-    (ray, lane_ray, root_hits): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
+    (ray, lane_ray): (&Ray, &impl Boxes<Eight = L::Eight>),
+    start: Start,
     query: &Query,
     count: &mut C,
 ) -> bool {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();
-        let mut storage = StackStorage::uninit();
-        let mut stack = Stack::new(&mut storage);
-        let mut current = start_any::<L, F>(base, view.outline.root, root_hits, &mut stack);
-        let limit = L::splat(lane_ray.limit_bits(ray.t_max));
+        let Start { mut current, mut stack, limit_bits, .. } = start;
+        let limit = L::splat(limit_bits);
         loop {
             count.node();
             let place = base.add(current.byte());

@@ -93,8 +93,6 @@ pub(in crate::bvh8) trait Level {
 pub(super) trait BatchLevel: Level<Eight = __m256i> {
     /// The vector type that holds a group of rays.
     type Wide: Wide;
-    /// One bit of each of eight masks.
-    unsafe fn column(masks: &[u64; WIDTH], bit: usize) -> u32;
     // SAFETY: as the trait says.
     /// Pushes the node onto the stack once for each child of the mask, the nearest on top; the last three bits of the
     /// distance say which child.

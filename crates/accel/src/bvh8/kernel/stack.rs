@@ -5,7 +5,7 @@ use crate::bvh8::layout::{Ref, WIDTH};
 use std::mem::MaybeUninit;
 
 /// Every node on the way down leaves at most seven others on the stack; a whole vector is written at the top.
-const CAPACITY: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
+pub(super) const CAPACITY: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
 /// Memory of a stack: first the references, then the distances at which the ray enters each. It is not initialised,
 /// because clearing it would take as long as a short ray.

@@ -1,25 +1,25 @@
-//! Incoherent rays, each on its own path.
+//! Incoherent rays: together as far as they share their path, then each on its own.
 //!
 //! Where the tree is larger than the near caches, several rays are traversed at once: a step takes a ray through one
 //! node or leaf, prefetches what comes next, and hands over to the next ray, which proceeds while the first would
 //! wait.
 
 use super::batch::SOMETHING;
-use super::body::{self, choose, prefetch, start, start_any};
+use super::body::{self, Start, choose, prefetch};
 use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
-use super::packet::{Lane, Packet, Ready};
+use super::packet::{Lane, Packet, Ready, Tails};
 use super::stack::{Stack, StackStorage};
 use super::{TreeView, leaf};
-use crate::bvh8::layout::{Ref, WIDTH};
+use crate::bvh8::layout::Ref;
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
 /// Rays in traversal at once.
 const RAYS_IN_FLIGHT: usize = 8;
 
-/// Units of a tree that fit into the near caches: a megabyte and a half.
-const NEAR_UNITS: usize = 3 << 14;
+/// Units of a tree that fit into the near caches: four megabytes.
+const NEAR_UNITS: usize = 8 << 14;
 
 /// Answers the rays of a packet that are regular.
 ///
@@ -28,66 +28,94 @@ const NEAR_UNITS: usize = 3 << 14;
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     view: TreeView<'_>,
-    (packet, ready): (&Packet, &Ready),
+    (packet, ready): (&mut Packet, &Ready),
     rays: &[Ray],
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
-    let base = view.units.as_ptr().cast::<u8>();
-    let mut left = ready.regular & ready.asked;
-    let mut children = [0; WIDTH];
+    let mut tails = Tails::new();
     // SAFETY: as the caller promises.
+    unsafe { packet.walk_together::<L, ANY>(&view, ready, query, &mut tails) };
+    let mut rest = Rest { packet, ready, rays, tails: &tails, left: ready.regular & ready.asked };
+    // SAFETY: as the caller promises; the packet has been walked together.
     unsafe {
-        if view.outline.root.is_node() {
-            // The root, with all of them at once.
-            children = packet.intersect_all_children::<L::Wide>(base.add(view.outline.root.byte()), ready);
-            let [a, b, c, d, e, f, g, h] = children;
-            let mut misses = left & !(a | b | c | d | e | f | g | h);
-            left &= !misses;
-            while misses != 0 {
-                answer(misses.trailing_zeros() as usize, None);
-                misses &= misses - 1;
-            }
-        }
-        let mut next = || {
-            let index = left.trailing_zeros() as usize;
-            left &= left.wrapping_sub(1);
-            let lane = |index| (packet.lane(index, ready), L::column(&children, index));
-            (index < rays.len()).then(|| (index, &rays[index], lane(index)))
-        };
         if view.units.len() > NEAR_UNITS {
-            return interleaved::<L, ANY, PLAIN>(view, &mut next, query, answer);
+            return interleaved::<L, ANY, PLAIN>(view, &mut rest, query, answer);
         }
-        while let Some((index, ray, (lane, root_hits))) = next() {
+        let mut storage = StackStorage::uninit();
+        while let Some((index, lane, start)) = rest.next::<ANY>(Stack::new(&mut storage), answer) {
+            let ray = (&rays[index], &lane);
             answer(
                 index,
                 if ANY {
                     let found = body::search_any::<L, Wide, NoCounters, PLAIN>(
                         view,
-                        (ray, &lane, root_hits),
+                        ray,
+                        start,
                         query,
                         &mut NoCounters,
                     );
                     found.then_some(SOMETHING)
                 } else {
-                    body::search::<L, Wide, NoCounters, PLAIN>(
-                        view,
-                        (ray, &lane, root_hits),
-                        query,
-                        &mut NoCounters,
-                    )
+                    body::search::<L, Wide, NoCounters, PLAIN>(view, ray, start, query, &mut NoCounters)
                 },
             );
         }
     }
 }
 
+/// The rays of a packet that have been walked together, and still need an answer.
+struct Rest<'p> {
+    packet: &'p Packet,
+    ready: &'p Ready,
+    rays: &'p [Ray],
+    tails: &'p Tails,
+    /// A bit for each.
+    left: u64,
+}
+
+impl<'p> Rest<'p> {
+    /// Answers rays that need no search of their own; returns the first that does, with its index. The stack must be
+    /// empty.
+    ///
+    /// # Safety
+    /// The packet must have been walked together.
+    #[inline(always)]
+    unsafe fn next<const ANY: bool>(
+        &mut self,
+        mut stack: Stack,
+        answer: &mut impl FnMut(usize, Option<Hit>),
+    ) -> Option<(usize, Lane<'p>, Start)> {
+        while self.left != 0 {
+            let index = self.left.trailing_zeros() as usize;
+            self.left &= self.left - 1;
+            if ANY && self.tails.found >> index & 1 == 1 {
+                answer(index, Some(SOMETHING));
+                continue;
+            }
+            // SAFETY: as the caller promises.
+            unsafe {
+                let (nearest, limit_bits) = self.packet.found(index);
+                self.tails.fill::<ANY>(index, limit_bits, &mut stack);
+                if stack.is_empty() {
+                    answer(index, (nearest.primitive != u32::MAX).then_some(nearest));
+                    continue;
+                }
+                let current = stack.take_reference();
+                let lane = self.packet.lane(index, self.ready);
+                return Some((index, lane, Start { current, stack, nearest, limit_bits }));
+            }
+        }
+        None
+    }
+}
+
 /// # Safety
 /// As for [`each`].
 #[inline(always)]
-unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
+unsafe fn interleaved<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     view: TreeView<'_>,
-    next: &mut impl FnMut() -> Option<Next<'r>>,
+    rest: &mut Rest<'_>,
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
@@ -96,9 +124,11 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     let mut walks = [const { None::<Walk<'_>> }; RAYS_IN_FLIGHT];
     let mut active = 0;
     for storage in &mut storages {
-        let Some(ray) = next() else { break };
         // SAFETY: as the caller promises.
-        walks[active] = Some(unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, Stack::new(storage)) });
+        let Some(walk) = (unsafe { Walk::next::<ANY>(base, rest, Stack::new(storage), answer) }) else {
+            break;
+        };
+        walks[active] = Some(walk);
         active += 1;
     }
     let mut slot = 0;
@@ -111,9 +141,12 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
             continue;
         }
         answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
-        match next() {
-            // SAFETY: as the caller promises.
-            Some(ray) => *walk = unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, walk.stack.cleared()) },
+        // SAFETY: as the caller promises.
+        match unsafe { Walk::next::<ANY>(base, rest, walk.stack.cleared(), answer) } {
+            Some(next) => {
+                *walk = next;
+                slot += 1;
+            }
             None => {
                 active -= 1;
                 walks.swap(slot, active);
@@ -121,9 +154,6 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         }
     }
 }
-
-/// A ray's index, the ray itself, the ray prepared for boxes, and the children of the root that it hits.
-type Next<'r> = (usize, &'r Ray, (Lane<'r>, u32));
 
 /// A ray in traversal.
 struct Walk<'r> {
@@ -141,23 +171,17 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn new<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
-        view: &TreeView<'_>,
-        (index, ray, (lane, root_hits)): Next<'r>,
-        mut stack: Stack,
-    ) -> Walk<'r> {
-        let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
-        let limit_bits = lane.limit_bits(nearest.t);
+    unsafe fn next<const ANY: bool>(
+        base: *const u8,
+        rest: &mut Rest<'r>,
+        stack: Stack,
+        answer: &mut impl FnMut(usize, Option<Hit>),
+    ) -> Option<Walk<'r>> {
         // SAFETY: as the caller promises.
-        let current = unsafe {
-            let base = view.units.as_ptr().cast::<u8>();
-            if ANY {
-                start_any::<L, Wide>(base, view.outline.root, root_hits, &mut stack)
-            } else {
-                start::<Wide>(base, view.outline.root, root_hits)
-            }
-        };
-        Walk { index, ray, lane, nearest, limit_bits, current, stack }
+        let (index, lane, start) = unsafe { rest.next::<ANY>(stack, answer)? };
+        prefetch::<Wide>(base, start.current);
+        let Start { current, stack, nearest, limit_bits } = start;
+        Some(Walk { index, ray: &rest.rays[index], lane, nearest, limit_bits, current, stack })
     }
 
     /// One node or leaf; false when none is left.
@@ -189,7 +213,7 @@ impl<'r> Walk<'r> {
             } else if self.leaf::<L, ANY, PLAIN>(place, query) {
                 return false;
             }
-            self.next::<ANY>(base)
+            self.advance::<ANY>(base)
         }
     }
 
@@ -225,7 +249,7 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn next<const ANY: bool>(&mut self, base: *const u8) -> bool {
+    unsafe fn advance<const ANY: bool>(&mut self, base: *const u8) -> bool {
         while !self.stack.is_empty() {
             // SAFETY: the stack is not empty; the entries of an any-hit search have no distance.
             unsafe {

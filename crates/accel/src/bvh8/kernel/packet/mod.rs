@@ -5,15 +5,20 @@
 //! its turn comes, by which time it is often behind what they have hit; for a node, one group of rays that hits it is
 //! enough. Triangles are tested one by one, by a group of rays at a time [Wald 2001], [Overbeck 2008].
 //!
+//! Rays that are not coherent share the upper levels only: see [`masked`].
+//!
 //! All of this skips only what [`super::body`] would skip too, or less; the triangle test is the same, operation by
 //! operation. So the hits are the same.
 
 mod frustum;
+mod masked;
+mod orientation;
 mod rays;
 mod ready;
 mod triangle;
 mod wide;
 
+pub(super) use masked::Tails;
 pub(super) use rays::{Packet, RAYS};
 pub(super) use ready::{Lane, Ready};
 pub(super) use wide::{Wide, declare, define};
@@ -186,7 +191,7 @@ impl Walk<'_> {
                 if mask == 0 {
                     continue;
                 }
-                let mut group = Group::<W>::new(self.packet, &self.frustum, self.query, from);
+                let mut group = Group::<W, _>::new(self.packet, &self.frustum, self.query, from);
                 let mut hits = 0;
                 for index in 0..leaf.blocks() {
                     let block = base.add(leaf.byte() + index * block_bytes::<node_format::Wide>());

@@ -16,6 +16,11 @@ pub(super) struct Row<T>(MaybeUninit<[T; RAYS]>);
 
 impl<T> Row<T> {
     #[inline(always)]
+    pub(super) const fn uninit() -> Row<T> {
+        Row(MaybeUninit::uninit())
+    }
+
+    #[inline(always)]
     pub(super) fn at(&self, lane: usize) -> *const T {
         self.0.as_ptr().cast::<T>().wrapping_add(lane)
     }
@@ -23,6 +28,13 @@ impl<T> Row<T> {
     #[inline(always)]
     pub(super) fn at_mut(&mut self, lane: usize) -> *mut T {
         self.0.as_mut_ptr().cast::<T>().wrapping_add(lane)
+    }
+}
+
+impl Row<f32> {
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.0.write([0.0; RAYS]);
     }
 }
 
@@ -46,6 +58,8 @@ pub(in crate::bvh8::kernel) struct Packet {
     pub(super) nearest: Row<f32>,
     pub(super) limit: Row<f32>,
     pub(super) shear: [Row<f32>; 2],
+    /// The direction along the steepest axis, where rays do not share it.
+    pub(super) depth: Row<f32>,
     pub(super) u: Row<f32>,
     pub(super) v: Row<f32>,
     pub(super) primitive: Row<u32>,

@@ -62,41 +62,39 @@ impl Packet {
         ready
     }
 
-    /// For each child of a node, a bit for each ray that hits its box.
+    /// Tests a group of rays against the children of a node: sets a bit for each ray that hits a box, and writes the
+    /// distances at which the rays enter them.
     ///
     /// # Safety
     /// The machine must have the level, the packet must be prepared, and `node` must point to a node.
     #[inline(always)]
-    pub(in crate::bvh8::kernel) unsafe fn intersect_all_children<W: Wide>(
+    pub(super) unsafe fn intersect_children<W: Wide>(
         &self,
         node: *const u8,
-        ready: &Ready,
-    ) -> [u64; WIDTH] {
-        let mut children = [0; WIDTH];
+        from: usize,
+        children: &mut [u64; WIDTH],
+        enters: &mut [Row<f32>; WIDTH],
+    ) {
         // SAFETY: as the caller promises.
         unsafe {
-            for number in 0..ready.lanes / W::LANES {
-                let from = number * W::LANES;
-                let load = |row: &Row<f32>| W::load(row.at(from));
-                let three = |rows: &[Row<f32>; 3]| [load(&rows[0]), load(&rows[1]), load(&rows[2])];
-                let (direction, inverse) = (three(&self.direction), three(&self.inverse));
-                let (enter_bias, leave_bias) = (three(&self.enter_bias), three(&self.leave_bias));
-                let (nearest, limit) = (load(&self.nearest), load(&self.limit));
-                for child in 0..WIDTH {
-                    let plane = |row: usize| W::splat(*node.add(row * 32 + child * 4).cast::<f32>());
-                    let (mut enter, mut leave) = (nearest, limit);
-                    for k in 0..3 {
-                        let (low, high) = (plane(k), plane(k + 3));
-                        let (first, last) =
-                            (direction[k].by_sign(low, high), direction[k].by_sign(high, low));
-                        enter = enter.max(first.fmadd(inverse[k], enter_bias[k]));
-                        leave = leave.min(last.fmadd(inverse[k], leave_bias[k]));
-                    }
-                    children[child] |= u64::from(enter.le(leave)) << from;
-                }
+            let load = |row: &Row<f32>| W::load(row.at(from));
+            let three = |rows: &[Row<f32>; 3]| [load(&rows[0]), load(&rows[1]), load(&rows[2])];
+            let (direction, inverse) = (three(&self.direction), three(&self.inverse));
+            let (enter_bias, leave_bias) = (three(&self.enter_bias), three(&self.leave_bias));
+            let (nearest, limit) = (load(&self.nearest), load(&self.limit));
+            for child in 0..WIDTH {
+                let plane = |row: usize| W::splat(*node.add(row * 32 + child * 4).cast::<f32>());
+                let first =
+                    |k: usize| direction[k].by_sign(plane(k), plane(k + 3)).fmadd(inverse[k], enter_bias[k]);
+                let last =
+                    |k: usize| direction[k].by_sign(plane(k + 3), plane(k)).fmadd(inverse[k], leave_bias[k]);
+                // The minimum distance comes last: of two zeros, `max` returns the second, which has no sign.
+                let enter = first(0).max(first(1)).max(first(2)).max(nearest);
+                let leave = last(0).min(last(1)).min(last(2)).min(limit);
+                enter.store(enters[child].at_mut(from));
+                children[child] |= u64::from(enter.le(leave)) << from;
             }
         }
-        children
     }
 
     /// One of the rays.

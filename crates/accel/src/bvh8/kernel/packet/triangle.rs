@@ -1,15 +1,15 @@
 //! One triangle and a group of rays, operation by operation as in [`super::super::block`].
 
-use super::frustum::Frustum;
+use super::orientation::{Corners, Orientation};
 use super::rays::{Packet, RAYS};
-use super::wide::{Half, Narrow, Wide};
+use super::wide::{Float, Half, Narrow, Wide};
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Hit, Query};
 
 /// A group of rays at a leaf. Its nearest hit distances stay in registers from triangle to triangle.
-pub(super) struct Group<'p, W: Wide> {
+pub(super) struct Group<'p, W: Wide, O: Orientation<W>> {
     packet: &'p mut Packet,
-    frustum: &'p Frustum,
+    orientation: O,
     query: &'p Query<'p>,
     /// Its first ray.
     from: usize,
@@ -17,27 +17,22 @@ pub(super) struct Group<'p, W: Wide> {
     nearest: [Float<W>; 2],
 }
 
-type Float<W> = <<W as Wide>::Half as Half>::Narrow;
-
-/// Corners in sheared space: `[axis][corner]`.
-type Sheared<V> = [[V; 3]; 3];
-
-impl<'p, W: Wide> Group<'p, W> {
+impl<'p, W: Wide, O: Orientation<W>> Group<'p, W, O> {
     /// # Safety
     /// The machine must have the level, and the group must have been prepared.
     #[inline(always)]
     pub(super) unsafe fn new(
         packet: &'p mut Packet,
-        frustum: &'p Frustum,
+        orientation: O,
         query: &'p Query<'p>,
         from: usize,
-    ) -> Group<'p, W> {
+    ) -> Group<'p, W, O> {
         // SAFETY: as the caller promises.
         unsafe {
             let limit = W::load(packet.limit.at(from));
             let nearest =
                 [Float::<W>::load(packet.t.at(from)), Float::<W>::load(packet.t.at(from + W::LANES / 2))];
-            Group { packet, frustum, query, from, limit, nearest }
+            Group { packet, orientation, query, from, limit, nearest }
         }
     }
 
@@ -58,11 +53,7 @@ impl<'p, W: Wide> Group<'p, W> {
             let mixed = u.min(v).min(w).lt(zero) & zero.lt(u.max(v).max(w));
             // Rejects triangles wholly behind the ray's nearest hit: the exact distance is a mean of those of the
             // corners.
-            let near = if self.frustum.down[self.frustum.axes[2]] {
-                zero.sub(z[0].max(z[1]).max(z[2]))
-            } else {
-                z[0].min(z[1]).min(z[2])
-            };
+            let near = self.orientation.least_distance(self.packet, self.from, z);
             let mask = mask & !mixed & near.le(self.limit);
             if mask == 0 {
                 return 0;
@@ -85,19 +76,14 @@ impl<'p, W: Wide> Group<'p, W> {
     /// # Safety
     /// As for [`Group::test`].
     #[inline(always)]
-    unsafe fn shear(&self, block: *const u8, lane: usize) -> Sheared<W> {
-        let (axes, packet, from) = (self.frustum.axes, &*self.packet, self.from);
-        // SAFETY: as the caller promises; a block holds nine rows of four numbers.
+    unsafe fn shear(&self, block: *const u8, lane: usize) -> Corners<W> {
+        let (packet, from) = (&*self.packet, self.from);
+        // SAFETY: as the caller promises.
         unsafe {
-            let corner = |axis: usize, corner: usize| {
-                let row = block.add(axes[axis] * 3 * LANES * 4).cast::<f32>();
-                let origin = W::load(packet.origin[axes[axis]].at(from));
-                W::splat(*row.add(corner * LANES + lane)).sub(origin)
-            };
-            let z = [corner(2, 0), corner(2, 1), corner(2, 2)];
-            let lean =
-                |axis: usize, k: usize| corner(axis, k).sub(W::load(packet.shear[axis].at(from)).mul(z[k]));
-            [[lean(0, 0), lean(0, 1), lean(0, 2)], [lean(1, 0), lean(1, 1), lean(1, 2)], z]
+            let [x, y, z] = self.orientation.corners(packet, from, block, lane);
+            let shear = [W::load(packet.shear[0].at(from)), W::load(packet.shear[1].at(from))];
+            let lean = |numbers: [W; 3], axis: usize, k: usize| numbers[k].sub(shear[axis].mul(z[k]));
+            [[lean(x, 0, 0), lean(x, 0, 1), lean(x, 0, 2)], [lean(y, 1, 0), lean(y, 1, 1), lean(y, 1, 2)], z]
         }
     }
 
@@ -108,7 +94,7 @@ impl<'p, W: Wide> Group<'p, W> {
     #[inline(always)]
     unsafe fn cross<const HALF: usize, const ANY: bool>(
         &mut self,
-        [x, y, z]: Sheared<W::Half>,
+        [x, y, z]: Corners<W::Half>,
         block: *const u8,
         lane: usize,
         mask: u32,
@@ -126,8 +112,7 @@ impl<'p, W: Wide> Group<'p, W> {
             // Not zero, not infinite and not NaN.
             let sound = (below & zero.sub(infinity).lt(det)) | (above & det.lt(infinity));
             let along = u.mul(z[0]).add(v.mul(z[1])).add(w.mul(z[2]));
-            let steep = self.frustum.axes[2];
-            let depth = W::Half::widen(Float::<W>::load(self.packet.direction[steep].at(from)));
+            let depth = W::Half::widen(self.orientation.depth(self.packet, from));
             let t = along.div(det.mul(depth)).narrow();
             let primitive = *block.add((9 * LANES + lane) * 4).cast::<u32>();
             let nearest = self.nearest[HALF];
@@ -135,7 +120,7 @@ impl<'p, W: Wide> Group<'p, W> {
             mask &= Float::<W>::load(self.packet.t_min.at(from)).le(t);
             mask &= !Float::<W>::places(primitive, self.packet.exclude.at(from));
             if self.query.culling == Culling::Back {
-                mask &= if self.frustum.down[steep] { below } else { !below };
+                mask &= !(below ^ self.orientation.down(from));
             }
             if mask != 0 && self.query.filter.is_some() {
                 mask = self.apply_filter(primitive, t, v.div(det).narrow(), w.div(det).narrow(), mask);

@@ -27,6 +27,8 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
     const LANES: usize;
     /// A vector of half the lanes, in double precision.
     type Half: Half;
+    /// A choice for each lane.
+    type Mask: Copy;
 
     declare! {
         splat(x: f32) -> Self;
@@ -45,6 +47,9 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
         copy_sign(self, of: Self) -> Self;
         // The second where this is negative, else the first.
         by_sign(self, plus: Self, minus: Self) -> Self;
+        mask(bits: u32) -> Self::Mask;
+        // The other where the mask is set.
+        select(self, mask: Self::Mask, other: Self) -> Self;
         // A bit for each lane with a set sign bit.
         signs(self) -> u32;
         lt(self, other: Self) -> u32;
@@ -55,6 +60,9 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
         upper_half(self) -> Self::Half;
     }
 }
+
+/// Half a vector's lanes, in single precision.
+pub(super) type Float<W> = <<W as Wide>::Half as Half>::Narrow;
 
 /// Doubles.
 ///
@@ -100,6 +108,7 @@ pub(in crate::bvh8::kernel) trait Narrow: Copy {
 impl Wide for __m512 {
     const LANES: usize = 16;
     type Half = __m512d;
+    type Mask = __mmask16;
 
     define! {
         splat(x: f32) -> Self = _mm512_set1_ps(x);
@@ -116,6 +125,8 @@ impl Wide for __m512 {
         copy_sign(self, of: Self) -> Self = _mm512_or_ps(self, _mm512_and_ps(of, _mm512_set1_ps(-0.0)));
         by_sign(self, plus: Self, minus: Self) -> Self =
             _mm512_mask_blend_ps(_mm512_movepi32_mask(_mm512_castps_si512(self)), plus, minus);
+        mask(bits: u32) -> __mmask16 = _cvtu32_mask16(bits);
+        select(self, mask: __mmask16, other: Self) -> Self = _mm512_mask_blend_ps(mask, self, other);
         signs(self) -> u32 = u32::from(_mm512_movepi32_mask(_mm512_castps_si512(self)));
         lt(self, other: Self) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self, other));
         le(self, other: Self) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self, other));
@@ -159,6 +170,7 @@ impl Narrow for __m256 {
 impl Wide for __m256 {
     const LANES: usize = 8;
     type Half = __m256d;
+    type Mask = __m256;
 
     define! {
         splat(x: f32) -> Self = _mm256_set1_ps(x);
@@ -174,6 +186,12 @@ impl Wide for __m256 {
         abs(self) -> Self = _mm256_andnot_ps(_mm256_set1_ps(-0.0), self);
         copy_sign(self, of: Self) -> Self = _mm256_or_ps(self, _mm256_and_ps(of, _mm256_set1_ps(-0.0)));
         by_sign(self, plus: Self, minus: Self) -> Self = _mm256_blendv_ps(plus, minus, self);
+        mask(bits: u32) -> __m256 = {
+            let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let chosen = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lanes);
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, lanes))
+        };
+        select(self, mask: __m256, other: Self) -> Self = _mm256_blendv_ps(self, other, mask);
         signs(self) -> u32 = _mm256_movemask_ps(self) as u32;
         lt(self, other: Self) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self, other)) as u32;
         le(self, other: Self) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self, other)) as u32;
