@@ -69,8 +69,19 @@ impl Media {
     /// Afterwards these are the media on the side that the ray comes from.
     #[inline]
     pub(crate) fn closest(&mut self, tracer: &mut Tracer, ray: &Ray) -> Option<(Surface, Rgb)> {
-        let scene = tracer.scene;
         let surface = tracer.closest(ray)?;
+        self.closest_from(tracer, ray, surface)
+    }
+
+    /// The same where the first surface along the ray is known.
+    #[inline]
+    pub(crate) fn closest_from(
+        &mut self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        surface: Surface,
+    ) -> Option<(Surface, Rgb)> {
+        let scene = tracer.scene;
         let direction = Vec3::from(ray.direction);
         self.arrive(scene, &surface, direction);
         let passed = transmittance(self.sigma_a, surface.t);
@@ -100,10 +111,16 @@ impl Media {
         tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance))
     }
 
+    /// The transmittance of a ray of this length that nothing blocks, where media have no priorities.
+    #[inline]
+    pub(crate) fn unoccluded(&self, distance: f32) -> Rgb {
+        transmittance(self.sigma_a, distance)
+    }
+
     #[inline]
     fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: f32) -> Option<Rgb> {
         if !tracer.scene.has_nested() {
-            return (!tracer.occluded(ray)).then(|| transmittance(self.sigma_a, distance));
+            return (!tracer.occluded(ray)).then(|| self.unoccluded(distance));
         }
         let (mut media, mut rest, scene) = (*self, *ray, tracer.scene);
         let direction = Vec3::from(ray.direction);

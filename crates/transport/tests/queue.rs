@@ -78,6 +78,31 @@ fn every_kind_of_surface_and_light_is_the_same() {
 }
 
 #[test]
+fn every_kind_of_medium_is_the_same() {
+    let glass = |name: &str| Spec::new(name, "dielectric");
+    let (absorbing, tinted) =
+        (Rgb::new(0.1, 0.6, 2.0), glass("tinted").with("absorption", Rgb::new(2.0, 0.3, 0.1)));
+    let mut absorbs = mixed();
+    put(&mut absorbs, "tinted", ball(Vec3::new(0.0, 0.6, 1.5), 0.6, 8, true), tinted.clone());
+    assert_same("absorption", &built(&absorbs));
+    // The camera, the light and a diffuse ball are inside a block that absorbs.
+    let mut inside = mixed();
+    let block = glass("block").with("eta", 1.0f32).with("absorption", absorbing * 0.05);
+    put(&mut inside, "block", ball(Vec3::ZERO, 40.0, 6, false), block);
+    assert_same("inside", &built(&inside));
+    // Water in a glass, each with a priority; they overlap.
+    let mut nested = mixed();
+    let (centre, water) =
+        (Vec3::new(0.1, 0.7, 1.3), glass("water").with("eta", 1.33f32).with("absorption", absorbing));
+    put(&mut nested, "glass", ball(centre, 0.6, 8, true), tinted.with("priority", 2));
+    put(&mut nested, "water", ball(centre + Vec3::X * 0.2, 0.6, 8, true), water.with("priority", 1));
+    assert_same("nested", &built(&nested));
+    let mut prism = mixed();
+    put(&mut prism, "flint", ball(centre, 0.6, 8, true), glass("flint").with("dispersion", 0.05f32));
+    assert_same("dispersion", &built(&prism));
+}
+
+#[test]
 fn every_level_of_instructions_gives_the_same() {
     let at = |cpu_level: CpuLevel| {
         let mut accel = AccelChoice::default();

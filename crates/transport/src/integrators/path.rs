@@ -78,9 +78,9 @@ pub(crate) struct Walk {
     /// True while all events have been delta events: what only the camera sees may still be visible.
     pub(crate) specular: bool,
     /// The path carries a single wavelength.
-    is_split: bool,
+    pub(crate) is_split: bool,
     /// The media that the ray travels in.
-    media: Media,
+    pub(crate) media: Media,
 }
 
 /// A connection from a vertex to a sample of a light, before it is known whether something lies between.
@@ -105,7 +105,7 @@ impl LightConnection {
     #[inline]
     fn trace(&self, task: &mut Task) -> Rgb {
         match self.media.visible(task.tracer, &self.ray, self.distance, self.n_light) {
-            Some(passed) => self.light * passed * self.factor,
+            Some(passed) => self.light * self.factor * passed,
             None => Rgb::BLACK,
         }
     }

@@ -58,7 +58,9 @@ impl PathQueue {
         for chunk in hits.chunks(LANES) {
             self.gather(&mut v, &mut d, chunk, task);
             if v.count > 0 {
-                self.connect(&mut v, task, |v, level| run_at(level, Eval { v, d: &d }));
+                let eval = |v: &mut Vertices, level| run_at(level, Eval { v, d: &d });
+                // Light samples bring something only on the side that the path comes from.
+                self.connect(&mut v, task, eval, |walk, _, _| walk.media);
                 self.scatter(&mut v, &mut d, path, task);
             }
         }
@@ -68,9 +70,9 @@ impl PathQueue {
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
     fn gather(&mut self, v: &mut Vertices, d: &mut Diffuse, chunk: &[(u32, Hit)], task: &mut Task) {
         v.count = 0;
+        let is_clear = task.scene().has_clear_media();
         for (index, hit) in chunk {
             let one = &mut self.paths[*index as usize];
-            one.begin_event();
             if one.walk.depth >= task.max_depth {
                 continue;
             }
@@ -81,6 +83,14 @@ impl PathQueue {
                 self.general_hits.push((*index, *hit));
                 continue;
             }
+            if !is_clear {
+                let walk = &mut one.walk;
+                let Some((_, passed)) = walk.media.closest_from(task.tracer, &walk.ray, surface) else {
+                    continue;
+                };
+                walk.beta *= passed;
+            }
+            one.begin_event(task);
             one.sampler.enter(u64::from(one.walk.depth) + 1);
             let i = v.push(*index, &surface, wo, &one.sampler);
             put(&mut d.n_shade, i, surface.n_shade.to_array());

@@ -3,7 +3,7 @@
 use super::PathQueue;
 use super::lanes::{LANES, put, vec3};
 use super::vertices::Vertices;
-use crate::integrators::path::Path;
+use crate::integrators::path::{Path, Walk};
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -25,7 +25,11 @@ impl PathQueue {
         while begin < hits.len() {
             begin += self.arrive(&mut v, &mut g, &hits[begin..], path, task);
             if v.count > 0 {
-                self.connect(&mut v, task, |v, _: CpuLevel| g.eval(v));
+                let scene = task.scene();
+                let media = |walk: &Walk, i: usize, wi: Vec3| {
+                    walk.media.towards(scene, &g.surfaces[i], -Vec3::from(walk.ray.direction), wi)
+                };
+                self.connect(&mut v, task, |v, _: CpuLevel| g.eval(v), media);
                 self.leave(&mut v, &g, path, task);
             }
         }
@@ -42,6 +46,7 @@ impl PathQueue {
         path: &Path,
         task: &mut Task,
     ) -> usize {
+        let is_clear = task.scene().has_clear_media();
         v.count = 0;
         g.surfaces.clear();
         g.bsdfs.clear();
@@ -50,11 +55,20 @@ impl PathQueue {
                 return used;
             }
             let one = &mut self.paths[*index as usize];
-            one.begin_event();
-            let surface = task.tracer.surface(&one.walk.ray, hit);
-            task.sampler = one.sampler.clone();
+            let mut surface = task.tracer.surface(&one.walk.ray, hit);
+            if !is_clear {
+                let walk = &mut one.walk;
+                let Some((next, passed)) = walk.media.closest_from(task.tracer, &walk.ray, surface) else {
+                    one.escape(path, task);
+                    continue;
+                };
+                surface = next;
+                walk.beta *= passed;
+            }
+            (task.sampler, task.wavelength) = (one.sampler.clone(), one.wavelength);
             let wo = -Vec3::from(one.walk.ray.direction);
             let Some(bsdf) = path.arrive(&mut one.walk, &surface, task) else { continue };
+            one.begin_event(task);
             if bsdf.is_delta() {
                 path.skip_lights(task);
                 if path.scatter(&mut one.walk, &surface, &bsdf, task) {

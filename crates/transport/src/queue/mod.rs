@@ -17,7 +17,7 @@ use crate::sampler::PixelSampler;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Ray, Tracer};
+use bilux_scene::{Ray, Tracer, Wavelength};
 use diffuse::Diffuse;
 use general::General;
 use vertices::Vertices;
@@ -29,9 +29,25 @@ pub(crate) const PATHS: usize = 1024;
 struct QueuedPath {
     walk: Walk,
     sampler: PixelSampler,
-    /// Light that connections of its current vertex bring, and the throughput there.
+    wavelength: Wavelength,
+    /// Light that connections of its current vertex bring, and the throughput there, as the colour channels see it.
     direct: Rgb,
     beta: Rgb,
+}
+
+impl QueuedPath {
+    /// Starts an event: no connection has brought anything yet.
+    #[inline]
+    fn begin_event(&mut self, task: &mut Task) {
+        task.wavelength = self.wavelength;
+        (self.direct, self.beta) = (Rgb::BLACK, task.seen(self.walk.beta, self.walk.is_split));
+    }
+
+    /// The end of a path that leaves the scene.
+    fn escape(&mut self, path: &Path, task: &mut Task) {
+        task.wavelength = self.wavelength;
+        path.escape(&mut self.walk, task);
+    }
 }
 
 /// What the connection of a path's vertex with a light brings if its shadow ray hits nothing.
@@ -57,6 +73,9 @@ const LISTS: usize = 4;
 struct ConnectionList {
     rays: Vec<Ray>,
     brought: Vec<Unoccluded>,
+    /// The media at the start of each ray, and its length in metres (0 for light from infinity); none where no medium
+    /// changes light.
+    media: Vec<(Media, f32)>,
 }
 
 impl Connections {
@@ -64,15 +83,17 @@ impl Connections {
         for list in &mut self.lists {
             list.rays.clear();
             list.brought.clear();
+            list.media.clear();
         }
     }
 
     /// Adds the connection of a path's vertex with a light. Those of one vertex come in the order of the lights.
     #[inline]
-    fn push(&mut self, index: usize, ray: Ray, brought: Unoccluded) {
+    fn push(&mut self, index: usize, ray: Ray, brought: Unoccluded, media: Option<(Media, f32)>) {
         let list = &mut self.lists[index.min(LISTS - 1)];
         list.rays.push(ray);
         list.brought.push(brought);
+        list.media.extend(media);
     }
 }
 
@@ -97,11 +118,9 @@ pub(crate) struct PathQueue {
 }
 
 impl PathQueue {
-    /// The integrator whose paths can be followed in a queue: in a scene whose media leave light as it is, since a path
-    /// in a queue keeps no record of the media that it is in.
+    /// The integrator whose paths can be followed in a queue.
     pub(crate) fn integrator<'a>(rays: &CameraRays<'a>) -> Option<&'a Path> {
-        let scene = rays.scene;
-        rays.integrator.as_path().filter(|path| path.is_mis() && scene.has_clear_media())
+        rays.integrator.as_path().filter(|path| path.is_mis())
     }
 
     /// Takes samples, at most [`PATHS`] of them: a pixel's column and row, and the sample's index. `add` receives the
@@ -118,9 +137,9 @@ impl PathQueue {
         let mut task = None;
         for &(x, y, index) in samples {
             let (ray, new_task) = rays.sample(tracer, x, y, index);
-            let sampler = new_task.sampler;
-            let walk = Walk::new(&ray, Media::AIR);
-            self.paths.push(QueuedPath { walk, sampler, direct: Rgb::BLACK, beta: Rgb::WHITE });
+            let (sampler, wavelength) = (new_task.sampler, new_task.wavelength);
+            let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
+            self.paths.push(QueuedPath { walk, sampler, wavelength, direct: Rgb::BLACK, beta: Rgb::WHITE });
         }
         if let Some(&(x, y, index)) = samples.first() {
             task = Some(rays.sample(tracer, x, y, index).1);
@@ -152,7 +171,7 @@ impl PathQueue {
         for (&index, hit) in self.active.iter().zip(&self.hits) {
             let one = &mut self.paths[index as usize];
             let Some(hit) = hit else {
-                path.escape(&mut one.walk, task);
+                one.escape(path, task);
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
@@ -169,12 +188,21 @@ impl PathQueue {
     /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
     /// before it is weighted by the throughput, as in a single path.
     fn add_direct_light(&mut self, task: &mut Task) {
-        for ConnectionList { rays, brought } in &self.connections.lists {
+        for ConnectionList { rays, brought, media } in &self.connections.lists {
+            if task.scene().has_nested() {
+                for ((ray, brought), (media, distance)) in rays.iter().zip(brought).zip(media) {
+                    if let Some(passed) = media.visible(task.tracer, ray, *distance, brought.n_light) {
+                        self.paths[brought.path as usize].direct += brought.light * passed;
+                    }
+                }
+                continue;
+            }
             self.occluded.clear();
             self.occluded.resize(rays.len(), false);
             task.tracer.all_occluded(rays, |i| brought[i].n_light, &mut self.occluded);
-            for (brought, _) in brought.iter().zip(&self.occluded).filter(|(_, occluded)| !**occluded) {
-                self.paths[brought.path as usize].direct += brought.light;
+            for (i, brought) in brought.iter().enumerate().filter(|(i, _)| !self.occluded[*i]) {
+                let passed = media.get(i).map_or(Rgb::WHITE, |(media, distance)| media.unoccluded(*distance));
+                self.paths[brought.path as usize].direct += brought.light * passed;
             }
         }
         for &index in &self.shaded {

@@ -5,13 +5,14 @@
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::light_samples::LightSamples;
-use super::{PathQueue, QueuedPath, Unoccluded};
-use crate::integrators::path::power_heuristic;
+use super::{PathQueue, Unoccluded};
+use crate::integrators::path::{Walk, power_heuristic};
+use crate::media::Media;
 use crate::sampler::{self, PixelSampler};
 use crate::task::Task;
 use bilux_math::Vec3;
 use bilux_scene::surface::{leaving, offset_origin};
-use bilux_scene::{CpuLevel, Primitive, Ray, Surface};
+use bilux_scene::{CpuLevel, Primitive, Ray, Scene, Surface};
 
 /// The vertices, and what light samples bring them.
 pub(super) struct Vertices {
@@ -93,6 +94,12 @@ impl Vertices {
         run_at(level, Points { v: self, dimension });
     }
 
+    /// The distance of a lane's light sample in metres; 0 for light from infinity.
+    fn distance(&self, i: usize) -> f32 {
+        let is_infinite = self.light.is_infinite.0[i] != 0.0;
+        if is_infinite { 0.0 } else { vec3(&self.light.towards, i).distance(vec3(&self.p, i)) }
+    }
+
     /// The ray that leaves a lane's surface.
     pub(super) fn leaving(&self, i: usize, origin: Vec3, direction: Vec3) -> Ray {
         leaving(origin, direction, self.primitives[i], self.times[i])
@@ -101,12 +108,13 @@ impl Vertices {
 
 impl PathQueue {
     /// Samples lights from every vertex, and lists the shadow rays to them. `eval` fills `scattered` and `pdf` for the
-    /// directions of the light samples.
+    /// directions of the light samples, and `media` gives the media of a path and lane on the side of a direction.
     pub(super) fn connect(
         &mut self,
         v: &mut Vertices,
         task: &mut Task,
         mut eval: impl FnMut(&mut Vertices, CpuLevel),
+        media: impl Fn(&Walk, usize, Vec3) -> Media,
     ) {
         let (choice, level) = (task.lights, task.scene().cpu_level());
         let mut picked = [0; LANES];
@@ -136,11 +144,18 @@ impl PathQueue {
             }
             eval(v, level);
             run_at(level, Weigh { v });
-            self.list_shadow_rays(v, &picked);
+            self.list_shadow_rays(v, &picked, task.scene(), &media);
         }
     }
 
-    fn list_shadow_rays(&mut self, v: &Vertices, picked: &[usize; LANES]) {
+    fn list_shadow_rays(
+        &mut self,
+        v: &Vertices,
+        picked: &[usize; LANES],
+        scene: &Scene,
+        media: impl Fn(&Walk, usize, Vec3) -> Media,
+    ) {
+        let is_clear = scene.has_clear_media();
         for (i, &light) in picked.iter().enumerate().take(v.count) {
             let brought = rgb(&v.shadow.light, i);
             if brought.is_black() {
@@ -148,16 +163,13 @@ impl PathQueue {
             }
             let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
             let brought = Unoccluded { path: v.paths[i], light: brought, n_light: vec3(&v.light.n_light, i) };
-            self.connections.push(light, Ray { t_max: v.shadow.t_max.0[i], ..ray }, brought);
+            let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
+            let media = (!is_clear).then(|| {
+                let walk = &self.paths[v.paths[i] as usize].walk;
+                (media(walk, i, vec3(&v.light.wi, i)), v.distance(i))
+            });
+            self.connections.push(light, ray, brought, media);
         }
-    }
-}
-
-impl QueuedPath {
-    /// Starts an event: no connection has brought anything yet.
-    #[inline]
-    pub(super) fn begin_event(&mut self) {
-        (self.direct, self.beta) = (bilux_math::Rgb::BLACK, self.walk.beta);
     }
 }
 
