@@ -97,6 +97,19 @@ fn every_kind_of_medium_is_the_same() {
     put(&mut nested, "glass", ball(centre, 0.6, 8, true), tinted.with("priority", 2));
     put(&mut nested, "water", ball(centre + Vec3::X * 0.2, 0.6, 8, true), water.with("priority", 1));
     assert_same("nested", &built(&nested));
+    // All is in a block of the higher priority, so shadow rays pass the surface of the water.
+    let mut hidden = mixed();
+    let block = glass("block").with("eta", 1.0f32).with("absorption", absorbing * 0.05).with("priority", 2);
+    put(&mut hidden, "block", ball(Vec3::ZERO, 40.0, 6, false), block);
+    let water = glass("water").with("eta", 1.33f32).with("absorption", absorbing).with("priority", 1);
+    put(&mut hidden, "water", ball(centre, 0.9, 8, true), water);
+    assert_same("hidden surfaces", &built(&hidden));
+    // A lamp in a frosted ball: light samples cross its surface.
+    let mut frosted = mixed();
+    let rough = glass("frosted").with("absorption", absorbing).with("roughness", 0.4f32);
+    put(&mut frosted, "frosted", ball(centre, 0.6, 8, true), rough);
+    frosted.lights.push(Spec::new("", "point").with("position", centre).with("intensity", 3.0f32));
+    assert_same("frosted", &built(&frosted));
     let mut prism = mixed();
     put(&mut prism, "flint", ball(centre, 0.6, 8, true), glass("flint").with("dispersion", 0.05f32));
     assert_same("dispersion", &built(&prism));
