@@ -189,19 +189,23 @@ impl PathQueue {
     /// before it is weighted by the throughput, as in a single path.
     fn add_direct_light(&mut self, task: &mut Task) {
         for ConnectionList { rays, brought, media } in &self.connections.lists {
-            if task.scene().has_nested() {
-                for ((ray, brought), (media, distance)) in rays.iter().zip(brought).zip(media) {
-                    if let Some(passed) = media.visible(task.tracer, ray, *distance, brought.n_light) {
-                        self.paths[brought.path as usize].direct += brought.light * passed;
-                    }
-                }
-                continue;
-            }
             self.occluded.clear();
             self.occluded.resize(rays.len(), false);
             task.tracer.all_occluded(rays, |i| brought[i].n_light, &mut self.occluded);
-            for (i, brought) in brought.iter().enumerate().filter(|(i, _)| !self.occluded[*i]) {
-                let passed = media.get(i).map_or(Rgb::WHITE, |(media, distance)| media.unoccluded(*distance));
+            let has_nested = task.scene().has_nested();
+            for (i, brought) in brought.iter().enumerate() {
+                let passed = match (self.occluded[i], media.get(i)) {
+                    (false, None) => Rgb::WHITE,
+                    (false, Some((media, distance))) => media.unoccluded(*distance),
+                    // What it hits may separate nothing.
+                    (true, Some((media, distance))) if has_nested => {
+                        task.tracer.counters.rays -= 1;
+                        let passed = media.visible(task.tracer, &rays[i], *distance, brought.n_light);
+                        let Some(passed) = passed else { continue };
+                        passed
+                    }
+                    (true, _) => continue,
+                };
                 self.paths[brought.path as usize].direct += brought.light * passed;
             }
         }

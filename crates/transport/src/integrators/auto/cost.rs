@@ -27,6 +27,9 @@ const MERGED: f64 = 80.0;
 /// cell.
 const PHOTON: f64 = 450.0;
 
+/// The duration of the steps of paths that are followed in a queue, relative to those that are followed one by one.
+const QUEUED: f64 = 0.7;
+
 impl Steps {
     pub(super) fn count(&mut self, step: Step, count: usize) {
         self.counts[step as usize] += count as f64;
@@ -47,6 +50,9 @@ impl Steps {
         let Set { sees, joins, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
+        if !sees && !joins && !merges {
+            return sum * QUEUED;
+        }
         // Photons serve as splats without further work; connections cannot use them, so light subpaths are traced
         // again.
         if joins || (sees && !merges) {
