@@ -13,7 +13,7 @@ use super::super::body::{prefetch, reference};
 use super::super::leaf::block_bytes;
 use super::super::level::BatchLevel;
 use super::super::node_format;
-use super::super::stack::{CAPACITY, Stack};
+use super::super::stack::{CAPACITY, MAX_AT_START, Stack};
 use super::orientation::Mixed;
 use super::rays::{Packet, RAYS, Row};
 use super::ready::Ready;
@@ -33,10 +33,7 @@ const LEAST_AT_LEAF: u32 = 6;
 
 /// Maximum number of tails of a ray; most have one to three. A ray that has as many stays in the shared traversal,
 /// however few rays are with it.
-const TAILS: usize = 24;
-
-// All tails of a ray fit onto its stack, with space for another node's children.
-const _: () = assert!(TAILS + WIDTH <= CAPACITY);
+const TAILS: usize = MAX_AT_START;
 
 /// What is left to do for each ray.
 pub(in crate::bvh8::kernel) struct Tails {
@@ -141,7 +138,7 @@ impl Tails {
         stack: &mut Stack,
     ) {
         // SAFETY: as the caller promises; as many tails have been written as are counted, and a stack has space for
-        // all of them.
+        // all of them when a search begins.
         unsafe {
             let from_references = self.references.as_ptr().cast::<u32>().add(lane);
             let from_enters = self.enters.as_ptr().cast::<u32>().add(lane);
