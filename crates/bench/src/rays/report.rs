@@ -38,7 +38,7 @@ impl Mode {
 }
 
 /// A table for each scene: engines down, classes across. Our own show their ratio to the best competitor in the same
-/// mode.
+/// mode. Where there are competitors, a line below compares the best of ours with the best of theirs, in any mode.
 pub(super) fn text(rows: &[Row], options: &Options) -> String {
     let mut scenes: Vec<&str> = rows.iter().map(|row| &*row.scene).collect();
     scenes.dedup();
@@ -80,13 +80,34 @@ fn of_one(scene: &str, rows: &[&Row], options: &Options) -> String {
             line
         })
         .collect();
-    let header: Vec<&str> =
-        ["engine", "mode"].into_iter().chain(classes).chain(["build s", "bytes/tri", "mismatches"]).collect();
+    let header: Vec<&str> = ["engine", "mode"]
+        .into_iter()
+        .chain(classes.iter().copied())
+        .chain(["build s", "bytes/tri", "mismatches"])
+        .collect();
     let title = format!(
         "{scene}: {} triangles, Mrays/s on one thread, median of {} (× the best competitor of the same mode)",
         rows[0].triangles, options.rounds
     );
-    table(&title, &header, &cells)
+    table(&title, &header, &cells) + &best_against_best(rows, &classes)
+}
+
+/// Class by class, our fastest result and its ratio to the fastest competitor; empty without competitors.
+fn best_against_best(rows: &[&Row], classes: &[&str]) -> String {
+    let best = |class: &str, ours: bool| {
+        let of_side = rows.iter().filter(|row| row.ours == ours && row.class == class);
+        of_side.map(|row| row.mrays).fold(0.0, f64::max)
+    };
+    let ratios: Vec<String> = classes
+        .iter()
+        .map(|class| (class, best(class, true), best(class, false)))
+        .filter(|(_, ours, theirs)| *ours > 0.0 && *theirs > 0.0)
+        .map(|(class, ours, theirs)| format!("{class} {ours:.2} ({:.2}×)", ours / theirs))
+        .collect();
+    if ratios.is_empty() {
+        return String::new();
+    }
+    format!("best mode against best mode: {}\n", ratios.join(", "))
 }
 
 /// The cost of a ray as scenes grow, if there are several scenes.
@@ -119,4 +140,34 @@ pub(super) fn curve(rows: &[Row]) -> String {
     let header: Vec<&str> =
         ["engine", "mode", "class"].into_iter().chain(sizes.iter().map(|s| &**s)).collect();
     format!("\n{}", table("Nanoseconds a ray, by triangles", &header, &cells))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(engine: &str, ours: bool, mode: Mode, mrays: f64) -> Row {
+        Row {
+            scene: "room".to_owned(),
+            triangles: 12,
+            class: "bounce".to_owned(),
+            engine: engine.to_owned(),
+            ours,
+            mode,
+            mrays,
+            build_seconds: 0.1,
+            bytes_per_triangle: 50.0,
+            mismatches: 0,
+        }
+    }
+
+    #[test]
+    fn the_best_modes_are_compared_whatever_they_are() {
+        let mut rows = vec![row("bvh8", true, Mode::Single, 6.0), row("bvh8", true, Mode::Batch, 9.0)];
+        assert!(!text(&rows, &Options::default()).contains("best mode against best mode"));
+        rows.extend([row("other", false, Mode::Single, 4.5), row("other", false, Mode::Batch, 3.0)]);
+        let text = text(&rows, &Options::default());
+        assert!(text.contains("best mode against best mode: bounce 9.00 (2.00×)\n"), "{text}");
+        assert!(text.contains("6.00 (1.33×)") && text.contains("9.00 (3.00×)"), "{text}");
+    }
 }

@@ -92,7 +92,7 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
 /// Where a search begins.
 pub(super) struct Start {
     pub(super) current: Ref,
-    /// What comes later.
+    /// What comes later: at most [`super::stack::MAX_AT_START`] references.
     pub(super) stack: Stack,
     /// The nearest hit so far.
     pub(super) nearest: Hit,

@@ -4,8 +4,11 @@ use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{Ref, WIDTH};
 use std::mem::MaybeUninit;
 
+/// Maximum number of references on the stack when a search begins: the tails of a ray in an incoherent packet.
+pub(super) const MAX_AT_START: usize = 24;
+
 /// Every node on the way down leaves at most seven others on the stack; a whole vector is written at the top.
-pub(super) const CAPACITY: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
+pub(super) const CAPACITY: usize = MAX_AT_START + MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
 /// Memory of a stack: first the references, then the distances at which the ray enters each. It is not initialised,
 /// because clearing it would take as long as a short ray.

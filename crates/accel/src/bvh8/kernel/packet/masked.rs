@@ -13,7 +13,7 @@ use super::super::body::{prefetch, reference};
 use super::super::leaf::block_bytes;
 use super::super::level::BatchLevel;
 use super::super::node_format;
-use super::super::stack::{CAPACITY, Stack};
+use super::super::stack::{CAPACITY, MAX_AT_START, Stack};
 use super::orientation::Mixed;
 use super::rays::{Packet, RAYS, Row};
 use super::ready::Ready;
@@ -33,10 +33,7 @@ const LEAST_AT_LEAF: u32 = 6;
 
 /// Maximum number of tails of a ray; most have one to three. A ray that has as many stays in the shared traversal,
 /// however few rays are with it.
-const TAILS: usize = 24;
-
-// All tails of a ray fit onto its stack, with space for another node's children.
-const _: () = assert!(TAILS + WIDTH <= CAPACITY);
+const TAILS: usize = MAX_AT_START;
 
 /// What is left to do for each ray.
 pub(in crate::bvh8::kernel) struct Tails {
@@ -50,7 +47,19 @@ pub(in crate::bvh8::kernel) struct Tails {
 }
 
 /// A node or a leaf, and the rays that hit its box.
-type Entry = (Ref, u64);
+#[derive(Clone, Copy)]
+struct Entry {
+    reference: Ref,
+    /// The bits of the distance at which the first of them enters it.
+    enter: u32,
+    mask: u64,
+}
+
+/// Those still to be visited.
+struct Entries {
+    entries: [MaybeUninit<Entry>; CAPACITY],
+    size: usize,
+}
 
 /// For each child of a node, the distance at which each ray enters its box.
 type Enters = [Row<f32>; WIDTH];
@@ -129,7 +138,7 @@ impl Tails {
         stack: &mut Stack,
     ) {
         // SAFETY: as the caller promises; as many tails have been written as are counted, and a stack has space for
-        // all of them.
+        // all of them when a search begins.
         unsafe {
             let from_references = self.references.as_ptr().cast::<u32>().add(lane);
             let from_enters = self.enters.as_ptr().cast::<u32>().add(lane);
@@ -191,16 +200,36 @@ fn are_few(reference: Ref, mask: u64) -> bool {
     mask.count_ones() < if reference.is_node() { LEAST_AT_NODE } else { LEAST_AT_LEAF }
 }
 
+impl Entries {
+    /// Puts a child on top or, if `SORTED`, below nearer children of the same node; `bottom` is the size before its
+    /// first child.
+    ///
+    /// # Safety
+    /// Everything below the size must have been written.
+    #[inline(always)]
+    unsafe fn put<const SORTED: bool>(&mut self, child: Entry, bottom: usize) {
+        let mut place = self.size;
+        // SAFETY: as the caller promises.
+        while SORTED && place > bottom && unsafe { self.entries[place - 1].assume_init().enter } < child.enter
+        {
+            self.entries[place] = self.entries[place - 1];
+            place -= 1;
+        }
+        self.entries[place] = MaybeUninit::new(child);
+        self.size += 1;
+    }
+}
+
 impl Walk<'_> {
     /// # Safety
     /// As for [`Packet::walk_together`].
     #[inline(always)]
     unsafe fn run<L: BatchLevel, const ANY: bool>(&mut self, view: &TreeView<'_>, all: u64) {
         let base = view.units.as_ptr().cast::<u8>();
-        let mut stack = [const { MaybeUninit::<Entry>::uninit() }; CAPACITY];
+        let mut stack = Entries { entries: [const { MaybeUninit::uninit() }; CAPACITY], size: 0 };
         let mut enters: Enters = [const { Row::uninit() }; WIDTH];
-        let (mut top, mut current, mut mask) = (0, view.outline.root, all);
-        // SAFETY: as the caller promises; references lead to whole nodes and leaves, everything below the top of the
+        let (mut current, mut mask) = (view.outline.root, all);
+        // SAFETY: as the caller promises; references lead to whole nodes and leaves, and everything below the top of the
         // stack has been written. Each node on the way down leaves at most seven others there, so a tree is never too
         // deep for it.
         unsafe {
@@ -210,35 +239,39 @@ impl Walk<'_> {
                 mask = self.tails.put(current, mask, &enters[0]);
             }
             loop {
-                if mask != 0 {
-                    let place = base.add(current.byte());
-                    if current.is_node() {
-                        let children = self.intersect_children::<L::Wide>(place, mask, &mut enters);
-                        for child in 0..WIDTH {
-                            let mut mask = children[child] & mask;
+                let place = base.add(current.byte());
+                if mask != 0 && current.is_node() {
+                    let children = self.intersect_children::<L::Wide>(place, mask, &mut enters);
+                    let bottom = stack.size;
+                    for child in 0..WIDTH {
+                        let mut mask = children[child] & mask;
+                        if mask == 0 {
+                            continue;
+                        }
+                        let reference = reference::<node_format::Wide>(place, child);
+                        if are_few(reference, mask) {
+                            mask = self.tails.put(reference, mask, &enters[child]);
                             if mask == 0 {
                                 continue;
                             }
-                            let child_reference = reference::<node_format::Wide>(place, child);
-                            if are_few(child_reference, mask) {
-                                mask = self.tails.put(child_reference, mask, &enters[child]);
-                                if mask == 0 {
-                                    continue;
-                                }
-                            }
-                            prefetch::<node_format::Wide>(base, child_reference);
-                            stack[top] = MaybeUninit::new((child_reference, mask));
-                            top += 1;
                         }
-                    } else {
-                        self.leaf::<L::Wide, ANY>(place, current.blocks(), mask);
+                        prefetch::<node_format::Wide>(base, reference);
+                        let enter = (*enters[child].at(mask.trailing_zeros() as usize)).to_bits();
+                        if ANY {
+                            stack.put::<false>(Entry { reference, enter, mask }, bottom);
+                        } else {
+                            stack.put::<true>(Entry { reference, enter, mask }, bottom);
+                        }
                     }
+                } else if mask != 0 {
+                    self.leaf::<L::Wide, ANY>(place, current.blocks(), mask);
                 }
-                if top == 0 {
+                if stack.size == 0 {
                     return;
                 }
-                top -= 1;
-                (current, mask) = stack[top].assume_init();
+                stack.size -= 1;
+                let entry = stack.entries[stack.size].assume_init();
+                (current, mask) = (entry.reference, entry.mask);
                 if ANY {
                     mask &= !self.tails.found;
                 }
