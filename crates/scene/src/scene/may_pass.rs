@@ -1,7 +1,9 @@
 //! What may let rays pass.
 
+use crate::geometry::Geometry;
 use crate::lights::Sides;
 use crate::materials::Material;
+use std::sync::Arc;
 
 /// Which rays an object may let pass.
 #[derive(Clone, Copy)]
@@ -13,7 +15,14 @@ pub(super) struct MayPass {
 }
 
 impl MayPass {
-    pub(super) fn of(material: &dyn Material) -> MayPass {
+    /// That of each object, then of each sphere.
+    pub(super) fn of_all(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Vec<MayPass> {
+        let count = geometry.objects().len() + geometry.spheres().len();
+        let material = |object: u32| &*materials[geometry.material_of(object) as usize];
+        (0..count as u32).map(|object| MayPass::of(material(object))).collect()
+    }
+
+    fn of(material: &dyn Material) -> MayPass {
         MayPass {
             has_holes: material.opacity().is_some(),
             is_one_sided: material.visible_sides() == Sides::Front,

@@ -119,9 +119,7 @@ impl SceneParts {
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
-        let count = geometry.objects().len() + geometry.spheres().len();
-        let passes = (0..count as u32).map(|o| MayPass::of(&*materials[geometry.material_of(o) as usize]));
-        let passes = passes.collect();
+        let passes = MayPass::of_all(&geometry, &materials);
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
         let lambertian = geometry.objects().iter().map(|o| is_lambertian(o, &materials)).collect();
