@@ -2,8 +2,9 @@
 //! own, points and lines in separate trees, and spheres in a last one.
 
 mod corners_in_world;
+mod surface_point;
 
-use crate::builder::{AccelChoice, unit_or};
+use crate::builder::AccelChoice;
 use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
@@ -11,7 +12,7 @@ use crate::parameters::Span;
 pub use crate::placed::Placed;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::strokes::{StrokeWidths, Strokes};
-use crate::surface::{Surface, gamma};
+use crate::surface::Surface;
 use crate::texture::UvPair;
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::primitives::PrimitiveTree;
@@ -21,6 +22,8 @@ use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
+pub(crate) use surface_point::SurfacePoint;
+use surface_point::{normals_at, point_with_error};
 
 /// All surfaces, and the trees over them.
 pub struct Geometry {
@@ -307,6 +310,25 @@ impl Geometry {
         strokes.surface(ray, hit, &to_world, object)
     }
 
+    /// Where a ray hits a triangle of the common tree, which does not move.
+    #[inline]
+    pub(crate) fn still_point(&self, still: &TriangleMesh, hit: &Hit) -> SurfacePoint {
+        let (object, triangle) = self.locate(hit.primitive());
+        let mesh = &*self.objects[object as usize].mesh;
+        let corners = still.triangles()[hit.primitive as usize].map(Vec3::from);
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        let (p, p_error) = point_with_error(corners, weights);
+        let (to_world, mirrors) = self.place(object, 0.0);
+        let normals = normals_at(mesh, mesh.triangles[triangle as usize], weights, &to_world);
+        SurfacePoint::new(p, p_error, corners, mirrors, normals)
+    }
+
+    /// The triangles of the common tree.
+    #[inline]
+    pub(crate) fn still(&self) -> Option<&TriangleMesh> {
+        self.still.as_deref()
+    }
+
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let (object, triangle) = self.locate(hit.primitive());
         let placed = &self.objects[object as usize];
@@ -322,20 +344,12 @@ impl Geometry {
         };
         let blend = |v: [Vec3; 3]| v[0] * weights[0] + v[1] * weights[1] + v[2] * weights[2];
         let (p, p_error) = {
-            let p = blend(corners);
-            let error = blend(corners.map(Vec3::abs)) * gamma(7);
+            let (p, error) = point_with_error(corners, weights);
             if baked.is_some() { (p, error) } else { transform_with_error(to_world, p, error) }
         };
-        let winding = {
-            let [a, b, c] = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-            unit_or((b - a).cross(c - a), Vec3::Y) * if mirrors { -1.0 } else { 1.0 }
-        };
-        let n_shade = if mesh.normals.is_empty() {
-            winding
-        } else {
-            unit_or(to_world.normal(blend(indices.map(|i| mesh.normals[i]))), winding)
-        };
-        let n_geom = if n_shade.dot(winding) < 0.0 { -winding } else { winding };
+        let in_world = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
+        let normals = normals_at(mesh, mesh.triangles[triangle as usize], weights, to_world);
+        let SurfacePoint { n_geom, n_shade, .. } = SurfacePoint::new(p, p_error, in_world, mirrors, normals);
         let between = |[a, b, c]: [Vec2; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let uv = between(triangle_uvs(mesh, mesh.triangles[triangle as usize]));
         let uv2 = if mesh.uvs2.is_empty() { uv } else { between(indices.map(|i| mesh.uvs2[i])) };
@@ -344,8 +358,7 @@ impl Geometry {
             let turn = if mirrors { -1.0 } else { 1.0 };
             (to_world.vector(blend(given.map(|t| t.truncate()))), turn * 1f32.copysign(given[0].w))
         } else if placed.has_tangents {
-            let corners = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-            tangents(corners, indices.map(|i| mesh.uvs.get(i).copied()))
+            tangents(in_world, indices.map(|i| mesh.uvs.get(i).copied()))
                 .map(|(along_u, along_v)| (along_u, 1f32.copysign(n_shade.cross(along_u).dot(along_v))))
                 .unwrap_or_else(|| (to_world.vector(Vec3::Y).cross(n_shade), 1.0))
         } else {

@@ -78,6 +78,11 @@ impl Material for Diffuse {
         self.albedo(surface)
     }
 
+    fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        let is_constant = self.is_lambertian() && self.reflectance.texture.is_none();
+        is_constant.then(|| self.reflectance.colour.clamp(0.0, 1.0))
+    }
+
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let kd = self.albedo(surface);
         ClassicMaterial { ka: kd, kd, ..ClassicMaterial::default() }

@@ -63,6 +63,10 @@ pub trait Material: Send + Sync {
     fn lambertian_reflectance(&self, _surface: &Surface) -> Rgb {
         Rgb::BLACK
     }
+    /// That reflectance where it is the same everywhere, on meshes without colours at their vertices.
+    fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        None
+    }
     /// The same point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
     /// The shading normal at a point, on the same side as `n_geom`: interpolated, or from a normal map.

@@ -62,6 +62,10 @@ impl Material for ModifiedMaterial {
         self.material.lambertian_reflectance(surface)
     }
 
+    fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        self.material.constant_lambertian_reflectance().filter(|_| self.is_lambertian())
+    }
+
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         self.material.classic(surface)
     }

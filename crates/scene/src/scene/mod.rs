@@ -1,5 +1,6 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
+mod lambertian;
 mod may_pass;
 mod sheets;
 mod tracer;
@@ -16,6 +17,8 @@ use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
+use lambertian::Lambertian;
+pub use lambertian::LambertianPoint;
 use may_pass::MayPass;
 use sheets::Sheets;
 use std::sync::Arc;
@@ -59,7 +62,7 @@ pub(crate) struct SceneParts {
     disperses: bool,
     absorbs: bool,
     /// For each object of triangles, see [`Scene::is_lambertian`].
-    lambertian: Vec<bool>,
+    lambertian: Vec<Lambertian>,
 }
 
 impl SceneParts {
@@ -122,7 +125,7 @@ impl SceneParts {
         let passes = MayPass::of_all(&geometry, &materials);
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
-        let lambertian = geometry.objects().iter().map(|o| is_lambertian(o, &materials)).collect();
+        let lambertian = geometry.objects().iter().map(|o| Lambertian::of(o, &materials)).collect();
         SceneParts {
             geometry,
             materials,
@@ -142,12 +145,6 @@ impl SceneParts {
             lambertian,
         }
     }
-}
-
-/// See [`Scene::is_lambertian`].
-fn is_lambertian(object: &crate::geometry::Placed, materials: &[Arc<dyn Material>]) -> bool {
-    let material = &materials[object.material as usize];
-    !object.gives_light && material.is_lambertian() && material.emission().is_black()
 }
 
 /// A scene at a time, ready for ray queries.
@@ -336,7 +333,7 @@ impl Scene {
     /// time.
     #[inline]
     pub fn is_lambertian(&self, object: u32) -> bool {
-        self.parts.lambertian.get(object as usize).copied().unwrap_or(false)
+        self.parts.lambertian.get(object as usize).is_some_and(|kind| !matches!(kind, Lambertian::No))
     }
 
     /// True when some material refracts each wavelength differently.

@@ -5,12 +5,13 @@
 
 use super::PathQueue;
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
-use super::vertices::Vertices;
+use super::vertices::{Point, Vertices};
 use crate::integrators::path::Path;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::faces_away;
+use bilux_scene::scene::LambertianPoint;
 use bilux_scene::surface::offset_origin;
 use std::f32::consts::FRAC_1_PI;
 
@@ -68,33 +69,41 @@ impl PathQueue {
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
-    fn gather(&mut self, v: &mut Vertices, d: &mut Diffuse, chunk: &[(u32, Hit)], task: &mut Task) {
+    fn gather(&mut self, v: &mut Vertices, d: &mut Diffuse, chunk: &[(u32, u32, Hit)], task: &mut Task) {
         v.count = 0;
         let is_clear = task.scene().has_clear_media();
-        for (index, hit) in chunk {
+        for (index, object, hit) in chunk {
             let one = &mut self.paths[*index as usize];
-            if one.walk.depth >= task.max_depth {
+            let walk = &mut one.walk;
+            if walk.depth >= task.max_depth {
                 continue;
             }
-            let surface = task.tracer.surface(&one.walk.ray, hit);
-            let wo = -Vec3::from(one.walk.ray.direction);
-            if faces_away(surface.n_shade, surface.n_geom, wo) {
+            let wo = -Vec3::from(walk.ray.direction);
+            let plain = if is_clear { task.tracer.lambertian_point(*object, hit) } else { None };
+            let (point, n_shade, reflectance) = match plain {
+                Some(LambertianPoint { p, p_error, n_geom, n_shade, reflectance }) => {
+                    let (primitive, time) = (hit.primitive(), walk.ray.time);
+                    (Point { p, p_error, n_geom, primitive, time }, n_shade, reflectance)
+                }
+                None => {
+                    let surface = task.tracer.surface(&walk.ray, hit);
+                    let reflectance = task.scene().material(&surface).lambertian_reflectance(&surface);
+                    if !is_clear && !faces_away(surface.n_shade, surface.n_geom, wo) {
+                        let arrived = walk.media.closest_from(task.tracer, &walk.ray, surface);
+                        walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
+                    }
+                    (Point::from(&surface), surface.n_shade, reflectance)
+                }
+            };
+            if faces_away(n_shade, point.n_geom, wo) {
                 // Few normals do, and are bent.
                 self.general_hits.push((*index, *hit));
                 continue;
             }
-            if !is_clear {
-                let walk = &mut one.walk;
-                let Some((_, passed)) = walk.media.closest_from(task.tracer, &walk.ray, surface) else {
-                    continue;
-                };
-                walk.beta *= passed;
-            }
             one.begin_event(task);
             one.sampler.enter(u64::from(one.walk.depth) + 1);
-            let i = v.push(*index, &surface, wo, &one.sampler);
-            put(&mut d.n_shade, i, surface.n_shade.to_array());
-            let reflectance = task.scene().material(&surface).lambertian_reflectance(&surface);
+            let i = v.push(*index, &point, wo, &one.sampler);
+            put(&mut d.n_shade, i, n_shade.to_array());
             put(&mut d.reflectance, i, reflectance.to_array());
             put(&mut d.next.beta, i, one.walk.beta.to_array());
             d.next.eta_scale.0[i] = one.walk.eta_scale;

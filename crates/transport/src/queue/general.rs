@@ -2,7 +2,7 @@
 
 use super::PathQueue;
 use super::lanes::{LANES, put, vec3};
-use super::vertices::Vertices;
+use super::vertices::{Point, Vertices};
 use crate::integrators::path::{Path, Walk};
 use crate::task::Task;
 use bilux_accel::Hit;
@@ -76,7 +76,7 @@ impl PathQueue {
                 }
                 continue;
             }
-            v.push(*index, &surface, wo, &task.sampler);
+            v.push(*index, &Point::from(&surface), wo, &task.sampler);
             g.surfaces.push(surface);
             g.bsdfs.push(bsdf);
             self.shaded.push(*index);

@@ -109,7 +109,8 @@ pub(crate) struct PathQueue {
     occluded: Vec<bool>,
     vertices: Box<Vertices>,
     diffuse: Box<Diffuse>,
-    diffuse_hits: Vec<(u32, Hit)>,
+    /// Path, object, hit.
+    diffuse_hits: Vec<(u32, u32, Hit)>,
     general: General,
     general_hits: Vec<(u32, Hit)>,
     next: Vec<u32>,
@@ -175,9 +176,11 @@ impl PathQueue {
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
-            let is_diffuse = task.scene().is_lambertian(object);
-            let hits = if is_diffuse { &mut self.diffuse_hits } else { &mut self.general_hits };
-            hits.push((index, *hit));
+            if task.scene().is_lambertian(object) {
+                self.diffuse_hits.push((index, object, *hit));
+            } else {
+                self.general_hits.push((index, *hit));
+            }
         }
         self.shade_diffuse(path, task);
         self.shade_general(path, task);

@@ -38,6 +38,23 @@ pub(super) struct Vertices {
     shadow: ShadowRays,
 }
 
+/// What the columns hold of a surface; see [`Surface`] for the fields.
+pub(super) struct Point {
+    pub(super) p: Vec3,
+    pub(super) p_error: Vec3,
+    pub(super) n_geom: Vec3,
+    pub(super) primitive: Primitive,
+    pub(super) time: f32,
+}
+
+impl From<&Surface> for Point {
+    #[inline]
+    fn from(surface: &Surface) -> Point {
+        let Surface { p, p_error, n_geom, primitive, time, .. } = *surface;
+        Point { p, p_error, n_geom, primitive, time }
+    }
+}
+
 /// The ray to the light sample, and the light that it brings; black where there is none.
 struct ShadowRays {
     origin: Columns3,
@@ -71,14 +88,14 @@ impl Default for Vertices {
 
 impl Vertices {
     /// Adds the vertex of a path whose sampler has entered it; returns its lane.
-    pub(super) fn push(&mut self, path: u32, surface: &Surface, wo: Vec3, sampler: &PixelSampler) -> usize {
+    pub(super) fn push(&mut self, path: u32, point: &Point, wo: Vec3, sampler: &PixelSampler) -> usize {
         let i = self.count;
         self.paths[i] = path;
-        (self.primitives[i], self.times[i]) = (surface.primitive, surface.time);
+        (self.primitives[i], self.times[i]) = (point.primitive, point.time);
         (self.streams[i], self.reversed_indices[i]) = sampler.state();
-        put(&mut self.p, i, surface.p.to_array());
-        put(&mut self.p_error, i, surface.p_error.to_array());
-        put(&mut self.n_geom, i, surface.n_geom.to_array());
+        put(&mut self.p, i, point.p.to_array());
+        put(&mut self.p_error, i, point.p_error.to_array());
+        put(&mut self.n_geom, i, point.n_geom.to_array());
         put(&mut self.wo, i, wo.to_array());
         self.count += 1;
         i
