@@ -215,12 +215,14 @@ impl Geometry {
 
     /// The first triangle of an object, as in a [`Hit`].
     pub fn first_primitive(&self, object: u32) -> Primitive {
-        if let Some((first, _)) = self.still_objects.iter().find(|(_, o)| *o == object) {
-            return Primitive { instance: 0, index: *first };
+        // Both lists are in the order of the objects.
+        if let Ok(i) = self.still_objects.binary_search_by_key(&object, |(_, o)| *o) {
+            return Primitive { instance: 0, index: self.still_objects[i].0 };
         }
-        let of_triangles = &self.instance_objects[..self.first_strokes()];
-        let instance = of_triangles.iter().position(|o| *o == object);
-        instance.map_or(Primitive::NONE, |i| Primitive { instance: i as u32, index: 0 })
+        let still = usize::from(self.still.is_some());
+        let moving = &self.instance_objects[still..self.first_strokes()];
+        let instance = moving.binary_search(&object).ok();
+        instance.map_or(Primitive::NONE, |i| Primitive { instance: (still + i) as u32, index: 0 })
     }
 
     /// An object's triangles and its motion to world space.
@@ -228,7 +230,7 @@ impl Geometry {
     /// The triangles of a static object in the common tree are in world space already.
     pub fn object_triangles(&self, object: u32) -> (Vec<[Vec3; 3]>, Motion) {
         let placed = &self.objects[object as usize];
-        let is_still = self.still_objects.iter().any(|(_, o)| *o == object);
+        let is_still = self.still_objects.binary_search_by_key(&object, |(_, o)| *o).is_ok();
         let own = if is_still { placed.motion.at(0.0) } else { Transform::IDENTITY };
         let motion = if is_still { Motion::REST } else { placed.motion.clone() };
         let triangles = world_corners(&placed.mesh, &own).map(|t| t.map(Vec3::from)).collect();

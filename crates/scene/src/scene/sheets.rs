@@ -20,6 +20,8 @@ const PARALLEL: f32 = 0.7;
 const MAX_BACKS: usize = 8;
 /// Maximum number of triangles of an object that are tested for a nearby shell.
 const MAX_PROBES: usize = 2048;
+/// And of all objects together, but at least one of each.
+const MAX_PROBES_OF_ALL: usize = 1 << 20;
 /// Rays that look for a coincident shell start in front of it by this fraction of the maximum gap.
 const BEHIND: f32 = 1.0 / 16.0;
 
@@ -64,15 +66,23 @@ impl Sheets {
         let objects = parts.geometry.objects();
         let sheets = Sheets { gaps: objects.iter().map(|o| PART_OF_OBJECT * extent(bounds(o))).collect() };
         let is_one_sided = |o: u32| parts.is_one_sided_object(o);
-        let mut one_sided = (0..objects.len() as u32).filter(|&object| is_one_sided(object));
-        one_sided.any(|object| sheets.has_shell(parts, accelerator, object, time)).then_some(sheets)
+        let one_sided: Vec<u32> = (0..objects.len() as u32).filter(|&object| is_one_sided(object)).collect();
+        let probes = (MAX_PROBES_OF_ALL / one_sided.len().max(1)).clamp(1, MAX_PROBES);
+        let has_shell = |object: &u32| sheets.has_shell(parts, accelerator, (*object, probes), time);
+        one_sided.iter().any(has_shell).then_some(sheets)
     }
 
-    /// True when some triangle of an object faces the other shell of a sheet.
-    fn has_shell(&self, parts: &SceneParts, accelerator: &dyn Accelerator, object: u32, time: f32) -> bool {
+    /// True when some triangle of an object, of which `probes` are tested, faces the other shell of a sheet.
+    fn has_shell(
+        &self,
+        parts: &SceneParts,
+        accelerator: &dyn Accelerator,
+        (object, probes): (u32, usize),
+        time: f32,
+    ) -> bool {
         let first = parts.geometry.first_primitive(object);
         let count = parts.geometry.objects()[object as usize].mesh.triangles.len();
-        let step = count.div_ceil(MAX_PROBES).max(1);
+        let step = count.div_ceil(probes).max(1);
         let mut triangles = (0..count as u32).step_by(step);
         first != Primitive::NONE
             && triangles.any(|i| {
