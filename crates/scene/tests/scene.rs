@@ -1,6 +1,6 @@
 //! A scene is built from plain data, rejects errors, and answers ray queries.
 
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, SceneBuilder, SceneError, Spec, Tracer};
 use std::sync::Arc;
@@ -48,6 +48,31 @@ fn a_panel_is_a_light_and_does_not_block_its_own_light() {
     let down = tracer.closest(&bilux_scene::Ray::new([0.1, 1.0, 0.1], [0.0, -1.0, 0.0])).unwrap();
     let to_beyond = down.spawn_to(Vec3::new(0.1, 3.0, 0.1));
     assert!(tracer.occluded(&to_beyond) && !tracer.blocked(&to_beyond));
+}
+
+#[test]
+fn every_object_is_found_by_its_first_triangle() {
+    let mut scene = builder();
+    for i in 0..40 {
+        // In the common tree, in trees of their own, and without triangles, in turns; far apart.
+        let mesh = if i % 5 == 4 { Arc::new(Mesh::default()) } else { floor() };
+        let object = Object { instanced: i % 3 == 1, ..Object::new("", mesh, 0) };
+        let place = Transform::translate(Vec3::X * (10.0 * (i + 1) as f32)).unwrap();
+        scene.objects.push(object.placed(place));
+    }
+    let scene = scene.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+    let (geometry, mut tracer) = (scene.geometry(), Tracer::new(&scene, false));
+    for (index, object) in geometry.objects().iter().enumerate() {
+        let first = geometry.first_primitive(index as u32);
+        if object.mesh.triangles.is_empty() {
+            continue;
+        }
+        let [a, b, c] = object.mesh.triangles[0].map(|i| object.mesh.positions[i as usize]);
+        let middle = object.motion.at(0.0).point((a + b + c) / 3.0);
+        let ray = bilux_scene::Ray::new((middle + Vec3::Y * 0.5).to_array(), [0.0, -1.0, 0.0]);
+        let surface = tracer.closest(&ray).expect("the triangle is there");
+        assert_eq!((surface.object, surface.primitive), (index as u32, first));
+    }
 }
 
 #[test]
