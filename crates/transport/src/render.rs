@@ -26,6 +26,10 @@ pub const MAX_DEPTH: u32 = 1000;
 
 /// Side of a tile, in pixels.
 pub(crate) const TILE: u32 = 16;
+/// Side of a large tile, whose pixels fill a queue of paths with one sample each.
+const LARGE_TILE: u32 = 32;
+/// Large tiles are used where each thread gets at least this many.
+const MANY_TILES: usize = 16;
 
 /// Enough for ray trees as deep as [`MAX_DEPTH`].
 const STACK_BYTES: usize = 16 << 20;
@@ -277,7 +281,9 @@ impl<'a> Run<'a> {
     /// Adds some samples of every pixel.
     fn take(&self, samples: &Range<u32>, mut rendered: Rendered) -> Result<Rendered, RenderError> {
         let (pool, settings) = (&self.pool, self.settings);
-        let tiles = settings.sampled_window(self.integrator).tiles(TILE);
+        let window = settings.sampled_window(self.integrator);
+        let large = MANY_TILES * pool.current_num_threads() * (LARGE_TILE * LARGE_TILE) as usize;
+        let tiles = window.tiles(if window.pixels() >= large { LARGE_TILE } else { TILE });
         let Some(merging) = self.integrator.merging() else {
             return all_passes(pool, self.eye(), tiles, passes(samples), self.progress, rendered);
         };
