@@ -23,7 +23,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 pub(crate) use surface_point::SurfacePoint;
-use surface_point::{normals_at, point_with_error};
+use surface_point::{normal_at, point_with_error};
 
 /// All surfaces, and the trees over them.
 pub struct Geometry {
@@ -312,23 +312,18 @@ impl Geometry {
         strokes.surface(ray, hit, &to_world, object)
     }
 
-    /// Where a ray hits a triangle of the common tree, which does not move.
+    /// The point of a hit on a triangle of the common tree, which does not move; `None` for other shapes.
     #[inline]
-    pub(crate) fn still_point(&self, still: &TriangleMesh, hit: &Hit) -> SurfacePoint {
+    pub(crate) fn still_point(&self, hit: &Hit) -> Option<SurfacePoint> {
+        let still = self.still.as_ref().filter(|_| hit.instance == 0)?;
         let (object, triangle) = self.locate(hit.primitive());
         let mesh = &*self.objects[object as usize].mesh;
         let corners = still.triangles()[hit.primitive as usize].map(Vec3::from);
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let (p, p_error) = point_with_error(corners, weights);
         let (to_world, mirrors) = self.place(object, 0.0);
-        let normals = normals_at(mesh, mesh.triangles[triangle as usize], weights, &to_world);
-        SurfacePoint::new(p, p_error, corners, mirrors, normals)
-    }
-
-    /// The triangles of the common tree.
-    #[inline]
-    pub(crate) fn still(&self) -> Option<&TriangleMesh> {
-        self.still.as_deref()
+        let normal = normal_at(mesh, mesh.triangles[triangle as usize], weights, &to_world);
+        Some(SurfacePoint::new(p, p_error, corners, mirrors, normal))
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -350,8 +345,8 @@ impl Geometry {
             if baked.is_some() { (p, error) } else { transform_with_error(to_world, p, error) }
         };
         let in_world = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-        let normals = normals_at(mesh, mesh.triangles[triangle as usize], weights, to_world);
-        let SurfacePoint { n_geom, n_shade, .. } = SurfacePoint::new(p, p_error, in_world, mirrors, normals);
+        let normal = normal_at(mesh, mesh.triangles[triangle as usize], weights, to_world);
+        let SurfacePoint { n_geom, n_shade, .. } = SurfacePoint::new(p, p_error, in_world, mirrors, normal);
         let between = |[a, b, c]: [Vec2; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let uv = between(triangle_uvs(mesh, mesh.triangles[triangle as usize]));
         let uv2 = if mesh.uvs2.is_empty() { uv } else { between(indices.map(|i| mesh.uvs2[i])) };

@@ -2,11 +2,12 @@
 
 mod common;
 
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Transform, Vec3};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{AccelChoice, Counters, CpuLevel, Ray, Scene, SceneBuilder, Spec};
+use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec};
 use bilux_transport::{Film, PixelIntegrator, RenderSettings, Task};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life};
+use std::sync::Arc;
 
 /// An integrator that does not say that it is a path tracer.
 struct OneByOne(Box<dyn PixelIntegrator>);
@@ -75,6 +76,26 @@ fn every_kind_of_surface_and_light_is_the_same() {
     sky(&mut black, 1.0);
     look(&mut black, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
     assert_same("black", &built(&black));
+}
+
+#[test]
+fn every_kind_of_shape_is_the_same() {
+    // Points and lines have the material of the triangles, and no colours of their own.
+    let mut strokes = mixed();
+    let mesh = ball(Vec3::new(0.3, 0.6, 1.2), 0.5, 6, true);
+    let bare = Mesh { triangles: Vec::new(), normals: Vec::new(), ..(*mesh).clone() };
+    let (points, lines) = ((0..bare.positions.len() as u32).collect(), vec![[0, 5], [7, 20], [3, 30]]);
+    put(&mut strokes, "cloud", Arc::new(Mesh { points, lines, ..bare }), diffuse(0.6f32));
+    put(&mut strokes, "both", Arc::new(Mesh { lines: vec![[1, 9]], ..(*mesh).clone() }), diffuse(0.4f32));
+    assert_same("points and lines", &built(&strokes));
+    let mut instances = mixed();
+    put(&mut instances, "copy", mesh, diffuse(Rgb::new(0.2, 0.7, 0.4)));
+    let copy = instances.objects.pop().unwrap();
+    for i in 0..3 {
+        let place = Transform::translate(Vec3::X * (i as f32 - 1.0)).unwrap();
+        instances.objects.push(Object { instanced: true, ..copy.clone() }.placed(place));
+    }
+    assert_same("instances", &built(&instances));
 }
 
 #[test]

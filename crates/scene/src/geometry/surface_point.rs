@@ -38,7 +38,7 @@ pub(super) fn point_with_error(corners: [Vec3; 3], weights: [f32; 3]) -> (Vec3, 
 
 /// The interpolated normal in world space, if the mesh has normals.
 #[inline]
-pub(super) fn normals_at(
+pub(super) fn normal_at(
     mesh: &Mesh,
     triangle: [u32; 3],
     weights: [f32; 3],

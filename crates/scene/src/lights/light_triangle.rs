@@ -67,9 +67,10 @@ pub(super) fn blend(corners: &[Vec3; 3], weights: [f32; 3]) -> Vec3 {
     corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
-/// See [`super::LightSample::clearance`]: a hit lies within a few rounding errors of its triangle's plane. They are relative
-/// to the distances of its corners and of the ray's origin from each other and from the world's origin (see the lemma
-/// of [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and grow by `1 / cos` along the ray.
+/// See [`super::LightSample::clearance`]: a hit lies within a few rounding errors of its triangle's plane.
+///
+/// They are relative to the distances of its corners and of the ray's origin from each other and from the world's origin
+/// (see the lemma of [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and grow by `1 / cos` along the ray.
 #[inline(always)]
 pub(super) fn clearance(from: Vec3, point: Vec3, corners: &[Vec3; 3], cos: f32) -> f32 {
     let far = corners.iter().map(|c| c.distance_squared(from)).fold(0.0, f32::max).sqrt();

@@ -221,8 +221,7 @@ fn finite_or_zero(x: f64) -> f64 {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (triangle, rest) = self.choice.sample(u.x);
-        let weights = barycentric(Vec2::new(rest, u.y));
+        let (triangle, weights) = self.sample_weights(u);
         let sample = TriangleSample::new(from, &self.facet(triangle, time), weights, self.sides);
         (sample.pdf_solid_angle > 0.0).then(|| LightSample {
             wi: sample.wi,

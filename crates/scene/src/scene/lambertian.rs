@@ -13,7 +13,7 @@ pub(super) enum Lambertian {
     No,
     /// With any reflectance.
     Varying,
-    /// With this reflectance everywhere; its triangles are in the common tree, and do not move.
+    /// With this reflectance everywhere; its triangles, if it has any, are in the common tree, and do not move.
     Constant(Rgb),
 }
 
@@ -46,16 +46,15 @@ pub struct LambertianPoint {
 }
 
 impl Tracer<'_> {
-    /// The point at a hit of an object, if its reflectance is the same everywhere: then it takes much less time than
-    /// [`Tracer::surface`], and its values are the same.
+    /// The point at a hit of an object's triangle, if the object's reflectance is the same everywhere: the same values as
+    /// those of [`Tracer::surface`], in less time. `None` for points and lines, and for all other objects.
     #[inline]
     pub fn lambertian_point(&self, object: u32, hit: &Hit) -> Option<LambertianPoint> {
         let parts = &self.scene.parts;
         let Some(Lambertian::Constant(reflectance)) = parts.lambertian.get(object as usize) else {
             return None;
         };
-        let still = parts.geometry.still()?;
-        let SurfacePoint { p, p_error, n_geom, n_shade } = parts.geometry.still_point(still, hit);
+        let SurfacePoint { p, p_error, n_geom, n_shade } = parts.geometry.still_point(hit)?;
         Some(LambertianPoint { p, p_error, n_geom, n_shade, reflectance: *reflectance })
     }
 }

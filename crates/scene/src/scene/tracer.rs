@@ -162,6 +162,7 @@ impl<'s> Tracer<'s> {
                 *hit = if self.is_stopped(ray, &closest) {
                     Some(self.scene.behind_shells(ray, closest, |ray| self.ask(ray, Tracer::closest_hit)))
                 } else {
+                    // Asked again, and counted once.
                     self.counters.rays -= 1;
                     self.hit(ray)
                 };

@@ -135,17 +135,15 @@ impl PathQueue {
         mut add: impl FnMut((u32, u32, u32), Rgb),
     ) {
         self.paths.clear();
-        let mut task = None;
         for &(x, y, index) in samples {
             let (ray, new_task) = rays.sample(tracer, x, y, index);
             let (sampler, wavelength) = (new_task.sampler, new_task.wavelength);
             let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
             self.paths.push(QueuedPath { walk, sampler, wavelength, direct: Rgb::BLACK, beta: Rgb::WHITE });
         }
-        if let Some(&(x, y, index)) = samples.first() {
-            task = Some(rays.sample(tracer, x, y, index).1);
-        }
-        let Some(mut task) = task else { return };
+        let Some(&(x, y, index)) = samples.first() else { return };
+        // Its tools serve all paths; each path has its own random numbers and wavelength.
+        let (_, mut task) = rays.sample(tracer, x, y, index);
         self.active.clear();
         self.active.extend(0..samples.len() as u32);
         while !self.active.is_empty() {
@@ -202,6 +200,7 @@ impl PathQueue {
                     (false, Some((media, distance))) => media.unoccluded(*distance),
                     // What it hits may separate nothing.
                     (true, Some((media, distance))) if has_nested => {
+                        // Asked again, and counted once.
                         task.tracer.counters.rays -= 1;
                         let passed = media.visible(task.tracer, &rays[i], *distance, brought.n_light);
                         let Some(passed) = passed else { continue };
