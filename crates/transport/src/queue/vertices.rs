@@ -103,12 +103,12 @@ impl Vertices {
 
     /// Draws a number for each path, into the first column of `u`.
     pub(super) fn draw_numbers(&mut self, level: CpuLevel, dimension: u32) {
-        run_at(level, Numbers { v: self, dimension });
+        run_at(level, Draw::<false> { v: self, dimension });
     }
 
     /// Draws a point for each path.
     pub(super) fn draw_points(&mut self, level: CpuLevel, dimension: u32) {
-        run_at(level, Points { v: self, dimension });
+        run_at(level, Draw::<true> { v: self, dimension });
     }
 
     /// The distance of a lane's light sample in metres; 0 for light from infinity.
@@ -190,33 +190,24 @@ impl PathQueue {
     }
 }
 
-struct Numbers<'a> {
+/// Draws a number for each path, or a point.
+struct Draw<'a, const POINTS: bool> {
     v: &'a mut Vertices,
     dimension: u32,
 }
 
-impl Stage for Numbers<'_> {
+impl<const POINTS: bool> Stage for Draw<'_, POINTS> {
     #[inline(always)]
     fn run(self) {
+        let Vertices { streams, reversed_indices, u: [x, y], .. } = self.v;
         for i in 0..LANES {
-            let key = sampler::key(self.v.streams[i], self.dimension);
-            self.v.u[0].0[i] = sampler::number(key, self.v.reversed_indices[i]);
-        }
-    }
-}
-
-struct Points<'a> {
-    v: &'a mut Vertices,
-    dimension: u32,
-}
-
-impl Stage for Points<'_> {
-    #[inline(always)]
-    fn run(self) {
-        for i in 0..LANES {
-            let key = sampler::key(self.v.streams[i], self.dimension);
-            let u = sampler::point(key, self.v.reversed_indices[i]);
-            (self.v.u[0].0[i], self.v.u[1].0[i]) = (u.x, u.y);
+            let key = sampler::key(streams[i], self.dimension);
+            if POINTS {
+                let u = sampler::point(key, reversed_indices[i]);
+                (x.0[i], y.0[i]) = (u.x, u.y);
+            } else {
+                x.0[i] = sampler::number(key, reversed_indices[i]);
+            }
         }
     }
 }

@@ -10,7 +10,6 @@
 
 use super::super::TreeView;
 use super::super::body::{prefetch, reference};
-use super::super::leaf::block_bytes;
 use super::super::level::BatchLevel;
 use super::super::node_format;
 use super::super::stack::{CAPACITY, MAX_AT_START, Stack};
@@ -19,7 +18,7 @@ use super::rays::{Packet, RAYS, Row};
 use super::ready::Ready;
 use super::triangle::Group;
 use super::wide::Wide;
-use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
+use crate::bvh8::layout::{Ref, WIDTH};
 use crate::ray::{Hit, Query};
 use std::mem::MaybeUninit;
 
@@ -311,27 +310,13 @@ impl Walk<'_> {
     unsafe fn leaf<W: Wide, const ANY: bool>(&mut self, leaf: *const u8, blocks: usize, mask: u64) {
         let mut from = 0;
         while from < self.lanes {
-            let mut mask = (mask >> from) as u32 & ((1 << W::LANES) - 1);
+            let mask = (mask >> from) as u32 & ((1 << W::LANES) - 1);
             if mask != 0 {
                 // SAFETY: as the caller promises.
                 unsafe {
                     let lanes = self.mixed.lanes::<W>(from);
                     let mut group = Group::<W, _>::new(self.packet, lanes, self.query, from);
-                    let mut hits = 0;
-                    for index in 0..blocks {
-                        let block = leaf.add(index * block_bytes::<node_format::Wide>());
-                        let primitives = block.add(9 * LANES * 4).cast::<u32>();
-                        for lane in 0..LANES {
-                            if *primitives.add(lane) == NO_TRIANGLE || mask == 0 {
-                                break;
-                            }
-                            let hit = group.test::<ANY>(block, lane, mask);
-                            hits |= hit;
-                            if ANY {
-                                mask &= !hit;
-                            }
-                        }
-                    }
+                    let hits = group.test_leaf::<ANY>(leaf, blocks, mask);
                     if ANY {
                         self.tails.found |= u64::from(hits) << from;
                     } else if hits != 0 {

@@ -26,11 +26,10 @@ pub(super) use wide::{Wide, declare, define};
 use super::TreeView;
 use super::batch::SOMETHING;
 use super::body::{prefetch, reference};
-use super::leaf::block_bytes;
 use super::level::BatchLevel;
 use super::node_format;
 use super::stack::{Stack, StackStorage};
-use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
+use crate::bvh8::layout::Ref;
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
 use triangle::Group;
@@ -186,27 +185,13 @@ impl Walk<'_> {
             let from = group * W::LANES;
             // SAFETY: as the caller promises.
             unsafe {
-                let mut mask = self.packet.intersect_child::<W>(from, &self.frustum, node, child)
+                let mask = self.packet.intersect_child::<W>(from, &self.frustum, node, child)
                     & self.active::<W>(from);
                 if mask == 0 {
                     continue;
                 }
                 let mut group = Group::<W, _>::new(self.packet, &self.frustum, self.query, from);
-                let mut hits = 0;
-                for index in 0..leaf.blocks() {
-                    let block = base.add(leaf.byte() + index * block_bytes::<node_format::Wide>());
-                    let primitives = block.add(9 * LANES * 4).cast::<u32>();
-                    for lane in 0..LANES {
-                        if *primitives.add(lane) == NO_TRIANGLE {
-                            break;
-                        }
-                        let hit = group.test::<ANY>(block, lane, mask);
-                        hits |= hit;
-                        if ANY {
-                            mask &= !hit;
-                        }
-                    }
-                }
+                let hits = group.test_leaf::<ANY>(base.add(leaf.byte()), leaf.blocks(), mask);
                 if ANY {
                     self.done |= u64::from(hits) << from;
                 } else if hits != 0 {

@@ -1,9 +1,11 @@
 //! One triangle and a group of rays, operation by operation as in [`super::super::block`].
 
+use super::super::leaf::block_bytes;
+use super::super::node_format;
 use super::orientation::{Corners, Orientation};
 use super::rays::{Packet, RAYS};
 use super::wide::{Float, Half, Narrow, Wide};
-use crate::bvh8::layout::LANES;
+use crate::bvh8::layout::{LANES, NO_TRIANGLE};
 use crate::ray::{Culling, Hit, Query};
 
 /// A group of rays at a leaf. Its nearest hit distances stay in registers from triangle to triangle.
@@ -36,13 +38,45 @@ impl<'p, W: Wide, O: Orientation<W>> Group<'p, W, O> {
         }
     }
 
+    /// Tests the triangles of a leaf with the rays of a mask; returns those that hit one.
+    ///
+    /// # Safety
+    /// As for [`Group::new`]; `leaf` must point to that many blocks.
+    #[inline(always)]
+    pub(super) unsafe fn test_leaf<const ANY: bool>(
+        &mut self,
+        leaf: *const u8,
+        blocks: usize,
+        mut mask: u32,
+    ) -> u32 {
+        let mut hits = 0;
+        for index in 0..blocks {
+            // SAFETY: as the caller promises.
+            unsafe {
+                let block = leaf.add(index * block_bytes::<node_format::Wide>());
+                let primitives = block.add(9 * LANES * 4).cast::<u32>();
+                for lane in 0..LANES {
+                    if *primitives.add(lane) == NO_TRIANGLE || mask == 0 {
+                        break;
+                    }
+                    let hit = self.test::<ANY>(block, lane, mask);
+                    hits |= hit;
+                    if ANY {
+                        mask &= !hit;
+                    }
+                }
+            }
+        }
+        hits
+    }
+
     /// Tests a triangle of a block with the rays of a mask; returns those that hit it. The nearer hits are kept,
     /// except where any hit will do.
     ///
     /// # Safety
     /// As for [`Group::new`]; `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn test<const ANY: bool>(&mut self, block: *const u8, lane: usize, mask: u32) -> u32 {
+    unsafe fn test<const ANY: bool>(&mut self, block: *const u8, lane: usize, mask: u32) -> u32 {
         // SAFETY: as the caller promises.
         unsafe {
             let [x, y, z] = self.shear(block, lane);
