@@ -1,6 +1,6 @@
 //! From the index of a sample to its camera ray, and to the task of its integrator.
 
-use crate::bidirectional::Photons;
+use crate::bidirectional::{BothEnds, Photons};
 use crate::emission::{Emission, Guide};
 use crate::integrators::PixelIntegrator;
 use crate::interval::replicate;
@@ -47,6 +47,11 @@ impl<'a> CameraRays<'a> {
     /// The same with light subpaths that are aimed by a guide.
     pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
         CameraRays { emission: Emission::new(self.scene, guide), ..self }
+    }
+
+    /// The subpaths that the integrator follows from both ends, if it does.
+    pub(crate) fn both_ends(&self) -> Option<BothEnds<'a>> {
+        self.integrator.both_ends(self.photons)
     }
 
     /// The camera ray of a sample, and the task for its integrator.

@@ -31,6 +31,7 @@ pub mod render;
 pub mod replay;
 pub mod sampler;
 pub mod shadow_catcher;
+mod shadow_rays;
 #[cfg(test)]
 #[path = "../tests/common/mod.rs"]
 mod shapes;

@@ -1,12 +1,13 @@
 //! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
+use crate::bidirectional::{self, BothEnds, BothEndsQueue, QueuedSample};
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::path::Path;
-use crate::queue::{PATHS, PathQueue};
+use crate::queue::{self, PathQueue};
 use crate::render::{Progress, Rendered};
-use crate::splats::{Iterations, Splats};
+use crate::splats::{Iterations, PixelSum, Splats};
 use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_scene::Tracer;
@@ -75,6 +76,22 @@ struct Work<'a> {
     failed: Mutex<Option<FilmError>>,
 }
 
+/// The samples of a job: some of each pixel of a tile.
+struct JobSamples {
+    tile: Window,
+    samples: Range<u32>,
+}
+
+impl JobSamples {
+    /// Column, row and index of each.
+    fn all(&self) -> Vec<(u32, u32, u32)> {
+        let JobSamples { tile, samples } = self;
+        let rows = tile.y..tile.y + tile.height;
+        let pixels = rows.flat_map(|y| (tile.x..tile.x + tile.width).map(move |x| (x, y)));
+        pixels.flat_map(|(x, y)| samples.clone().map(move |i| (x, y, i))).collect()
+    }
+}
+
 impl<'a> Work<'a> {
     /// Runs one thread's share of the jobs.
     fn run(&self) -> Counters {
@@ -82,7 +99,7 @@ impl<'a> Work<'a> {
         let scale = scale_exponent(self.eye.scene);
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
-        let mut queue = PathQueue::default();
+        let (mut queue, mut both_ends_queue) = (PathQueue::default(), BothEndsQueue::default());
         let jobs = (self.tiles.len() * self.passes.len()) as u64;
         loop {
             let job = self.next.fetch_add(1, Ordering::Relaxed);
@@ -94,11 +111,14 @@ impl<'a> Work<'a> {
             let samples = self.passes[pass].clone();
             part.restart(tile.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
-            let finished = match PathQueue::integrator(&self.eye) {
-                Some(path) => {
-                    self.queue_tile(path, tile, samples.clone(), &mut tracer, (&mut part, &mut queue))
+            let job_samples = JobSamples { tile, samples: samples.clone() };
+            let finished = match (PathQueue::integrator(&self.eye), self.eye.both_ends()) {
+                (Some(path), _) => self.queue_paths(path, job_samples, &mut tracer, (&mut part, &mut queue)),
+                (None, Some(both_ends)) => {
+                    let parts = (&mut part, &mut splats, &mut both_ends_queue);
+                    self.queue_both_ends(&both_ends, job_samples, &mut tracer, parts)
                 }
-                None => self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)),
+                (None, None) => self.one_by_one(job_samples, &mut tracer, (&mut part, &mut splats)),
             };
             if !finished {
                 self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
@@ -116,11 +136,10 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Renders a tile; false when it was cancelled on the way.
-    fn render_tile(
+    /// Takes the samples of a job one after the other; false when it was cancelled on the way.
+    fn one_by_one(
         &self,
-        tile: Window,
-        samples: Range<u32>,
+        JobSamples { tile, samples }: JobSamples,
         tracer: &mut Tracer<'a>,
         (part, splats): (&mut Film, &mut Splats),
     ) -> bool {
@@ -141,25 +160,60 @@ impl<'a> Work<'a> {
         true
     }
 
-    /// The same for an integrator that follows many paths at once.
-    fn queue_tile(
+    /// The same for paths from the camera, many at a time.
+    fn queue_paths(
         &self,
         path: &Path,
-        tile: Window,
-        samples: Range<u32>,
+        samples: JobSamples,
         tracer: &mut Tracer<'a>,
         (part, queue): (&mut Film, &mut PathQueue),
     ) -> bool {
-        let rows = tile.y..tile.y + tile.height;
-        let pixels = rows.flat_map(|y| (tile.x..tile.x + tile.width).map(move |x| (x, y)));
-        let all: Vec<_> = pixels.flat_map(|(x, y)| samples.clone().map(move |i| (x, y, i))).collect();
-        for samples in all.chunks(PATHS) {
+        for samples in samples.all().chunks(queue::PATHS) {
             if self.progress.is_cancelled() {
                 return false;
             }
             queue.take(path, &self.eye, tracer, samples, |(x, y, sample), light| {
                 part.add(x, y, sample, light)
             });
+        }
+        true
+    }
+
+    /// The same for subpaths from both ends.
+    fn queue_both_ends(
+        &self,
+        both_ends: &BothEnds,
+        samples: JobSamples,
+        tracer: &mut Tracer<'a>,
+        (part, splats, queue): (&mut Film, &mut Splats, &mut BothEndsQueue),
+    ) -> bool {
+        for samples in samples.all().chunks(bidirectional::PATHS) {
+            if self.progress.is_cancelled() {
+                return false;
+            }
+            let queued: Vec<_> = samples
+                .iter()
+                .map(|&(x, y, sample)| {
+                    let (ray, task) = self.eye.sample(tracer, x, y, sample);
+                    QueuedSample::new(ray, &task, part.window().index(x, y).is_some())
+                })
+                .collect();
+            let Some(&(x, y, sample)) = samples.first() else { continue };
+            // Its tools serve all samples; each has its own random numbers and wavelength.
+            let (_, mut task) = self.eye.sample(tracer, x, y, sample);
+            let mut sums = vec![PixelSum::default(); samples.len()];
+            let mut current = None;
+            queue.take(both_ends, &queued, &mut task, &mut sums, |i, film, _, found| {
+                if current != Some(i) {
+                    let (x, y, sample) = samples[i];
+                    splats.begin(x, y, sample);
+                    current = Some(i);
+                }
+                splats.add(film, found.weighted());
+            });
+            for (&(x, y, sample), PixelSum(light)) in samples.iter().zip(sums) {
+                part.add(x, y, sample, light);
+            }
         }
         true
     }

@@ -108,6 +108,32 @@ impl<'a> Splats<'a> {
     }
 }
 
+/// The weighted light of a sample: in its own pixel, and as splats.
+pub(crate) struct Sum<'a, 's> {
+    pub(crate) here: Rgb,
+    pub(crate) splats: &'a mut Splats<'s>,
+}
+
+impl Tally<1> for Sum<'_, '_> {
+    fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
+        self.here += found.weighted();
+    }
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution) {
+        self.splats.add(film, found.weighted());
+    }
+}
+
+/// The weighted light of a sample in its own pixel; splats are left out.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct PixelSum(pub(crate) Rgb);
+
+impl Tally<1> for PixelSum {
+    fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
+        self.0 += found.weighted();
+    }
+    fn add_splat(&mut self, _film: Vec2, _technique: Technique, _found: &Contribution) {}
+}
+
 impl<const N: usize> Tally<N> for Splats<'_> {
     fn add_sample(&mut self, _technique: Technique, _found: &Contribution<N>) {}
 

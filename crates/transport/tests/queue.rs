@@ -1,38 +1,60 @@
-//! Paths that are followed many at a time bring the same light, bit for bit, as paths that are followed one by one.
+//! Paths that are followed many at a time bring the same light, bit for bit, as paths that are followed one by one; and
+//! so do pairs of subpaths from both ends.
 
 mod common;
 
 use bilux_math::{Rgb, Transform, Vec3};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec};
-use bilux_transport::{Film, PixelIntegrator, RenderSettings, Task};
+use bilux_transport::{Film, Merging, PixelIntegrator, RenderSettings, Splats, Task};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life};
 use std::sync::Arc;
 
-/// An integrator that does not say that it is a path tracer.
+/// An integrator that does not say that many of its paths can be followed at once.
 struct OneByOne(Box<dyn PixelIntegrator>);
 
 impl PixelIntegrator for OneByOne {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         self.0.radiance(ray, task)
     }
+
+    fn splats(&self) -> bool {
+        self.0.splats()
+    }
+
+    fn merging(&self) -> Option<&Merging> {
+        self.0.merging()
+    }
+
+    fn roulette_depth(&self) -> u32 {
+        self.0.roulette_depth()
+    }
+
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        self.0.sample(ray, is_wanted, task, splats)
+    }
 }
+
+/// The integrators that follow many paths at once.
+const QUEUED: [&str; 3] = ["path", "bdpt", "vcm"];
 
 fn settings() -> RenderSettings {
     RenderSettings { threads: 2, seed: 3, ..RenderSettings::new(37, 29, 6) }
 }
 
-fn one_by_one(scene: &Scene) -> (Film, Counters) {
-    let rendered = shoot(scene, &OneByOne(integrator("path")), &settings());
+fn one_by_one(scene: &Scene, name: &str) -> (Film, Counters) {
+    let rendered = shoot(scene, &OneByOne(integrator(name)), &settings());
     (rendered.film, rendered.counters)
 }
 
 fn assert_same(name: &str, scene: &Scene) {
-    let together = shoot(scene, &*integrator("path"), &settings());
-    let (film, counters) = one_by_one(scene);
-    let same = film.to_rgb().iter().zip(together.film.to_rgb()).filter(|(a, b)| **a == *b).count();
-    assert!(film == together.film, "{name}: {same} of {} pixels are the same", 37 * 29);
-    assert_eq!(counters, together.counters, "{name}");
+    for queued in QUEUED {
+        let together = shoot(scene, &*integrator(queued), &settings());
+        let (film, counters) = one_by_one(scene, queued);
+        let same = film.to_rgb().iter().zip(together.film.to_rgb()).filter(|(a, b)| **a == *b).count();
+        assert!(film == together.film, "{name}, {queued}: {same} of {} pixels are the same", 37 * 29);
+        assert_eq!(counters, together.counters, "{name}, {queued}");
+    }
 }
 
 #[test]
@@ -138,14 +160,16 @@ fn every_kind_of_medium_is_the_same() {
 
 #[test]
 fn every_level_of_instructions_gives_the_same() {
-    let at = |cpu_level: CpuLevel| {
-        let mut accel = AccelChoice::default();
-        accel.options.cpu_level = cpu_level;
-        let scene = mixed().build(&accel, [0.0, 0.0], 1.0).unwrap();
-        shoot(&scene, &*integrator("path"), &settings()).film
-    };
-    let truth = one_by_one(&built(&mixed())).0;
-    for level in CpuLevel::ALL {
-        assert!(at(level) == truth, "{}", level.name());
+    for queued in QUEUED {
+        let at = |cpu_level: CpuLevel| {
+            let mut accel = AccelChoice::default();
+            accel.options.cpu_level = cpu_level;
+            let scene = mixed().build(&accel, [0.0, 0.0], 1.0).unwrap();
+            shoot(&scene, &*integrator(queued), &settings()).film
+        };
+        let truth = one_by_one(&built(&mixed()), queued).0;
+        for level in CpuLevel::ALL {
+            assert!(at(level) == truth, "{queued}, {}", level.name());
+        }
     }
 }

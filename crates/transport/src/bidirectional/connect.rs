@@ -1,10 +1,43 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
-use super::{Contribution, Lanes, Photons, Step, Tally, Technique, TechniqueCounts, favour};
+use super::{Contribution, Lanes, Photons, Technique, TechniqueCounts, favour};
+use crate::media::Media;
+use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
+
+/// A connection, before it is known whether something lies between its ends.
+pub(crate) struct Connection<const N: usize = 1> {
+    pub(crate) technique: Technique,
+    /// What it contributes if nothing does.
+    pub(crate) found: Contribution<N>,
+    /// From one end to the other.
+    pub(crate) ray: Ray,
+    /// Its length in metres; 0 for light from infinity.
+    pub(crate) distance: f32,
+    /// The [normal](bilux_scene::Scene::normal_towards) of the surface at the end of the ray; zero where there is none.
+    pub(crate) n: Vec3,
+    /// The media at the start of the ray.
+    pub(crate) media: Media,
+}
+
+impl<const N: usize> Connection<N> {
+    /// What it contributes; `None` where something blocks it.
+    #[inline]
+    pub(crate) fn trace(&self, task: &mut Task) -> Option<Contribution<N>> {
+        let passed = self.media.visible(task.tracer, &self.ray, self.distance, self.n)?;
+        Some(self.found.passed(passed))
+    }
+
+    /// Adds its ray to a list, with what it brings. Where no medium changes light, as `is_clear` says, none is stored.
+    #[inline]
+    pub(super) fn list<T>(&self, shadow_rays: &mut ShadowRays<T>, is_clear: bool, brought: T) {
+        let media = (!is_clear).then_some((self.media, self.distance));
+        shadow_rays.push(self.ray, self.n, media, brought);
+    }
+}
 
 /// Connects a vertex of a light subpath with the camera (t = 1): the position on the film, and the light there as an
 /// integral over the whole film.
@@ -12,7 +45,7 @@ pub(crate) fn to_camera<const N: usize>(
     task: &mut Task,
     y: &Vertex<N>,
     techniques: &TechniqueCounts<N>,
-) -> Option<(Vec2, Contribution<N>)> {
+) -> Option<(Vec2, Connection<N>)> {
     let u_lens = task.sampler.next_2d();
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
@@ -22,40 +55,24 @@ pub(crate) fn to_camera<const N: usize>(
     }
     let media = y.media_towards(task.scene(), seen.wi);
     let ray = task.scene().to_camera(y.surface.spawn_to(seen.p));
-    let passed = media.visible(task.tracer, &ray, seen.p.distance(y.surface.p), Vec3::ZERO)?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
-    let light = task.seen(y.beta * scattered * passed * seen.density, y.is_split());
-    Some((
-        seen.film,
-        Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) },
-    ))
+    let light = task.seen(y.beta * scattered * seen.density, y.is_split());
+    let found =
+        Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) };
+    let technique = Technique::Joined { s: y.count(), t: 1 };
+    let distance = seen.p.distance(y.surface.p);
+    Some((seen.film, Connection { technique, found, ray, distance, n: Vec3::ZERO, media }))
 }
 
-/// Connects every vertex of a light subpath with the camera.
-pub(crate) fn show_to_camera<const N: usize>(
-    task: &mut Task,
-    light_path: &[Vertex<N>],
-    techniques: &TechniqueCounts<N>,
-    tally: &mut impl Tally<N>,
-) {
-    for y in light_path.iter().filter(|y| y.depth > 0 || techniques.direct) {
-        task.enter_light_vertex(y.depth);
-        tally.spend(Step::Seen, 1);
-        if let Some((film, found)) = to_camera(task, y, techniques) {
-            tally.add_splat(film, Technique::Joined { s: y.count(), t: 1 }, &found);
-        }
-    }
-}
-
-/// Connects a camera vertex with a point sampled on a light (s = 1), and returns the light that arrives from there.
+/// Connects a camera vertex with a point sampled on a light (s = 1).
 pub(crate) fn to_light<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
     index: usize,
     u: Vec2,
     techniques: &TechniqueCounts<N>,
-) -> Option<Contribution<N>> {
+) -> Option<Connection<N>> {
     let probability = task.lights.probability(index);
     let scene = task.scene();
     let light = &scene.lights()[index].light;
@@ -69,7 +86,6 @@ pub(crate) fn to_light<const N: usize>(
     }
     let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
     let media = z.media_towards(scene, sample.wi);
-    let passed = media.visible(task.tracer, &z.surface.spawn_to_light(&sample), distance, sample.n_light)?;
     let cos_light = sample.cos();
     // A delta light has one certain point: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
@@ -81,22 +97,25 @@ pub(crate) fn to_light<const N: usize>(
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
     let from_light = z.partial.others_of_direct(arriving, back, techniques.direct);
-    let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
+    let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.seen(light, z.is_split());
-    Some(Contribution {
+    let found = Contribution {
         others: Lanes::ONE * ratio + from_light,
         favour: favour(ratio),
         ..Contribution::only(light)
-    })
+    };
+    let technique = Technique::Joined { s: 1, t: z.count() };
+    let ray = z.surface.spawn_to_light(&sample);
+    Some(Connection { technique, found, ray, distance, n: sample.n_light, media })
 }
 
-/// Connects a camera vertex and a light vertex (s, t > 1), and returns the light between them.
+/// Connects a camera vertex and a light vertex (s, t > 1).
 pub(crate) fn to_vertex<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
     y: &Vertex<N>,
     techniques: &TechniqueCounts<N>,
-) -> Option<Contribution<N>> {
+) -> Option<Connection<N>> {
     let between = y.surface.p - z.surface.p;
     let distance2 = between.length_squared();
     let direction = between.try_normalize()?;
@@ -110,16 +129,17 @@ pub(crate) fn to_vertex<const N: usize>(
     }
     let media = z.media_towards(task.scene(), direction);
     let n = task.scene().normal_towards(&y.surface, -direction);
-    let passed = media.visible(task.tracer, &spawn_between(z, y), distance2.sqrt(), n)?;
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =
         y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y));
     let from_light =
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
-    let light = task.seen(z.beta * f_z * f_y * y.beta * passed / distance2, z.is_split() || y.is_split());
+    let light = task.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
     let others = from_camera + from_light;
-    Some(Contribution { own: techniques.joins, others, origin: y.origin, ..Contribution::only(light) })
+    let found = Contribution { own: techniques.joins, others, origin: y.origin, ..Contribution::only(light) };
+    let technique = Technique::Joined { s: y.count(), t: z.count() };
+    Some(Connection { technique, found, ray: spawn_between(z, y), distance: distance2.sqrt(), n, media })
 }
 
 /// Merges a camera vertex with all photons around it, and visits the light that each of them brings.

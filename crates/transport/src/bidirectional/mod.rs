@@ -10,23 +10,28 @@
 //! Densities assume a film of area 1 and one light subpath per camera subpath. They leave out Russian roulette: all
 //! that weights need is to be the same for all techniques.
 
+mod both_ends;
 mod connect;
+mod light_paths;
 mod photons;
+mod queue;
 mod techniques;
 mod walk;
 #[cfg(test)]
 mod weights;
 
-pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
+pub(crate) use both_ends::BothEnds;
+pub(crate) use connect::{merged, to_camera};
+pub(crate) use light_paths::{light_vertices, show_to_camera};
 pub(crate) use photons::LightPathVisitor;
 pub use photons::{Merging, Photons};
+pub(crate) use queue::{BothEndsQueue, PATHS, QueuedSample};
 pub(crate) use techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts, favour};
-pub(crate) use walk::{Vertex, Walk, count};
+pub(crate) use walk::{Vertex, Walk};
 
-use crate::emission::Start;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Surface, TransportMode};
+use bilux_scene::Surface;
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
@@ -123,67 +128,6 @@ impl<const N: usize> Partial<N> {
     fn before(&self, pdf_back: f32) -> Lanes<N> {
         self.joined + self.shown + (self.d_vc + self.beyond) * pdf_back
     }
-}
-
-/// Random number streams of light subpaths begin here, far from those of camera subpaths.
-const LIGHT_STREAM: u64 = 1 << 32;
-
-impl Task<'_, '_> {
-    /// Enters the stream of random numbers for connecting a vertex of the light subpath.
-    pub(crate) fn enter_light_vertex(&mut self, depth: u32) {
-        self.sampler.enter(2 * LIGHT_STREAM + u64::from(depth));
-    }
-}
-
-/// Traces a light subpath: every surface that it hits, in order, except those that scatter into single directions only.
-pub(crate) fn light_vertices<const N: usize>(
-    task: &mut Task,
-    time: f32,
-    roulette_depth: u32,
-    techniques: &TechniqueCounts<N>,
-) -> Vec<Vertex<N>> {
-    let mut vertices = Vec::new();
-    let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
-    while let Some(vertex) = walk.next_vertex(task) {
-        // The last event of the longest path is on the camera's side.
-        let ends = vertex.depth + 1 >= task.max_depth;
-        let stream = LIGHT_STREAM + 1 + u64::from(vertex.depth);
-        task.sampler.enter(stream);
-        let goes_on = !ends && walk.scatter(&vertex, roulette_depth, task);
-        if !vertex.bsdf.is_delta() {
-            vertices.push(vertex);
-        }
-        if !goes_on {
-            break;
-        }
-    }
-    vertices
-}
-
-fn begin_at_light<'w, const N: usize>(
-    task: &mut Task,
-    time: f32,
-    techniques: &'w TechniqueCounts<N>,
-) -> Option<Walk<'w, N>> {
-    task.sampler.enter(LIGHT_STREAM);
-    let (u_light, u_point, u_direction) =
-        (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
-    if task.max_depth == 0 {
-        return None;
-    }
-    let scene = task.scene();
-    let start = task.emission.sample(scene, time, u_light, (u_point, u_direction))?;
-    let Start { light: index, ray, .. } = start;
-    let light = &scene.lights()[index].light;
-    let (cos, pdf_emission) = (ray.cos(), ray.pdf_emission);
-    let pdf_direct = ray.pdf_direct * task.lights.probability(index);
-    let beta = ray.le * (cos / pdf_emission);
-    let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
-    // The start of a ray from infinity already has a density over area.
-    let by_area = light.is_infinite();
-    let spawned = ray.spawn(time);
-    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
-    Some(walk.leaving(start))
 }
 
 /// Light that a camera subpath hits by chance (s = 0): its radiance, and the densities with which the same path would

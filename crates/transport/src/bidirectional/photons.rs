@@ -1,7 +1,9 @@
 //! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
 //! to merge with. [Jensen 1996; Georgiev 2012]
 
-use super::{Lanes, Tally, TechniqueCounts, Vertex, light_vertices, show_to_camera};
+use super::light_paths::LightPaths;
+use super::queue::{PATHS, QueuedSample};
+use super::{Lanes, Tally, TechniqueCounts, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::window::Window;
 use bilux_math::hash::mix64;
@@ -147,16 +149,30 @@ impl<const N: usize> Photons<N> {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
             let mut tally = visitor.map(O::tally);
-            for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
-                let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-                let vertices =
-                    light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &techniques);
+            let places: Vec<(u32, u32)> =
+                (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
+            let mut paths = LightPaths::default();
+            for places in places.chunks(PATHS) {
+                let mut sampled = |&(x, y): &(u32, u32)| {
+                    let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
+                    QueuedSample::new(ray, &task, false)
+                };
+                let samples: Vec<_> = places.iter().map(&mut sampled).collect();
+                let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
+                paths.trace(&samples, &mut task, eye.integrator.roulette_depth(), &techniques);
                 if let Some(tally) = &mut tally {
-                    O::begin(tally, x, y, iteration);
-                    show_to_camera(&mut task, &vertices, &techniques, tally);
+                    let mut current = None;
+                    paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
+                        if current != Some(i) {
+                            O::begin(tally, places[i].0, places[i].1, iteration);
+                            current = Some(i);
+                        }
+                        tally.add_splat(film, technique, found);
+                    });
                 }
                 let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
-                photons.extend(vertices.iter().filter(is_kept).map(Vertex::photon));
+                let vertices = (0..samples.len()).flat_map(|i| paths.of(i));
+                photons.extend(vertices.filter(is_kept).map(Vertex::photon));
             }
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);

@@ -125,6 +125,12 @@ impl<const N: usize> Contribution<N> {
         Contribution { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
     }
 
+    /// The same along a connection with this transmittance.
+    #[inline]
+    pub(crate) fn passed(&self, passed: Rgb) -> Contribution<N> {
+        Contribution { light: self.light * passed, ..*self }
+    }
+
     /// Weighted by the balance heuristic [Veach 1997, eq. 9.8], except for [`favour`].
     pub(crate) fn weighted(&self) -> Rgb {
         self.light * (self.favour / (self.own.0[0] + self.others.0[0]))

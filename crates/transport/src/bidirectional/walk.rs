@@ -127,14 +127,22 @@ impl<'w, const N: usize> Walk<'w, N> {
 
     /// Traces to the next surface; `None` where the ray leaves the scene.
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
+        let hit = task.tracer.closest(&self.ray);
+        let vertex = hit.and_then(|surface| self.vertex_at(surface, task));
+        task.note(self.depth, || match &vertex {
+            None => format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction),
+            Some(Vertex { surface, .. }) => {
+                format!("{} hits object {} at {}", self.whose(), surface.object, surface.p)
+            }
+        });
+        vertex
+    }
+
+    /// The same where the first surface along the ray is known.
+    #[inline]
+    pub(crate) fn vertex_at(&mut self, surface: Surface, task: &mut Task) -> Option<Vertex<N>> {
         let mut media = self.media.unwrap_or_else(|| Media::at_start(task.tracer, &self.ray));
-        let Some((surface, passed)) = media.closest(task.tracer, &self.ray) else {
-            task.note(self.depth, || {
-                format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
-            });
-            return None;
-        };
-        task.note(self.depth, || format!("{} hits object {} at {}", self.whose(), surface.object, surface.p));
+        let (surface, passed) = media.closest_from(task.tracer, &self.ray, surface)?;
         let wo = -Vec3::from(self.ray.direction);
         self.beta *= passed;
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };

@@ -47,7 +47,9 @@ impl PixelIntegrator for Light {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
         for vertex in light_vertices(task, ray.time, self.roulette_depth, &TechniqueCounts::BOTH_ENDS) {
             task.enter_light_vertex(vertex.depth);
-            if let Some((film, found)) = to_camera(task, &vertex, &TechniqueCounts::BOTH_ENDS) {
+            if let Some((film, connection)) = to_camera(task, &vertex, &TechniqueCounts::BOTH_ENDS)
+                && let Some(found) = connection.trace(task)
+            {
                 // There is no other technique.
                 splats.add(film, found.light);
             }

@@ -12,11 +12,11 @@ mod sppm;
 mod vcm;
 mod whitted;
 
-use crate::bidirectional::Merging;
+use crate::bidirectional::{BothEnds, Merging, Photons};
 use crate::emission::Guide;
 use crate::plan::Plan;
 use crate::render::RenderSettings;
-use crate::splats::Splats;
+use crate::splats::{Splats, Sum};
 use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
@@ -60,17 +60,35 @@ pub trait PixelIntegrator: Send + Sync {
 
     /// Takes a sample of a pixel: [`PixelIntegrator::radiance`] where it `is_wanted` (pixels outside the crop trace
     /// only their light subpaths), and all splats.
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, _splats: &mut Splats) -> Rgb {
-        if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK }
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        match self.both_ends(task.photons) {
+            Some(both_ends) => {
+                let mut sum = Sum { here: Rgb::BLACK, splats };
+                both_ends.sample(ray, is_wanted, task, &mut sum);
+                sum.here
+            }
+            None if is_wanted => self.radiance(ray, task),
+            None => Rgb::BLACK,
+        }
     }
 
     /// True when it has techniques that can be rendered separately ([`crate::strategies()`]).
     fn has_strategies(&self) -> bool {
-        false
+        self.both_ends(None).is_some()
     }
 
     /// The same sample as [`PixelIntegrator::sample`], technique by technique.
-    fn sample_strategies(&self, _ray: &Ray, _is_wanted: bool, _task: &mut Task, _layers: &mut Layers) {}
+    fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
+        if let Some(both_ends) = self.both_ends(task.photons) {
+            both_ends.showing().sample(ray, is_wanted, task, layers);
+        }
+    }
+
+    /// The subpaths from both ends that its samples consist of, if they do. Many of them can be followed at once.
+    #[doc(hidden)]
+    fn both_ends<'a>(&self, _photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
+        None
+    }
 
     /// The path tracer that this integrator is, which can follow many paths at once.
     #[doc(hidden)]

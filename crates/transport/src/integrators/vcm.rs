@@ -2,12 +2,10 @@
 //! and a nearby vertex of a light subpath are merged into one, at the cost of a little blur that vanishes with the
 //! iterations. This finds light that passes through mirrors or glass at both ends. [Georgiev 2012; Hachisuka 2012]
 
-use super::bdpt::{BothEnds, Sum, of_camera_path};
+use super::bdpt::of_camera_path;
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{Lanes, Merging, TechniqueCounts};
+use crate::bidirectional::{BothEnds, Lanes, Merging, Photons, TechniqueCounts};
 use crate::emission::Guide;
-use crate::splats::Splats;
-use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -55,7 +53,7 @@ pub(super) struct Vcm {
 
 impl PixelIntegrator for Vcm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        of_camera_path(ray, task, &self.merging.techniques(0.0, 1.0), self.roulette_depth)
+        of_camera_path(ray, task, &self.unmerged())
     }
 
     fn splats(&self) -> bool {
@@ -75,33 +73,17 @@ impl PixelIntegrator for Vcm {
         self.roulette_depth
     }
 
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        let mut sum = Sum { here: Rgb::BLACK, splats };
-        let unmerged = self.merging.techniques(0.0, 1.0);
-        let both_ends = match task.photons {
-            Some(photons) => {
-                let shows = !self.merging.shows_photons() && self.merging.techniques.splats != Lanes::ZERO;
-                BothEnds::merging(photons, shows, self.roulette_depth)
-            }
-            None => BothEnds::new(&unmerged, self.roulette_depth),
-        };
-        both_ends.sample(ray, is_wanted, task, &mut sum);
-        sum.here
+    fn both_ends<'a>(&self, photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
+        let shows = !self.merging.shows_photons() && self.merging.techniques.splats != Lanes::ZERO;
+        Some(match photons {
+            Some(photons) => BothEnds::merging(photons, shows, self.roulette_depth),
+            None => self.unmerged(),
+        })
     }
+}
 
-    fn has_strategies(&self) -> bool {
-        true
-    }
-
-    fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
-        let unmerged = self.merging.techniques(0.0, 1.0);
-        let both_ends = match task.photons {
-            Some(photons) => {
-                let shows = photons.techniques().splats != Lanes::ZERO;
-                BothEnds::merging(photons, shows, self.roulette_depth)
-            }
-            None => BothEnds::new(&unmerged, self.roulette_depth),
-        };
-        both_ends.sample(ray, is_wanted, task, layers);
+impl Vcm {
+    fn unmerged(&self) -> BothEnds<'static> {
+        BothEnds::new(self.merging.techniques(0.0, 1.0), self.roulette_depth)
     }
 }

@@ -14,9 +14,10 @@ use crate::camera_rays::CameraRays;
 use crate::integrators::path::{Path, Walk};
 use crate::media::Media;
 use crate::sampler::PixelSampler;
+use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
 use bilux_accel::Hit;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::Rgb;
 use bilux_scene::{Ray, Tracer, Wavelength};
 use diffuse::Diffuse;
 use general::General;
@@ -56,44 +57,26 @@ struct Unoccluded {
     /// Index of the path.
     path: u32,
     light: Rgb,
-    /// The normal of the light at its end.
-    n_light: Vec3,
 }
 
 /// Connections with lights. Rays towards the same light are next to each other, since these are traced fastest.
 #[derive(Default)]
 struct Connections {
-    lists: [ConnectionList; LISTS],
+    lists: [ShadowRays<Unoccluded>; LISTS],
 }
 
 /// A light has a list of its own if it is one of few.
 const LISTS: usize = 4;
 
-#[derive(Default)]
-struct ConnectionList {
-    rays: Vec<Ray>,
-    brought: Vec<Unoccluded>,
-    /// The media at the start of each ray, and its length in metres (0 for light from infinity); none where no medium
-    /// changes light.
-    media: Vec<(Media, f32)>,
-}
-
 impl Connections {
     fn clear(&mut self) {
-        for list in &mut self.lists {
-            list.rays.clear();
-            list.brought.clear();
-            list.media.clear();
-        }
+        self.lists.iter_mut().for_each(ShadowRays::clear);
     }
 
-    /// Adds the connection of a path's vertex with a light. Those of one vertex come in the order of the lights.
+    /// The list of a light. Connections of one vertex come in the order of the lights.
     #[inline]
-    fn push(&mut self, index: usize, ray: Ray, brought: Unoccluded, media: Option<(Media, f32)>) {
-        let list = &mut self.lists[index.min(LISTS - 1)];
-        list.rays.push(ray);
-        list.brought.push(brought);
-        list.media.extend(media);
+    fn with(&mut self, light: usize) -> &mut ShadowRays<Unoccluded> {
+        &mut self.lists[light.min(LISTS - 1)]
     }
 }
 
@@ -106,7 +89,6 @@ pub(crate) struct PathQueue {
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     connections: Connections,
-    occluded: Vec<bool>,
     vertices: Box<Vertices>,
     diffuse: Box<Diffuse>,
     /// Path, object, hit.
@@ -189,27 +171,10 @@ impl PathQueue {
     /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
     /// before it is weighted by the throughput, as in a single path.
     fn add_direct_light(&mut self, task: &mut Task) {
-        for ConnectionList { rays, brought, media } in &self.connections.lists {
-            self.occluded.clear();
-            self.occluded.resize(rays.len(), false);
-            task.tracer.all_occluded(rays, |i| brought[i].n_light, &mut self.occluded);
-            let has_nested = task.scene().has_nested();
-            for (i, brought) in brought.iter().enumerate() {
-                let passed = match (self.occluded[i], media.get(i)) {
-                    (false, None) => Rgb::WHITE,
-                    (false, Some((media, distance))) => media.unoccluded(*distance),
-                    // What it hits may separate nothing.
-                    (true, Some((media, distance))) if has_nested => {
-                        // Asked again, and counted once.
-                        task.tracer.counters.rays -= 1;
-                        let passed = media.visible(task.tracer, &rays[i], *distance, brought.n_light);
-                        let Some(passed) = passed else { continue };
-                        passed
-                    }
-                    (true, _) => continue,
-                };
+        for list in &mut self.connections.lists {
+            list.trace(task, |brought, passed| {
                 self.paths[brought.path as usize].direct += brought.light * passed;
-            }
+            });
         }
         for &index in &self.shaded {
             let one = &mut self.paths[index as usize];

@@ -179,13 +179,14 @@ impl PathQueue {
                 continue;
             }
             let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
-            let brought = Unoccluded { path: v.paths[i], light: brought, n_light: vec3(&v.light.n_light, i) };
+            let brought = Unoccluded { path: v.paths[i], light: brought };
             let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
             let media = (!is_clear).then(|| {
                 let walk = &self.paths[v.paths[i] as usize].walk;
                 (media(walk, i, vec3(&v.light.wi, i)), v.distance(i))
             });
-            self.connections.push(light, ray, brought, media);
+            let n_light = vec3(&v.light.n_light, i);
+            self.connections.with(light).push(ray, n_light, media, brought);
         }
     }
 }

@@ -1,9 +1,10 @@
 //! A whole path, and how often each technique finds it by the definition.
 
 use super::PANEL_AREA;
-use crate::bidirectional::{Task, TechniqueCounts, TransportMode};
+use crate::bidirectional::{Task, TechniqueCounts};
 use bilux_math::Vec3;
 use bilux_scene::Bsdf;
+use bilux_scene::TransportMode;
 
 /// A vertex between the light and the camera, in both directions as the code has evaluated it.
 #[derive(Clone)]

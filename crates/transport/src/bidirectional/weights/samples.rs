@@ -2,10 +2,12 @@
 
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
+use crate::bidirectional::connect::{to_light, to_vertex};
+use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::photons::{Photon, Spot};
 use crate::bidirectional::*;
 use bilux_math::{Vec2, warp};
-use bilux_scene::Ray;
+use bilux_scene::{Ray, TransportMode};
 
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     let techniques = &{ verdict.techniques };
@@ -34,7 +36,8 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subp
     let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || techniques.direct);
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.enter_light_vertex(vertex.depth);
-        let Some((_, found)) = to_camera(task, vertex, techniques) else { continue };
+        let Some((_, connection)) = to_camera(task, vertex, techniques) else { continue };
+        let Some(found) = connection.trace(task) else { continue };
         task.enter_light_vertex(vertex.depth);
         let u = task.sampler.next_2d();
         let lens = if task.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
@@ -76,7 +79,8 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
     for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
         for index in 0..task.scene().lights().len() {
             let u = task.sampler.next_2d();
-            let Some(found) = to_light(task, vertex, index, u, techniques) else { continue };
+            let Some(connection) = to_light(task, vertex, index, u, techniques) else { continue };
+            let Some(found) = connection.trace(task) else { continue };
             let light = &task.scene().lights()[index].light;
             let sample = light.sample_li(vertex.surface.p, vertex.surface.time, u).unwrap();
             let start = Start { index, p: sample.point, cos: sample.cos() };
@@ -95,7 +99,8 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
     };
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
-        let Some(found) = to_vertex(task, camera_end, light_end, techniques) else { continue };
+        let Some(connection) = to_vertex(task, camera_end, light_end, techniques) else { continue };
+        let Some(found) = connection.trace(task) else { continue };
         let direction = (light_end.surface.p - camera_end.surface.p).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));

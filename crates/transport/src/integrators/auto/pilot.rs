@@ -8,11 +8,10 @@
 use super::cost::Steps;
 use super::outliers::Contributions;
 use crate::bidirectional::{
-    Contribution, LightPathVisitor, Merging, Photons, Step, Tally, Technique, TechniqueCounts,
+    BothEnds, Contribution, LightPathVisitor, Merging, Photons, Step, Tally, Technique, TechniqueCounts,
 };
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
-use crate::integrators::bdpt::BothEnds;
 use crate::render::RenderSettings;
 use crate::splats::IterationSplats;
 use crate::window::Window;

@@ -1,0 +1,174 @@
+//! One sample of the bidirectional integrators: a subpath from the camera and one from a light, every vertex of one
+//! connected with every vertex of the other, with the camera and with a light, and merged with photons.
+//!
+//! Here stands what happens to *one* pair of subpaths. [`super::queue`] follows many pairs at a time, and finds the
+//! same light, bit for bit.
+
+use super::connect::{Connection, merged, to_light, to_vertex};
+use super::walk::count;
+use super::{
+    Contribution, Lanes, Partial, Photons, Step, Tally, Technique, TechniqueCounts, Vertex, Walk, emitted,
+    from_infinity, light_vertices, show_to_camera,
+};
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_scene::{Ray, TransportMode};
+
+/// One subpath from each end, and all that they find.
+pub struct BothEnds<'a, const N: usize = 1> {
+    pub(super) techniques: TechniqueCounts<N>,
+    photons: Option<&'a Photons<N>>,
+    /// Its own light subpath is connected with the camera; false where those of the photons replace it.
+    pub(super) shows: bool,
+    pub(super) roulette_depth: u32,
+}
+
+impl<'a, const N: usize> BothEnds<'a, N> {
+    /// Without merging.
+    pub(crate) fn new(techniques: TechniqueCounts<N>, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { techniques, photons: None, shows: techniques.splats != Lanes::ZERO, roulette_depth }
+    }
+
+    /// With photons that camera subpaths are merged with.
+    pub(crate) fn merging(photons: &'a Photons<N>, shows: bool, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { techniques: *photons.techniques(), photons: Some(photons), shows, roulette_depth }
+    }
+
+    /// The same where its own light subpath is connected with the camera, if the technique counts at all.
+    pub(crate) fn showing(self) -> BothEnds<'a, N> {
+        BothEnds { shows: self.techniques.splats != Lanes::ZERO, ..self }
+    }
+
+    /// Whether light subpaths are connected with camera subpaths.
+    pub(super) fn joins(&self) -> bool {
+        self.techniques.joins != Lanes::ZERO
+    }
+
+    /// Traces both subpaths; the one from the camera only where it `is_wanted`.
+    pub(crate) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
+        let light_path = if !self.shows && !self.joins() {
+            Vec::new()
+        } else {
+            let rays = task.tracer.counters.rays;
+            let vertices = light_vertices(task, ray.time, self.roulette_depth, &self.techniques);
+            tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
+            vertices
+        };
+        if self.shows {
+            show_to_camera(task, &light_path, &self.techniques, tally);
+        }
+        if is_wanted {
+            self.camera_path(ray, &light_path, task, tally);
+        }
+    }
+
+    /// Traces a subpath from the camera.
+    pub(crate) fn camera_path(
+        &self,
+        ray: &Ray,
+        light_path: &[Vertex<N>],
+        task: &mut Task,
+        tally: &mut impl Tally<N>,
+    ) {
+        let mut walk = self.leave_camera(ray);
+        loop {
+            tally.spend(Step::Camera, 1);
+            let Some(mut z) = walk.next_vertex(task) else { return self.escape(&walk, task, tally) };
+            if !self.arrive(&mut walk, &mut z, task, tally) {
+                return;
+            }
+            self.connect(&z, light_path.iter(), task, |task, step, connection| {
+                tally.spend(step, 1);
+                if let Some(connection) = connection
+                    && let Some(found) = connection.trace(task)
+                {
+                    tally.add_sample(connection.technique, &found);
+                }
+            });
+            self.merge(&z, task, tally);
+            if !walk.scatter(&z, self.roulette_depth, task) {
+                return;
+            }
+        }
+    }
+
+    /// A camera subpath with only its first ray.
+    pub(super) fn leave_camera(&self, ray: &Ray) -> Walk<'_, N> {
+        Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &self.techniques)
+    }
+
+    /// The end of a camera subpath that leaves the scene.
+    pub(super) fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>) {
+        let technique = Technique::Joined { s: 0, t: count(walk.depth) };
+        from_infinity(task, walk, |hit| tally.add_sample(technique, &hit.by(walk.seen(task), &walk.partial)));
+    }
+
+    /// A camera subpath arrives at a surface, and collects the light that is emitted there (s = 0); false where it has
+    /// reached its maximum depth.
+    pub(super) fn arrive(
+        &self,
+        walk: &mut Walk<N>,
+        z: &mut Vertex<N>,
+        task: &mut Task,
+        tally: &mut impl Tally<N>,
+    ) -> bool {
+        if z.depth == 0 {
+            let density = task.camera.density(&walk.ray, z.surface.t);
+            z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), &self.techniques);
+            walk.partial = z.partial;
+        }
+        if let Some(hit) = emitted(task, &z.surface, z.wo) {
+            let seen = || Contribution::only(walk.seen(task) * hit.radiance);
+            let technique = Technique::Joined { s: 0, t: z.count() };
+            tally.add_sample(
+                technique,
+                &if z.depth == 0 { seen() } else { hit.by(walk.seen(task), &z.partial) },
+            );
+        }
+        if z.depth >= task.max_depth {
+            return false;
+        }
+        task.sampler.enter(u64::from(z.depth) + 1);
+        true
+    }
+
+    /// Connects a camera vertex with points on lights (s = 1), then with the vertices of the light subpath (s, t > 1).
+    /// `visit` is told of each attempt, and receives the connection if there is one.
+    #[inline]
+    pub(super) fn connect<'v>(
+        &self,
+        z: &Vertex<N>,
+        light_path: impl Iterator<Item = &'v Vertex<N>>,
+        task: &mut Task,
+        mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
+    ) {
+        let (lights, is_delta) = (task.lights, z.bsdf.is_delta());
+        let u = task.sampler.next_1d();
+        for index in lights.sample(u) {
+            let u = task.sampler.next_2d();
+            if !is_delta {
+                let connection = to_light(task, z, index, u, &self.techniques);
+                visit(task, Step::Picked, connection);
+            }
+        }
+        if is_delta || !self.joins() {
+            return;
+        }
+        let max_depth = task.max_depth;
+        for y in light_path.filter(|y| z.depth + y.depth + 2 <= max_depth) {
+            let connection = to_vertex(task, z, y, &self.techniques);
+            visit(task, Step::Joined, connection);
+        }
+    }
+
+    /// Merges a camera vertex with the photons around it.
+    #[inline]
+    pub(super) fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>) {
+        if let Some(photons) = self.photons
+            && !z.bsdf.is_delta()
+        {
+            tally.spend(Step::Lookup, 1);
+            merged(task, photons, z, |technique, found| tally.add_sample(technique, found));
+        }
+    }
+}

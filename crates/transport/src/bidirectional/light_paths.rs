@@ -1,0 +1,237 @@
+//! Light subpaths: from a light through the scene, and how the camera sees them. One at a time, or many together: both
+//! give the same vertices, bit for bit.
+
+use super::connect::{Connection, to_camera};
+use super::queue::QueuedSample;
+use super::{Contribution, Partial, Step, Tally, Technique, TechniqueCounts, Vertex, Walk};
+use crate::emission::Start;
+use crate::shadow_rays::ShadowRays;
+use crate::task::Task;
+use bilux_accel::Hit;
+use bilux_math::Vec2;
+use bilux_scene::{Ray, TransportMode};
+
+/// Random number streams of light subpaths begin here, far from those of camera subpaths.
+pub(super) const LIGHT_STREAM: u64 = 1 << 32;
+
+impl Task<'_, '_> {
+    /// Enters the stream of random numbers for connecting a vertex of the light subpath.
+    pub(crate) fn enter_light_vertex(&mut self, depth: u32) {
+        self.sampler.enter(2 * LIGHT_STREAM + u64::from(depth));
+    }
+}
+
+/// Traces a light subpath: every surface that it hits, in order, except those that scatter into single directions only.
+pub(crate) fn light_vertices<const N: usize>(
+    task: &mut Task,
+    time: f32,
+    roulette_depth: u32,
+    techniques: &TechniqueCounts<N>,
+) -> Vec<Vertex<N>> {
+    let mut vertices = Vec::new();
+    let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
+    while let Some(vertex) = walk.next_vertex(task) {
+        let goes_on = goes_on(&mut walk, &vertex, roulette_depth, task);
+        if !vertex.bsdf.is_delta() {
+            vertices.push(vertex);
+        }
+        if !goes_on {
+            break;
+        }
+    }
+    vertices
+}
+
+/// Continues from a vertex; false when the subpath ends there.
+fn goes_on<const N: usize>(
+    walk: &mut Walk<N>,
+    vertex: &Vertex<N>,
+    roulette_depth: u32,
+    task: &mut Task,
+) -> bool {
+    // The last event of the longest path is on the camera's side.
+    if vertex.depth + 1 >= task.max_depth {
+        return false;
+    }
+    task.sampler.enter(LIGHT_STREAM + 1 + u64::from(vertex.depth));
+    walk.scatter(vertex, roulette_depth, task)
+}
+
+/// Connects every vertex of a light subpath with the camera.
+pub(crate) fn show_to_camera<const N: usize>(
+    task: &mut Task,
+    light_path: &[Vertex<N>],
+    techniques: &TechniqueCounts<N>,
+    tally: &mut impl Tally<N>,
+) {
+    for y in light_path.iter().filter(|y| is_shown(y, techniques)) {
+        task.enter_light_vertex(y.depth);
+        tally.spend(Step::Seen, 1);
+        if let Some((film, connection)) = to_camera(task, y, techniques)
+            && let Some(found) = connection.trace(task)
+        {
+            tally.add_splat(film, connection.technique, &found);
+        }
+    }
+}
+
+fn is_shown<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
+    y.depth > 0 || techniques.direct
+}
+
+pub(super) fn begin_at_light<'w, const N: usize>(
+    task: &mut Task,
+    time: f32,
+    techniques: &'w TechniqueCounts<N>,
+) -> Option<Walk<'w, N>> {
+    task.sampler.enter(LIGHT_STREAM);
+    let (u_light, u_point, u_direction) =
+        (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
+    if task.max_depth == 0 {
+        return None;
+    }
+    let scene = task.scene();
+    let start = task.emission.sample(scene, time, u_light, (u_point, u_direction))?;
+    let Start { light: index, ray, .. } = start;
+    let light = &scene.lights()[index].light;
+    let (cos, pdf_emission) = (ray.cos(), ray.pdf_emission);
+    let pdf_direct = ray.pdf_direct * task.lights.probability(index);
+    let beta = ray.le * (cos / pdf_emission);
+    let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
+    // The start of a ray from infinity already has a density over area.
+    let by_area = light.is_infinite();
+    let spawned = ray.spawn(time);
+    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
+    Some(walk.leaving(start))
+}
+
+/// The light subpaths of many samples, which are traced together.
+#[derive(Default)]
+pub(crate) struct LightPaths<const N: usize = 1> {
+    /// All vertices, by depth; those of the same depth in the order of the samples.
+    vertices: Vec<Vertex<N>>,
+    /// The sample of each vertex.
+    samples: Vec<u32>,
+    /// Indices of the vertices: those of the first sample, by depth, then those of the second.
+    order: Vec<u32>,
+    /// `starts[i]..starts[i + 1]` of `order` are the vertices of sample `i`.
+    starts: Vec<u32>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    active: Vec<u32>,
+    next: Vec<u32>,
+    shadow_rays: ShadowRays<Splat<N>>,
+}
+
+/// A connection with the camera.
+struct Splat<const N: usize> {
+    sample: u32,
+    film: Vec2,
+    technique: Technique,
+    found: Contribution<N>,
+}
+
+impl<const N: usize> LightPaths<N> {
+    /// Forgets all vertices, for as many samples.
+    pub(crate) fn clear(&mut self, samples: usize) {
+        self.vertices.clear();
+        self.samples.clear();
+        self.order.clear();
+        self.starts.clear();
+        self.starts.resize(samples + 1, 0);
+    }
+
+    /// Traces the light subpath of each sample, as [`light_vertices`] does.
+    pub(crate) fn trace(
+        &mut self,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        roulette_depth: u32,
+        techniques: &TechniqueCounts<N>,
+    ) {
+        self.clear(samples.len());
+        self.active.clear();
+        let mut walks = Vec::with_capacity(samples.len());
+        for (i, sample) in samples.iter().enumerate() {
+            sample.enter(task);
+            let walk = begin_at_light(task, sample.ray.time, techniques);
+            self.active.extend(walk.is_some().then_some(i as u32));
+            walks.push(walk);
+        }
+        while !self.active.is_empty() {
+            self.rays.clear();
+            self.rays.extend(self.active.iter().filter_map(|&i| Some(walks[i as usize].as_ref()?.ray)));
+            self.hits.clear();
+            self.hits.resize(self.rays.len(), None);
+            task.tracer.hits(&self.rays, &mut self.hits);
+            self.next.clear();
+            for (&i, hit) in self.active.iter().zip(&self.hits) {
+                let (Some(hit), Some(walk)) = (hit, &mut walks[i as usize]) else { continue };
+                samples[i as usize].enter(task);
+                let surface = task.tracer.surface(&walk.ray, hit);
+                let Some(vertex) = walk.vertex_at(surface, task) else { continue };
+                self.next.extend(goes_on(walk, &vertex, roulette_depth, task).then_some(i));
+                if !vertex.bsdf.is_delta() {
+                    self.vertices.push(vertex);
+                    self.samples.push(i);
+                }
+            }
+            std::mem::swap(&mut self.active, &mut self.next);
+        }
+        self.sort();
+    }
+
+    /// Lists the vertices by sample.
+    fn sort(&mut self) {
+        for &sample in &self.samples {
+            self.starts[sample as usize + 1] += 1;
+        }
+        for i in 1..self.starts.len() {
+            self.starts[i] += self.starts[i - 1];
+        }
+        self.order.resize(self.samples.len(), 0);
+        for (vertex, &sample) in self.samples.iter().enumerate() {
+            let place = &mut self.starts[sample as usize];
+            self.order[*place as usize] = vertex as u32;
+            *place += 1;
+        }
+        // Each start has become an end.
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
+    }
+
+    /// The vertices of a sample's light subpath, in order.
+    #[inline]
+    pub(crate) fn of(&self, sample: usize) -> impl Iterator<Item = &Vertex<N>> {
+        let range = self.starts[sample] as usize..self.starts[sample + 1] as usize;
+        self.order[range].iter().map(|&vertex| &self.vertices[vertex as usize])
+    }
+
+    /// Connects every vertex with the camera, as [`show_to_camera`] does. `add` receives the index of the sample, the
+    /// point of the film, and what was found, in the order of the samples.
+    pub(crate) fn show_to_camera(
+        &mut self,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        techniques: &TechniqueCounts<N>,
+        mut add: impl FnMut(usize, Vec2, Technique, &Contribution<N>),
+    ) {
+        let mut shadow_rays = std::mem::take(&mut self.shadow_rays);
+        shadow_rays.clear();
+        let is_clear = task.scene().has_clear_media();
+        for (i, sample) in samples.iter().enumerate() {
+            sample.enter(task);
+            for y in self.of(i).filter(|y| is_shown(y, techniques)) {
+                task.enter_light_vertex(y.depth);
+                let Some((film, connection)) = to_camera(task, y, techniques) else { continue };
+                let Connection { technique, found, .. } = connection;
+                let splat = Splat { sample: i as u32, film, technique, found };
+                connection.list(&mut shadow_rays, is_clear, splat);
+            }
+        }
+        shadow_rays.trace(task, |Splat { sample, film, technique, found }, passed| {
+            add(*sample as usize, *film, *technique, &found.passed(passed));
+        });
+        self.shadow_rays = shadow_rays;
+    }
+}

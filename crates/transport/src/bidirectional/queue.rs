@@ -1,0 +1,174 @@
+//! Many samples at a time: the light subpaths of all of them, then the camera subpaths, event by event, so that rays are
+//! traced in batches. What happens to one pair of subpaths is told by [`BothEnds`].
+
+use super::connect::Connection;
+use super::light_paths::LightPaths;
+use super::{BothEnds, Contribution, Tally, Technique, Vertex, Walk};
+use crate::sampler::PixelSampler;
+use crate::shadow_rays::ShadowRays;
+use crate::task::Task;
+use bilux_accel::Hit;
+use bilux_math::Vec2;
+use bilux_scene::{Ray, Wavelength};
+
+/// The number of samples in a queue: the vertices of their light subpaths fit into the second cache.
+pub(crate) const PATHS: usize = 256;
+
+/// A sample of the film.
+pub(crate) struct QueuedSample {
+    /// From the camera.
+    pub(crate) ray: Ray,
+    sampler: PixelSampler,
+    wavelength: Wavelength,
+    /// Its camera subpath is traced.
+    pub(crate) is_wanted: bool,
+}
+
+impl QueuedSample {
+    /// A sample whose random numbers and wavelength are those of a task.
+    pub(crate) fn new(ray: Ray, task: &Task, is_wanted: bool) -> QueuedSample {
+        QueuedSample { ray, sampler: task.sampler.clone(), wavelength: task.wavelength, is_wanted }
+    }
+
+    /// Gives its random numbers and wavelength to the task that serves all samples.
+    #[inline]
+    pub(super) fn enter(&self, task: &mut Task) {
+        (task.sampler, task.wavelength) = (self.sampler.clone(), self.wavelength);
+    }
+}
+
+/// A queue of samples, and the memory that it works in.
+#[derive(Default)]
+pub(crate) struct BothEndsQueue<const N: usize = 1> {
+    light_paths: LightPaths<N>,
+    /// The current vertices of camera subpaths, with the random numbers that follow.
+    vertices: Vec<(u32, PixelSampler, Vertex<N>)>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    active: Vec<u32>,
+    next: Vec<u32>,
+    /// Connections with lights, and with light subpaths. Rays towards the same light are traced fastest.
+    shadow_rays: [ShadowRays<Unoccluded<N>>; 2],
+}
+
+/// What a connection brings if its shadow ray hits nothing.
+struct Unoccluded<const N: usize> {
+    sample: u32,
+    technique: Technique,
+    found: Contribution<N>,
+}
+
+impl<const N: usize> BothEndsQueue<N> {
+    /// Takes samples. What each finds goes to the tally with its index, except for splats: these go to `add_splat`, in
+    /// the order of the samples.
+    pub(crate) fn take<T: Tally<N>>(
+        &mut self,
+        both_ends: &BothEnds<N>,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        tallies: &mut [T],
+        add_splat: impl FnMut(usize, Vec2, Technique, &Contribution<N>),
+    ) {
+        let techniques = &both_ends.techniques;
+        if both_ends.shows || both_ends.joins() {
+            self.light_paths.trace(samples, task, both_ends.roulette_depth, techniques);
+        } else {
+            self.light_paths.clear(samples.len());
+        }
+        if both_ends.shows {
+            self.light_paths.show_to_camera(samples, task, techniques, add_splat);
+        }
+        let mut walks: Vec<Walk<N>> =
+            samples.iter().map(|sample| both_ends.leave_camera(&sample.ray)).collect();
+        self.active.clear();
+        self.active.extend((0..samples.len() as u32).filter(|&i| samples[i as usize].is_wanted));
+        while !self.active.is_empty() {
+            self.arrive(both_ends, samples, &mut walks, task, tallies);
+            self.connect(both_ends, samples, task, tallies);
+            self.scatter(both_ends, samples, &mut walks, task, tallies);
+        }
+    }
+
+    /// Takes every camera subpath to its next vertex, or out of the scene.
+    fn arrive<T: Tally<N>>(
+        &mut self,
+        both_ends: &BothEnds<N>,
+        samples: &[QueuedSample],
+        walks: &mut [Walk<N>],
+        task: &mut Task,
+        tallies: &mut [T],
+    ) {
+        self.rays.clear();
+        self.rays.extend(self.active.iter().map(|&i| walks[i as usize].ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        task.tracer.hits(&self.rays, &mut self.hits);
+        self.vertices.clear();
+        for (&index, hit) in self.active.iter().zip(&self.hits) {
+            let i = index as usize;
+            let (walk, tally) = (&mut walks[i], &mut tallies[i]);
+            samples[i].enter(task);
+            let surface = hit.map(|hit| task.tracer.surface(&walk.ray, &hit));
+            match surface.and_then(|surface| walk.vertex_at(surface, task)) {
+                None => both_ends.escape(walk, task, tally),
+                Some(mut z) => {
+                    if both_ends.arrive(walk, &mut z, task, tally) {
+                        self.vertices.push((index, task.sampler.clone(), z));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Connects every vertex with lights and with its light subpath.
+    fn connect<T: Tally<N>>(
+        &mut self,
+        both_ends: &BothEnds<N>,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        tallies: &mut [T],
+    ) {
+        self.shadow_rays.iter_mut().for_each(ShadowRays::clear);
+        let is_clear = task.scene().has_clear_media();
+        for (sample, sampler, z) in &mut self.vertices {
+            task.wavelength = samples[*sample as usize].wavelength;
+            task.sampler = sampler.clone();
+            let light_path = self.light_paths.of(*sample as usize);
+            both_ends.connect(z, light_path, task, |_, _, connection| {
+                let Some(connection) = connection else { return };
+                let Connection { technique, found, .. } = connection;
+                let is_join = matches!(technique, Technique::Joined { s: 2.., .. });
+                let unoccluded = Unoccluded { sample: *sample, technique, found };
+                connection.list(&mut self.shadow_rays[usize::from(is_join)], is_clear, unoccluded);
+            });
+            *sampler = task.sampler.clone();
+        }
+        for shadow_rays in &mut self.shadow_rays {
+            shadow_rays.trace(task, |Unoccluded { sample, technique, found }, passed| {
+                tallies[*sample as usize].add_sample(*technique, &found.passed(passed));
+            });
+        }
+    }
+
+    /// Merges every vertex with photons, and sends its subpath on.
+    fn scatter<T: Tally<N>>(
+        &mut self,
+        both_ends: &BothEnds<N>,
+        samples: &[QueuedSample],
+        walks: &mut [Walk<N>],
+        task: &mut Task,
+        tallies: &mut [T],
+    ) {
+        self.next.clear();
+        for (index, sampler, z) in &self.vertices {
+            let i = *index as usize;
+            task.wavelength = samples[i].wavelength;
+            task.sampler = sampler.clone();
+            both_ends.merge(z, task, &mut tallies[i]);
+            if walks[i].scatter(z, both_ends.roulette_depth, task) {
+                self.next.push(*index);
+            }
+        }
+        std::mem::swap(&mut self.active, &mut self.next);
+    }
+}

@@ -1,0 +1,70 @@
+//! Shadow rays of many connections, which are traced together.
+
+use crate::media::Media;
+use crate::task::Task;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::Ray;
+
+/// Shadow rays, each with what its connection brings if nothing lies between its ends.
+pub(crate) struct ShadowRays<T> {
+    rays: Vec<Ray>,
+    /// The [normals](bilux_scene::Scene::normal_towards) at their ends; zero where there is no surface.
+    normals: Vec<Vec3>,
+    brought: Vec<T>,
+    /// The media at the start of each ray, and its length in metres (0 for light from infinity); none where no medium
+    /// changes light.
+    media: Vec<(Media, f32)>,
+    occluded: Vec<bool>,
+}
+
+impl<T> Default for ShadowRays<T> {
+    fn default() -> ShadowRays<T> {
+        let (rays, normals, brought) = (Vec::new(), Vec::new(), Vec::new());
+        ShadowRays { rays, normals, brought, media: Vec::new(), occluded: Vec::new() }
+    }
+}
+
+impl<T> ShadowRays<T> {
+    pub(crate) fn clear(&mut self) {
+        self.rays.clear();
+        self.normals.clear();
+        self.brought.clear();
+        self.media.clear();
+    }
+
+    /// Adds a ray that ends on a surface with the normal `n`. All rays come with their media, or none does.
+    #[inline]
+    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, brought: T) {
+        self.rays.push(ray);
+        self.normals.push(n);
+        self.media.extend(media);
+        self.brought.push(brought);
+    }
+
+    /// Traces the rays. `add` receives what the unoccluded ones bring and their transmittance, in the order in which
+    /// they were added.
+    pub(crate) fn trace(&mut self, task: &mut Task, mut add: impl FnMut(&T, Rgb)) {
+        let ShadowRays { rays, normals, brought, media, occluded } = self;
+        occluded.clear();
+        occluded.resize(rays.len(), false);
+        task.tracer.all_occluded(rays, |i| normals[i], occluded);
+        let has_nested = task.scene().has_nested();
+        for (i, brought) in brought.iter().enumerate() {
+            let passed = match (occluded[i], media.get(i)) {
+                (false, None) => Rgb::WHITE,
+                (false, Some((media, distance))) => media.unoccluded(*distance),
+                // What it hits may separate nothing.
+                (true, Some((media, distance))) if has_nested => {
+                    // Asked again, and counted once.
+                    task.tracer.counters.rays -= 1;
+                    let Some(passed) = media.visible(task.tracer, &rays[i], *distance, normals[i]) else {
+                        continue;
+                    };
+                    passed
+                }
+                (true, _) => continue,
+            };
+            add(brought, passed);
+        }
+    }
+}
