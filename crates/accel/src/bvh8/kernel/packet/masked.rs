@@ -91,6 +91,9 @@ impl Packet {
             let mixed = Mixed::new::<L::Wide>(self, ready);
             let mut walk = Walk { packet: self, mixed, query, tails, lanes: ready.lanes };
             walk.run::<L, ANY>(view, ready.regular & ready.asked);
+            if !ANY {
+                walk.resolve::<L::Wide>();
+            }
         }
     }
 
@@ -302,6 +305,23 @@ impl Walk<'_> {
         children
     }
 
+    /// Makes all hits exact.
+    ///
+    /// # Safety
+    /// As for [`Packet::walk_together`].
+    #[inline(always)]
+    unsafe fn resolve<W: Wide>(&mut self) {
+        let mut from = 0;
+        while from < self.lanes {
+            // SAFETY: as the caller promises.
+            unsafe {
+                let lanes = self.mixed.lanes::<W>(from);
+                Group::new(self.packet, lanes, self.query, from).resolve::<W>();
+            }
+            from += W::LANES;
+        }
+    }
+
     /// Tests a leaf with the rays of a mask.
     ///
     /// # Safety
@@ -315,12 +335,12 @@ impl Walk<'_> {
                 // SAFETY: as the caller promises.
                 unsafe {
                     let lanes = self.mixed.lanes::<W>(from);
-                    let mut group = Group::<W, _>::new(self.packet, lanes, self.query, from);
-                    let hits = group.test_leaf::<ANY>(leaf, blocks, mask);
+                    let mut group = Group::new(self.packet, lanes, self.query, from);
+                    let hits = group.test_leaf::<W, ANY>(leaf, blocks, mask);
                     if ANY {
                         self.tails.found |= u64::from(hits) << from;
                     } else if hits != 0 {
-                        group.finish();
+                        group.finish::<W>();
                     }
                 }
             }

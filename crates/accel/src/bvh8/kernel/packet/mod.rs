@@ -190,12 +190,12 @@ impl Walk<'_> {
                 if mask == 0 {
                     continue;
                 }
-                let mut group = Group::<W, _>::new(self.packet, &self.frustum, self.query, from);
-                let hits = group.test_leaf::<ANY>(base.add(leaf.byte()), leaf.blocks(), mask);
+                let mut group = Group::new(self.packet, &self.frustum, self.query, from);
+                let hits = group.test_leaf::<W, ANY>(base.add(leaf.byte()), leaf.blocks(), mask);
                 if ANY {
                     self.done |= u64::from(hits) << from;
                 } else if hits != 0 {
-                    group.finish();
+                    group.finish::<W>();
                     changed = true;
                 }
             }

@@ -15,9 +15,18 @@ pub(super) type Corners<V> = [[V; 3]; 3];
 /// Functions must be called only on machines that have the level, with the packet that this was made for, the first
 /// lane of the group, and a block.
 pub(super) trait Orientation<W: Wide>: Copy {
+    /// Whether the nearest hits are estimated first. Coherent rays hit the same few triangles, so for them the exact
+    /// stage costs less than making estimates exact in the end.
+    const ESTIMATES: bool;
     // SAFETY: as the trait says.
     /// The corners of a triangle of a block relative to the origins of the rays, axes in the order of sheared space.
     unsafe fn corners(self, packet: &Packet, from: usize, block: *const u8, lane: usize) -> Corners<W>;
+    // SAFETY: as the trait says.
+    /// Given corners, one for each ray and along the axes of space, likewise.
+    unsafe fn relative(self, packet: &Packet, from: usize, corners: Corners<W>) -> Corners<W>;
+    // SAFETY: as the trait says.
+    /// A number along the third axis, as a distance along the ray.
+    unsafe fn forwards(self, packet: &Packet, from: usize, x: W) -> W;
     // SAFETY: as the trait says.
     /// A distance that no point of a triangle is nearer than; takes what is along the third axis.
     unsafe fn least_distance(self, packet: &Packet, from: usize, z: [W; 3]) -> W;
@@ -40,6 +49,8 @@ unsafe fn splat<W: Wide>(block: *const u8, axis: usize, corner: usize, lane: usi
 
 /// The same for all rays.
 impl<W: Wide> Orientation<W> for &Frustum {
+    const ESTIMATES: bool = false;
+
     // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn corners(self, packet: &Packet, from: usize, block: *const u8, lane: usize) -> Corners<W> {
@@ -51,6 +62,26 @@ impl<W: Wide> Orientation<W> for &Frustum {
             let row = |axis: usize| [corner(axis, 0), corner(axis, 1), corner(axis, 2)];
             [row(self.axes[0]), row(self.axes[1]), row(self.axes[2])]
         }
+    }
+
+    // SAFETY: the trait states the requirements.
+    #[inline(always)]
+    unsafe fn relative(self, packet: &Packet, from: usize, corners: Corners<W>) -> Corners<W> {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let row = |axis: usize| {
+                let ([a, b, c], origin) = (corners[axis], W::load(packet.origin[axis].at(from)));
+                [a.sub(origin), b.sub(origin), c.sub(origin)]
+            };
+            [row(self.axes[0]), row(self.axes[1]), row(self.axes[2])]
+        }
+    }
+
+    // SAFETY: the trait states the requirements.
+    #[inline(always)]
+    unsafe fn forwards(self, _: &Packet, _: usize, x: W) -> W {
+        // SAFETY: as the trait demands.
+        unsafe { if self.down[self.axes[2]] { W::splat(0.0).sub(x) } else { x } }
     }
 
     // SAFETY: the trait states the requirements.
@@ -167,15 +198,29 @@ impl<W: Wide> MixedLanes<W> {
         // SAFETY: as the caller promises; the numbers along the other axes are three rows of four further on, and six.
         unsafe {
             let (y, z) = (x.add(3 * LANES), x.add(6 * LANES));
-            let x = W::splat(*x).sub(W::load(packet.origin[0].at(from)));
-            let y = W::splat(*y).sub(W::load(packet.origin[1].at(from)));
-            let z = W::splat(*z).sub(W::load(packet.origin[2].at(from)));
+            self.from_origins(packet, from, [W::splat(*x), W::splat(*y), W::splat(*z)])
+        }
+    }
+
+    /// Points relative to the origins.
+    ///
+    /// # Safety
+    /// The machine must have the level.
+    #[inline(always)]
+    unsafe fn from_origins(self, packet: &Packet, from: usize, [x, y, z]: [W; 3]) -> [W; 3] {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let x = x.sub(W::load(packet.origin[0].at(from)));
+            let y = y.sub(W::load(packet.origin[1].at(from)));
+            let z = z.sub(W::load(packet.origin[2].at(from)));
             sheared::<W>([x, y, z], self.steep)
         }
     }
 }
 
 impl<W: Wide> Orientation<W> for MixedLanes<W> {
+    const ESTIMATES: bool = true;
+
     // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn corners(self, packet: &Packet, from: usize, block: *const u8, lane: usize) -> Corners<W> {
@@ -186,6 +231,25 @@ impl<W: Wide> Orientation<W> for MixedLanes<W> {
             let c = self.corner(packet, from, block.cast::<f32>().add(2 * LANES + lane));
             [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
         }
+    }
+
+    // SAFETY: the trait states the requirements.
+    #[inline(always)]
+    unsafe fn relative(self, packet: &Packet, from: usize, [x, y, z]: Corners<W>) -> Corners<W> {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let a = self.from_origins(packet, from, [x[0], y[0], z[0]]);
+            let b = self.from_origins(packet, from, [x[1], y[1], z[1]]);
+            let c = self.from_origins(packet, from, [x[2], y[2], z[2]]);
+            [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
+        }
+    }
+
+    // SAFETY: the trait states the requirements.
+    #[inline(always)]
+    unsafe fn forwards(self, packet: &Packet, from: usize, x: W) -> W {
+        // SAFETY: as the trait demands.
+        unsafe { W::load(packet.depth.at(from)).by_sign(x, W::splat(0.0).sub(x)) }
     }
 
     // SAFETY: the trait states the requirements.

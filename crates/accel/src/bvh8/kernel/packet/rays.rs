@@ -43,11 +43,15 @@ pub(in crate::bvh8::kernel) struct Packet {
     pub(super) origin: [Row<f32>; 3],
     pub(super) direction: [Row<f32>; 3],
     pub(super) t_min: Row<f32>,
-    /// The end of the ray, then its nearest hit.
+    /// The end of the ray, then an upper bound on the distance of its nearest hit,
     pub(super) t: Row<f32>,
+    /// and a lower bound; they are equal where the distance is exact.
+    pub(super) t_low: Row<f32>,
     pub(super) exclude: Row<u32>,
     /// As in [`super::super::lane_ray::LaneRay`].
     pub(super) pace: Row<f32>,
+    /// Its inverse.
+    pub(super) slowness: Row<f32>,
     pub(super) inverse: [Row<f32>; 3],
     /// Padded origins for the planes where the ray enters, and for those where it leaves.
     pub(super) enter: [Row<f32>; 3],
@@ -63,6 +67,10 @@ pub(in crate::bvh8::kernel) struct Packet {
     pub(super) u: Row<f32>,
     pub(super) v: Row<f32>,
     pub(super) primitive: Row<u32>,
+    /// The triangle of the nearest hit: its first number, counted from the start of the tree.
+    pub(super) place: Row<u32>,
+    /// The start of the tree.
+    base: MaybeUninit<*const f32>,
 }
 
 impl Packet {
@@ -71,6 +79,22 @@ impl Packet {
     pub(in crate::bvh8::kernel) fn new() -> Packet {
         // SAFETY: every part may be uninitialised. Building it part by part would copy it part by part.
         unsafe { MaybeUninit::uninit().assume_init() }
+    }
+
+    /// Sets the tree whose triangles the rays will hit.
+    #[inline(always)]
+    pub(super) fn set_base(&mut self, base: *const f32) {
+        self.base = MaybeUninit::new(base);
+    }
+
+    /// The start of that tree.
+    ///
+    /// # Safety
+    /// It must have been set.
+    #[inline(always)]
+    pub(super) unsafe fn base(&self) -> *const f32 {
+        // SAFETY: as the caller promises.
+        unsafe { self.base.assume_init() }
     }
 
     /// Loads rays into `lanes` lanes, a multiple of eight; the last ray fills the remaining lanes.
@@ -100,6 +124,7 @@ impl Packet {
                 }
                 _mm256_store_ps(self.t_min.at_mut(from), t_min);
                 _mm256_store_ps(self.t.at_mut(from), t_max);
+                _mm256_store_ps(self.t_low.at_mut(from), t_max);
                 _mm256_store_si256(self.primitive.at_mut(from).cast(), _mm256_set1_epi32(-1));
                 for k in 0..8 {
                     *self.exclude.at_mut(from + k) = ray(k).exclude.index;

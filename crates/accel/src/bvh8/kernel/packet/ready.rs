@@ -51,6 +51,7 @@ impl Packet {
         let lanes = rays.len().next_multiple_of(L::Wide::LANES);
         // SAFETY: as the caller promises.
         unsafe { self.fill(rays, lanes) };
+        self.set_base(view.units.as_ptr().cast());
         let used = u64::MAX >> (64 - lanes);
         let asked = u64::MAX >> (64 - rays.len());
         let mut ready = Ready { lanes, used, asked, regular: 0, irregular: 0, down: [0; 3] };
@@ -170,6 +171,7 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &TreeView<'_>, 
         }
         ready.regular |= u64::from(good) << from;
         pace.store(packet.pace.at_mut(from));
+        W::splat(1.0).div(pace).store(packet.slowness.at_mut(from));
         let s = t_min.mul(pace);
         let least = pace.max(W::splat(1.0)).mul(W::splat(f32::MIN_POSITIVE));
         // Only infinities can produce a NaN here.

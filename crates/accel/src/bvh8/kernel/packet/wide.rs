@@ -96,8 +96,6 @@ pub(in crate::bvh8::kernel) trait Narrow: Copy {
         store_some(self, mask: u32, to: *mut f32) -> ();
         le(self, other: Self) -> u32;
         eq(self, other: Self) -> u32;
-        // Takes the other where the mask has a bit.
-        blend(self, mask: u32, other: Self) -> Self;
         // A bit for each lane in which the integer occurs.
         places(x: u32, of: *const u32) -> u32;
         // Writes an integer into the lanes of the mask.
@@ -159,7 +157,6 @@ impl Narrow for __m256 {
         store_some(self, mask: u32, to: *mut f32) -> () = _mm256_mask_storeu_ps(to, mask as u8, self);
         le(self, other: Self) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(self, other));
         eq(self, other: Self) -> u32 = u32::from(_mm256_cmp_ps_mask::<_CMP_EQ_OQ>(self, other));
-        blend(self, mask: u32, other: Self) -> Self = _mm256_mask_blend_ps(mask as u8, self, other);
         places(x: u32, of: *const u32) -> u32 =
             u32::from(_mm256_cmpeq_epi32_mask(_mm256_set1_epi32(x as i32), _mm256_loadu_si256(of.cast())));
         put(x: u32, mask: u32, to: *mut u32) -> () =
@@ -228,8 +225,6 @@ impl Narrow for __m128 {
         store_some(self, mask: u32, to: *mut f32) -> () = _mm_maskstore_ps(to, spread(mask), self);
         le(self, other: Self) -> u32 = _mm_movemask_ps(_mm_cmple_ps(self, other)) as u32;
         eq(self, other: Self) -> u32 = _mm_movemask_ps(_mm_cmpeq_ps(self, other)) as u32;
-        blend(self, mask: u32, other: Self) -> Self =
-            _mm_blendv_ps(self, other, _mm_castsi128_ps(spread(mask)));
         places(x: u32, of: *const u32) -> u32 = {
             let equal = _mm_cmpeq_epi32(_mm_set1_epi32(x as i32), _mm_loadu_si128(of.cast()));
             _mm_movemask_ps(_mm_castsi128_ps(equal)) as u32
