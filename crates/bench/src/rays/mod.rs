@@ -99,7 +99,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     Ok(Report {
         rows: rows.iter().map(Row::json).collect(),
         text: report::text(&rows, options) + &report::curve(&rows) + &best::text(&rows),
-        picture: None,
+        ..Report::default()
     })
 }
 
@@ -109,6 +109,11 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
 /// As [`run`].
 pub fn against_embree(options: &Options, progress: ProgressFn) -> Result<Vec<Best>, Error> {
     Ok(best::best(&measured(options, progress)?))
+}
+
+/// Whether a library is an Embree that can be compared with.
+pub fn is_embree(library: &Path) -> bool {
+    embree::Embree::load(library).is_ok()
 }
 
 /// A row for each scene, class and engine.
