@@ -1,9 +1,11 @@
 //! Pictures and what they cost.
 
 use crate::render::Clock;
+use bilux::budget::with_default_budget;
 use bilux::math::Rgb;
 use bilux::scene::{Parameters, SceneBuilder, Value};
 use bilux::{Error, Job, Quiet};
+use std::path::Path;
 use std::time::Instant;
 
 /// A picture that took some time; trees were built before.
@@ -28,6 +30,38 @@ impl Shot {
         let cpu_seconds = cpu_seconds.max(1e-3);
         Ok(Shot { cpu_seconds, seconds, pixels: outcome.film.to_rgb(), rays: outcome.counters.rays })
     }
+}
+
+/// A picture with default settings, from a scene to a file.
+pub(super) struct UserPicture {
+    /// Samples per pixel.
+    pub(super) samples: u32,
+    /// Its width and height, as `WxH`.
+    pub(super) size: String,
+}
+
+/// Renders as the command line does: with its default limits, denoised and written. `begun` is when the scene's file was
+/// opened.
+pub(super) fn as_a_user(
+    scene: &SceneBuilder,
+    mut user: Parameters,
+    begun: Instant,
+    output: &Path,
+) -> Result<UserPicture, Error> {
+    with_default_budget(&scene.settings, &mut user);
+    let mut job = Job::new(scene, &user)?;
+    job.begun_at(begun);
+    let denoiser = job.denoiser(true)?;
+    let outcome = job.render(&Quiet)?;
+    let picture = match &denoiser {
+        Some(denoiser) => outcome.denoised(denoiser)?,
+        None => outcome.picture()?,
+    };
+    bilux::pictures::write(output, &picture, &job.write_options_for(&picture)?)?;
+    Ok(UserPicture {
+        samples: outcome.reached.map_or(job.settings().spp, |reached| reached.spp),
+        size: format!("{}x{}", job.settings().width, job.settings().height),
+    })
 }
 
 /// How a picture is rendered.

@@ -3,13 +3,13 @@
 use super::mitsuba::Scratch;
 use super::model::{NO_MODEL, name_of};
 use super::row::{Goal, Row};
+use super::shots::{UserPicture, as_a_user};
 use super::{Context, Measurement};
 use crate::median;
-use bilux::budget::with_default_budget;
+use bilux::Error;
 use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::preload;
 use bilux::scene::{Parameters, Value};
-use bilux::{Error, Job, Quiet};
 use std::path::Path;
 use std::time::Instant;
 
@@ -40,9 +40,9 @@ fn run(context: &Context) -> Result<Vec<Row>, Error> {
     let (mut long, mut short) = (Vec::new(), Vec::new());
     for round in context.rounds() {
         context.say(&format!("studio: nothing said, round {}", round + 1));
-        long.push(as_a_user(file, &output, &context.options.read, None)?);
+        long.push(render(file, &output, &context.options.read, None)?);
         context.say(&format!("studio: a limit of 1 s, round {}", round + 1));
-        short.push(as_a_user(file, &output, &context.options.read, Some(SHORT))?);
+        short.push(render(file, &output, &context.options.read, Some(SHORT))?);
     }
     let samples = |pictures: &[Picture]| median(pictures.iter().map(|p| f64::from(p.samples)).collect());
     let seconds = |pictures: &[Picture]| median(pictures.iter().map(|p| p.seconds).collect());
@@ -57,14 +57,14 @@ fn run(context: &Context) -> Result<Vec<Row>, Error> {
     ])
 }
 
+/// A picture, and the seconds from the start to the written file.
 struct Picture {
     samples: u32,
-    /// From the start to the written file.
     seconds: f64,
     size: String,
 }
 
-fn as_a_user(file: &Path, output: &Path, read: &ReadOptions, limit: Option<f32>) -> Result<Picture, Error> {
+fn render(file: &Path, output: &Path, read: &ReadOptions, limit: Option<f32>) -> Result<Picture, Error> {
     let begun = Instant::now();
     // As the command line does while it reads the scene.
     preload(0);
@@ -74,19 +74,6 @@ fn as_a_user(file: &Path, output: &Path, read: &ReadOptions, limit: Option<f32>)
         user.set("time_limit", limit);
         user.set("spp", Value::Integer(0));
     }
-    with_default_budget(&scene.settings, &mut user);
-    let mut job = Job::new(&scene, &user)?;
-    job.begun_at(begun);
-    let denoiser = job.denoiser(true)?;
-    let outcome = job.render(&Quiet)?;
-    let picture = match &denoiser {
-        Some(denoiser) => outcome.denoised(denoiser)?,
-        None => outcome.picture()?,
-    };
-    bilux::pictures::write(output, &picture, &job.write_options_for(&picture)?)?;
-    Ok(Picture {
-        samples: outcome.reached.map_or(job.settings().spp, |reached| reached.spp),
-        seconds: begun.elapsed().as_secs_f64(),
-        size: format!("{}x{}", job.settings().width, job.settings().height),
-    })
+    let UserPicture { samples, size } = as_a_user(&scene, user, begun, output)?;
+    Ok(Picture { samples, seconds: begun.elapsed().as_secs_f64(), size })
 }
