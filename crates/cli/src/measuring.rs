@@ -24,7 +24,7 @@ use std::path::PathBuf;
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
     bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,auto:path-photons\n  \
     bilux bench models                                 At most a dozen models, in five minutes\n  \
-    bilux bench speed --json                           Speed and size against their goals, in fifteen minutes\n  \
+    bilux bench speed --json                           Speed and size against their goals, in ten minutes\n  \
     bilux bench speed --rows box,model --model WaterBottle.gltf --python venv/bin/python")]
 pub struct Bench {
     /// The benchmark to run

@@ -101,6 +101,9 @@ pub(in crate::rays) struct EmbreeEngine {
 }
 
 /// A call that traces a packet.
+///
+/// # Safety
+/// It must be called as Embree's documentation says.
 type Query<const N: usize> = unsafe extern "C" fn(*const Valid, Pointer, *mut RayHits<N>, *const Arguments);
 
 impl Engine for EmbreeEngine {
