@@ -45,7 +45,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     let all = format!("on {}", pools[1].current_num_threads());
     let header = ["triangles", "accel", "seconds", &all, "bytes/tri", "refs/tri", "depth", "imbalance"];
     let title = "Building trees over teapots: seconds on one thread, and on all";
-    Ok(Report { rows, text: table(title, &header, &cells), picture: None })
+    Ok(Report { rows, text: table(title, &header, &cells), ..Report::default() })
 }
 
 /// Returns the median seconds on one thread and on all, measured in turns, and the tree.

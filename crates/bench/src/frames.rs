@@ -44,7 +44,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     }
     let title = format!("{FRAMES} frames of {count} teapots, {}x{}, whitted", size.0, size.1);
     let header = ["scene", "accel", "seconds", "all rebuilt", "gain", "pictures"];
-    Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
+    Ok(Report { rows, text: table(&title, &header, &cells), ..Report::default() })
 }
 
 fn scene(count: u32, motion: &str) -> Result<SceneBuilder, Error> {

@@ -10,6 +10,7 @@ pub mod models;
 pub mod paper;
 pub mod rays;
 pub mod render;
+pub mod speed;
 pub mod teapots;
 pub mod visibility;
 
@@ -22,6 +23,7 @@ use std::time::Instant;
 pub type ProgressFn<'a> = &'a dyn Fn(&str);
 
 /// The result of a benchmark.
+#[derive(Default)]
 pub struct Report {
     /// One JSON object per row.
     pub rows: Vec<Value>,
@@ -29,12 +31,17 @@ pub struct Report {
     pub text: String,
     /// A picture of what was rendered, if there is one.
     pub picture: Option<Picture>,
+    /// The processor that it was measured on, if the report states it.
+    pub cpu: Option<String>,
 }
 
 impl Report {
-    /// `{"rows": […]}`.
+    /// `{"rows": […]}`, or `{"cpu": …, "rows": […]}`.
     pub fn json(&self) -> Value {
-        json!({ "rows": self.rows })
+        match &self.cpu {
+            Some(cpu) => json!({ "cpu": cpu, "rows": self.rows }),
+            None => json!({ "rows": self.rows }),
+        }
     }
 }
 

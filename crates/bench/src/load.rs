@@ -80,7 +80,7 @@ pub fn report(rows: Vec<Value>) -> Report {
     ];
     let title = "Reading scene files: median seconds, and peak memory besides that of the process; then with its \
                  acceleration structures";
-    Report { text: table(title, &header, &cells), rows, picture: None }
+    Report { text: table(title, &header, &cells), rows, ..Report::default() }
 }
 
 fn one(file: &Path, options: &Options) -> Result<Value, Error> {

@@ -67,7 +67,12 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
         &["spp", "seconds", "RMSE", "RMSE × √spp"],
         &costs,
     );
-    Ok(Report { rows, text: format!("{figure}\n{cost}"), picture: Some(side_by_side(&panels, 8)?) })
+    Ok(Report {
+        rows,
+        text: format!("{figure}\n{cost}"),
+        picture: Some(side_by_side(&panels, 8)?),
+        ..Report::default()
+    })
 }
 
 fn render(

@@ -61,7 +61,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
             row.speedup = brute.map(|seconds| seconds / row.seconds);
         }
     }
-    Ok(Report { rows: rows.iter().map(as_json).collect(), text: text(&rows, options), picture: None })
+    Ok(Report { rows: rows.iter().map(as_json).collect(), text: text(&rows, options), ..Report::default() })
 }
 
 /// The paper's teapots, or N of them.

@@ -23,7 +23,9 @@ use std::path::PathBuf;
     bilux bench render --report measured               Ten minutes, and a page of pictures\n  \
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
     bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,auto:path-photons\n  \
-    bilux bench models                                 At most a dozen models, in five minutes")]
+    bilux bench models                                 At most a dozen models, in five minutes\n  \
+    bilux bench speed --json                           Speed and size against their goals, in ten minutes\n  \
+    bilux bench speed --rows box,model --model WaterBottle.gltf --python venv/bin/python")]
 pub struct Bench {
     /// The benchmark to run
     #[arg(value_enum)]
@@ -48,8 +50,8 @@ pub struct Bench {
     /// 512x512]
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
-    /// `teapots`, `visibility`, `build`, `load`: the number of repeats; the median is reported [default: 5 for `load`,
-    /// else 3]
+    /// `teapots`, `visibility`, `build`, `load`, `speed`: the number of repeats; the median is reported [default: 5 for
+    /// `load`, else 3]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub repeats: Option<u32>,
     /// `teapots`, `visibility`, `build`: where the teapots stand: at the paper's fixed offset, or so that they always
@@ -65,7 +67,8 @@ pub struct Bench {
     /// `rays`: the number of rounds; every engine takes a turn in each, and the median is reported [default: 5]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     pub rounds: Option<u32>,
-    /// `rays`: compare with another engine from a shared library, such as embree=libembree4.so.4
+    /// `rays`, `speed`: compare with another engine from a shared library, such as embree=libembree4.so.4, which `speed`
+    /// looks for itself
     #[arg(long, value_name = "NAME=PATH", value_parser = parse_engine)]
     pub against: Vec<(String, PathBuf)>,
     /// `rays`: write the meshes and rays to this folder
@@ -85,9 +88,20 @@ pub struct Bench {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,
     /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4, and 60 with --make-references].
-    /// `models`: the seconds for each half of a reference [default: 8]
+    /// `models`: the seconds for each half of a reference [default: 8]. `speed`: the CPU seconds of a picture where
+    /// integrators are compared at equal time [default: 1]
     #[arg(long, value_name = "S,S,…", value_delimiter = ',', value_parser = parse_cpu_seconds)]
     pub seconds: Vec<f64>,
+    /// `speed`: the rows to measure: box, bidirectional, model, studio, auto, threads, memory, principled and rays
+    /// [default: all]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub rows: Vec<String>,
+    /// `speed`: the glTF model for the rows model and studio, which are skipped without one
+    #[arg(long, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+    /// `speed`: the Python that can import Mitsuba; without it, rows have our side only [default: python3]
+    #[arg(long, value_name = "PATH")]
+    pub python: Option<PathBuf>,
     /// `models`: keep the references in this folder, and reuse those that are already there
     #[arg(long, value_name = "DIR")]
     pub references: Option<PathBuf>,
@@ -128,4 +142,6 @@ pub enum BenchKind {
     Load,
     /// Models as they are: the visible error with default settings, in one second, and with --fast
     Models,
+    /// Speed and size, row by row against their goals, and against Mitsuba and Embree where they are installed
+    Speed,
 }

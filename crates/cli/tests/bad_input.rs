@@ -193,5 +193,7 @@ fn misspelt_names_get_suggestions() {
     answered(&["bench", "rays", "--accel", "bhv8"], "did you mean 'bvh8'?");
     answered(&["bench", "render", "--scenes", "caustic"], "did you mean 'caustics'?");
     answered(&["bench", "render", "--integrators", "bdtp"], "did you mean 'bdpt'?");
+    answered(&["bench", "speed", "--rows", "modle"], "did you mean 'model'?");
+    answered(&["bench", "speed", "--rows", "rays", "--against", "obvhs=x"], "embree=PATH");
     answered(&["render", "plain.obj", "-o", "x.png", "--build", "bets"], "did you mean 'best'?");
 }

@@ -178,6 +178,17 @@ fn wrong_command_lines_exit_with_2_and_help() {
 }
 
 #[test]
+fn the_help_of_bench_names_every_row_of_speed() {
+    let assert = bilux(folder().path()).args(["bench", "--help"]).assert().code(0);
+    let help = String::from_utf8(assert.get_output().stdout.clone()).unwrap();
+    let rows = help.split("the rows to measure:").nth(1).and_then(|rest| rest.split('[').next()).unwrap();
+    let rows: Vec<&str> =
+        rows.split([',', ' ', '\n']).filter(|word| !word.is_empty() && *word != "and").collect();
+    let names: Vec<&str> = bilux_bench::speed::MEASUREMENTS.iter().map(|m| m.name).collect();
+    assert_eq!(rows, names, "{help}");
+}
+
+#[test]
 fn work_that_fails_exits_with_1_and_leaves_no_file() {
     let folder = folder();
     let path = folder.path();

@@ -107,7 +107,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     Ok(Report {
         text: table(&title, &header, &cells) + &summary(&rows),
         rows: rows.iter().map(Row::json).collect(),
-        picture: None,
+        ..Report::default()
     })
 }
 

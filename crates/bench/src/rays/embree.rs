@@ -2,15 +2,17 @@
 //! its public documentation; nothing of it is linked.
 #![allow(unsafe_code, reason = "a C library is loaded and called")]
 
-use super::engines::{Answers, Engine};
-use super::{Batch, Mode};
+mod packets;
+
+pub(super) use packets::{EmbreeEngine, Packets};
+
 use bilux::Error;
-use bilux::accel::{Hit, Ray, TriangleMesh};
+use bilux::accel::TriangleMesh;
 use libloading::Library;
+use packets::{Arguments, RayHit1, RayHits, Valid};
 use std::ffi::{c_char, c_void};
 use std::mem::ManuallyDrop;
 use std::path::Path;
-use std::ptr::{null, null_mut};
 use std::rc::Rc;
 use std::sync::atomic::{AtomicIsize, Ordering};
 use std::time::Instant;
@@ -58,8 +60,12 @@ functions! {
     rtcAttachGeometry: fn(Pointer, Pointer) -> u32;
     rtcIntersect1: fn(Pointer, *mut RayHit1, *const Arguments);
     rtcOccluded1: fn(Pointer, *mut RayHit1, *const Arguments);
-    rtcIntersect16: fn(*const Valid, Pointer, *mut RayHit16, *const Arguments);
-    rtcOccluded16: fn(*const Valid, Pointer, *mut RayHit16, *const Arguments);
+    rtcIntersect4: fn(*const Valid, Pointer, *mut RayHits<4>, *const Arguments);
+    rtcOccluded4: fn(*const Valid, Pointer, *mut RayHits<4>, *const Arguments);
+    rtcIntersect8: fn(*const Valid, Pointer, *mut RayHits<8>, *const Arguments);
+    rtcOccluded8: fn(*const Valid, Pointer, *mut RayHits<8>, *const Arguments);
+    rtcIntersect16: fn(*const Valid, Pointer, *mut RayHits<16>, *const Arguments);
+    rtcOccluded16: fn(*const Valid, Pointer, *mut RayHits<16>, *const Arguments);
 }
 
 /// Constants for `rtcSetSharedGeometryBuffer`.
@@ -69,64 +75,9 @@ const FORMAT_UINT3: u32 = 0x5003;
 const FORMAT_FLOAT3: u32 = 0x9003;
 const GEOMETRY_TRIANGLE: u32 = 0;
 const FLAG_ROBUST: u32 = 1 << 2;
-const FLAG_COHERENT: u32 = 1 << 16;
 const PROPERTY_VERSION_MAJOR: u32 = 1;
-const INVALID: u32 = u32::MAX;
-
-/// `RTCRayHit`: a ray and its hit, with room for what later versions append.
-#[repr(C, align(16))]
-#[derive(Clone, Copy)]
-struct RayHit1 {
-    origin: [f32; 3],
-    t_near: f32,
-    direction: [f32; 3],
-    time: f32,
-    t_far: f32,
-    mask: u32,
-    id: u32,
-    flags: u32,
-    normal: [f32; 3],
-    u: f32,
-    v: f32,
-    primitive: u32,
-    geometry: u32,
-    instances: [u32; 5],
-}
-
-/// `RTCRayHit16`: the same for sixteen rays, field by field.
-#[repr(C, align(64))]
-#[derive(Clone, Copy)]
-struct RayHit16 {
-    origin: [[f32; 16]; 3],
-    t_near: [f32; 16],
-    direction: [[f32; 16]; 3],
-    time: [f32; 16],
-    t_far: [f32; 16],
-    mask: [u32; 16],
-    id: [u32; 16],
-    flags: [u32; 16],
-    normal: [[f32; 16]; 3],
-    u: [f32; 16],
-    v: [f32; 16],
-    primitive: [u32; 16],
-    geometry: [u32; 16],
-    instances: [[u32; 16]; 2],
-}
-
-#[repr(C, align(64))]
-struct Valid([i32; 16]);
-
-/// `RTCIntersectArguments`, which has the same layout as `RTCOccludedArguments` except for the type of its last
-/// function.
-#[repr(C)]
-struct Arguments {
-    flags: u32,
-    features: u32,
-    context: Pointer,
-    filter: Pointer,
-    query: Pointer,
-    reserved: [usize; 2],
-}
+/// Packets of four, eight and sixteen rays are native.
+const PROPERTIES_NATIVE: [(usize, u32); 3] = [(4, 32), (8, 33), (16, 34)];
 
 /// The library and its device, on one thread.
 pub(super) struct Embree {
@@ -172,6 +123,19 @@ impl Embree {
         unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count, counter) };
         Ok(Rc::new(Embree { functions, device, held, _library: ManuallyDrop::new(library) }))
     }
+
+    /// How rays can be passed to it on this machine: one by one, in packets of each width that it traces as such (it
+    /// takes others apart), and in the widest of them as coherent rays.
+    pub(super) fn ways(&self) -> Vec<Packets> {
+        // SAFETY: the device lives as long as `self`; version 4 has these properties.
+        let is_native =
+            |property| unsafe { (self.functions.rtcGetDeviceProperty)(self.device, property) } != 0;
+        let native = PROPERTIES_NATIVE.iter().filter(|(_, property)| is_native(*property));
+        let widths: Vec<usize> = native.map(|&(width, _)| width).collect();
+        let of_width = widths.iter().map(|&width| Packets { width, coherent: false });
+        let coherent = widths.last().map(|&width| Packets { width, coherent: true });
+        [Packets::ONE].into_iter().chain(of_width).chain(coherent).collect()
+    }
 }
 
 impl Drop for Embree {
@@ -180,10 +144,6 @@ impl Drop for Embree {
         unsafe { (self.functions.rtcReleaseDevice)(self.device) }
     }
 }
-
-// Embree requires these layouts; otherwise it would read past the end.
-const _: () = assert!(size_of::<RayHit1>() == 96 && align_of::<RayHit1>() == 16);
-const _: () = assert!(size_of::<RayHit16>() == 21 * 64 && align_of::<RayHit16>() == 64);
 
 /// How a tree is built.
 #[derive(Clone, Copy)]
@@ -254,146 +214,5 @@ impl Drop for Tree {
     fn drop(&mut self) {
         // SAFETY: the scene is this tree's own, and released once.
         unsafe { (self.embree.functions.rtcReleaseScene)(self.scene) }
-    }
-}
-
-/// How rays are passed to Embree.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Packets {
-    One,
-    Sixteen,
-    Coherent,
-}
-
-/// A tree together with one way of tracing rays through it.
-pub(super) struct EmbreeEngine {
-    pub(super) tree: Rc<Tree>,
-    pub(super) packets: Packets,
-}
-
-impl Engine for EmbreeEngine {
-    fn mode(&self) -> Mode {
-        if self.packets == Packets::One { Mode::Single } else { Mode::Batch }
-    }
-
-    fn build_seconds(&self) -> f64 {
-        self.tree.build_seconds
-    }
-
-    fn bytes(&self) -> usize {
-        self.tree.bytes
-    }
-
-    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        match self.packets {
-            Packets::One => self.singly(batch, answers),
-            _ => self.in_packets(batch, answers),
-        }
-    }
-}
-
-impl EmbreeEngine {
-    fn arguments(&self) -> Arguments {
-        Arguments {
-            flags: if self.packets == Packets::Coherent { FLAG_COHERENT } else { 0 },
-            features: u32::MAX,
-            context: null_mut(),
-            filter: null_mut(),
-            query: null_mut(),
-            reserved: [0; 2],
-        }
-    }
-
-    fn singly(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        let mut rays: Vec<RayHit1> = batch.rays.iter().map(RayHit1::new).collect();
-        let (f, scene) = (&self.tree.embree.functions, self.tree.scene);
-        let begun = Instant::now();
-        let query = if batch.any { f.rtcOccluded1 } else { f.rtcIntersect1 };
-        for ray in &mut rays {
-            // SAFETY: the scene is committed, the ray has the required layout and alignment, and null selects default
-            // arguments.
-            unsafe { query(scene, ray, null()) };
-        }
-        let seconds = begun.elapsed().as_secs_f64();
-        if let Some(answers) = answers {
-            answers.fill(batch.any, rays.iter().map(RayHit1::hit));
-        }
-        seconds
-    }
-
-    fn in_packets(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        let mut packets: Vec<RayHit16> = batch.rays.chunks(16).map(RayHit16::new).collect();
-        let (f, scene, arguments) = (&self.tree.embree.functions, self.tree.scene, self.arguments());
-        let valid = Valid([-1; 16]);
-        let begun = Instant::now();
-        let query = if batch.any { f.rtcOccluded16 } else { f.rtcIntersect16 };
-        for packet in &mut packets {
-            // SAFETY: as above; the sixteen flags and the arguments live until the call returns.
-            unsafe { query(&valid, scene, packet, &arguments) };
-        }
-        let seconds = begun.elapsed().as_secs_f64();
-        if let Some(answers) = answers {
-            let hits = packets.iter().flat_map(|packet| (0..16).map(|lane| packet.hit(lane)));
-            answers.fill(batch.any, hits.take(batch.rays.len()));
-        }
-        seconds
-    }
-}
-
-impl RayHit1 {
-    fn new(ray: &Ray) -> RayHit1 {
-        RayHit1 {
-            origin: ray.origin,
-            t_near: ray.t_min,
-            direction: ray.direction,
-            time: 0.0,
-            t_far: ray.t_max,
-            mask: u32::MAX,
-            id: 0,
-            flags: 0,
-            normal: [0.0; 3],
-            u: 0.0,
-            v: 0.0,
-            primitive: INVALID,
-            geometry: INVALID,
-            instances: [INVALID; 5],
-        }
-    }
-
-    /// For any-hit queries, only whether there is a hit: Embree then sets the ray's end to minus infinity.
-    fn hit(&self) -> Option<Hit> {
-        let is_hit = self.geometry != INVALID || self.t_far == f32::NEG_INFINITY;
-        let (t, u, v, primitive) = (self.t_far, self.u, self.v, self.primitive);
-        is_hit.then_some(Hit { t, u, v, primitive, instance: 0 })
-    }
-}
-
-impl RayHit16 {
-    /// A packet of up to sixteen rays; the last one fills the remaining lanes.
-    fn new(rays: &[Ray]) -> RayHit16 {
-        let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
-        let each = |value: &dyn Fn(&Ray) -> f32| std::array::from_fn(|lane| value(ray(lane)));
-        RayHit16 {
-            origin: std::array::from_fn(|axis| each(&|ray| ray.origin[axis])),
-            t_near: each(&|ray| ray.t_min),
-            direction: std::array::from_fn(|axis| each(&|ray| ray.direction[axis])),
-            time: [0.0; 16],
-            t_far: each(&|ray| ray.t_max),
-            mask: [u32::MAX; 16],
-            id: [0; 16],
-            flags: [0; 16],
-            normal: [[0.0; 16]; 3],
-            u: [0.0; 16],
-            v: [0.0; 16],
-            primitive: [INVALID; 16],
-            geometry: [INVALID; 16],
-            instances: [[INVALID; 16]; 2],
-        }
-    }
-
-    fn hit(&self, lane: usize) -> Option<Hit> {
-        let is_hit = self.geometry[lane] != INVALID || self.t_far[lane] == f32::NEG_INFINITY;
-        let (t, u, v, primitive) = (self.t_far[lane], self.u[lane], self.v[lane], self.primitive[lane]);
-        is_hit.then_some(Hit { t, u, v, primitive, instance: 0 })
     }
 }

@@ -1,6 +1,6 @@
 //! The engines being measured: our structures and their competitors, behind one trait whose calls take a whole batch.
 
-use super::embree::{Embree, EmbreeEngine, KINDS, Packets, Tree};
+use super::embree::{Embree, EmbreeEngine, KINDS, Tree};
 use super::{Batch, Mode};
 use crate::accels::{find, threads};
 use bilux::Error;
@@ -80,11 +80,10 @@ pub(super) fn build(
     for embree in against {
         for kind in KINDS {
             let tree = Rc::new(Tree::build(embree, kind, mesh)?);
-            for (packets, suffix) in
-                [(Packets::One, ""), (Packets::Sixteen, "/16"), (Packets::Coherent, "/16-coherent")]
-            {
+            for packets in embree.ways() {
                 let engine = Box::new(EmbreeEngine { tree: tree.clone(), packets });
-                engines.push(Named { name: format!("{}{suffix}", kind.name), ours: false, engine });
+                let name = format!("{}{}", kind.name, packets.suffix());
+                engines.push(Named { name, ours: false, engine });
             }
         }
     }

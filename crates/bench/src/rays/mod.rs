@@ -5,6 +5,7 @@
 //! `shadow` (any, to an area light). Everything runs on one thread. Every engine traces a class once per round, in an
 //! order that rotates from round to round, and the medians are reported. Hits are compared with those of `bvh`.
 
+mod best;
 mod classes;
 mod embree;
 mod engines;
@@ -16,6 +17,7 @@ mod scenes;
 
 use crate::accels::find;
 use crate::{ProgressFn, Report, median};
+pub use best::{Best, Champion};
 use bilux::Error;
 use bilux::accel::registry::AUTO;
 use bilux::accel::{Bvh, Query, Ray};
@@ -79,9 +81,10 @@ pub struct Batch {
 }
 
 /// How rays are passed to an engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Mode {
     /// One per call.
+    #[default]
     Single,
     /// Several per call.
     Batch,
@@ -92,6 +95,29 @@ enum Mode {
 /// # Errors
 /// If a file cannot be read or written, a name is unknown, or nothing in a scene is visible.
 pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
+    let rows = measured(options, progress)?;
+    Ok(Report {
+        rows: rows.iter().map(Row::json).collect(),
+        text: report::text(&rows, options) + &report::curve(&rows) + &best::text(&rows),
+        ..Report::default()
+    })
+}
+
+/// Runs the benchmark, and compares our best mode with Embree's for each class and scene.
+///
+/// # Errors
+/// As [`run`].
+pub fn against_embree(options: &Options, progress: ProgressFn) -> Result<Vec<Best>, Error> {
+    Ok(best::best(&measured(options, progress)?))
+}
+
+/// Whether a library is an Embree that can be compared with.
+pub fn is_embree(library: &Path) -> bool {
+    embree::Embree::load(library).is_ok()
+}
+
+/// A row for each scene, class and engine.
+fn measured(options: &Options, progress: ProgressFn) -> Result<Vec<Row>, Error> {
     let against = engines::load(&options.against)?;
     let mut accels = options.accels.clone();
     if accels.is_empty() {
@@ -110,11 +136,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
         let built = engines::build(&test_mesh.mesh, &accels, &against)?;
         measure(&test_mesh, &batches, &built, options, progress, &mut rows)?;
     }
-    Ok(Report {
-        rows: rows.iter().map(Row::json).collect(),
-        text: report::text(&rows, options) + &report::curve(&rows),
-        picture: None,
-    })
+    Ok(rows)
 }
 
 /// Measures one scene: every class with every engine.

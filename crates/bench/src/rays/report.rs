@@ -5,6 +5,7 @@ use crate::table;
 use serde_json::{Value, json};
 
 /// The result of one engine for one class on one scene.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Row {
     pub(super) scene: String,
     pub(super) triangles: usize,
@@ -29,7 +30,7 @@ impl Row {
 }
 
 impl Mode {
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Mode::Single => "single",
             Mode::Batch => "batch",

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Instant;
 
 /// Measures from the start of a render.
-pub(super) struct Clock {
+pub(crate) struct Clock {
     begun: Instant,
     cpu: Option<f64>,
     threads: usize,
@@ -12,7 +12,7 @@ pub(super) struct Clock {
 
 impl Clock {
     /// Starts the clock. `threads` is the number of threads that will render; 0 for all cores.
-    pub(super) fn start(threads: usize) -> Clock {
+    pub(crate) fn start(threads: usize) -> Clock {
         // Resets the peak memory. Where that is not allowed, the result is the peak of the whole program.
         let _ = fs::write("/proc/self/clear_refs", "5");
         Clock { begun: Instant::now(), cpu: cpu_seconds(), threads }
@@ -20,7 +20,7 @@ impl Clock {
 
     /// Returns the CPU seconds since the start, to a hundredth (if the system does not report them: elapsed time times
     /// the number of threads), and the peak memory of the program, in MB of 10⁶ bytes.
-    pub(super) fn stop(self) -> (f64, Option<f64>) {
+    pub(crate) fn stop(self) -> (f64, Option<f64>) {
         let elapsed = self.begun.elapsed().as_secs_f64();
         let seconds = match (self.cpu, cpu_seconds()) {
             (Some(before), Some(after)) => after - before,

@@ -67,8 +67,15 @@ pub(super) fn block_means(picture: &[Rgb], width: usize, side: usize) -> Vec<f64
     sums.iter().map(|sum| sum / (side * side) as f64).collect()
 }
 
+/// The relMSE between the block means of two pictures: what is left where noise has averaged out.
+pub(crate) fn block_relmse(picture: &[Rgb], reference: &[Rgb], width: usize) -> f64 {
+    let blocks = [picture, reference].map(|p| block_means(p, width, BLOCK));
+    let all: f64 = blocks[0].iter().zip(&blocks[1]).map(|(x, r)| relative(x - r, *r)).sum();
+    all / blocks[0].len().max(1) as f64
+}
+
 /// The mean over pixels and channels.
-pub(super) fn mean(picture: &[Rgb]) -> f64 {
+pub(crate) fn mean(picture: &[Rgb]) -> f64 {
     let all = picture.iter().flat_map(|p| p.to_array()).map(f64::from);
     all.sum::<f64>() / (3 * picture.len()).max(1) as f64
 }
@@ -113,6 +120,8 @@ mod tests {
     fn blocks_have_their_means() {
         let means = block_means(&two_blocks(0.25, 0.75), 16, 8);
         assert_eq!(means, [0.25, 0.25, 0.25, 0.75, 0.75, 0.75]);
+        let found = block_relmse(&two_blocks(0.25, 0.85), &two_blocks(0.25, 0.75), 16);
+        assert!((found - 0.5 * 0.01 / (0.75 * 0.75 + 0.01)).abs() < 1e-6, "{found}");
     }
 
     #[test]

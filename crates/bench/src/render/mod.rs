@@ -14,7 +14,9 @@ mod reference;
 mod table;
 mod test_scene;
 
+pub(crate) use cost::Clock;
 pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
+pub(crate) use errors::{block_relmse, mean};
 pub use reference::{Reference, ReferenceOptions, make_references};
 
 use crate::{ProgressFn, Report, median};
@@ -25,7 +27,6 @@ use bilux::scene::{Parameters, SceneBuilder, Value as Setting};
 use bilux::transport::{Choice, INTEGRATORS};
 use bilux::{Error, Job, Quiet};
 use bilux_math::Rgb;
-use cost::Clock;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -164,7 +165,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
         page::write(folder, &measured, options)?;
     }
     let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| row.json(m))).collect();
-    Ok(Report { rows, text: table::text(&measured, options), picture: None })
+    Ok(Report { rows, text: table::text(&measured, options), ..Report::default() })
 }
 
 impl Options {

@@ -30,9 +30,14 @@ impl Reference {
     /// # Errors
     /// If the file is not a reference.
     pub fn read(bytes: &[u8]) -> Result<Reference, Error> {
+        Reference::read_sized(bytes, SIZE)
+    }
+
+    /// Reads a reference of a width and a height from its file.
+    pub(crate) fn read_sized(bytes: &[u8], size: (u32, u32)) -> Result<Reference, Error> {
         let picture = read_bytes(bytes, Some("exr"), &Limits::default())?;
         let text = |key: &str| picture.metadata.get(key).cloned().unwrap_or_default();
-        let of_size = (picture.width(), picture.height()) == (SIZE.0 as usize, SIZE.1 as usize);
+        let of_size = (picture.width(), picture.height()) == (size.0 as usize, size.1 as usize);
         match (picture.to_rgb(), text("relmse").parse()) {
             (Some(pixels), Ok(relmse)) if of_size => Ok(Reference { pixels, relmse, origin: text("origin") }),
             _ => Err(Error::Settings("this is not a reference file: make it again".to_owned())),
@@ -110,7 +115,7 @@ pub fn make_references(making: &ReferenceOptions, progress: ProgressFn) -> Resul
             "mean": reference.mean(),
         }));
     }
-    Ok(Report { rows, text: lines.join("\n"), picture: None })
+    Ok(Report { rows, text: lines.join("\n"), ..Report::default() })
 }
 
 /// Makes the reference of any scene; also returns the minimum p-value if the integrators disagree.

@@ -42,6 +42,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Render => render(arguments, common, &progress)?,
         BenchKind::Load => load(arguments, common, &progress)?,
         BenchKind::Models => models(arguments, &progress)?,
+        BenchKind::Speed => speed(arguments, common, &progress)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?)?;
@@ -130,6 +131,32 @@ fn models(arguments: &Bench, progress: bilux_bench::ProgressFn) -> anyhow::Resul
         files: arguments.scenes.clone(),
         seconds: arguments.seconds.last().copied().unwrap_or(SECONDS),
         references: arguments.references.clone(),
+    };
+    Ok(run(&options, progress)?)
+}
+
+/// Runs `bench speed`, which measures memory with this program itself.
+fn speed(
+    arguments: &Bench,
+    common: &Common,
+    progress: bilux_bench::ProgressFn,
+) -> anyhow::Result<bilux_bench::Report> {
+    use bilux_bench::speed::{Options, run};
+    let defaults = Options::default();
+    let against = arguments.against.last().map(|(name, path)| match name.as_str() {
+        "embree" => Ok(path.clone()),
+        other => Err(usage::wrong(anyhow!("--against {other}: bench speed knows only embree=PATH"))),
+    });
+    let options = Options {
+        rows: arguments.rows.clone(),
+        model: arguments.model.clone(),
+        read: read_options(common),
+        python: arguments.python.clone().unwrap_or(defaults.python),
+        embree: against.transpose()?.unwrap_or(defaults.embree),
+        program: std::env::current_exe()?,
+        repeats: arguments.repeats.unwrap_or(defaults.repeats),
+        seconds: arguments.seconds.last().copied().unwrap_or(defaults.seconds),
+        share: defaults.share,
     };
     Ok(run(&options, progress)?)
 }
