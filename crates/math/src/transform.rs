@@ -90,7 +90,8 @@ impl Transform {
     /// Transforms a normal (by the inverse transpose); not normalised.
     #[inline]
     pub fn normal(&self, n: Vec3) -> Vec3 {
-        self.inverse.transpose().transform_vector3(n)
+        let along = |axis: glam::Vec4| axis.truncate().dot(n);
+        Vec3::new(along(self.inverse.x_axis), along(self.inverse.y_axis), along(self.inverse.z_axis))
     }
 
     /// The bounding box of a transformed box.

@@ -32,6 +32,8 @@ pub struct Geometry {
     still: Option<Arc<TriangleMesh>>,
     /// The index in `still` of each static object's first triangle, with the object; ascending.
     still_objects: Vec<(u32, u32)>,
+    /// For each triangle of `still`, the index of its object in `still_objects`.
+    still_owners: Vec<u32>,
     /// The object of each instance; the entry of `still` is unused.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
@@ -61,12 +63,14 @@ impl Geometry {
     ) -> Result<Geometry, SceneError> {
         let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
         let in_own_tree = |o: &Placed| o.in_own_tree() && !o.mesh.triangles.is_empty();
-        let (mut corners, mut still_objects, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut corners, mut groups) = (Vec::new(), Vec::new());
+        let (mut still_objects, mut still_owners) = (Vec::new(), Vec::new());
         for (i, object) in objects.iter().enumerate().filter(|(_, o)| !o.in_own_tree()) {
             let first = corners.len() as u32;
             still_objects.push((first, i as u32));
             corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
             groups.push(first..corners.len() as u32);
+            still_owners.resize(corners.len(), still_objects.len() as u32 - 1);
         }
         let make = |mesh: Arc<TriangleMesh>| -> Result<Arc<dyn Accelerator>, SceneError> {
             Ok(Arc::from(bilux_accel::build(&accel.name, mesh, &accel.options).map_err(|e| failed(&e))?))
@@ -111,6 +115,7 @@ impl Geometry {
             objects,
             still,
             still_objects,
+            still_owners,
             instance_objects,
             instances,
             strokes,
@@ -250,8 +255,7 @@ impl Geometry {
     /// The object and the triangle within its mesh, or the sphere.
     fn locate(&self, Primitive { instance, index }: Primitive) -> (u32, u32) {
         if self.still.is_some() && instance == 0 {
-            let after = self.still_objects.partition_point(|(first, _)| *first <= index);
-            let (first, object) = self.still_objects[after - 1];
+            let (first, object) = self.still_objects[self.still_owners[index as usize] as usize];
             (object, index - first)
         } else if instance == self.spheres.instance() {
             (self.spheres.object(index), index)

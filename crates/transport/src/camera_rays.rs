@@ -2,13 +2,14 @@
 
 use crate::bidirectional::{BothEnds, Photons};
 use crate::emission::{Emission, Guide};
-use crate::integrators::PixelIntegrator;
+use crate::integrators::{CameraSpread, PixelIntegrator};
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
-use crate::render::{PixelAnchor, RenderSettings};
+use crate::render::RenderSettings;
 use crate::sampler::{PixelSampler, regular_pattern};
 use crate::task::Task;
 use bilux_math::{Vec2, warp};
+use bilux_scene::cameras::Pinhole;
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer, Wavelength};
 use std::sync::Arc;
 
@@ -85,6 +86,18 @@ impl<'a> CameraRays<'a> {
         (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
     }
 
+    /// The rays as those of a pinhole, if there is nothing else to them: neither a lens, nor motion, nor wavelengths, nor a
+    /// regular pattern.
+    pub(crate) fn of_pinhole(&self) -> Option<PinholeRays<'a>> {
+        let [opens, closes] = self.scene.shutter();
+        let is_plain = self.integrator.camera_spread() == CameraSpread::FULL
+            && opens == closes
+            && !self.scene.disperses()
+            && !self.settings.interval;
+        let pinhole = self.camera.pinhole().filter(|_| is_plain)?;
+        Some(PinholeRays { pinhole, settings: self.settings, time: opens })
+    }
+
     /// The wavelength of a sample: dispersion sends its paths where light of this wavelength goes. Subpaths that are
     /// merged must have the same one, so then all samples of an iteration share it.
     #[cold]
@@ -106,10 +119,7 @@ impl<'a> CameraRays<'a> {
             0.0 => settings.filter.sample(regular_pattern(index)),
             extent => settings.filter.sample(u_pixel) * extent,
         };
-        let anchor = match settings.pixel_anchor {
-            PixelAnchor::Centre => 0.5,
-            PixelAnchor::Corner => 0.0,
-        };
+        let anchor = settings.pixel_anchor.offset();
         let lens = match spread.lens {
             0.0 => Vec2::ZERO,
             _ if !self.has_lens => {
@@ -125,10 +135,39 @@ impl<'a> CameraRays<'a> {
             _ if opens == closes => middle,
             extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
         };
-        let film = Vec2::new(
-            (x as f32 + (anchor + offset.x)) / settings.width as f32,
-            (y as f32 + (anchor + offset.y)) / settings.height as f32,
-        );
+        let film = on_film(settings, x, y, offset + Vec2::splat(anchor));
         CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
+    }
+}
+
+/// The point of the film (0..=1 on both axes) at a place in a pixel.
+#[inline]
+fn on_film(settings: &RenderSettings, x: u32, y: u32, place: Vec2) -> Vec2 {
+    Vec2::new((x as f32 + place.x) / settings.width as f32, (y as f32 + place.y) / settings.height as f32)
+}
+
+/// The rays of a pinhole.
+pub(crate) struct PinholeRays<'a> {
+    pub(crate) pinhole: Pinhole,
+    settings: &'a RenderSettings,
+    /// When the shutter opens and closes.
+    pub(crate) time: f32,
+}
+
+impl PinholeRays<'_> {
+    /// The dimension of the random numbers that choose the place in a pixel: the first that is drawn.
+    pub(crate) const DIMENSION: u32 = 1;
+
+    /// The random numbers of a sample.
+    #[inline]
+    pub(crate) fn sampler(&self, x: u32, y: u32, index: u32) -> PixelSampler {
+        PixelSampler::new(self.settings.seed, x, y, index)
+    }
+
+    /// The point of the film that random numbers choose in a pixel.
+    #[inline]
+    pub(crate) fn film(&self, x: u32, y: u32, u: Vec2) -> Vec2 {
+        let offset = self.settings.filter.sample(u);
+        on_film(self.settings, x, y, offset + Vec2::splat(self.settings.pixel_anchor.offset()))
     }
 }

@@ -78,6 +78,17 @@ pub enum PixelAnchor {
     Corner,
 }
 
+impl PixelAnchor {
+    /// Its distance from the pixel's left and upper edge, in pixels.
+    #[inline]
+    pub(crate) fn offset(self) -> f32 {
+        match self {
+            PixelAnchor::Centre => 0.5,
+            PixelAnchor::Corner => 0.0,
+        }
+    }
+}
+
 impl RenderSettings {
     /// All samples of a film of this size.
     pub fn new(width: u32, height: u32, spp: u32) -> RenderSettings {

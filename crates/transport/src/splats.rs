@@ -9,7 +9,7 @@ use crate::error::FilmError;
 use crate::failures::PixelFailures;
 use crate::film::{Film, to_steps, zeroed};
 use crate::filters::Filter;
-use crate::render::{PixelAnchor, RenderSettings};
+use crate::render::RenderSettings;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};
@@ -42,10 +42,7 @@ impl<'a> Splats<'a> {
     pub(crate) fn new(settings: &'a RenderSettings, window: Window, scale_exponent: i32) -> Splats<'a> {
         Splats {
             filter: &settings.filter,
-            anchor: match settings.pixel_anchor {
-                PixelAnchor::Centre => 0.5,
-                PixelAnchor::Corner => 0.0,
-            },
+            anchor: settings.pixel_anchor.offset(),
             size: Vec2::new(settings.width as f32, settings.height as f32),
             window,
             scale_exponent,

@@ -2,6 +2,9 @@
 
 mod orthographic;
 mod perspective;
+mod pinhole;
+
+pub use pinhole::Pinhole;
 
 use crate::error::SceneError;
 use crate::parameters::{Parameters, Reader, Spec};
@@ -56,6 +59,10 @@ pub trait Camera: Send + Sync {
     /// The height of the film's view at a point, in metres perpendicular to the axis, at a time in seconds. Divided by
     /// the number of pixel rows, it is the width of a pixel there.
     fn height_at(&self, p: Vec3, time: f32) -> f32;
+    /// The camera as a pinhole that does not move, if it is one: many of its rays can be computed at once.
+    fn pinhole(&self) -> Option<Pinhole> {
+        None
+    }
     /// True when its rays depend on [`CameraSample::lens`].
     fn has_lens(&self) -> bool;
     /// The viewing direction, a unit vector, at a time in seconds.

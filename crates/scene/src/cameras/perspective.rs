@@ -1,6 +1,6 @@
 //! `perspective`: a pinhole, or a thin lens if an aperture is given.
 
-use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
+use super::{Camera, CameraConnection, CameraEntry, CameraSample, Pinhole, around, look};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
@@ -145,6 +145,11 @@ impl Perspective {
             .unwrap_or([Vec3::X, Vec3::Y, -Vec3::Z]);
         (key, axes)
     }
+
+    /// The camera as it would be without a lens.
+    fn pinhole_at(&self, key: &Key, axes: [Vec3; 3]) -> Pinhole {
+        Pinhole { position: key.position, axes, tan_half_fov: key.tan_half_fov, aspect: self.aspect }
+    }
 }
 
 impl Key {
@@ -164,17 +169,16 @@ impl Key {
 
 impl Camera for Perspective {
     fn ray(&self, sample: &CameraSample) -> Ray {
-        let (key, [right, up, forward]) = self.key_at(sample.time);
-        let x = (2.0 * sample.film.x - 1.0) * key.tan_half_fov * self.aspect;
-        let y = (1.0 - 2.0 * sample.film.y) * key.tan_half_fov;
-        let through = right * x + up * y + forward;
+        let (key, axes) = self.key_at(sample.time);
+        let pinhole = self.pinhole_at(&key, axes);
         let (origin, direction) = if sample.lens == Vec2::ZERO || key.aperture == 0.0 {
-            (key.position, through)
+            (key.position, pinhole.direction(sample.film))
         } else {
+            let [right, up, _] = axes;
             let lens = (right * sample.lens.x + up * sample.lens.y) * key.aperture;
-            (key.position + lens, through * key.focus() - lens)
+            (key.position + lens, (pinhole.through(sample.film) * key.focus() - lens).normalize())
         };
-        Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.normalize().to_array()) }
+        Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.to_array()) }
     }
 
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection> {
@@ -206,6 +210,11 @@ impl Camera for Perspective {
     fn height_at(&self, p: Vec3, time: f32) -> f32 {
         let (key, [_, _, forward]) = self.key_at(time);
         2.0 * key.tan_half_fov * (p - key.position).dot(forward).abs()
+    }
+
+    fn pinhole(&self) -> Option<Pinhole> {
+        let (key, axes) = self.static_key.as_ref().filter(|(key, _)| key.aperture == 0.0)?;
+        Some(self.pinhole_at(key, *axes))
     }
 
     fn has_lens(&self) -> bool {

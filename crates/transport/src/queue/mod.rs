@@ -4,6 +4,7 @@
 //! path ([`Path::interact`]); the queue decides which paths come next, in which order. It gives the same light as
 //! following one path after the other, bit for bit. See docs/adr/0011-one-path-or-waves.md.
 
+mod camera;
 mod diffuse;
 mod general;
 mod lanes;
@@ -117,11 +118,21 @@ impl PathQueue {
         mut add: impl FnMut((u32, u32, u32), Rgb),
     ) {
         self.paths.clear();
-        for &(x, y, index) in samples {
-            let (ray, new_task) = rays.sample(tracer, x, y, index);
-            let (sampler, wavelength) = (new_task.sampler, new_task.wavelength);
+        let mut begin = |tracer: &mut Tracer<'a>, ray: Ray, sampler, wavelength| {
             let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
             self.paths.push(QueuedPath { walk, sampler, wavelength, direct: Rgb::BLACK, beta: Rgb::WHITE });
+        };
+        match rays.of_pinhole() {
+            Some(rays) => camera::camera_rays(&rays, tracer.scene, samples, |sampler, ray| {
+                begin(tracer, ray, sampler, Wavelength::D);
+            }),
+            None => {
+                for &(x, y, index) in samples {
+                    let (ray, task) = rays.sample(tracer, x, y, index);
+                    let (sampler, wavelength) = (task.sampler, task.wavelength);
+                    begin(tracer, ray, sampler, wavelength);
+                }
+            }
         }
         let Some(&(x, y, index)) = samples.first() else { return };
         // Its tools serve all paths; each path has its own random numbers and wavelength.

@@ -1,0 +1,73 @@
+//! The camera rays of [`LANES`] samples at a time, where the camera is a pinhole.
+
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
+use crate::camera_rays::PinholeRays;
+use crate::sampler::{self, PixelSampler};
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::cameras::Pinhole;
+use bilux_scene::{Ray, Scene};
+
+/// Calls `each` with the random numbers and the ray of every sample, given by its column, row and index.
+pub(super) fn camera_rays(
+    rays: &PinholeRays,
+    scene: &Scene,
+    samples: &[(u32, u32, u32)],
+    mut each: impl FnMut(PixelSampler, Ray),
+) {
+    let level = scene.cpu_level();
+    let (mut film, mut directions) = ([Column::ZERO; 2], ZERO3);
+    for samples in samples.chunks(LANES) {
+        let (mut streams, mut reversed_indices) = ([0; LANES], [0; LANES]);
+        let sampler = |&(x, y, index): &(u32, u32, u32)| rays.sampler(x, y, index);
+        for (i, sample) in samples.iter().enumerate() {
+            (streams[i], reversed_indices[i]) = sampler(sample).state();
+        }
+        run_at(level, Places { streams: &streams, reversed_indices: &reversed_indices, u: &mut film });
+        for (i, &(x, y, _)) in samples.iter().enumerate() {
+            let point = rays.film(x, y, Vec2::new(film[0].0[i], film[1].0[i]));
+            (film[0].0[i], film[1].0[i]) = (point.x, point.y);
+        }
+        run_at(level, Directions { pinhole: &rays.pinhole, film: &film, directions: &mut directions });
+        for (i, sample) in samples.iter().enumerate() {
+            let direction: Vec3 = vec3(&directions, i);
+            let ray = Ray::new(rays.pinhole.position.to_array(), direction.to_array());
+            each(sampler(sample), scene.from_camera(Ray { time: rays.time, ..ray }));
+        }
+    }
+}
+
+/// Random points, each of which chooses a place in a pixel.
+struct Places<'a> {
+    streams: &'a [u64; LANES],
+    reversed_indices: &'a [u32; LANES],
+    u: &'a mut [Column; 2],
+}
+
+impl Stage for Places<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Places { streams, reversed_indices, u: [x, y] } = self;
+        for i in 0..LANES {
+            let key = sampler::key(streams[i], PinholeRays::DIMENSION);
+            let u = sampler::point(key, reversed_indices[i]);
+            (x.0[i], y.0[i]) = (u.x, u.y);
+        }
+    }
+}
+
+/// The directions through points of the film.
+struct Directions<'a> {
+    pinhole: &'a Pinhole,
+    film: &'a [Column; 2],
+    directions: &'a mut Columns3,
+}
+
+impl Stage for Directions<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Directions { pinhole, film: [x, y], directions } = self;
+        for i in 0..LANES {
+            put(directions, i, pinhole.direction(Vec2::new(x.0[i], y.0[i])).to_array());
+        }
+    }
+}
