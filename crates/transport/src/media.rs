@@ -140,7 +140,8 @@ impl Media {
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
     #[inline]
     pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface, wavelength: &Wavelength) -> Bsdf {
-        let bsdf = scene.material(surface).bsdf(surface).bending();
+        let mut bsdf = scene.material(surface).bsdf(surface);
+        bsdf.bend();
         if !scene.has_nested() && !scene.disperses() {
             return bsdf;
         }

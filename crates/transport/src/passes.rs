@@ -5,7 +5,7 @@ use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::path::Path;
-use crate::queue::{self, PathQueue};
+use crate::queue::PathQueue;
 use crate::render::{Progress, Rendered};
 use crate::splats::{Iterations, PixelSum, Splats};
 use crate::window::Window;
@@ -19,6 +19,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
+
+/// Samples of a job between two looks at whether it was cancelled.
+const JOB_PART: usize = 1 << 14;
 
 /// Runs some passes over all tiles, on all threads.
 pub(crate) fn all_passes(
@@ -168,7 +171,7 @@ impl<'a> Work<'a> {
         tracer: &mut Tracer<'a>,
         (part, queue): (&mut Film, &mut PathQueue),
     ) -> bool {
-        for samples in samples.all().chunks(queue::PATHS) {
+        for samples in samples.all().chunks(JOB_PART) {
             if self.progress.is_cancelled() {
                 return false;
             }

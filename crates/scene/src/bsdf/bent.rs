@@ -31,11 +31,17 @@ impl Bsdf {
     /// instead of scattering black.
     #[inline]
     pub fn bending(mut self) -> Bsdf {
+        self.bend();
+        self
+    }
+
+    /// [`Bsdf::bending`] in place.
+    #[inline]
+    pub fn bend(&mut self) {
         self.bends = self.frame.n.dot(self.n_geom) < NEARLY_FLAT;
         if let Some(apart) = &mut self.apart {
             apart.bend(self.n_geom);
         }
-        self
     }
 
     /// True when the shading normal is to be bent for this view direction.

@@ -194,10 +194,16 @@ impl Bsdf {
     /// The same BSDF with the local x axis along a tangent, for anisotropic lobes; a zero vector leaves it unchanged.
     #[inline]
     pub fn along(mut self, tangent: Vec3) -> Bsdf {
+        self.turn_along(tangent);
+        self
+    }
+
+    /// [`Bsdf::along`] in place.
+    #[inline]
+    pub fn turn_along(&mut self, tangent: Vec3) {
         if tangent != Vec3::ZERO {
             self.frame = self.frame.along(tangent);
         }
-        self
     }
 
     /// The same BSDF for light of one wavelength, where the outside has this refractive index rather than that of air.

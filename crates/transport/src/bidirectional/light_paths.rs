@@ -169,10 +169,13 @@ impl<const N: usize> LightPaths<N> {
                 let (Some(hit), Some(walk)) = (hit, &mut walks[i as usize]) else { continue };
                 samples[i as usize].enter(task);
                 let surface = task.tracer.surface(&walk.ray, hit);
-                let Some(vertex) = walk.vertex_at(surface, task) else { continue };
-                self.next.extend(goes_on(walk, &vertex, roulette_depth, task).then_some(i));
-                if !vertex.bsdf.is_delta() {
-                    self.vertices.push(vertex);
+                let before = self.vertices.len();
+                self.vertices.extend(walk.vertex_at(surface, task));
+                let Some(vertex) = self.vertices.get(before) else { continue };
+                self.next.extend(goes_on(walk, vertex, roulette_depth, task).then_some(i));
+                if vertex.bsdf.is_delta() {
+                    self.vertices.truncate(before);
+                } else {
                     self.samples.push(i);
                 }
             }

@@ -41,8 +41,10 @@ impl QueuedSample {
 #[derive(Default)]
 pub(crate) struct BothEndsQueue<const N: usize = 1> {
     light_paths: LightPaths<N>,
-    /// The current vertices of camera subpaths, with the random numbers that follow.
-    vertices: Vec<(u32, PixelSampler, Vertex<N>)>,
+    /// The current vertices of camera subpaths.
+    vertices: Vec<Vertex<N>>,
+    /// The sample of each, and the random numbers that follow.
+    samples: Vec<(u32, PixelSampler)>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     active: Vec<u32>,
@@ -104,18 +106,22 @@ impl<const N: usize> BothEndsQueue<N> {
         self.hits.resize(self.rays.len(), None);
         task.tracer.hits(&self.rays, &mut self.hits);
         self.vertices.clear();
+        self.samples.clear();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
             let i = index as usize;
             let (walk, tally) = (&mut walks[i], &mut tallies[i]);
             samples[i].enter(task);
             let surface = hit.map(|hit| task.tracer.surface(&walk.ray, &hit));
-            match surface.and_then(|surface| walk.vertex_at(surface, task)) {
-                None => both_ends.escape(walk, task, tally),
-                Some(mut z) => {
-                    if both_ends.arrive(walk, &mut z, task, tally) {
-                        self.vertices.push((index, task.sampler.clone(), z));
-                    }
-                }
+            let before = self.vertices.len();
+            self.vertices.extend(surface.and_then(|surface| walk.vertex_at(surface, task)));
+            let Some(z) = self.vertices.get_mut(before) else {
+                both_ends.escape(walk, task, tally);
+                continue;
+            };
+            if both_ends.arrive(walk, z, task, tally) {
+                self.samples.push((index, task.sampler.clone()));
+            } else {
+                self.vertices.truncate(before);
             }
         }
     }
@@ -130,7 +136,7 @@ impl<const N: usize> BothEndsQueue<N> {
     ) {
         self.shadow_rays.iter_mut().for_each(ShadowRays::clear);
         let is_clear = task.scene().has_clear_media();
-        for (sample, sampler, z) in &mut self.vertices {
+        for (z, (sample, sampler)) in self.vertices.iter().zip(&mut self.samples) {
             task.wavelength = samples[*sample as usize].wavelength;
             task.sampler = sampler.clone();
             let light_path = self.light_paths.of(*sample as usize);
@@ -160,7 +166,7 @@ impl<const N: usize> BothEndsQueue<N> {
         tallies: &mut [T],
     ) {
         self.next.clear();
-        for (index, sampler, z) in &self.vertices {
+        for (z, (index, sampler)) in self.vertices.iter().zip(&self.samples) {
             let i = *index as usize;
             task.wavelength = samples[i].wavelength;
             task.sampler = sampler.clone();

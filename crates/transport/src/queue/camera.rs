@@ -7,12 +7,12 @@ use bilux_math::{Vec2, Vec3};
 use bilux_scene::cameras::Pinhole;
 use bilux_scene::{Ray, Scene};
 
-/// Calls `each` with the random numbers and the ray of every sample, given by its column, row and index.
+/// Calls `each` with every sample, given by its column, row and index, its random numbers and its ray.
 pub(super) fn camera_rays(
     rays: &PinholeRays,
     scene: &Scene,
     samples: &[(u32, u32, u32)],
-    mut each: impl FnMut(PixelSampler, Ray),
+    mut each: impl FnMut((u32, u32, u32), PixelSampler, Ray),
 ) {
     let level = scene.cpu_level();
     let (mut film, mut directions) = ([Column::ZERO; 2], ZERO3);
@@ -31,7 +31,7 @@ pub(super) fn camera_rays(
         for (i, sample) in samples.iter().enumerate() {
             let direction: Vec3 = vec3(&directions, i);
             let ray = Ray::new(rays.pinhole.position.to_array(), direction.to_array());
-            each(sampler(sample), scene.from_camera(Ray { time: rays.time, ..ray }));
+            each(*sample, sampler(sample), scene.from_camera(Ray { time: rays.time, ..ray }));
         }
     }
 }

@@ -30,6 +30,8 @@ struct NextRays {
     origin: Columns3,
     direction: Columns3,
     pdf: Column,
+    /// 1 where Russian roulette is played, otherwise 0.
+    plays: Column,
     /// 1 where the path goes on, otherwise 0.
     goes_on: Column,
 }
@@ -45,6 +47,7 @@ impl Default for Diffuse {
                 origin: ZERO3,
                 direction: ZERO3,
                 pdf: Column::ZERO,
+                plays: Column::ZERO,
                 goes_on: Column::ZERO,
             },
         }
@@ -54,7 +57,8 @@ impl Default for Diffuse {
 impl PathQueue {
     /// Shades the diffuse hits: fills the lists of shadow rays and of paths that go on.
     pub(super) fn shade_diffuse(&mut self, path: &Path, task: &mut Task) {
-        let (mut v, mut d) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.diffuse));
+        let (mut v, mut d) =
+            (self.vertices.take().unwrap_or_default(), self.diffuse.take().unwrap_or_default());
         let hits = std::mem::take(&mut self.diffuse_hits);
         for chunk in hits.chunks(LANES) {
             self.gather(&mut v, &mut d, chunk, task);
@@ -65,7 +69,7 @@ impl PathQueue {
                 self.scatter(&mut v, &mut d, path, task);
             }
         }
-        (self.vertices, self.diffuse, self.diffuse_hits) = (v, d, hits);
+        (self.vertices, self.diffuse, self.diffuse_hits) = (Some(v), Some(d), hits);
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
@@ -118,7 +122,12 @@ impl PathQueue {
         v.dimension += 2;
         v.draw_points(level, v.dimension);
         run_at(level, Scatter { v, d });
-        let plays = self.paths[v.paths[0] as usize].walk.depth + 1 > path.roulette_depth();
+        let mut plays = false;
+        for i in 0..v.count {
+            let depth = self.paths[v.paths[i] as usize].walk.depth + 1;
+            d.next.plays.0[i] = if depth > path.roulette_depth() { 1.0 } else { 0.0 };
+            plays |= depth > path.roulette_depth();
+        }
         if plays {
             v.draw_numbers(level, v.dimension + 1);
             run_at(level, Survive { v, next: &mut d.next });
@@ -230,12 +239,12 @@ impl Stage for Survive<'_> {
         for i in 0..LANES {
             let beta = rgb(&next.beta, i);
             let survival = (beta.max_channel() * next.eta_scale.0[i]).min(0.95);
-            let survives = u[0].0[i] < survival;
+            let (plays, survives) = (next.plays.0[i] != 0.0, u[0].0[i] < survival);
             let scaled = beta / survival;
-            let of = |c: f32, scaled: f32| if survives { scaled } else { c };
+            let of = |c: f32, scaled: f32| if plays & survives { scaled } else { c };
             put(&mut next.beta, i, [of(beta.r, scaled.r), of(beta.g, scaled.g), of(beta.b, scaled.b)]);
             // NaN must reach the film, which reports it.
-            let goes_on = survives | survival.is_nan();
+            let goes_on = !plays | survives | survival.is_nan();
             next.goes_on.0[i] = if goes_on { next.goes_on.0[i] } else { 0.0 };
         }
     }

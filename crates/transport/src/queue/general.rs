@@ -19,7 +19,7 @@ pub(super) struct General {
 impl PathQueue {
     /// Shades these hits: fills the lists of shadow rays and of paths that go on.
     pub(super) fn shade_general(&mut self, path: &Path, task: &mut Task) {
-        let (mut v, mut g) = (std::mem::take(&mut self.vertices), std::mem::take(&mut self.general));
+        let (mut v, mut g) = (self.vertices.take().unwrap_or_default(), std::mem::take(&mut self.general));
         let hits = std::mem::take(&mut self.general_hits);
         let mut begin = 0;
         while begin < hits.len() {
@@ -33,7 +33,7 @@ impl PathQueue {
                 self.leave(&mut v, &g, path, task);
             }
         }
-        (self.vertices, self.general, self.general_hits) = (v, g, hits);
+        (self.vertices, self.general, self.general_hits) = (Some(v), g, hits);
     }
 
     /// Fills the columns with vertices; returns the number of hits used. Paths that end here are done, and those that
@@ -67,18 +67,22 @@ impl PathQueue {
             }
             (task.sampler, task.wavelength) = (one.sampler.clone(), one.wavelength);
             let wo = -Vec3::from(one.walk.ray.direction);
-            let Some(bsdf) = path.arrive(&mut one.walk, &surface, task) else { continue };
+            g.bsdfs.extend(path.arrive(&mut one.walk, &surface, task));
+            if g.bsdfs.len() == v.count {
+                continue;
+            }
             one.begin_event(task);
+            let bsdf = &g.bsdfs[v.count];
             if bsdf.is_delta() {
                 path.skip_lights(task);
-                if path.scatter(&mut one.walk, &surface, &bsdf, task) {
+                if path.scatter(&mut one.walk, &surface, bsdf, task) {
                     self.next.push(*index);
                 }
+                g.bsdfs.truncate(v.count);
                 continue;
             }
             v.push(*index, &Point::from(&surface), wo, &task.sampler);
             g.surfaces.push(surface);
-            g.bsdfs.push(bsdf);
             self.shaded.push(*index);
         }
         hits.len()

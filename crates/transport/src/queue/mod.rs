@@ -25,7 +25,7 @@ use general::General;
 use vertices::Vertices;
 
 /// The number of paths in a queue. Their state fits into the second cache.
-pub(crate) const PATHS: usize = 1024;
+const PATHS: usize = 1024;
 
 /// A path in the queue.
 struct QueuedPath {
@@ -35,6 +35,9 @@ struct QueuedPath {
     /// Light that connections of its current vertex bring, and the throughput there, as the colour channels see it.
     direct: Rgb,
     beta: Rgb,
+    /// The sample that it belongs to: a pixel's column and row, and an index.
+    sample: (u32, u32, u32),
+    goes_on: bool,
 }
 
 impl QueuedPath {
@@ -87,11 +90,13 @@ pub(crate) struct PathQueue {
     paths: Vec<QueuedPath>,
     /// Indices of the paths that go on.
     active: Vec<u32>,
+    /// Indices of the paths that have ended: others take their places.
+    free: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     connections: Connections,
-    vertices: Box<Vertices>,
-    diffuse: Box<Diffuse>,
+    vertices: Option<Box<Vertices>>,
+    diffuse: Option<Box<Diffuse>>,
     /// Path, object, hit.
     diffuse_hits: Vec<(u32, u32, Hit)>,
     general: General,
@@ -107,8 +112,9 @@ impl PathQueue {
         rays.integrator.as_path().filter(|path| path.is_mis())
     }
 
-    /// Takes samples, at most [`PATHS`] of them: a pixel's column and row, and the sample's index. `add` receives the
-    /// light of each, in the same order.
+    /// Takes samples: a pixel's column and row, and the sample's index. `add` receives the light of each, as they end.
+    ///
+    /// As paths end, others begin, so that the queue is never less than half full until the last of them.
     pub(crate) fn take<'a>(
         &mut self,
         path: &Path,
@@ -117,33 +123,66 @@ impl PathQueue {
         samples: &[(u32, u32, u32)],
         mut add: impl FnMut((u32, u32, u32), Rgb),
     ) {
-        self.paths.clear();
-        let mut begin = |tracer: &mut Tracer<'a>, ray: Ray, sampler, wavelength| {
-            let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
-            self.paths.push(QueuedPath { walk, sampler, wavelength, direct: Rgb::BLACK, beta: Rgb::WHITE });
-        };
-        match rays.of_pinhole() {
-            Some(rays) => camera::camera_rays(&rays, tracer.scene, samples, |sampler, ray| {
-                begin(tracer, ray, sampler, Wavelength::D);
-            }),
-            None => {
-                for &(x, y, index) in samples {
-                    let (ray, task) = rays.sample(tracer, x, y, index);
-                    let (sampler, wavelength) = (task.sampler, task.wavelength);
-                    begin(tracer, ray, sampler, wavelength);
-                }
-            }
-        }
         let Some(&(x, y, index)) = samples.first() else { return };
         // Its tools serve all paths; each path has its own random numbers and wavelength.
         let (_, mut task) = rays.sample(tracer, x, y, index);
+        self.paths.clear();
         self.active.clear();
-        self.active.extend(0..samples.len() as u32);
-        while !self.active.is_empty() {
+        self.free.clear();
+        let mut waiting = samples;
+        loop {
+            if self.active.len() <= PATHS / 2 {
+                let (now, later) = waiting.split_at(waiting.len().min(PATHS - self.active.len()));
+                self.begin(rays, now, &mut task);
+                waiting = later;
+            }
+            if self.active.is_empty() {
+                return;
+            }
             self.advance(path, &mut task);
+            for &index in &self.active {
+                self.paths[index as usize].goes_on = true;
+            }
+            // Those that were active before.
+            for &index in &self.next {
+                let one = &mut self.paths[index as usize];
+                if !std::mem::take(&mut one.goes_on) {
+                    add(one.sample, one.walk.light);
+                    self.free.push(index);
+                }
+            }
         }
-        for (sample, path) in samples.iter().zip(&self.paths) {
-            add(*sample, path.walk.light);
+    }
+
+    /// Begins the paths of some samples.
+    fn begin<'a>(&mut self, rays: &CameraRays<'a>, samples: &[(u32, u32, u32)], task: &mut Task<'_, 'a>) {
+        let mut begin = |tracer: &mut Tracer, sample, ray: Ray, sampler, wavelength| {
+            let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
+            let (direct, beta, goes_on) = (Rgb::BLACK, Rgb::WHITE, false);
+            let path = QueuedPath { walk, sampler, wavelength, direct, beta, sample, goes_on };
+            match self.free.pop() {
+                Some(index) => {
+                    self.paths[index as usize] = path;
+                    self.active.push(index);
+                }
+                None => {
+                    self.active.push(self.paths.len() as u32);
+                    self.paths.push(path);
+                }
+            }
+        };
+        if let Some(rays) = rays.of_pinhole() {
+            camera::camera_rays(&rays, task.scene(), samples, |sample, sampler, ray| {
+                begin(task.tracer, sample, ray, sampler, Wavelength::D);
+            });
+            return;
+        }
+        for &(x, y, index) in samples {
+            let (sampler, wavelength, ray) = {
+                let (ray, task) = rays.sample(task.tracer, x, y, index);
+                (task.sampler, task.wavelength, ray)
+            };
+            begin(task.tracer, (x, y, index), ray, sampler, wavelength);
         }
     }
 

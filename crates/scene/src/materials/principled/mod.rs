@@ -209,13 +209,14 @@ impl Material for Principled {
                 return self.below_coat(surface, n);
             }
         }
-        let bsdf = match &self.even {
+        let mut bsdf = match &self.even {
             Some(even) if surface.vertex_kd.is_none() && surface.handedness > 0.0 => {
                 even.moved_to(surface.n_shade, surface.n_geom)
             }
             _ => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
         };
-        bsdf.along(surface.tangent)
+        bsdf.turn_along(surface.tangent);
+        bsdf
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
