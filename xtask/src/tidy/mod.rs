@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: the repository's own rules, one per file; the table is [`RULES`].
 
 mod changelog;
+mod circles;
 mod citations;
 mod dependencies;
 mod directions;
@@ -11,6 +12,7 @@ mod function_length;
 mod ignored_tests;
 mod links;
 mod manifests;
+mod modules;
 mod registries;
 mod repository;
 mod rust_text;
@@ -38,6 +40,7 @@ const RULES: &[Rule] = &[
     Rule { name: "registries", check: registries::check },
     Rule { name: "manifests", check: manifests::check },
     Rule { name: "directions", check: directions::check },
+    Rule { name: "circles", check: circles::check },
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
     Rule { name: "front-page", check: front_page::check },
