@@ -10,7 +10,7 @@ use std::ops::Range;
 #[non_exhaustive]
 pub enum FilmError {
     /// A side is zero or absurdly long.
-    #[error("a picture of {width} x {height} pixels: a side is 1 to {} pixels", crate::film::MAX_SIDE)]
+    #[error("a picture of {width} x {height} pixels: a side is 1 to {} pixels", crate::limits::MAX_SIDE)]
     Size {
         /// Pixels across.
         width: u32,
@@ -65,7 +65,7 @@ pub enum FilmError {
         samples: Range<u32>,
     },
     /// A pixel has more samples than sums can hold.
-    #[error("{samples} samples in one pixel; the maximum is {}", crate::film::MAX_SAMPLES)]
+    #[error("{samples} samples in one pixel; the maximum is {}", crate::limits::MAX_SAMPLES)]
     TooManySamples {
         /// Number of samples.
         samples: u64,
@@ -103,7 +103,7 @@ pub enum RenderError {
     #[error(
         "samples {start}..{end} of {spp} per pixel: the range must contain a sample and end within {spp}, which must \
          be from 1 to {}",
-        crate::film::MAX_SAMPLES
+        crate::limits::MAX_SAMPLES
     )]
     Samples {
         /// First sample.
@@ -114,7 +114,7 @@ pub enum RenderError {
         spp: u32,
     },
     /// The depth is beyond the maximum.
-    #[error("a depth of {depth} scattering events; the maximum is {}", crate::render::MAX_DEPTH)]
+    #[error("a depth of {depth} scattering events; the maximum is {}", crate::limits::MAX_DEPTH)]
     Depth {
         /// The requested depth.
         depth: u32,

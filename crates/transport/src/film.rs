@@ -9,21 +9,14 @@
 
 use crate::error::FilmError;
 use crate::failures::{PixelFailures, SampleFailures, SamplePlace};
-use crate::splats::add;
+use crate::limits::SAMPLE_BITS;
 use crate::window::{Coverage, Window};
 use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
 use bilux_scene::Scene;
 use std::ops::Range;
 
-/// Maximum number of samples of one pixel: with [`SAMPLE_BITS`], sums cannot overflow.
-pub const MAX_SAMPLES: u32 = 1 << 22;
-
-/// A sample is clamped to ±2⁴¹ steps.
-pub(crate) const SAMPLE_BITS: i32 = 41;
-
-/// Maximum length of a side, in pixels.
-pub const MAX_SIDE: u32 = 1 << 16;
+pub use crate::limits::{MAX_SAMPLES, MAX_SIDE};
 
 /// A film, or a window of one. All coordinates are those of the whole film.
 #[derive(Clone, Debug, PartialEq)]
@@ -228,6 +221,15 @@ impl Film {
         Ok(())
     }
 
+    /// Prepares for splats, which most films have none of.
+    pub(crate) fn make_room_for_splats(&mut self) -> Result<(), FilmError> {
+        if self.splats.is_empty() {
+            self.splats = zeroed(self.window().pixels())?;
+            self.iterations = zeroed(self.window().pixels())?;
+        }
+        Ok(())
+    }
+
     /// Adds the sums of a film whose window lies within this one's; the coverage stays as it is.
     pub(crate) fn absorb(&mut self, part: &Film) {
         for (row, y) in (part.window.y..part.window.y + part.window.height).enumerate() {
@@ -316,10 +318,27 @@ impl Film {
         }
     }
 
+    /// A pixel's light from splats.
+    fn splat_mean(&self, index: usize, step: f64) -> Rgb {
+        match self.iterations.get(index) {
+            None | Some(0) => Rgb::BLACK,
+            Some(&count) => {
+                Rgb::from_array(self.splats[index].map(|sum| (sum as f64 * (step / f64::from(count))) as f32))
+            }
+        }
+    }
+
     /// The light of the whole film in rows, the top row first; black outside the window.
     pub fn to_rgb(&self) -> Vec<Rgb> {
         let whole = Window::whole(self.width, self.height);
         (0..whole.pixels()).map(|i| whole.position(i)).map(|(x, y)| self.pixel(x, y)).collect()
+    }
+}
+
+/// Sums saturate here, but overflow is reported long before.
+pub(crate) fn add(sum: &mut [i64; 3], more: [i64; 3]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum = sum.saturating_add(more);
     }
 }
 

@@ -22,14 +22,18 @@ pub mod integrators;
 pub mod interval;
 pub mod join;
 mod light_choice;
+pub mod limits;
 mod media;
 pub mod partial;
 mod passes;
 pub mod plan;
+mod progress;
 mod queue;
 pub mod render;
+mod rendered;
 pub mod replay;
 pub mod sampler;
+pub mod settings;
 pub mod shadow_catcher;
 mod shadow_rays;
 #[cfg(test)]
@@ -54,15 +58,17 @@ pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrato
 pub use interval::{Estimate, Interval, REPLICATES};
 pub use join::JoinedLayers;
 pub use light_choice::LightChoice;
+pub use limits::{DEFAULT_MAX_DEPTH, MAX_DEPTH};
 pub use plan::{Candidate, Choice, Plan};
-pub use render::{
-    DEFAULT_MAX_DEPTH, MAX_DEPTH, PixelAnchor, Progress, RenderSettings, Rendered, Silent, render,
-};
+pub use progress::{Progress, Silent};
+pub use render::render;
+pub use rendered::Rendered;
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
+pub use settings::{PixelAnchor, RenderSettings, Stop};
 pub use shadow_catcher::{ShadowCatcher, shadow_alpha, shadow_alpha_time};
 pub use splats::Splats;
-pub use stop::{Reached, Stop};
+pub use stop::Reached;
 pub use strategies::{Strategies, Strategy, StrategyPicture, strategies};
 pub use task::{Event, Task};
 pub use window::{Coverage, Window};

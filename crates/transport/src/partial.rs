@@ -2,7 +2,8 @@
 
 use crate::error::FilmError;
 use crate::failures::PixelFailures;
-use crate::film::{Film, MAX_SAMPLES, SAMPLE_BITS, zeroed};
+use crate::film::{Film, zeroed};
+use crate::limits::{MAX_SAMPLES, SAMPLE_BITS};
 use crate::window::{Coverage, Window};
 use bilux_pictures::Picture;
 use std::ops::Range;

@@ -6,7 +6,7 @@ use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
 use crate::integrators::PixelIntegrator;
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::splats::{IterationSplats, Splats};
 use crate::task::Event;
 use crate::window::Window;

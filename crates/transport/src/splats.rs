@@ -7,9 +7,9 @@
 use crate::bidirectional::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::error::FilmError;
 use crate::failures::PixelFailures;
-use crate::film::{Film, to_steps, zeroed};
+use crate::film::{Film, add, to_steps, zeroed};
 use crate::filters::Filter;
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};
@@ -214,30 +214,5 @@ impl Film {
             self.failures_at(*index as usize).absorb(failures);
         }
         Ok(())
-    }
-
-    pub(crate) fn make_room_for_splats(&mut self) -> Result<(), FilmError> {
-        if self.splats.is_empty() {
-            self.splats = zeroed(self.window().pixels())?;
-            self.iterations = zeroed(self.window().pixels())?;
-        }
-        Ok(())
-    }
-
-    /// A pixel's light from splats.
-    pub(crate) fn splat_mean(&self, index: usize, step: f64) -> Rgb {
-        match self.iterations.get(index) {
-            None | Some(0) => Rgb::BLACK,
-            Some(&count) => {
-                Rgb::from_array(self.splats[index].map(|sum| (sum as f64 * (step / f64::from(count))) as f32))
-            }
-        }
-    }
-}
-
-/// Sums saturate here, but overflow is reported long before.
-pub(crate) fn add(sum: &mut [i64; 3], more: [i64; 3]) {
-    for (sum, more) in sum.iter_mut().zip(more) {
-        *sum = sum.saturating_add(more);
     }
 }

@@ -1,18 +1,9 @@
 //! When a picture is good enough, or has taken long enough. Both are checked between passes over the whole film.
 
 use crate::film::Film;
-use crate::render::RenderSettings;
+use crate::settings::{RenderSettings, Stop};
 use std::ops::Range;
 use std::time::{Duration, Instant};
-
-/// What ends a picture before all of its samples are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stop {
-    /// The noise that is low enough: see [`Reached::noise`].
-    pub noise: Option<f32>,
-    /// The time that may pass.
-    pub time_limit: Option<Duration>,
-}
 
 /// The state of a picture that may end early.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,13 +30,6 @@ pub const DARK: f32 = 0.3;
 
 /// Side of a block that has one noise value, in pixels.
 const BLOCK: u32 = 8;
-
-impl Stop {
-    /// True when anything may end the picture early.
-    pub fn is_any(&self) -> bool {
-        *self != Stop::default()
-    }
-}
 
 /// Watches a film as samples are added.
 pub(crate) struct StopMonitor {

@@ -3,6 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
+/// Side of a tile, in pixels.
+pub(crate) const TILE: u32 = 16;
+
 /// A rectangle of pixels, in the coordinates of the whole film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Window {

@@ -15,7 +15,7 @@ mod whitted;
 use crate::bidirectional::{BothEnds, Merging, Photons};
 use crate::emission::Guide;
 use crate::plan::Plan;
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};
 use crate::strategies::Layers;
 use crate::task::Task;

@@ -15,7 +15,7 @@ use self::path::{Flaw, Path};
 use crate::bidirectional::{Contribution, Lanes, Task, TechniqueCounts};
 use crate::camera_rays::CameraRays;
 use crate::integrators;
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::shapes;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;

@@ -17,7 +17,7 @@ use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
 use crate::light_choice::LightChoice;
 use crate::plan::{Candidate, Choice, Plan};
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};

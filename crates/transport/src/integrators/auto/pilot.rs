@@ -12,7 +12,7 @@ use crate::bidirectional::{
 };
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
-use crate::render::RenderSettings;
+use crate::settings::RenderSettings;
 use crate::splats::IterationSplats;
 use crate::window::Window;
 use bilux_math::Vec2;
