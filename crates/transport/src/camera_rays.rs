@@ -2,9 +2,9 @@
 
 use crate::bidirectional::{BothEnds, Photons};
 use crate::emission::{Emission, Guide};
-use crate::integrators::{CameraSpread, PixelIntegrator};
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
+use crate::pixel_integrator::{CameraSpread, PixelIntegrator};
 use crate::sampler::{PixelSampler, regular_pattern};
 use crate::settings::RenderSettings;
 use crate::task::Task;

@@ -10,8 +10,8 @@
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::zeroed;
-use crate::integrators::PixelIntegrator;
 use crate::media::Media;
+use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::window::{TILE, Window};

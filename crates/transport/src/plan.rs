@@ -1,18 +1,6 @@
 //! The choice of an integrator that chooses, and the reasons for it.
 
-use crate::integrators::PixelIntegrator;
-use bilux_scene::Counters;
 use std::fmt;
-
-/// A choice among sets of techniques.
-pub struct Plan {
-    /// The integrator that renders the picture.
-    pub integrator: Box<dyn PixelIntegrator>,
-    /// The choice.
-    pub choice: Choice,
-    /// The work of the rays that led to it.
-    pub counters: Counters,
-}
 
 /// The chosen set of techniques, and its rivals.
 #[derive(Clone, Debug, PartialEq)]

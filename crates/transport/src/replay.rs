@@ -5,7 +5,7 @@ use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
-use crate::integrators::PixelIntegrator;
+use crate::pixel_integrator::PixelIntegrator;
 use crate::settings::RenderSettings;
 use crate::splats::{IterationSplats, Splats};
 use crate::task::Event;

@@ -7,8 +7,8 @@
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::zeroed;
-use crate::integrators::PixelIntegrator;
 use crate::light_choice::LightChoice;
+use crate::pixel_integrator::PixelIntegrator;
 use crate::sampler::PixelSampler;
 use crate::settings::{RenderSettings, threads};
 use bilux_math::{Rgb, Vec3};

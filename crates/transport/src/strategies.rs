@@ -5,7 +5,7 @@ use crate::bidirectional::{Contribution, Photons, Tally, Technique};
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent, zeroed};
-use crate::integrators::PixelIntegrator;
+use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::{IterationSplats, Iterations, Splats};

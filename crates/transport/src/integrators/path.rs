@@ -38,7 +38,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     },
 };
 
-pub struct Path {
+pub(crate) struct Path {
     sampling: Sampling,
     roulette_depth: u32,
 }
@@ -124,10 +124,6 @@ impl PixelIntegrator for Path {
                 return walk.light;
             }
         }
-    }
-
-    fn as_path(&self) -> Option<&Path> {
-        Some(self)
     }
 }
 

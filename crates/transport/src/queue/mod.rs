@@ -22,6 +22,7 @@ use bilux_math::Rgb;
 use bilux_scene::{Ray, Tracer, Wavelength};
 use diffuse::Diffuse;
 use general::General;
+use std::any::Any;
 use vertices::Vertices;
 
 /// The number of paths in a queue. Their state fits into the second cache.
@@ -109,7 +110,7 @@ pub(crate) struct PathQueue {
 impl PathQueue {
     /// The integrator whose paths can be followed in a queue.
     pub(crate) fn integrator<'a>(rays: &CameraRays<'a>) -> Option<&'a Path> {
-        rays.integrator.as_path().filter(|path| path.is_mis())
+        (rays.integrator as &dyn Any).downcast_ref::<Path>().filter(|path| path.is_mis())
     }
 
     /// Takes samples: a pixel's column and row, and the sample's index. `add` receives the light of each, as they end.
