@@ -1,9 +1,10 @@
 //! From the index of a sample to its camera ray, and to the task of its integrator.
 
-use crate::bidirectional::{BothEnds, Photons};
+use crate::bidirectional::BothEnds;
 use crate::emission::{Emission, Guide};
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
+use crate::photons::Photons;
 use crate::pixel_integrator::{CameraSpread, PixelIntegrator};
 use crate::sampler::{PixelSampler, regular_pattern};
 use crate::settings::RenderSettings;

@@ -1,7 +1,8 @@
 //! What an integrator has to answer; the integrators are in [`crate::integrators`].
 
-use crate::bidirectional::{BothEnds, Merging, Photons};
+use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
+use crate::photons::{Merging, Photons};
 use crate::plan::Choice;
 use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};

@@ -1,12 +1,12 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
 use crate::batch_means::BatchMeans;
-use crate::bidirectional::Photons;
 use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
 use crate::film::{Film, scale_exponent};
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
+use crate::photons::Photons;
 use crate::pixel_integrator::{PixelIntegrator, Plan};
 use crate::progress::Progress;
 use crate::rendered::Rendered;

@@ -1,10 +1,10 @@
 //! Replays one sample, with all events along its path.
 
-use crate::bidirectional::{Merging, Photons};
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
+use crate::photons::{Merging, Photons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::settings::RenderSettings;
 use crate::splats::{IterationSplats, Splats};

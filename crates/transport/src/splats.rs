@@ -4,12 +4,12 @@
 //! it is stored. Splats are summed without division; a pixel's mean divides by the iterations that the film holds. An
 //! iteration counts only once all of its light subpaths have arrived, since half of them would be half of the light.
 
-use crate::bidirectional::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::error::FilmError;
 use crate::failures::PixelFailures;
 use crate::film::{Film, add, to_steps, zeroed};
 use crate::filters::Filter;
 use crate::settings::RenderSettings;
+use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};

@@ -1,14 +1,15 @@
 //! A picture of each technique: what connecting `s` vertices from the light with `t` from the camera finds, with its
 //! MIS weight and without. [Veach 1997, fig. 10.3]
 
-use crate::bidirectional::{Contribution, Photons, Tally, Technique};
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent, zeroed};
+use crate::photons::Photons;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::{IterationSplats, Iterations, Splats};
+use crate::techniques::{Contribution, Tally, Technique};
 use crate::window::{TILE, Window};
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Camera, Counters, Scene, Tracer};

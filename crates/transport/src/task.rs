@@ -1,8 +1,8 @@
 //! What an integrator works with during one sample.
 
-use crate::bidirectional::Photons;
 use crate::emission::Emission;
 use crate::light_choice::LightChoice;
+use crate::photons::Photons;
 use crate::sampler::PixelSampler;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Scene, Tracer, Wavelength};

@@ -6,11 +6,10 @@
 
 use super::connect::{Connection, merged, to_light, to_vertex};
 use super::walk::count;
-use super::{
-    Contribution, Lanes, Partial, Photons, Step, Tally, Technique, TechniqueCounts, Vertex, Walk, emitted,
-    from_infinity, light_vertices, show_to_camera,
-};
+use super::{Partial, Vertex, Walk, emitted, from_infinity, light_vertices, show_to_camera};
+use crate::photons::Photons;
 use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_scene::{Ray, TransportMode};
 

@@ -1,10 +1,11 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
-use super::{Contribution, Lanes, Photons, Technique, TechniqueCounts, favour};
 use crate::media::Media;
+use crate::photons::Photons;
 use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, Technique, TechniqueCounts, favour};
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
 

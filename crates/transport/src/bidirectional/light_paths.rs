@@ -3,10 +3,11 @@
 
 use super::connect::{Connection, to_camera};
 use super::queue::QueuedSample;
-use super::{Contribution, Partial, Step, Tally, Technique, TechniqueCounts, Vertex, Walk};
+use super::{Partial, Vertex, Walk};
 use crate::emission::Start;
 use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
+use crate::techniques::{Contribution, Step, Tally, Technique, TechniqueCounts};
 use bilux_accel::Hit;
 use bilux_math::Vec2;
 use bilux_scene::{Ray, TransportMode};

@@ -13,23 +13,19 @@
 mod both_ends;
 mod connect;
 mod light_paths;
-mod photons;
 mod queue;
-mod techniques;
 mod walk;
 #[cfg(test)]
 mod weights;
 
 pub(crate) use both_ends::BothEnds;
 pub(crate) use connect::{merged, to_camera};
-pub(crate) use light_paths::{light_vertices, show_to_camera};
-pub(crate) use photons::LightPathVisitor;
-pub use photons::{Merging, Photons};
+pub(crate) use light_paths::{LightPaths, light_vertices, show_to_camera};
 pub(crate) use queue::{BothEndsQueue, PATHS, QueuedSample};
-pub(crate) use techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts, favour};
 pub(crate) use walk::{Vertex, Walk};
 
 use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, TechniqueCounts, favour};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Surface;
 

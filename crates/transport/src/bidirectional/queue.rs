@@ -3,10 +3,11 @@
 
 use super::connect::Connection;
 use super::light_paths::LightPaths;
-use super::{BothEnds, Contribution, Tally, Technique, Vertex, Walk};
+use super::{BothEnds, Vertex, Walk};
 use crate::sampler::PixelSampler;
 use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
+use crate::techniques::{Contribution, Tally, Technique};
 use bilux_accel::Hit;
 use bilux_math::Vec2;
 use bilux_scene::{Ray, Wavelength};

@@ -1,10 +1,11 @@
 //! A random walk: a subpath while it grows, from either end.
 
-use super::photons::{Photon, Spot};
-use super::{Lanes, Partial, TechniqueCounts};
+use super::Partial;
 use crate::emission::Start;
 use crate::media::Media;
+use crate::photons::{Photon, Spot};
 use crate::task::Task;
+use crate::techniques::{Lanes, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
@@ -39,7 +40,7 @@ impl<const N: usize> Vertex<N> {
     }
 
     /// The photon that is stored for merging.
-    pub(super) fn photon(&self) -> (Spot, Photon<N>) {
+    pub(crate) fn photon(&self) -> (Spot, Photon<N>) {
         let spot = Spot::new(self.surface.p, self.depth, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
         (spot, Photon { wo, n_geom, beta, joined: self.partial.joined, d_vc: self.partial.d_vc })

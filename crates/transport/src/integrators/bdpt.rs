@@ -3,9 +3,11 @@
 //! against all others. [Veach 1997, 10; Lafortune 1993]
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{BothEnds, Photons, TechniqueCounts};
+use crate::bidirectional::BothEnds;
+use crate::photons::Photons;
 use crate::splats::PixelSum;
 use crate::task::Task;
+use crate::techniques::TechniqueCounts;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;

@@ -3,10 +3,11 @@
 //! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{TechniqueCounts, light_vertices, to_camera};
+use crate::bidirectional::{light_vertices, to_camera};
 use crate::media::Media;
 use crate::splats::Splats;
 use crate::task::Task;
+use crate::techniques::TechniqueCounts;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Ray;

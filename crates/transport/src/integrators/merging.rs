@@ -1,6 +1,7 @@
 //! Parameters of the integrators that merge subpaths.
 
-use crate::bidirectional::{Merging, TechniqueCounts};
+use crate::photons::Merging;
+use crate::techniques::TechniqueCounts;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::Reader;
 

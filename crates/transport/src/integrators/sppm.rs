@@ -3,10 +3,10 @@
 //! from iteration to iteration. [Hachisuka 2009; Knaus 2011]
 
 use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{
-    Contribution, Lanes, Merging, Partial, TechniqueCounts, Walk, emitted, from_infinity, merged,
-};
+use crate::bidirectional::{Partial, Walk, emitted, from_infinity, merged};
+use crate::photons::Merging;
 use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::{Ray, TransportMode};

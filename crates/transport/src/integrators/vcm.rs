@@ -4,9 +4,11 @@
 
 use super::bdpt::of_camera_path;
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{BothEnds, Lanes, Merging, Photons, TechniqueCounts};
+use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
+use crate::photons::{Merging, Photons};
 use crate::task::Task;
+use crate::techniques::{Lanes, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;

@@ -12,11 +12,12 @@ mod path;
 mod samples;
 
 use self::path::{Flaw, Path};
-use crate::bidirectional::{Contribution, Lanes, Task, TechniqueCounts};
 use crate::camera_rays::CameraRays;
 use crate::integrators;
 use crate::settings::RenderSettings;
 use crate::shapes;
+use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Scene, SceneBuilder, Spec, Texture, Tracer, Value};

@@ -1,7 +1,8 @@
 //! A whole path, and how often each technique finds it by the definition.
 
 use super::PANEL_AREA;
-use crate::bidirectional::{Task, TechniqueCounts};
+use crate::task::Task;
+use crate::techniques::TechniqueCounts;
 use bilux_math::Vec3;
 use bilux_scene::Bsdf;
 use bilux_scene::TransportMode;

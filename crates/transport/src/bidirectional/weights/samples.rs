@@ -4,8 +4,11 @@ use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
 use crate::bidirectional::connect::{to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
-use crate::bidirectional::photons::{Photon, Spot};
 use crate::bidirectional::*;
+use crate::photons::Photons;
+use crate::photons::{Photon, Spot};
+use crate::task::Task;
+use crate::techniques::*;
 use bilux_math::{Vec2, warp};
 use bilux_scene::{Ray, TransportMode};
 

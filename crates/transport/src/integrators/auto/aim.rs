@@ -9,11 +9,10 @@
 //! aimed.
 
 use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
-use crate::bidirectional::{
-    Contribution, Lanes, LightPathVisitor, Merging, Tally, Technique, TechniqueCounts,
-};
 use crate::emission::Guide;
+use crate::photons::Merging;
 use crate::sampler::PixelSampler;
+use crate::techniques::{Contribution, Lanes, LightPathVisitor, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
 use bilux_scene::Counters;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -2,7 +2,7 @@
 //! pictures must not depend on the machine.
 
 use super::Set;
-use crate::bidirectional::Step;
+use crate::techniques::Step;
 
 /// Step counts of a sample.
 #[derive(Clone, Debug, Default)]

@@ -7,13 +7,13 @@
 
 use super::cost::Steps;
 use super::outliers::Contributions;
-use crate::bidirectional::{
-    BothEnds, Contribution, LightPathVisitor, Merging, Photons, Step, Tally, Technique, TechniqueCounts,
-};
+use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
+use crate::photons::{Merging, Photons};
 use crate::settings::RenderSettings;
 use crate::splats::IterationSplats;
+use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, TechniqueCounts};
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;

@@ -82,6 +82,17 @@ pub(crate) trait Tally<const N: usize> {
     fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 
+/// Receives the light subpaths' connections with the camera while they are traced, tile by tile on all threads.
+pub(crate) trait LightPathVisitor<const N: usize>: Sync {
+    type Tally: Tally<N>;
+    /// Makes the tally for one tile.
+    fn tally(&self) -> Self::Tally;
+    /// The next light subpath belongs to this pixel's sample.
+    fn begin(_tally: &mut Self::Tally, _x: u32, _y: u32, _sample: u32) {}
+    /// Takes what the camera sees of a tile's light subpaths.
+    fn take(&self, tile: usize, tally: Self::Tally);
+}
+
 impl TechniqueCounts {
     /// Camera subpaths alone.
     pub(crate) const CAMERA: TechniqueCounts =

@@ -1,14 +1,10 @@
 //! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
 //! to merge with. [Jensen 1996; Georgiev 2012]
 
-use super::light_paths::LightPaths;
-use super::queue::{PATHS, QueuedSample};
-use super::{Lanes, Tally, TechniqueCounts, Vertex};
-use crate::camera_rays::CameraRays;
-use crate::window::Window;
+use crate::techniques::{Lanes, TechniqueCounts};
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Counters, Scene, Tracer};
+use bilux_scene::Scene;
 use rayon::prelude::*;
 
 /// How camera subpaths and light subpaths are merged.
@@ -47,7 +43,7 @@ impl Merging {
     }
 
     /// The merging radius of an iteration, in metres: it depends only on the iteration's number. [Knaus 2011, eq. 20]
-    fn radius(&self, scene: &Scene, iteration: u32) -> f32 {
+    pub(crate) fn radius(&self, scene: &Scene, iteration: u32) -> f32 {
         let shrunk = bilux_math::transcendental::powf(iteration as f32 + 1.0, 0.5 * (self.alpha - 1.0));
         scene.bounds().radius() * self.radius * shrunk
     }
@@ -58,8 +54,8 @@ impl Merging {
 pub(crate) struct Spot {
     pub(crate) p: Vec3,
     /// Twice the number of scattering events before it, plus one where the subpath carries a single wavelength.
-    pub(super) steps: u16,
-    /// As in [`super::Vertex`].
+    pub(crate) steps: u16,
+    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
 }
 
@@ -88,7 +84,7 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
-    /// [`Partial::joined`] and [`Partial::d_vc`] of the vertex.
+    /// What the MIS weights of [`crate::bidirectional`] know of the vertex.
     pub(crate) joined: Lanes<N>,
     pub(crate) d_vc: Lanes<N>,
 }
@@ -106,88 +102,9 @@ pub struct Photons<const N: usize = 1> {
     starts: Vec<u32>,
 }
 
-/// Receives the light subpaths' connections with the camera while they are traced, tile by tile on all threads.
-pub(crate) trait LightPathVisitor<const N: usize>: Sync {
-    type Tally: Tally<N>;
-    /// Makes the tally for one tile.
-    fn tally(&self) -> Self::Tally;
-    /// The next light subpath belongs to this pixel's sample.
-    fn begin(_tally: &mut Self::Tally, _x: u32, _y: u32, _sample: u32) {}
-    /// Takes what the camera sees of a tile's light subpaths.
-    fn take(&self, tile: usize, tally: Self::Tally);
-}
-
 impl<const N: usize> Photons<N> {
-    /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
-    ///
-    /// Also returns the number of rays that this took. `techniques` gives all techniques, given η and the number of
-    /// light subpaths per pixel. Connections with the camera go to the `visitor`.
-    pub(crate) fn trace<O: LightPathVisitor<N>>(
-        eye: &CameraRays,
-        merging: &Merging,
-        tiles: &[Window],
-        iteration: u32,
-        techniques: impl FnOnce(f32, f32) -> TechniqueCounts<N>,
-        visitor: Option<&O>,
-    ) -> (Photons<N>, Counters) {
-        let scene = eye.scene;
-        let pixels: usize = tiles.iter().map(Window::pixels).sum();
-        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
-        let step = pixels.div_ceil(most.max(1)) as u32;
-        let width = tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1);
-        let is_followed = |(x, y): (u32, u32)| {
-            (u64::from(y) * u64::from(width) + u64::from(x)).is_multiple_of(u64::from(step))
-        };
-        let followed = tiles
-            .iter()
-            .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
-            .sum::<usize>();
-        let radius = merging.radius(scene, iteration);
-        let techniques =
-            techniques(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
-        let of_tile = |(index, tile): (usize, &Window)| {
-            let mut tracer = Tracer::new(scene, eye.settings.count_work);
-            let mut photons = Vec::new();
-            let mut tally = visitor.map(O::tally);
-            let places: Vec<(u32, u32)> =
-                (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
-            let mut paths = LightPaths::default();
-            for places in places.chunks(PATHS) {
-                let mut sampled = |&(x, y): &(u32, u32)| {
-                    let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
-                    QueuedSample::new(ray, &task, false)
-                };
-                let samples: Vec<_> = places.iter().map(&mut sampled).collect();
-                let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
-                paths.trace(&samples, &mut task, eye.integrator.roulette_depth(), &techniques);
-                if let Some(tally) = &mut tally {
-                    let mut current = None;
-                    paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
-                        if current != Some(i) {
-                            O::begin(tally, places[i].0, places[i].1, iteration);
-                            current = Some(i);
-                        }
-                        tally.add_splat(film, technique, found);
-                    });
-                }
-                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
-                let vertices = (0..samples.len()).flat_map(|i| paths.of(i));
-                photons.extend(vertices.filter(is_kept).map(Vertex::photon));
-            }
-            if let (Some(visitor), Some(tally)) = (visitor, tally) {
-                visitor.take(index, tally);
-            }
-            (photons, tracer.counters)
-        };
-        let (parts, counters): (Vec<Vec<(Spot, Photon<N>)>>, Vec<Counters>) =
-            tiles.par_iter().enumerate().map(of_tile).unzip();
-        let mut counted = Counters::default();
-        counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(parts.concat(), radius, techniques), counted)
-    }
-
     /// Sorts the photons by cell; within a cell they keep the order in which they are given.
-    pub(super) fn new(
+    pub(crate) fn new(
         given: Vec<(Spot, Photon<N>)>,
         radius: f32,
         techniques: TechniqueCounts<N>,

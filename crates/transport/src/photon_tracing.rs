@@ -1,0 +1,79 @@
+//! Traces the light subpaths of one iteration, whose vertices are kept as photons.
+
+use crate::bidirectional::{LightPaths, PATHS, QueuedSample, Vertex};
+use crate::camera_rays::CameraRays;
+use crate::photons::{Merging, Photon, Photons, Spot};
+use crate::techniques::{LightPathVisitor, Tally, TechniqueCounts};
+use crate::window::Window;
+use bilux_scene::{Counters, Tracer};
+use rayon::prelude::*;
+
+impl<const N: usize> Photons<N> {
+    /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
+    ///
+    /// Also returns the number of rays that this took. `techniques` gives all techniques, given η and the number of
+    /// light subpaths per pixel. Connections with the camera go to the `visitor`.
+    pub(crate) fn trace<O: LightPathVisitor<N>>(
+        eye: &CameraRays,
+        merging: &Merging,
+        tiles: &[Window],
+        iteration: u32,
+        techniques: impl FnOnce(f32, f32) -> TechniqueCounts<N>,
+        visitor: Option<&O>,
+    ) -> (Photons<N>, Counters) {
+        let scene = eye.scene;
+        let pixels: usize = tiles.iter().map(Window::pixels).sum();
+        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
+        let step = pixels.div_ceil(most.max(1)) as u32;
+        let width = tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1);
+        let is_followed = |(x, y): (u32, u32)| {
+            (u64::from(y) * u64::from(width) + u64::from(x)).is_multiple_of(u64::from(step))
+        };
+        let followed = tiles
+            .iter()
+            .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
+            .sum::<usize>();
+        let radius = merging.radius(scene, iteration);
+        let techniques =
+            techniques(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
+        let of_tile = |(index, tile): (usize, &Window)| {
+            let mut tracer = Tracer::new(scene, eye.settings.count_work);
+            let mut photons = Vec::new();
+            let mut tally = visitor.map(O::tally);
+            let places: Vec<(u32, u32)> =
+                (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
+            let mut paths = LightPaths::default();
+            for places in places.chunks(PATHS) {
+                let mut sampled = |&(x, y): &(u32, u32)| {
+                    let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
+                    QueuedSample::new(ray, &task, false)
+                };
+                let samples: Vec<_> = places.iter().map(&mut sampled).collect();
+                let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
+                paths.trace(&samples, &mut task, eye.integrator.roulette_depth(), &techniques);
+                if let Some(tally) = &mut tally {
+                    let mut current = None;
+                    paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
+                        if current != Some(i) {
+                            O::begin(tally, places[i].0, places[i].1, iteration);
+                            current = Some(i);
+                        }
+                        tally.add_splat(film, technique, found);
+                    });
+                }
+                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
+                let vertices = (0..samples.len()).flat_map(|i| paths.of(i));
+                photons.extend(vertices.filter(is_kept).map(Vertex::photon));
+            }
+            if let (Some(visitor), Some(tally)) = (visitor, tally) {
+                visitor.take(index, tally);
+            }
+            (photons, tracer.counters)
+        };
+        let (parts, counters): (Vec<Vec<(Spot, Photon<N>)>>, Vec<Counters>) =
+            tiles.par_iter().enumerate().map(of_tile).unzip();
+        let mut counted = Counters::default();
+        counters.into_iter().for_each(|counters| counted += counters);
+        (Photons::new(parts.concat(), radius, techniques), counted)
+    }
+}
