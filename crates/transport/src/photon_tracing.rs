@@ -3,10 +3,39 @@
 use crate::bidirectional::{LightPaths, PATHS, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::photons::{Merging, Photon, Photons, Spot};
+use crate::pixel_integrator::PixelIntegrator;
+use crate::splats::IterationSplats;
 use crate::techniques::{LightPathVisitor, Tally, TechniqueCounts};
 use crate::window::Window;
 use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
+use std::ops::Range;
+
+/// The samples that can be taken together: where subpaths are merged, one of each pixel, since each iteration has photons of
+/// its own; otherwise all of them.
+pub(crate) fn iterations(
+    integrator: &dyn PixelIntegrator,
+    samples: &Range<u32>,
+) -> impl Iterator<Item = Range<u32>> + use<> {
+    let end = samples.end;
+    let step = if integrator.merging().is_some() { 1 } else { samples.len().max(1) as u32 };
+    samples.clone().step_by(step as usize).map(move |first| first..end.min(first + step))
+}
+
+impl Photons {
+    /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
+    /// their light subpaths goes to `splats`.
+    pub(crate) fn of_iteration(
+        rays: &CameraRays,
+        tiles: &[Window],
+        iteration: u32,
+        splats: Option<&IterationSplats>,
+    ) -> Option<(Photons, Counters)> {
+        let merging = rays.integrator.merging()?;
+        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+        Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats))
+    }
+}
 
 impl<const N: usize> Photons<N> {
     /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.

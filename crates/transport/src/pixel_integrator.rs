@@ -2,11 +2,11 @@
 
 use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
+use crate::layers::Layers;
 use crate::photons::{Merging, Photons};
 use crate::plan::Choice;
 use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};
-use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Counters, Ray, Scene};

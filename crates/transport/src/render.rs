@@ -6,7 +6,8 @@ use crate::error::RenderError;
 use crate::film::{Film, scale_exponent};
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
-use crate::photons::Photons;
+use crate::photon_tracing::iterations;
+use crate::photons::{Merging, Photons};
 use crate::pixel_integrator::{PixelIntegrator, Plan};
 use crate::progress::Progress;
 use crate::rendered::Rendered;
@@ -144,22 +145,19 @@ impl<'a> Run<'a> {
         let window = settings.sampled_window(self.integrator);
         let large = MANY_TILES * pool.current_num_threads() * (LARGE_TILE * LARGE_TILE) as usize;
         let tiles = window.tiles(if window.pixels() >= large { LARGE_TILE } else { TILE });
-        let Some(merging) = self.integrator.merging() else {
-            return all_passes(pool, self.eye(), tiles, passes(samples), self.progress, rendered);
-        };
         let whole = Window::whole(settings.width, settings.height).tiles(TILE);
-        for iteration in samples.clone() {
+        let shows_photons = self.integrator.merging().is_some_and(Merging::shows_photons);
+        for samples in iterations(self.integrator, samples) {
             let mut eye = self.eye();
-            let shown =
-                merging.shows_photons().then(|| IterationSplats::new(settings, self.scale, whole.len()));
+            let shown = shows_photons.then(|| IterationSplats::new(settings, self.scale, whole.len()));
             let shown = shown.transpose()?;
-            let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
-            let (photons, counters) =
-                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, techniques, shown.as_ref()));
-            rendered.counters += counters;
-            eye.photons = Some(&photons);
-            let pass = passes(&(iteration..iteration + 1));
-            rendered = all_passes(pool, eye, tiles.clone(), pass, self.progress, rendered)?;
+            let photons = pool.install(|| Photons::of_iteration(&eye, &whole, samples.start, shown.as_ref()));
+            if let Some((photons, counters)) = &photons {
+                rendered.counters += *counters;
+                eye.photons = Some(photons);
+            }
+            let passes = passes(&samples);
+            rendered = all_passes(pool, eye, tiles.clone(), passes, self.progress, rendered)?;
             if rendered.cancelled {
                 break;
             }

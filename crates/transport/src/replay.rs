@@ -4,10 +4,10 @@ use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
-use crate::photons::{Merging, Photons};
+use crate::photons::Photons;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::settings::RenderSettings;
-use crate::splats::{IterationSplats, Splats};
+use crate::splats::Splats;
 use crate::task::Event;
 use crate::window::Window;
 use bilux_math::Rgb;
@@ -54,12 +54,8 @@ pub fn replay(
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let mut eye = CameraRays::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
-    let trace = |merging: &Merging| {
-        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
-        Photons::trace(&eye, merging, &[whole], sample, techniques, None::<&IterationSplats>).0
-    };
-    let photons = integrator.merging().map(trace);
-    eye.photons = photons.as_ref();
+    let photons = Photons::of_iteration(&eye, &[whole], sample, None);
+    eye.photons = photons.as_ref().map(|(photons, _)| photons);
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
     task.events = Some(Vec::new());

@@ -4,36 +4,23 @@
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent, zeroed};
+use crate::layers::{Both, Layers, Strategy};
+use crate::photon_tracing::iterations;
 use crate::photons::Photons;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
-use crate::splats::{IterationSplats, Iterations, Splats};
-use crate::techniques::{Contribution, Tally, Technique};
+use crate::splats::Iterations;
 use crate::window::{TILE, Window};
-use bilux_math::{Rgb, Vec2};
+use bilux_math::Rgb;
 use bilux_scene::{Camera, Counters, Scene, Tracer};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::fmt;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Edges of the longest paths whose techniques have pictures.
-pub const MAX_EDGES: u32 = 8;
-
-/// A technique for paths of one length. Ordered by length, then connections before merging, then by vertices from the
-/// light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Strategy {
-    /// Edges of its paths, one more than their scattering events.
-    pub edges: u32,
-    /// True where the last vertices of both subpaths are merged, false where an edge connects them.
-    pub merges: bool,
-    /// Vertices from the light, including the one on the light.
-    pub s: u32,
-}
+pub use crate::layers::MAX_EDGES;
 
 /// The pictures of all techniques that have found anything.
 pub struct Strategies {
@@ -54,26 +41,6 @@ pub struct StrategyPicture {
     pub weighted: Vec<Rgb>,
     /// All light of paths of this length, as far as this technique finds it.
     pub unweighted: Vec<Rgb>,
-}
-
-impl Strategy {
-    /// Vertices from the camera, including the one at the camera.
-    pub fn t(&self) -> u32 {
-        self.edges + 1 + u32::from(self.merges) - self.s
-    }
-
-    fn of(technique: Technique) -> Strategy {
-        match technique {
-            Technique::Joined { s, t } => Strategy { edges: s + t - 1, merges: false, s },
-            Technique::Merged { s, t } => Strategy { edges: s + t - 2, merges: true, s },
-        }
-    }
-}
-
-impl fmt::Display for Strategy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "s{}-t{}{}", self.s, self.t(), if self.merges { "-merged" } else { "" })
-    }
 }
 
 /// Renders the requested samples, technique by technique.
@@ -101,30 +68,17 @@ pub fn strategies(
     let tiles = whole.tiles(TILE);
     progress.begin(whole.pixels() as u64 * settings.samples.len() as u64);
     let mut sums = Sums::default();
-    let mut pass =
-        |eye: &CameraRays, samples: Range<u32>| pool.install(|| sums.add(eye, &tiles, samples, progress));
-    let eye = || CameraRays::new(scene, camera, integrator, settings);
-    if let Some(merging) = integrator.merging() {
-        for iteration in settings.samples.clone() {
-            let mut eye = eye();
-            let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
-            let (photons, _) = pool.install(|| {
-                Photons::trace(&eye, merging, &tiles, iteration, techniques, None::<&IterationSplats>)
-            });
-            eye.photons = Some(&photons);
-            pass(&eye, iteration..iteration + 1)?;
-        }
-    } else {
-        pass(&eye(), settings.samples.clone())?;
+    for samples in iterations(integrator, &settings.samples) {
+        let mut eye = CameraRays::new(scene, camera, integrator, settings);
+        let photons = pool.install(|| Photons::of_iteration(&eye, &tiles, samples.start, None));
+        eye.photons = photons.as_ref().map(|(photons, _)| photons);
+        pool.install(|| sums.add(&eye, &tiles, samples, progress))?;
     }
     if progress.is_cancelled() {
         return Ok(None);
     }
     Ok(Some(sums.means(settings, scale_exponent(scene))?))
 }
-
-/// Weighted and unweighted.
-type Both<T> = [T; 2];
 
 /// What all techniques have found in all samples so far.
 #[derive(Default)]
@@ -212,57 +166,5 @@ impl Sums {
         }
         pictures.sort_by_key(|picture| picture.strategy);
         Ok(Strategies { window, pictures, counters: self.counters })
-    }
-}
-
-/// What all techniques find in a tile.
-pub struct Layers<'a> {
-    settings: &'a RenderSettings,
-    scale_exponent: i32,
-    /// The requested part of the tile.
-    window: Window,
-    /// The current sample: column, row and index.
-    place: [u32; 3],
-    here: BTreeMap<Strategy, Vec<Both<Rgb>>>,
-    there: BTreeMap<Strategy, Both<Splats<'a>>>,
-}
-
-impl<'a> Layers<'a> {
-    fn new(settings: &'a RenderSettings, tile: Window, scale_exponent: i32) -> Layers<'a> {
-        let window = tile.intersection(&settings.window());
-        let (here, there) = (BTreeMap::new(), BTreeMap::new());
-        Layers { settings, scale_exponent, window, place: [0; 3], here, there }
-    }
-
-    fn begin(&mut self, x: u32, y: u32, sample: u32) {
-        self.place = [x, y, sample];
-        self.there.values_mut().flatten().for_each(|splats| splats.begin(x, y, sample));
-    }
-}
-
-impl Tally<1> for Layers<'_> {
-    fn add_sample(&mut self, technique: Technique, found: &Contribution) {
-        let (strategy, [x, y, _]) = (Strategy::of(technique), self.place);
-        let Some(index) = self.window.index(x, y).filter(|_| strategy.edges <= MAX_EDGES) else { return };
-        let pixels = self.window.pixels();
-        let light = &mut self.here.entry(strategy).or_insert_with(|| vec![[Rgb::BLACK; 2]; pixels])[index];
-        light[0] += found.weighted();
-        light[1] += found.light * (1.0 / found.own.0[0]);
-    }
-
-    fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
-        let strategy = Strategy::of(technique);
-        if strategy.edges > MAX_EDGES {
-            return;
-        }
-        let (settings, [x, y, sample]) = (self.settings, self.place);
-        let splats = self.there.entry(strategy).or_insert_with(|| {
-            let mut splats = Splats::new(settings, settings.window(), self.scale_exponent);
-            splats.begin(x, y, sample);
-            [splats.clone(), splats]
-        });
-        // Here every pixel has a light subpath that is splatted, even where fewer make the picture.
-        splats[0].add(film, found.weighted() * found.own.0[0]);
-        splats[1].add(film, found.light);
     }
 }
