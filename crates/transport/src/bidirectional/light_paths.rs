@@ -2,7 +2,7 @@
 //! give the same vertices, bit for bit.
 
 use super::connect::{Connection, to_camera};
-use super::queue::QueuedSample;
+use super::queued_sample::QueuedSample;
 use super::{Partial, Vertex, Walk};
 use crate::emission::Start;
 use crate::shadow_rays::ShadowRays;

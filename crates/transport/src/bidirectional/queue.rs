@@ -3,6 +3,7 @@
 
 use super::connect::Connection;
 use super::light_paths::LightPaths;
+use super::queued_sample::QueuedSample;
 use super::{BothEnds, Vertex, Walk};
 use crate::sampler::PixelSampler;
 use crate::shadow_rays::ShadowRays;
@@ -10,33 +11,10 @@ use crate::task::Task;
 use crate::techniques::{Contribution, Tally, Technique};
 use bilux_accel::Hit;
 use bilux_math::Vec2;
-use bilux_scene::{Ray, Wavelength};
+use bilux_scene::Ray;
 
 /// The number of samples in a queue: the vertices of their light subpaths fit into the second cache.
 pub(crate) const PATHS: usize = 256;
-
-/// A sample of the film.
-pub(crate) struct QueuedSample {
-    /// From the camera.
-    pub(crate) ray: Ray,
-    sampler: PixelSampler,
-    wavelength: Wavelength,
-    /// Its camera subpath is traced.
-    pub(crate) is_wanted: bool,
-}
-
-impl QueuedSample {
-    /// A sample whose random numbers and wavelength are those of a task.
-    pub(crate) fn new(ray: Ray, task: &Task, is_wanted: bool) -> QueuedSample {
-        QueuedSample { ray, sampler: task.sampler.clone(), wavelength: task.wavelength, is_wanted }
-    }
-
-    /// Gives its random numbers and wavelength to the task that serves all samples.
-    #[inline]
-    pub(super) fn enter(&self, task: &mut Task) {
-        (task.sampler, task.wavelength) = (self.sampler.clone(), self.wavelength);
-    }
-}
 
 /// A queue of samples, and the memory that it works in.
 #[derive(Default)]

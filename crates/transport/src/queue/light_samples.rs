@@ -1,7 +1,6 @@
 //! Samples of lights, one for each vertex.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
-use super::vertices::Vertices;
 use crate::light_choice::LightChoice;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::CpuLevel;
@@ -48,16 +47,25 @@ impl Default for LightSamples {
     }
 }
 
-impl Vertices {
+/// The points that light falls on, and the sampler's numbers for each.
+pub(super) struct Points<'a> {
+    pub(super) count: usize,
+    pub(super) times: &'a [f32; LANES],
+    pub(super) p: &'a Columns3,
+    pub(super) u: &'a mut [Column; 2],
+}
+
+impl LightSamples {
     /// Samples the light that was picked for each vertex.
     pub(super) fn sample_lights(
         &mut self,
+        points: Points,
         picked: &[usize; LANES],
         choice: &LightChoice,
         lights: &[SceneLight],
     ) {
-        let Vertices { p, u, light: samples, times, .. } = self;
-        for i in 0..self.count {
+        let (samples, Points { count, times, p, u }) = (self, points);
+        for i in 0..count {
             let (light, probability) = (&lights[picked[i]].light, choice.probability(picked[i]));
             let u = Vec2::new(u[0].0[i], u[1].0[i]);
             let sample = light.sample_li(vec3(p, i), times[i], u).filter(|_| probability > 0.0);
@@ -77,10 +85,16 @@ impl Vertices {
     }
 
     /// The same where every vertex samples the same mesh light.
-    pub(super) fn sample_mesh(&mut self, mesh: &MeshLight, probability: f32, level: CpuLevel) {
+    pub(super) fn sample_mesh(
+        &mut self,
+        points: Points,
+        mesh: &MeshLight,
+        probability: f32,
+        level: CpuLevel,
+    ) {
         let mut indices = [0; LANES];
-        let Vertices { p, u, light: samples, times, count, .. } = self;
-        for i in 0..*count {
+        let (samples, Points { count, times, p, u }) = (self, points);
+        for i in 0..count {
             (indices[i], u[0].0[i]) = mesh.choose(u[0].0[i]);
             let LightTriangle { corners, normal, pdf_area } = mesh.facet(indices[i], times[i]);
             for (columns, corner) in samples.triangles.corners.iter_mut().zip(corners) {
@@ -91,7 +105,7 @@ impl Vertices {
         }
         (samples.is_infinite, samples.is_delta) = (Column::ZERO, Column::ZERO);
         run_at(level, SampleTriangles { samples, p, u, probability, sides: mesh.sides() });
-        for (i, &triangle) in indices.iter().enumerate().take(*count) {
+        for (i, &triangle) in indices.iter().enumerate().take(count) {
             let is_there = samples.pdf.0[i] > 0.0;
             let weights = || barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
             let li = if is_there { mesh.radiance(triangle, weights()) } else { Rgb::BLACK };

@@ -4,7 +4,7 @@
 //! order, so that the bits are the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
-use super::light_samples::LightSamples;
+use super::light_samples::{LightSamples, Points};
 use super::{PathQueue, Unoccluded};
 use crate::integrators::path::{Walk, power_heuristic};
 use crate::media::Media;
@@ -155,9 +155,13 @@ impl PathQueue {
             }
             v.draw_points(level, v.dimension);
             let lights = task.scene().lights();
+            let Vertices { count, times, p, u, light: samples, .. } = &mut *v;
+            let points = Points { count: *count, times, p, u };
             match lights[picked[0]].light.as_mesh() {
-                Some(mesh) if choice.takes_all() => v.sample_mesh(mesh, choice.probability(round), level),
-                _ => v.sample_lights(&picked, choice, lights),
+                Some(mesh) if choice.takes_all() => {
+                    samples.sample_mesh(points, mesh, choice.probability(round), level)
+                }
+                _ => samples.sample_lights(points, &picked, choice, lights),
             }
             eval(v, level);
             run_at(level, Weigh { v });

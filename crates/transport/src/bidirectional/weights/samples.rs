@@ -9,7 +9,7 @@ use crate::photons::Photons;
 use crate::photons::{Photon, Spot};
 use crate::task::Task;
 use crate::techniques::*;
-use bilux_math::{Vec2, warp};
+use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
 
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {

@@ -9,6 +9,7 @@
 //! aimed.
 
 use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
+use super::sets::DARK;
 use crate::emission::Guide;
 use crate::photons::Merging;
 use crate::sampler::PixelSampler;
@@ -136,7 +137,7 @@ struct GuideStatistics {
 impl GuideStatistics {
     /// Sums of the squares for each cell, relative to the light in the tiles.
     fn squares(&self, part: std::ops::Range<usize>, cells: usize) -> Vec<f64> {
-        let dark = super::DARK * self.means.iter().sum::<f64>() / self.means.len() as f64;
+        let dark = DARK * self.means.iter().sum::<f64>() / self.means.len() as f64;
         let mut sums = vec![0.0; cells];
         for &(tile, cell, square) in &self.finds[part] {
             let around = self.means[tile as usize] + dark;

@@ -1,7 +1,7 @@
 //! The cost of a sample: the number of its steps, times the duration of a step. Durations are never measured, since
 //! pictures must not depend on the machine.
 
-use super::Set;
+use super::sets::Set;
 use crate::techniques::Step;
 
 /// Step counts of a sample.

@@ -5,9 +5,11 @@
 //! samples, or time. None of the pilot's samples is in the picture.
 
 mod aim;
+mod contributions;
 mod cost;
 mod outliers;
 mod pilot;
+mod sets;
 
 use super::path::Path;
 use super::vcm::Vcm;
@@ -25,6 +27,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Counters, Ray, Scene, SceneError};
 use pilot::{Block, PilotRound};
+use sets::{SETS, Set, TECHNIQUES};
 use std::sync::Arc;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -96,74 +99,6 @@ struct Auto {
     roulette_depth: u32,
     merging: Merging,
 }
-
-/// A set of techniques, as well as those that a camera subpath has on its own.
-struct Set {
-    name: &'static str,
-    /// Its name as a parameter value.
-    techniques: &'static str,
-    sees: bool,
-    joins: bool,
-    /// Light subpaths per pixel whose photons are merged with; 0 without merging.
-    photons: f32,
-}
-
-/// The sets to choose from, the simplest first.
-const SETS: [Set; 8] = [
-    Set { name: "path", techniques: "path", sees: false, joins: false, photons: 0.0 },
-    Set { name: "path and light", techniques: "path-light", sees: true, joins: false, photons: 0.0 },
-    Set { name: "bdpt", techniques: "bdpt", sees: true, joins: true, photons: 0.0 },
-    Set { name: "path and few photons", techniques: "path-few", sees: false, joins: false, photons: FEW },
-    Set { name: "path and photons", techniques: "path-photons", sees: false, joins: false, photons: 1.0 },
-    Set {
-        name: "path, light and few photons",
-        techniques: "path-light-few",
-        sees: true,
-        joins: false,
-        photons: FEW,
-    },
-    Set {
-        name: "path, light and photons",
-        techniques: "path-light-photons",
-        sees: true,
-        joins: false,
-        photons: 1.0,
-    },
-    Set { name: "vcm", techniques: "vcm", sees: true, joins: true, photons: 1.0 },
-];
-
-/// Light subpaths per pixel of the sets with few photons: enough where they go where they are useful.
-const FEW: f32 = 0.25;
-
-impl Set {
-    fn merges(&self) -> bool {
-        self.photons > 0.0
-    }
-
-    /// Restricts settings that merge with all light subpaths to the techniques of this set.
-    fn merging(&self, merging: Merging) -> Merging {
-        Merging {
-            radius: if self.merges() { merging.radius } else { 0.0 },
-            part: merging.part * self.photons,
-            techniques: TechniqueCounts {
-                direct: merging.techniques.direct,
-                ..TechniqueCounts::with_splats_and_joins(self.sees, self.joins)
-            },
-            ..merging
-        }
-    }
-}
-
-/// All values of the parameter `techniques`.
-const TECHNIQUES: [&str; 1 + SETS.len()] = {
-    let mut techniques = ["auto"; 1 + SETS.len()];
-    let mut i = 0;
-    while i < SETS.len() {
-        techniques[1 + i] = SETS[i].techniques;
-        i += 1;
-    }
-    techniques
-};
 
 /// A set must be better by this factor than one that comes before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
@@ -267,6 +202,3 @@ fn lost(blocks: &[Block], lane: usize) -> f64 {
     let light = sum(|block, _| block.mean);
     if light > 0.0 { sum(|block, lane| block.lost[lane]) / light } else { 0.0 }
 }
-
-/// The fraction of the mean below which noise is not visible.
-const DARK: f64 = 0.3;

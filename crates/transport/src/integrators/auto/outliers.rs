@@ -5,7 +5,9 @@
 //! cover
 //! [`TRIMMED`] of the pixels. Their light is then missing from the picture, and its square counts as error.
 
+use super::contributions::Bin;
 use super::pilot::Block;
+use super::sets::DARK;
 
 /// The fraction of a film's pixels that is left out, the worst first. It is a tenth of what trimmed errors of pictures
 /// leave out: the pilot sees only some of the fireflies.
@@ -13,44 +15,6 @@ const TRIMMED: f64 = 1e-4;
 
 /// Samples per pixel of a typical picture.
 const SAMPLES: f64 = 64.0;
-
-/// Number of bins, of two octaves each, around 1.
-const BINS: usize = 32;
-
-/// The contributions that a lane would find in a block, binned by the brightness of a single one.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Contributions([Bin; BINS]);
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Bin {
-    /// The sum of the mean contributions.
-    light: f64,
-    /// The sum of the mean contributions times what a single one brings: their second moment.
-    square: f64,
-}
-
-impl Contributions {
-    /// Adds `light` on average, in contributions of `found` each.
-    pub(super) fn add(&mut self, light: f64, found: f64) {
-        let octave = (found.to_bits() >> 52 & 0x7ff) as i32 - 1023;
-        let bin = (octave.div_euclid(2) + BINS as i32 / 2).clamp(0, BINS as i32 - 1) as usize;
-        self.0[bin].light += light;
-        self.0[bin].square += light * found;
-    }
-
-    /// Adds other contributions, times `share`.
-    pub(super) fn plus(&mut self, others: &Contributions, share: f64) {
-        for (bin, other) in self.0.iter_mut().zip(&others.0) {
-            bin.light += share * other.light;
-            bin.square += share * other.square;
-        }
-    }
-
-    /// The second moment of all contributions.
-    pub(super) fn square(&self) -> f64 {
-        self.0.iter().map(|bin| bin.square).sum()
-    }
-}
 
 /// Fireflies of about one brightness in one block.
 struct Dots {
@@ -65,7 +29,7 @@ struct Dots {
 /// Relative variance of one sample with the techniques of a lane, as a mean over blocks, without outliers.
 pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
     let count = blocks.len().max(1) as f64;
-    let dark = super::DARK * blocks.iter().map(|block| block.mean).sum::<f64>() / count;
+    let dark = DARK * blocks.iter().map(|block| block.mean).sum::<f64>() / count;
     let around = |block: &Block| (block.mean * block.mean + dark * dark).max(f64::MIN_POSITIVE);
     let mut dots = Vec::new();
     for (index, block) in blocks.iter().enumerate() {
@@ -96,7 +60,8 @@ pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pilot::LANES;
+    use super::super::contributions::Contributions;
+    use super::super::sets::LANES;
     use super::*;
 
     /// 100 blocks of light 1 with variance 0.5, one of which has a part of its light in rare contributions.

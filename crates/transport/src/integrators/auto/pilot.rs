@@ -5,8 +5,9 @@
 //! What is a rare firefly to one set is thus predicted by another that finds it all the time, which no number of the
 //! one set's own pilot samples would have shown. [Grittmann 2022, eq. 10 to 13]
 
+use super::contributions::Contributions;
 use super::cost::Steps;
-use super::outliers::Contributions;
+use super::sets::LANES;
 use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
@@ -20,9 +21,6 @@ use bilux_math::hash::hash_words;
 use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// One lane for the techniques of the pilot itself, and one for each set that is compared.
-pub(super) const LANES: usize = 1 + super::SETS.len();
 
 /// The pilot takes two rounds, to separate what changes between them from what does not; and one before these, to learn
 /// where light subpaths should be aimed.

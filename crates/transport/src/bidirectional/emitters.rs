@@ -1,0 +1,68 @@
+//! Emitters that a camera subpath hits by chance (s = 0).
+
+use super::{Partial, Walk};
+use crate::task::Task;
+use crate::techniques::{Contribution, Lanes, favour};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::Surface;
+
+/// Light that a camera subpath hits by chance (s = 0): its radiance, and the densities with which the same path would
+/// have been found by sampling the point on the light, and by a light subpath.
+pub(crate) struct EmitterHit {
+    pub(crate) radiance: Rgb,
+    /// Over area; from infinity, over solid angle.
+    pdf_direct: f32,
+    pdf_emission: f32,
+}
+
+impl EmitterHit {
+    /// What no other technique finds.
+    fn only(radiance: Rgb) -> EmitterHit {
+        EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
+    }
+
+    /// The contribution along a camera subpath with the throughput `beta`.
+    pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
+        let picked = partial.d_vcm * self.pdf_direct;
+        let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
+        Contribution { favour: favour(picked), others, ..Contribution::only(beta * self.radiance) }
+    }
+}
+
+/// Light from infinity that a camera subpath finds where it leaves the scene.
+pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(EmitterHit)) {
+    let scene = task.scene();
+    let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
+    for (index, light) in scene.lights().iter().enumerate() {
+        let light = &light.light;
+        let radiance = light.le(direction);
+        if radiance.is_black() || !scene.shows(&**light, walk.depth, walk.specular) {
+            continue;
+        }
+        if walk.depth == 0 || light.is_backdrop() {
+            visit(EmitterHit::only(radiance));
+            continue;
+        }
+        let pdf = light.li_pdf_solid_angle(origin, direction, None);
+        let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
+        visit(EmitterHit { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
+    }
+}
+
+/// The light that a surface emits towards `wo`; `None` where it emits none.
+pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<EmitterHit> {
+    let scene = task.scene();
+    let radiance = scene.emission(surface, wo);
+    if radiance.is_black() {
+        return None;
+    }
+    let Some(index) = scene.light_index_of(surface.object) else {
+        return Some(EmitterHit::only(radiance));
+    };
+    let light = &scene.lights()[index].light;
+    // As the previous vertex would have sampled it.
+    let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
+    let cos = surface.n_geom.dot(wo).abs();
+    let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
+    Some(EmitterHit { radiance, pdf_direct: pdf_area * task.lights.probability(index), pdf_emission })
+}

@@ -1,0 +1,28 @@
+//! A sample that waits in a queue of them.
+
+use crate::sampler::PixelSampler;
+use crate::task::Task;
+use bilux_scene::{Ray, Wavelength};
+
+/// A sample of the film.
+pub(crate) struct QueuedSample {
+    /// From the camera.
+    pub(crate) ray: Ray,
+    pub(super) sampler: PixelSampler,
+    pub(super) wavelength: Wavelength,
+    /// Its camera subpath is traced.
+    pub(crate) is_wanted: bool,
+}
+
+impl QueuedSample {
+    /// A sample whose random numbers and wavelength are those of a task.
+    pub(crate) fn new(ray: Ray, task: &Task, is_wanted: bool) -> QueuedSample {
+        QueuedSample { ray, sampler: task.sampler.clone(), wavelength: task.wavelength, is_wanted }
+    }
+
+    /// Gives its random numbers and wavelength to the task that serves all samples.
+    #[inline]
+    pub(super) fn enter(&self, task: &mut Task) {
+        (task.sampler, task.wavelength) = (self.sampler.clone(), self.wavelength);
+    }
+}

@@ -1,0 +1,78 @@
+//! The sets of techniques that are compared.
+
+use crate::photons::Merging;
+use crate::techniques::TechniqueCounts;
+
+/// A set of techniques, as well as those that a camera subpath has on its own.
+pub(super) struct Set {
+    pub(super) name: &'static str,
+    /// Its name as a parameter value.
+    pub(super) techniques: &'static str,
+    pub(super) sees: bool,
+    pub(super) joins: bool,
+    /// Light subpaths per pixel whose photons are merged with; 0 without merging.
+    pub(super) photons: f32,
+}
+
+/// The sets to choose from, the simplest first.
+pub(super) const SETS: [Set; 8] = [
+    Set { name: "path", techniques: "path", sees: false, joins: false, photons: 0.0 },
+    Set { name: "path and light", techniques: "path-light", sees: true, joins: false, photons: 0.0 },
+    Set { name: "bdpt", techniques: "bdpt", sees: true, joins: true, photons: 0.0 },
+    Set { name: "path and few photons", techniques: "path-few", sees: false, joins: false, photons: FEW },
+    Set { name: "path and photons", techniques: "path-photons", sees: false, joins: false, photons: 1.0 },
+    Set {
+        name: "path, light and few photons",
+        techniques: "path-light-few",
+        sees: true,
+        joins: false,
+        photons: FEW,
+    },
+    Set {
+        name: "path, light and photons",
+        techniques: "path-light-photons",
+        sees: true,
+        joins: false,
+        photons: 1.0,
+    },
+    Set { name: "vcm", techniques: "vcm", sees: true, joins: true, photons: 1.0 },
+];
+
+/// Light subpaths per pixel of the sets with few photons: enough where they go where they are useful.
+const FEW: f32 = 0.25;
+
+impl Set {
+    pub(super) fn merges(&self) -> bool {
+        self.photons > 0.0
+    }
+
+    /// Restricts settings that merge with all light subpaths to the techniques of this set.
+    pub(super) fn merging(&self, merging: Merging) -> Merging {
+        Merging {
+            radius: if self.merges() { merging.radius } else { 0.0 },
+            part: merging.part * self.photons,
+            techniques: TechniqueCounts {
+                direct: merging.techniques.direct,
+                ..TechniqueCounts::with_splats_and_joins(self.sees, self.joins)
+            },
+            ..merging
+        }
+    }
+}
+
+/// All values of the parameter `techniques`.
+pub(super) const TECHNIQUES: [&str; 1 + SETS.len()] = {
+    let mut techniques = ["auto"; 1 + SETS.len()];
+    let mut i = 0;
+    while i < SETS.len() {
+        techniques[1 + i] = SETS[i].techniques;
+        i += 1;
+    }
+    techniques
+};
+
+/// One lane for the techniques of the pilot itself, and one for each set that is compared.
+pub(super) const LANES: usize = 1 + SETS.len();
+
+/// The fraction of the mean below which noise is not visible.
+pub(super) const DARK: f64 = 0.3;
