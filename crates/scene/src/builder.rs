@@ -1,5 +1,7 @@
 //! A scene under construction: plain data, as files describe it.
 
+use crate::accel_choice::AccelChoice;
+use crate::axis::UpHint;
 use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
 use crate::footprint;
@@ -8,15 +10,13 @@ use crate::inventory::Inventory;
 use crate::lights::{self, BuiltLight, Sides};
 use crate::materials::{self, Material, MaterialInputs};
 use crate::mesh::Mesh;
-use crate::orientation::UpHint;
 use crate::parameters::{Parameters, Span, Spec};
 use crate::scene::{Scene, SceneLight, SceneParts};
 use crate::spheres::PlacedSphere;
 use crate::strokes::StrokeWidths;
 use crate::texture::Texture;
-use bilux_accel::{BuildOptions, Query};
 use bilux_math::motion::Motion;
-use bilux_math::{DVec3, Rgb, Transform, Vec3};
+use bilux_math::{DVec3, Rgb, Transform};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -81,25 +81,11 @@ pub struct SceneBuilder {
     pub notes: Vec<Warning>,
     /// Other choices that the file offers.
     pub inventory: Inventory,
+    /// All objects at several times of their animation, if requested. Automatic cameras frame these, so that they stay
+    /// still while objects move.
+    pub movement: Option<Arc<SceneBuilder>>,
     /// The files that the scene was read from, by their full names, so that nothing is written over them.
     pub files: BTreeSet<PathBuf>,
-}
-
-/// The acceleration structure that traces the rays.
-#[derive(Clone, Debug)]
-pub struct AccelChoice {
-    /// Its name in [`bilux_accel::ACCELERATORS`], or `auto`.
-    pub name: String,
-    /// How it is built.
-    pub options: BuildOptions,
-    /// How it is traversed.
-    pub query: Query<'static>,
-}
-
-impl Default for AccelChoice {
-    fn default() -> AccelChoice {
-        AccelChoice { name: "auto".to_owned(), options: BuildOptions::default(), query: Query::default() }
-    }
 }
 
 impl SceneBuilder {
@@ -248,9 +234,4 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
         ));
     }
     Ok(())
-}
-
-/// A usable shading normal: unit length, never zero.
-pub(crate) fn unit_or(n: Vec3, fallback: Vec3) -> Vec3 {
-    n.try_normalize().unwrap_or(fallback)
 }

@@ -4,7 +4,7 @@
 mod corners_in_world;
 mod surface_point;
 
-use crate::builder::AccelChoice;
+use crate::accel_choice::AccelChoice;
 use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
 use crate::mesh::Mesh;

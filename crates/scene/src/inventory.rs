@@ -1,8 +1,5 @@
 //! The other contents of a file: what the user could choose from it, and what was chosen.
 
-use crate::builder::SceneBuilder;
-use std::sync::Arc;
-
 /// The choices that a file offers. Empty for formats that offer none.
 #[derive(Clone, Debug, Default)]
 pub struct Inventory {
@@ -12,9 +9,6 @@ pub struct Inventory {
     pub variants: Vec<String>,
     /// Skeletons that deform meshes.
     pub skins: Vec<String>,
-    /// All objects at several times of their animation, if requested. Automatic cameras frame these, so that they stay
-    /// still while objects move.
-    pub movement: Option<Arc<SceneBuilder>>,
 }
 
 /// An animation in a file.

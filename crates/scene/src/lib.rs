@@ -6,6 +6,8 @@
 //!
 //! Nothing here generates random numbers: callers pass them in.
 
+mod accel_choice;
+mod axis;
 pub mod bsdf;
 pub mod builder;
 pub mod cameras;
@@ -16,6 +18,7 @@ mod footprint;
 pub mod generators;
 pub mod geometry;
 pub mod inventory;
+mod light_sample;
 pub mod lights;
 pub mod materials;
 pub mod mesh;
@@ -24,6 +27,7 @@ pub mod parameters;
 mod placed;
 pub mod presets;
 pub mod scene;
+mod span;
 pub mod spheres;
 pub mod strokes;
 pub mod surface;
@@ -31,9 +35,11 @@ pub mod texture;
 pub mod typed;
 pub mod wavelength;
 
+pub use accel_choice::AccelChoice;
+pub use axis::{Axis, UpHint};
 pub use bilux_accel::{Counters, CpuLevel, Primitive, Query, Ray};
 pub use bsdf::{Bsdf, BsdfSample, TransportMode};
-pub use builder::{AccelChoice, Object, SceneBuilder};
+pub use builder::{Object, SceneBuilder};
 pub use cameras::{CAMERAS, Camera, CameraConnection, CameraSample};
 pub use classic::{ClassicLight, ClassicMaterial};
 pub use error::{SceneError, Warning};
@@ -41,9 +47,10 @@ pub use inventory::{Animation, Inventory};
 pub use lights::{EmissionSample, LIGHTS, Light, LightSample};
 pub use materials::{MATERIALS, Material, Nested};
 pub use mesh::Mesh;
-pub use orientation::{Axis, Orientation, OrientationSource, UpHint};
-pub use parameters::{Parameters, Reader, Span, Spec, Value};
+pub use orientation::{Orientation, OrientationSource};
+pub use parameters::{Parameters, Reader, Spec, Value};
 pub use scene::{Scene, Tracer};
+pub use span::Span;
 pub use strokes::StrokeWidths;
 pub use surface::Surface;
 pub use texture::{TEXTURES, Texture};

@@ -1,32 +1,9 @@
 //! Parameters as written in scene files, and how a row of a table reads them.
 
 use crate::error::{SceneError, nearest_name};
+pub use crate::span::Span;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
-use std::fmt;
-use std::sync::Arc;
-
-/// A location in a file; lines and columns count from 1, and 0 means unknown.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Span {
-    /// The file, as the user named it; empty for values that the program made.
-    pub file: Arc<str>,
-    /// Line.
-    pub line: u32,
-    /// Column.
-    pub column: u32,
-}
-
-impl fmt::Display for Span {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.file.is_empty(), self.line, self.column) {
-            (true, _, _) => f.write_str("(made by the program)"),
-            (_, 0, _) => f.write_str(&self.file),
-            (_, line, 0) => write!(f, "{}:{line}", self.file),
-            (_, line, column) => write!(f, "{}:{line}:{column}", self.file),
-        }
-    }
-}
 
 /// A value in a scene file.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,10 @@
 //! Points and lines of a mesh as they are rendered: spheres, and tubes with round ends, each intersected analytically,
 //! so that none of them costs a triangle.
 
-use crate::builder::unit_or;
 use crate::corners::transform_with_error;
-use crate::geometry::Placed;
 use crate::mesh::Mesh;
-use crate::surface::{Surface, gamma};
+use crate::placed::Placed;
+use crate::surface::{Surface, gamma, unit_or};
 use bilux_accel::primitives::{Capsule, Crossing, PrimitiveTree, Primitives, Shape, Sphere};
 use bilux_accel::{Hit, Primitive, Ray};
 use bilux_math::glam::DVec3;

@@ -1,7 +1,7 @@
 //! A point on a surface, for materials, lights and integrators.
 
 use crate::classic::ClassicLight;
-use crate::lights::LightSample;
+use crate::light_sample::LightSample;
 use crate::texture::{Patch, UvPair};
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -120,4 +120,9 @@ pub fn offset_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Vec3 {
 pub const fn gamma(n: i32) -> f32 {
     let ne = n as f32 * (f32::EPSILON * 0.5);
     ne / (1.0 - ne)
+}
+
+/// A usable shading normal: unit length, never zero.
+pub(crate) fn unit_or(n: Vec3, fallback: Vec3) -> Vec3 {
+    n.try_normalize().unwrap_or(fallback)
 }

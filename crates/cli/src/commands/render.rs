@@ -278,7 +278,7 @@ fn render_scene(
         }
         if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
-            posed.inventory.movement = scene.inventory.movement.clone();
+            posed.movement = scene.movement.clone();
             job = input.job(&posed, &user, &series)?;
         }
         job.at_time(time);

@@ -46,7 +46,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     if reading.options.whole_movement && scene.inventory.moves() {
         let cache = PassCache { meshes, materials, images };
         let end = scene.inventory.seconds();
-        scene.inventory.movement = Some(Arc::new(movement(&document, source, reading, cache, end)?));
+        scene.movement = Some(Arc::new(movement(&document, source, reading, cache, end)?));
     }
     oddities.into_warnings(&mut scene);
     Ok(scene)

@@ -1,8 +1,7 @@
 //! A point on a triangle, and its normals.
 
-use crate::builder::unit_or;
 use crate::mesh::Mesh;
-use crate::surface::gamma;
+use crate::surface::{gamma, unit_or};
 use bilux_math::{Transform, Vec3};
 
 /// A point of a surface in world space, with its normals; see [`crate::Surface`] for the fields.

@@ -25,6 +25,8 @@ pub use sphere::SphereLight;
 
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
+pub use crate::light_sample::LightSample;
+use crate::light_sample::cos_at;
 use crate::mesh::Mesh;
 use crate::parameters::{Reader, Spec};
 use crate::surface::Surface;
@@ -34,24 +36,6 @@ use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::sync::Arc;
-
-/// A sample of incident light at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightSample {
-    /// Unit direction towards the light.
-    pub wi: Vec3,
-    /// Incident radiance, without occlusion; for a delta light, irradiance on a surface that faces it.
-    pub li: Rgb,
-    /// Point on the light; `None` when infinitely far.
-    pub point: Option<Vec3>,
-    /// Normal of the light at that point, towards the receiver; zero if it has none.
-    pub n_light: Vec3,
-    /// Density of the direction over solid angle; 1 for a delta light.
-    pub pdf_solid_angle: f32,
-    /// The fraction of the distance before `point` within which a ray may already hit the light's own surface through
-    /// rounding; 0 for a light without a surface.
-    pub clearance: f32,
-}
 
 /// A sample of emitted light, as a ray into the scene. [Georgiev 2012]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,17 +61,6 @@ pub struct EmissionSample {
     pub pdf_direct: f32,
     /// The triangle or sphere that it leaves; [`Primitive::NONE`] if there is none.
     pub primitive: Primitive,
-}
-
-impl LightSample {
-    /// Cosine between the direction and the light's normal; 1 if there is no normal.
-    pub fn cos(&self) -> f32 {
-        cos_at(self.n_light, self.wi)
-    }
-}
-
-fn cos_at(n_light: Vec3, direction: Vec3) -> f32 {
-    if n_light == Vec3::ZERO { 1.0 } else { n_light.dot(direction).abs() }
 }
 
 impl EmissionSample {

@@ -1,6 +1,6 @@
 //! Orientation from shape: a hand-made score that distinguishes 105 public models; see `docs/adr/0029-up-and-front.md`.
 
-use super::Axis;
+use crate::axis::Axis;
 use crate::builder::SceneBuilder;
 use bilux_math::DVec3;
 

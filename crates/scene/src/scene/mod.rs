@@ -5,7 +5,7 @@ mod may_pass;
 mod sheets;
 mod tracer;
 
-use crate::builder::AccelChoice;
+use crate::accel_choice::AccelChoice;
 use crate::cameras::Camera;
 use crate::corners::corner_uvs;
 use crate::footprint::FootprintView;

@@ -36,7 +36,7 @@ pub(super) struct Framing {
 impl Framing {
     pub(super) fn of(scene: &SceneBuilder, studio: &Studio) -> Framing {
         // Frame an animated model by all of its movement.
-        let scene = scene.inventory.movement.as_deref().unwrap_or(scene);
+        let scene = scene.movement.as_deref().unwrap_or(scene);
         let limit = |p: DVec3| p.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST));
         let bounds = scene.bounds(0.0);
         let (low, high) = match bounds.is_empty() {

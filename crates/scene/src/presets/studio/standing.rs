@@ -22,7 +22,7 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
     let orientation = Orientation::of(scene, studio.up, studio.front)?;
     let (mut linear, mut shift) = (orientation.upright(), DVec3::ZERO);
     if is_bare {
-        let seen = scene.inventory.movement.as_deref().unwrap_or(scene);
+        let seen = scene.movement.as_deref().unwrap_or(scene);
         let bounds = seen.bounds(0.0);
         let middle = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let size = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
@@ -39,7 +39,7 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
     }
     let by = affine(linear, shift);
     move_all(scene, &by).ok()?;
-    if let Some(movement) = &mut scene.inventory.movement {
+    if let Some(movement) = &mut scene.movement {
         move_all(Arc::make_mut(movement), &by).ok()?;
     }
     // Nothing may rotate it a second time.
