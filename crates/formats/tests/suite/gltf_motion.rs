@@ -96,8 +96,7 @@ fn nodes_follow_the_animation() {
     assert_eq!(warnings(&scene), "", "a file with several animations is in order");
     assert!(scene.movement.is_none());
     let options = ReadOptions { time: 2.0, whole_movement: true, ..ReadOptions::default() };
-    let movement =
-        at(&moving(), &options).movement.expect("cameras that are made up hold all of it");
+    let movement = at(&moving(), &options).movement.expect("cameras that are made up hold all of it");
     let [first, last] = [0, 8].map(|i| movement.objects[i].motion.at(0.0).point(Vec3::X));
     assert!(near(first, [1.0, 0.0, 7.0]) && near(last, [4.0, 3.0, 7.0]), "{first} {last}");
 }
