@@ -3,8 +3,8 @@
 //! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of one
 //! Lambertian lobe), in the same order, so that the bits are the same.
 
-use super::PathQueue;
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
+use super::paths::Paths;
 use super::vertices::{Point, Vertices};
 use crate::integrators::path::Path;
 use crate::task::Task;
@@ -54,22 +54,25 @@ impl Default for Diffuse {
     }
 }
 
-impl PathQueue {
+impl Paths {
     /// Shades the diffuse hits: fills the lists of shadow rays and of paths that go on.
-    pub(super) fn shade_diffuse(&mut self, path: &Path, task: &mut Task) {
-        let (mut v, mut d) =
-            (self.vertices.take().unwrap_or_default(), self.diffuse.take().unwrap_or_default());
+    pub(super) fn shade_diffuse(
+        &mut self,
+        (v, d): (&mut Vertices, &mut Diffuse),
+        path: &Path,
+        task: &mut Task,
+    ) {
         let hits = std::mem::take(&mut self.diffuse_hits);
         for chunk in hits.chunks(LANES) {
-            self.gather(&mut v, &mut d, chunk, task);
+            self.gather(v, d, chunk, task);
             if v.count > 0 {
-                let eval = |v: &mut Vertices, level| run_at(level, Eval { v, d: &d });
+                let eval = |v: &mut Vertices, level| run_at(level, Eval { v, d });
                 // Light samples bring something only on the side that the path comes from.
-                self.connect(&mut v, task, eval, |walk, _, _| walk.media);
-                self.scatter(&mut v, &mut d, path, task);
+                self.connect(v, task, eval, |walk, _, _| walk.media);
+                self.scatter(v, d, path, task);
             }
         }
-        (self.vertices, self.diffuse, self.diffuse_hits) = (Some(v), Some(d), hits);
+        self.diffuse_hits = hits;
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.

@@ -1,7 +1,7 @@
 //! Surfaces of every other kind: their BSDFs are evaluated and sampled one by one, and all else in columns.
 
-use super::PathQueue;
 use super::lanes::{LANES, put, vec3};
+use super::paths::Paths;
 use super::vertices::{Point, Vertices};
 use crate::integrators::path::{Path, Walk};
 use crate::task::Task;
@@ -16,24 +16,28 @@ pub(super) struct General {
     bsdfs: Vec<Bsdf>,
 }
 
-impl PathQueue {
+impl Paths {
     /// Shades these hits: fills the lists of shadow rays and of paths that go on.
-    pub(super) fn shade_general(&mut self, path: &Path, task: &mut Task) {
-        let (mut v, mut g) = (self.vertices.take().unwrap_or_default(), std::mem::take(&mut self.general));
+    pub(super) fn shade_general(
+        &mut self,
+        (v, g): (&mut Vertices, &mut General),
+        path: &Path,
+        task: &mut Task,
+    ) {
         let hits = std::mem::take(&mut self.general_hits);
         let mut begin = 0;
         while begin < hits.len() {
-            begin += self.arrive(&mut v, &mut g, &hits[begin..], path, task);
+            begin += self.arrive(v, g, &hits[begin..], path, task);
             if v.count > 0 {
                 let scene = task.scene();
                 let media = |walk: &Walk, i: usize, wi: Vec3| {
                     walk.media.towards(scene, &g.surfaces[i], -Vec3::from(walk.ray.direction), wi)
                 };
-                self.connect(&mut v, task, |v, _: CpuLevel| g.eval(v), media);
-                self.leave(&mut v, &g, path, task);
+                self.connect(v, task, |v, _: CpuLevel| g.eval(v), media);
+                self.leave(v, g, path, task);
             }
         }
-        (self.vertices, self.general, self.general_hits) = (Some(v), g, hits);
+        self.general_hits = hits;
     }
 
     /// Fills the columns with vertices; returns the number of hits used. Paths that end here are done, and those that

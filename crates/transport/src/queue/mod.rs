@@ -9,102 +9,38 @@ mod diffuse;
 mod general;
 mod lanes;
 mod light_samples;
+mod paths;
 mod vertices;
 
 use crate::camera_rays::CameraRays;
 use crate::integrators::path::{Path, Walk};
 use crate::media::Media;
-use crate::sampler::PixelSampler;
-use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::Rgb;
 use bilux_scene::{Ray, Tracer, Wavelength};
 use diffuse::Diffuse;
 use general::General;
+use paths::{Paths, QueuedPath};
 use std::any::Any;
 use vertices::Vertices;
 
 /// The number of paths in a queue. Their state fits into the second cache.
 const PATHS: usize = 1024;
 
-/// A path in the queue.
-struct QueuedPath {
-    walk: Walk,
-    sampler: PixelSampler,
-    wavelength: Wavelength,
-    /// Light that connections of its current vertex bring, and the throughput there, as the colour channels see it.
-    direct: Rgb,
-    beta: Rgb,
-    /// The sample that it belongs to: a pixel's column and row, and an index.
-    sample: (u32, u32, u32),
-    goes_on: bool,
-}
-
-impl QueuedPath {
-    /// Starts an event: no connection has brought anything yet.
-    #[inline]
-    fn begin_event(&mut self, task: &mut Task) {
-        task.wavelength = self.wavelength;
-        (self.direct, self.beta) = (Rgb::BLACK, task.seen(self.walk.beta, self.walk.is_split));
-    }
-
-    /// The end of a path that leaves the scene.
-    fn escape(&mut self, path: &Path, task: &mut Task) {
-        task.wavelength = self.wavelength;
-        path.escape(&mut self.walk, task);
-    }
-}
-
-/// What the connection of a path's vertex with a light brings if its shadow ray hits nothing.
-#[derive(Clone, Copy)]
-struct Unoccluded {
-    /// Index of the path.
-    path: u32,
-    light: Rgb,
-}
-
-/// Connections with lights. Rays towards the same light are next to each other, since these are traced fastest.
-#[derive(Default)]
-struct Connections {
-    lists: [ShadowRays<Unoccluded>; LISTS],
-}
-
-/// A light has a list of its own if it is one of few.
-const LISTS: usize = 4;
-
-impl Connections {
-    fn clear(&mut self) {
-        self.lists.iter_mut().for_each(ShadowRays::clear);
-    }
-
-    /// The list of a light. Connections of one vertex come in the order of the lights.
-    #[inline]
-    fn with(&mut self, light: usize) -> &mut ShadowRays<Unoccluded> {
-        &mut self.lists[light.min(LISTS - 1)]
-    }
-}
-
 /// A queue of paths, and the memory that it works in.
 #[derive(Default)]
 pub(crate) struct PathQueue {
-    paths: Vec<QueuedPath>,
+    state: Paths,
     /// Indices of the paths that go on.
     active: Vec<u32>,
     /// Indices of the paths that have ended: others take their places.
     free: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
-    connections: Connections,
-    vertices: Option<Box<Vertices>>,
-    diffuse: Option<Box<Diffuse>>,
-    /// Path, object, hit.
-    diffuse_hits: Vec<(u32, u32, Hit)>,
+    vertices: Box<Vertices>,
+    diffuse: Box<Diffuse>,
     general: General,
-    general_hits: Vec<(u32, Hit)>,
-    next: Vec<u32>,
-    /// Paths that connect to lights at this event.
-    shaded: Vec<u32>,
 }
 
 impl PathQueue {
@@ -127,7 +63,7 @@ impl PathQueue {
         let Some(&(x, y, index)) = samples.first() else { return };
         // Its tools serve all paths; each path has its own random numbers and wavelength.
         let (_, mut task) = rays.sample(tracer, x, y, index);
-        self.paths.clear();
+        self.state.paths.clear();
         self.active.clear();
         self.free.clear();
         let mut waiting = samples;
@@ -142,11 +78,11 @@ impl PathQueue {
             }
             self.advance(path, &mut task);
             for &index in &self.active {
-                self.paths[index as usize].goes_on = true;
+                self.state.paths[index as usize].goes_on = true;
             }
             // Those that were active before.
-            for &index in &self.next {
-                let one = &mut self.paths[index as usize];
+            for &index in &self.state.next {
+                let one = &mut self.state.paths[index as usize];
                 if !std::mem::take(&mut one.goes_on) {
                     add(one.sample, one.walk.light);
                     self.free.push(index);
@@ -163,12 +99,12 @@ impl PathQueue {
             let path = QueuedPath { walk, sampler, wavelength, direct, beta, sample, goes_on };
             match self.free.pop() {
                 Some(index) => {
-                    self.paths[index as usize] = path;
+                    self.state.paths[index as usize] = path;
                     self.active.push(index);
                 }
                 None => {
-                    self.active.push(self.paths.len() as u32);
-                    self.paths.push(path);
+                    self.active.push(self.state.paths.len() as u32);
+                    self.state.paths.push(path);
                 }
             }
         };
@@ -189,47 +125,29 @@ impl PathQueue {
 
     /// Advances every path to its next surface, and past it.
     fn advance(&mut self, path: &Path, task: &mut Task) {
-        let paths = &self.paths;
+        let paths = &self.state.paths;
         self.rays.clear();
         self.rays.extend(self.active.iter().map(|&i| paths[i as usize].walk.ray));
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
         task.tracer.hits(&self.rays, &mut self.hits);
-        self.next.clear();
-        self.connections.clear();
-        self.diffuse_hits.clear();
-        self.general_hits.clear();
-        self.shaded.clear();
+        self.state.clear_lists();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
-            let one = &mut self.paths[index as usize];
+            let one = &mut self.state.paths[index as usize];
             let Some(hit) = hit else {
                 one.escape(path, task);
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
             if task.scene().is_lambertian(object) {
-                self.diffuse_hits.push((index, object, *hit));
+                self.state.diffuse_hits.push((index, object, *hit));
             } else {
-                self.general_hits.push((index, *hit));
+                self.state.general_hits.push((index, *hit));
             }
         }
-        self.shade_diffuse(path, task);
-        self.shade_general(path, task);
-        self.add_direct_light(task);
-        std::mem::swap(&mut self.active, &mut self.next);
-    }
-
-    /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
-    /// before it is weighted by the throughput, as in a single path.
-    fn add_direct_light(&mut self, task: &mut Task) {
-        for list in &mut self.connections.lists {
-            list.trace(task, |brought, passed| {
-                self.paths[brought.path as usize].direct += brought.light * passed;
-            });
-        }
-        for &index in &self.shaded {
-            let one = &mut self.paths[index as usize];
-            one.walk.light += one.beta * one.direct;
-        }
+        self.state.shade_diffuse((&mut self.vertices, &mut self.diffuse), path, task);
+        self.state.shade_general((&mut self.vertices, &mut self.general), path, task);
+        self.state.add_direct_light(task);
+        std::mem::swap(&mut self.active, &mut self.state.next);
     }
 }

@@ -5,7 +5,7 @@
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::light_samples::{LightSamples, Points};
-use super::{PathQueue, Unoccluded};
+use super::paths::{Paths, Unoccluded};
 use crate::integrators::path::{Walk, power_heuristic};
 use crate::media::Media;
 use crate::sampler::{self, PixelSampler};
@@ -123,7 +123,7 @@ impl Vertices {
     }
 }
 
-impl PathQueue {
+impl Paths {
     /// Samples lights from every vertex, and lists the shadow rays to them. `eval` fills `scattered` and `pdf` for the
     /// directions of the light samples, and `media` gives the media of a path and lane on the side of a direction.
     pub(super) fn connect(
