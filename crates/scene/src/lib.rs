@@ -27,6 +27,7 @@ pub mod parameters;
 mod placed;
 pub mod presets;
 pub mod scene;
+mod sides;
 mod span;
 pub mod spheres;
 pub mod strokes;

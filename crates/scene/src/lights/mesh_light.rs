@@ -10,6 +10,7 @@ use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
+use std::any::Any;
 use std::f32::consts::PI;
 
 /// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness.
@@ -219,6 +220,14 @@ fn finite_or_zero(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
+impl dyn Light {
+    /// The mesh light that this one is: integrators that sample many points at once sample its triangles themselves.
+    #[doc(hidden)]
+    pub fn as_mesh(&self) -> Option<&MeshLight> {
+        (self as &dyn Any).downcast_ref()
+    }
+}
+
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
         let (triangle, weights) = self.sample_weights(u);
@@ -231,10 +240,6 @@ impl Light for MeshLight {
             pdf_solid_angle: sample.pdf_solid_angle,
             clearance: sample.clearance,
         })
-    }
-
-    fn as_mesh(&self) -> Option<&MeshLight> {
-        Some(self)
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {

@@ -2,8 +2,8 @@
 
 use super::{MaterialInputs, texture};
 use crate::error::SceneError;
-use crate::lights::Sides;
 use crate::parameters::Reader;
+use crate::sides::Sides;
 use crate::texture::{ColourMap, Texture};
 use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};

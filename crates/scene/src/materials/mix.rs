@@ -4,8 +4,8 @@ use super::{Material, MaterialEntry, MaterialInputs, NORMAL, NORMAL_SCALE, Neste
 use crate::bsdf::{Bsdf, MAX_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
-use crate::lights::Sides;
 use crate::parameters::Reader;
+use crate::sides::Sides;
 use crate::surface::Surface;
 use crate::texture::NumberMap;
 use bilux_math::Rgb;

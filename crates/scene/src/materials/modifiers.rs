@@ -4,25 +4,26 @@
 use super::emission::{self, SurfaceEmission};
 use super::normal_map::{self, NormalMap};
 use super::visible::VISIBLE_SIDES;
-use super::{Material, MaterialEntry, MaterialInputs, Nested, opacity};
+use super::{Material, MaterialInputs, Nested, opacity};
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
-use crate::lights::Sides;
 use crate::parameters::Reader;
+use crate::sides::Sides;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};
+use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
 /// Wraps the material in the modifiers that its parameters ask for; without any it stays the same.
 pub(super) fn apply(
     material: Arc<dyn Material>,
-    row: &MaterialEntry,
+    row: &Entry,
     reader: &Reader,
     inputs: &MaterialInputs,
 ) -> Result<Arc<dyn Material>, SceneError> {
-    let has = |name: &str| row.entry.parameters.iter().any(|parameter| parameter.name == name);
+    let has = |name: &str| row.parameters.iter().any(|parameter| parameter.name == name);
     let normals = normal_map::read(reader, inputs)?;
     let glow = if has(emission::EMISSION.name) { emission::read(reader, inputs)? } else { None };
     let opacity = opacity::read(reader, inputs)?;

@@ -1,8 +1,8 @@
 //! What may let rays pass.
 
 use crate::geometry::Geometry;
-use crate::lights::Sides;
 use crate::materials::Material;
+use crate::sides::Sides;
 use std::sync::Arc;
 
 /// Which rays an object may let pass.

@@ -2,7 +2,7 @@
 
 use super::sheets::{End, Sheets};
 use super::{MayPass, Scene, SceneParts};
-use crate::lights::Sides;
+use crate::sides::Sides;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
 use bilux_math::Vec3;

@@ -1,0 +1,115 @@
+//! What a light source answers.
+
+use super::{EmissionSample, distant};
+use crate::classic::ClassicLight;
+use crate::light_sample::LightSample;
+use crate::surface::Surface;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
+use std::any::Any;
+
+/// A light source.
+pub trait Light: Any + Send + Sync {
+    /// Samples a direction from which light arrives at `from`; `None` if none does.
+    fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample>;
+
+    /// The density of [`Light::sample_li`] for the direction `wi`; zero for delta lights.
+    ///
+    /// `hit` is what a ray along `wi` hits; `None` means that it hits nothing, and the light is infinite.
+    fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32;
+
+    /// False when [`Light::sample_li`] leaves light to BSDF sampling, in directions where its density is zero.
+    ///
+    /// [`Light::sample_le`] emits that light nevertheless. [Karlík 2019]
+    fn samples_all_light(&self) -> bool {
+        true
+    }
+
+    /// The density over area with which [`Light::sample_li`] at `from` samples a point of this light.
+    ///
+    /// Zero for a point that is not on it, and for lights without a surface.
+    fn pdf_area(&self, _from: Vec3, _hit: &Surface) -> f32 {
+        0.0
+    }
+
+    /// Samples a ray of light into a scene within `bounds`, at a time in seconds.
+    ///
+    /// `None` where no light leaves, or where the scene has no size that an infinite light could aim at.
+    fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u_direction: Vec2)
+    -> Option<EmissionSample>;
+
+    /// The direct density of the origin of a ray that arrives at `from`.
+    ///
+    /// It is [`EmissionSample::pdf_direct`], unless that depends on the receiver, as for a sphere, which is sampled by
+    /// the solid angle that it subtends.
+    fn direct_pdf(&self, sample: &EmissionSample, _from: Vec3) -> f32 {
+        sample.pdf_direct
+    }
+
+    /// The density ([`EmissionSample::pdf_emission`]) with which [`Light::sample_le`] emits a ray along `direction`.
+    ///
+    /// `direction` is a unit vector away from the light. `pdf_direct` is the direct density of the ray's origin
+    /// ([`EmissionSample::pdf_direct`], whose mean suffices if it depends on the receiver). `cos` is
+    /// [`EmissionSample::cos`].
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// Like [`Light::sample_le`], but aimed ([`Light::aim`]): `u` picks the rest, the point on a finite light or the
+    /// direction of an infinite one. The sample's `pdf_emission` is the density of the rest alone.
+    fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample>;
+
+    /// The density of the rest that [`Light::sample_le_aimed`] picks; otherwise like [`Light::emission_pdf`].
+    fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// The aim of a ray of light through `p` along `direction`, as a point on the unit square.
+    ///
+    /// For a finite light it is the direction, by [`warp::sphere_to_square`]. For an infinite one it is the point where
+    /// the ray crosses a perpendicular square around the scene; a ray that misses the square has an aim outside of
+    /// 0..=1.
+    fn aim(&self, bounds: &Aabb, p: Vec3, direction: Vec3) -> Vec2 {
+        if self.is_infinite() {
+            distant::place_across(bounds, p, direction)
+        } else {
+            warp::sphere_to_square(direction)
+        }
+    }
+
+    /// The density of an aim that is uniform over the square: over solid angle, or over area for an infinite light.
+    fn aim_pdf(&self, bounds: &Aabb) -> f32 {
+        if self.is_infinite() { distant::square_pdf_area(bounds) } else { warp::sphere_pdf_solid_angle() }
+    }
+
+    /// True for an infinite light, whose direct density is one of directions.
+    fn is_infinite(&self) -> bool;
+
+    /// False where a point of its surface emits no light towards `wo`, because the light is one-sided.
+    fn emits_towards(&self, _hit: &Surface, _wo: Vec3) -> bool {
+        true
+    }
+
+    /// Radiance from infinity, along a direction away from the scene.
+    fn le(&self, _direction: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    /// True when only the camera sees it, and it lights nothing ([`crate::Scene::shows`]).
+    fn is_backdrop(&self) -> bool {
+        false
+    }
+
+    /// True for a delta light, which no ray can hit by chance.
+    fn is_delta(&self) -> bool;
+
+    /// Approximately the luminance of the power that it emits into the scene, in W, for choosing among lights.
+    fn power(&self, bounds: &Aabb) -> f32;
+
+    /// The light under Equations 1 and 2, from its centre offset by `extent` (0..=1) of its size towards the point that
+    /// `u` picks; `None` where it does not shine.
+    fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight>;
+
+    /// Its colour under Equations 1 and 2, for a scene within these bounds.
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb;
+
+    /// Its contribution to the ambient light of Equations 1 and 2.
+    fn classic_ambient(&self) -> Rgb {
+        Rgb::BLACK
+    }
+}

@@ -1,0 +1,93 @@
+//! What a material answers.
+
+use crate::bsdf::Bsdf;
+use crate::classic::ClassicMaterial;
+use crate::sides::Sides;
+use crate::surface::Surface;
+use crate::texture::{ColourMap, NumberMap};
+use crate::wavelength::Wavelength;
+use bilux_math::{Rgb, Vec3};
+
+/// The material of a surface.
+pub trait Material: Send + Sync {
+    /// How light scatters at a point.
+    fn bsdf(&self, surface: &Surface) -> Bsdf;
+    /// True when its [`Bsdf`] is, everywhere, a single Lambertian lobe about the shading normal.
+    fn is_lambertian(&self) -> bool {
+        false
+    }
+    /// The reflectance of that lobe at a point.
+    fn lambertian_reflectance(&self, _surface: &Surface) -> Rgb {
+        Rgb::BLACK
+    }
+    /// That reflectance where it is the same everywhere, on meshes without colours at their vertices.
+    fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        None
+    }
+    /// The same point under Equations 1 and 2.
+    fn classic(&self, surface: &Surface) -> ClassicMaterial;
+    /// The shading normal at a point, on the same side as `n_geom`: interpolated, or from a normal map.
+    ///
+    /// Tracers call it where there are tangents; the other functions read the result from the surface.
+    fn n_shade(&self, surface: &Surface) -> Vec3 {
+        surface.n_shade
+    }
+    /// True when it is anisotropic, and so needs [`Surface::tangent`].
+    fn needs_tangents(&self) -> bool {
+        false
+    }
+    /// The maximum number of lobes of its [`Bsdf`].
+    fn max_lobes(&self) -> usize {
+        1
+    }
+    /// Emitted radiance, black for no emission; the maximum, if a texture varies it.
+    fn emission(&self) -> Rgb {
+        Rgb::BLACK
+    }
+    /// The emission texture.
+    fn emission_map(&self) -> Option<&ColourMap> {
+        None
+    }
+    /// The sides of its triangles from which a surface emits.
+    fn emission_sides(&self) -> Sides {
+        Sides::Both
+    }
+    /// The opacity mask, if it has one.
+    fn opacity(&self) -> Option<&NumberMap> {
+        None
+    }
+    /// The sides of its triangles that a camera sees.
+    fn visible_sides(&self) -> Sides {
+        Sides::Both
+    }
+    /// True when it refracts each wavelength differently.
+    fn disperses(&self) -> bool {
+        false
+    }
+    /// Its interior medium for overlapping objects; `None` if it takes no part in nesting.
+    fn nested(&self) -> Option<Nested> {
+        None
+    }
+    /// Absorption per metre inside, by Beer's law; black if there is no interior.
+    fn sigma_a(&self) -> Rgb {
+        Rgb::BLACK
+    }
+}
+
+/// A nested medium; where several overlap, only the one of the highest priority exists. [Schmidt 2002]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nested {
+    /// At least 1.
+    pub priority: u32,
+    /// Refractive index relative to air.
+    pub eta: f32,
+    /// 1 over the Abbe number.
+    pub dispersion: f32,
+}
+
+impl Nested {
+    /// The index at a wavelength.
+    pub fn index(&self, wavelength: &Wavelength) -> f32 {
+        if self.dispersion == 0.0 { self.eta } else { wavelength.index(self.eta, self.dispersion) }
+    }
+}
