@@ -9,7 +9,7 @@ use crate::geometry::Geometry;
 use crate::mesh::Mesh;
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
-use crate::texture::{Texture, levels};
+use crate::texture::{Texture, mipmaps};
 use bilux_math::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -105,7 +105,7 @@ pub(crate) fn filtered(material: &Spec, materials: &[Spec], textures: &[Arc<Text
     for (key, value, _) in &material.parameters.0 {
         match value {
             Value::Texture(index) if !AT_POINTS.contains(&key.as_str()) => {
-                found.extend(textures.get(*index).filter(|texture| levels::has_use(texture)).cloned());
+                found.extend(textures.get(*index).filter(|texture| mipmaps::has_use(texture)).cloned());
             }
             Value::Material(index) => {
                 found

@@ -1,151 +1,32 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
 mod lambertian;
+mod lambertian_point;
 mod may_pass;
+mod parts;
 mod sheets;
 mod tracer;
 
 use crate::accel_choice::AccelChoice;
 use crate::cameras::Camera;
-use crate::corners::corner_uvs;
 use crate::footprint::FootprintView;
 use crate::geometry::Geometry;
-use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
+use crate::lights::Light;
 use crate::materials::Material;
+use crate::placed::Placed;
 use crate::surface::Surface;
-use crate::texture::{ColourMap, Texture, levels};
+use crate::texture::mipmaps;
 use bilux_accel::instancing::TwoLevel;
-use bilux_accel::{Accelerator, CpuLevel, Query, Ray};
+use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
 use lambertian::Lambertian;
-pub use lambertian::LambertianPoint;
+pub use lambertian_point::LambertianPoint;
 use may_pass::MayPass;
+pub use parts::SceneLight;
+pub(crate) use parts::SceneParts;
 use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
-
-/// A light of the scene.
-#[derive(Clone)]
-pub struct SceneLight {
-    /// The user's name for it; may be empty.
-    pub name: String,
-    /// The light.
-    pub light: Arc<dyn Light>,
-    /// Its colour in `cast`, `whitted` and `cook`.
-    pub classic_colour: Rgb,
-}
-
-impl SceneLight {
-    pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
-        SceneLight { name: name.to_owned(), light, classic_colour: Rgb::BLACK }
-    }
-}
-
-/// The parts of a scene that do not change with time.
-pub(crate) struct SceneParts {
-    geometry: Geometry,
-    materials: Vec<Arc<dyn Material>>,
-    lights: Vec<SceneLight>,
-    /// The light index of each object, then of each sphere.
-    object_lights: Vec<Option<u32>>,
-    cameras: Vec<(String, Arc<dyn Camera>)>,
-    /// The textures of each material that can be filtered.
-    textures: Vec<Vec<Arc<Texture>>>,
-    classic_ambient: Rgb,
-    has_backdrop: bool,
-    has_surroundings: bool,
-    has_nested: bool,
-    has_holes: bool,
-    hides_backs: bool,
-    /// For each object, then for each sphere.
-    passes: Vec<MayPass>,
-    disperses: bool,
-    absorbs: bool,
-    /// For each object of triangles, see [`Scene::is_lambertian`].
-    lambertian: Vec<Lambertian>,
-}
-
-impl SceneParts {
-    pub(crate) fn new(
-        geometry: Geometry,
-        materials: Vec<Arc<dyn Material>>,
-        mut lights: Vec<SceneLight>,
-        panels: &[(usize, Rgb)],
-        sphere_lights: &[(String, Option<Rgb>)],
-        cameras: Vec<(String, Arc<dyn Camera>)>,
-        textures: Vec<Vec<Arc<Texture>>>,
-    ) -> SceneParts {
-        let mut object_lights = vec![None; geometry.objects().len()];
-        for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
-            let (triangles, motion) = geometry.object_triangles(i as u32);
-            let material = &materials[object.material as usize];
-            let even = || ColourMap { colour: material.emission(), texture: None };
-            let varies = material.emission_map().is_some() || material.opacity().is_some();
-            let picture = varies.then(|| Picture {
-                map: material.emission_map().cloned().unwrap_or_else(even),
-                opacity: material.opacity().cloned(),
-                uvs: corner_uvs(&object.mesh),
-            });
-            let given = (material.emission(), picture, material.emission_sides());
-            let mirrored = object.motion.at(0.0).mirrors();
-            let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
-            let first = geometry.first_primitive(i as u32);
-            if let Some(light) = MeshLight::new(triangles, mirrored, first, motion, given, classic) {
-                object_lights[i] = Some(lights.len() as u32);
-                lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
-            }
-        }
-        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(sphere_lights).enumerate() {
-            let material = &materials[sphere.material as usize];
-            let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
-            let primitive = geometry.sphere_primitive(i as u32);
-            let light = SphereLight::new(*sphere, primitive, radiance, *classic);
-            object_lights.push(Some(lights.len() as u32));
-            lights.push(SceneLight::new(name, Arc::new(light)));
-        }
-        let of_object = |o: &crate::geometry::Placed| o.motion.at(0.0).bounds(&o.mesh.bounds());
-        let bounds = geometry
-            .objects()
-            .iter()
-            .filter(|o| !o.gives_light)
-            .map(of_object)
-            .fold(Aabb::EMPTY, Aabb::union);
-        for light in &mut lights {
-            light.classic_colour = light.light.classic_colour(&bounds);
-        }
-        let classic_ambient = lights.iter().map(|l| l.light.classic_ambient()).sum();
-        let has_backdrop = lights.iter().any(|l| l.light.is_backdrop());
-        let surrounds =
-            |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
-        let has_surroundings = lights.iter().any(surrounds);
-        let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
-        let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
-        let has_holes = materials.iter().any(|material| material.opacity().is_some());
-        let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
-        let passes = MayPass::of_all(&geometry, &materials);
-        let disperses = materials.iter().any(|material| material.disperses());
-        let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
-        let lambertian = geometry.objects().iter().map(|o| Lambertian::of(o, &materials)).collect();
-        SceneParts {
-            geometry,
-            materials,
-            lights,
-            object_lights,
-            cameras,
-            textures,
-            classic_ambient,
-            has_backdrop,
-            has_surroundings,
-            has_nested,
-            has_holes,
-            hides_backs,
-            passes,
-            disperses,
-            absorbs,
-            lambertian,
-        }
-    }
-}
 
 /// A scene at a time, ready for ray queries.
 pub struct Scene {
@@ -175,11 +56,11 @@ impl Scene {
             _ => None,
         };
         let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
-        let absorbs = |o: &&crate::geometry::Placed| {
+        let absorbs = |o: &&Placed| {
             let material = &parts.materials[o.material as usize];
             !material.sigma_a().is_black() && material.nested().is_none()
         };
-        let bounds = |o: &crate::geometry::Placed| {
+        let bounds = |o: &Placed| {
             let bounds = o.motion.bounds_over(&o.mesh.bounds(), shutter);
             // Surfaces that lie on the bounds are inside, whatever is rounded.
             bounds.expanded(1e-3 * bounds.radius())
@@ -221,7 +102,7 @@ impl Scene {
         if textures.iter().all(Vec::is_empty) {
             return self;
         }
-        levels::build(&view.needed(geometry, textures, self.shutter));
+        mipmaps::build(&view.needed(geometry, textures, self.shutter));
         Scene { view: Some(view), ..self }
     }
 
@@ -381,5 +262,21 @@ impl Scene {
     /// True when some surface is emissive.
     pub fn has_emissive_surfaces(&self) -> bool {
         self.parts.object_lights.iter().any(Option::is_some)
+    }
+
+    /// The normal at the end of segments that arrive from a direction, for [`Tracer::ending_on`].
+    pub fn normal_towards(&self, surface: &Surface, direction: Vec3) -> Vec3 {
+        self.parts.normal_towards(surface, direction)
+    }
+
+    /// The hit behind the backs of sheets, on their other shell, if `hit` is on the back of one; otherwise `hit`.
+    ///
+    /// `next` finds the closest hit of a ray.
+    #[inline]
+    pub(super) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
+        match &self.sheets {
+            Some(sheets) => self.parts.behind(sheets, ray, hit, next).unwrap_or(hit),
+            None => hit,
+        }
     }
 }

@@ -5,7 +5,8 @@
 //! shell, the other does not exist. Both ends of a segment are treated alike, so that it is free or blocked whichever
 //! end it is traced from. See docs/adr/0023-shells.md.
 
-use super::{Scene, SceneParts};
+use super::parts::SceneParts;
+use crate::placed::Placed;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::{Aabb, Vec3};
@@ -61,7 +62,7 @@ impl Sheets {
         if !parts.hides_backs {
             return None;
         }
-        let bounds = |o: &crate::geometry::Placed| o.motion.at(time).bounds(&o.mesh.bounds());
+        let bounds = |o: &Placed| o.motion.at(time).bounds(&o.mesh.bounds());
         let extent = |b: Aabb| if b.is_empty() { 0.0 } else { (b.max - b.min).length() };
         let objects = parts.geometry.objects();
         let sheets = Sheets { gaps: objects.iter().map(|o| PART_OF_OBJECT * extent(bounds(o))).collect() };
@@ -190,37 +191,21 @@ impl SceneParts {
         let Some(end) = end.filter(|end| along > 0.0 && end.n.dot(direction) < 0.0) else { return false };
         back(Vec3::from(ray.origin) + direction * hit.t).is_shell_of(end.p, end.n)
     }
-}
 
-impl Scene {
-    /// The normal at the end of segments that arrive from a direction, for [`super::Tracer::ending_on`].
-    pub fn normal_towards(&self, surface: &Surface, direction: Vec3) -> Vec3 {
-        self.parts.normal_towards(surface, direction)
-    }
-
-    /// The hit behind the backs of sheets, on their other shell, if `hit` is on the back of one; otherwise `hit`.
-    ///
-    /// `next` finds the closest hit of a ray.
-    #[inline]
-    pub(super) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
-        match &self.sheets {
-            Some(sheets) => self.behind(sheets, ray, hit, next).unwrap_or(hit),
-            None => hit,
-        }
-    }
-
-    fn behind(
+    /// The hit on the other shell behind the backs of sheets; `None` if `hit` is on no such back. `next` finds the closest hit
+    /// of a ray.
+    pub(super) fn behind(
         &self,
         sheets: &Sheets,
         ray: &Ray,
         mut hit: Hit,
         mut next: impl FnMut(&Ray) -> Option<Hit>,
     ) -> Option<Hit> {
-        let (parts, direction) = (&*self.parts, Vec3::from(ray.direction));
+        let direction = Vec3::from(ray.direction);
         let at = |hit: &Hit| Vec3::from(ray.origin) + direction * hit.t;
         let (mut backs, mut t_max) = (Vec::new(), ray.t_max);
-        while let Some(front) = parts.is_back(ray, &hit) {
-            let gap = sheets.gap(parts.geometry.object_of(&hit), front);
+        while let Some(front) = self.is_back(ray, &hit) {
+            let gap = sheets.gap(self.geometry.object_of(&hit), front);
             t_max = t_max.min(hit.t + gap * front.length() / front.dot(direction));
             backs.push(Back { p: at(&hit), front, gap });
             if backs.len() > MAX_BACKS {
@@ -228,8 +213,8 @@ impl Scene {
             }
             hit = next(&Ray { t_min: hit.t, t_max, exclude: hit.primitive(), ..*ray })?;
         }
-        let surface = parts.geometry.surface(ray, &hit);
-        let n = parts.normal_towards(&surface, -direction);
+        let surface = self.geometry.surface(ray, &hit);
+        let n = self.normal_towards(&surface, -direction);
         backs.iter().all(|back| back.is_shell_of(surface.p, n)).then_some(hit)
     }
 }

@@ -1,10 +1,11 @@
 //! The texels of images, stored as compactly as in their files.
 
-use super::Channel;
-use super::procedural::{Formula, centre};
-use bilux_math::Rgb;
+use super::channel::Channel;
 use bilux_math::colour::srgb_decode;
-use std::sync::LazyLock;
+use bilux_math::{Rgb, Vec2};
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::{Arc, LazyLock};
 
 /// An image, with row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +31,21 @@ pub enum Texels {
         alpha: Vec<f32>,
     },
     /// No stored texels: a procedural texture computes them.
-    Formula(Formula),
+    Formula(Arc<dyn ComputedTexels>),
+}
+
+/// Texels that are computed where they are looked up.
+pub trait ComputedTexels: Any + Debug + Send + Sync {
+    /// The colour at texture coordinates, v upwards.
+    fn at(&self, uv: Vec2) -> Rgb;
+    /// True when the other ones are computed in the same way.
+    fn is_same(&self, other: &dyn ComputedTexels) -> bool;
+}
+
+impl PartialEq for dyn ComputedTexels {
+    fn eq(&self, other: &dyn ComputedTexels) -> bool {
+        self.is_same(other)
+    }
 }
 
 /// The linear values of sRGB bytes.
@@ -125,14 +140,20 @@ impl Image {
                 Rgb::grey(alpha.get(index).copied().unwrap_or(1.0))
             }
             Texels::Floats { colours, .. } => Channel::of(channel, colours[index]),
-            Texels::Formula(formula) => self.eval_procedural(formula, index, channel),
+            Texels::Formula(formula) => self.eval_procedural(&**formula, index, channel),
         }
     }
 
     /// The texel of a procedural texture; a separate function, to keep look-ups of stored texels small.
     #[cold]
     #[inline(never)]
-    fn eval_procedural(&self, formula: &Formula, index: usize, channel: Option<Channel>) -> Rgb {
+    fn eval_procedural(&self, formula: &dyn ComputedTexels, index: usize, channel: Option<Channel>) -> Rgb {
         Channel::of(channel, formula.at(centre(index, self.width, self.height)))
     }
+}
+
+/// The texture coordinates of the centre of a texel.
+pub(super) fn centre(index: usize, width: usize, height: usize) -> Vec2 {
+    let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
+    Vec2::new(x / width as f32, 1.0 - y / height as f32)
 }

@@ -1,18 +1,30 @@
 //! Mipmaps: an image at half of its resolution, at a quarter, and so on, for pixels that cover more than one texel.
 //! [Williams 1983]
 
-use super::{Filter, Image, Texels, Texture};
+use super::image::{Image, Texels};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-/// The coarser levels of a texture's image, finest first; empty until a render asks for them ([`build`]).
+/// The coarser levels of a texture's image, finest first; empty until a render asks for them ([`super::mipmaps::build`]).
 ///
 /// They derive from the image alone, and so compare as equal.
 #[derive(Clone, Debug, Default)]
 pub struct Levels(OnceLock<Arc<[Image]>>);
+
+impl Levels {
+    /// Stores levels, unless there are some.
+    pub(super) fn fill(&self, levels: Arc<[Image]>) {
+        // Another thread may have been faster, with the same result.
+        let _ = self.0.set(levels);
+    }
+
+    /// True before they are stored.
+    pub(super) fn is_unfilled(&self) -> bool {
+        self.0.get().is_none()
+    }
+}
 
 impl PartialEq for Levels {
     fn eq(&self, _: &Levels) -> bool {
@@ -41,39 +53,10 @@ impl Levels {
     }
 }
 
-/// True if coarser levels of a texture are of use: it is filtered, and nothing depends on the exact value of single
-/// texels.
-///
-/// Only colours qualify, since light is proportional to them, but not to roughness.
-pub(crate) fn has_use(texture: &Texture) -> bool {
-    let blends = texture.filter == Filter::Linear && texture.threshold.is_none() && !texture.is_data;
-    blends
-        && texture.formula().is_none()
-        && texture.image.is_whole()
-        && is_divisible([texture.width(), texture.height()])
-}
-
-/// Builds the coarser levels of textures that have none yet; textures of the same image share them.
-pub(crate) fn build(textures: &[&Arc<Texture>]) {
-    let key = |texture: &Texture| (Arc::as_ptr(&texture.image), texture.is_data && texture.image.is_bytes());
-    let mut pictures: HashMap<_, Vec<&Texture>> = HashMap::new();
-    for texture in textures.iter().copied().filter(|texture| texture.levels.0.get().is_none()) {
-        pictures.entry(key(texture)).or_default().push(texture);
-    }
-    let pictures: Vec<_> = pictures.into_values().collect();
-    pictures.par_iter().for_each(|sharers| {
-        let levels = of(&sharers[0].image, sharers[0].is_data);
-        for texture in sharers.iter() {
-            // Another thread may have been faster, with the same result.
-            let _ = texture.levels.0.set(levels.clone());
-        }
-    });
-}
-
 /// Builds each level from the previous one, with half as many texels per row and column, rounded down.
 ///
 /// Each texel is the mean of those that it covers. All levels together are at most a third of the image.
-fn of(image: &Image, is_data: bool) -> Arc<[Image]> {
+pub(super) fn of(image: &Image, is_data: bool) -> Arc<[Image]> {
     let size = [image.width, image.height];
     match &image.texels {
         Texels::Bytes(bytes) => of_bytes(size, bytes, if is_data { &PLAIN } else { &SRGB }),
@@ -83,7 +66,7 @@ fn of(image: &Image, is_data: bool) -> Arc<[Image]> {
     .into()
 }
 
-fn is_divisible([width, height]: [usize; 2]) -> bool {
+pub(super) fn is_divisible([width, height]: [usize; 2]) -> bool {
     width.min(height) >= 2
 }
 
@@ -279,7 +262,8 @@ fn mean<T: Copy>(texels: Covered<T>, number: impl Fn(T) -> f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Patch, UvPair, Wrap};
+    use super::super::mipmaps::build;
+    use super::super::{Patch, Texture, UvPair, Wrap};
     use super::*;
     use bilux_math::Vec2;
 

@@ -1,14 +1,19 @@
 //! Textures on surfaces: images and procedural textures.
 
+mod channel;
 mod image;
-pub(crate) mod levels;
+mod levels;
+pub(crate) mod mipmaps;
 mod procedural;
 mod sampling;
+mod uv;
 
-pub use image::{Image, Texels};
+pub use channel::Channel;
+pub use image::{ComputedTexels, Image, Texels};
 pub use levels::Levels;
 pub use procedural::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use sampling::{Filter, UvTransform, Wrap};
+pub use uv::{Patch, UvPair};
 
 use bilux_math::{Rgb, Vec2};
 use std::sync::Arc;
@@ -38,69 +43,6 @@ pub struct Texture {
     pub second_uv: bool,
     /// The coarser levels of the image, once a render has asked for them.
     pub levels: Levels,
-}
-
-/// A texture look-up position: texture coordinates, v upwards, and the second set of them.
-///
-/// Meshes with one set use it for both.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UvPair(pub [Vec2; 2]);
-
-impl UvPair {
-    /// Interpolates between the corners of a triangle.
-    pub fn between(corners: [UvPair; 3], weights: [f32; 3]) -> UvPair {
-        let [a, b, c] = corners.map(|corner| corner.0);
-        UvPair([0, 1].map(|set| a[set] * weights[0] + b[set] * weights[1] + c[set] * weights[2]))
-    }
-}
-
-impl From<Vec2> for UvPair {
-    fn from(uv: Vec2) -> UvPair {
-        UvPair([uv; 2])
-    }
-}
-
-/// The part of a texture that a pixel sees.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
-    /// Its position.
-    pub at: UvPair,
-    /// Its width along each coordinate, for each set; 0 for a point.
-    pub width: [Vec2; 2],
-}
-
-impl<T: Into<UvPair>> From<T> for Patch {
-    #[inline]
-    fn from(at: T) -> Patch {
-        Patch { at: at.into(), width: [Vec2::ZERO; 2] }
-    }
-}
-
-/// A channel of a texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Channel {
-    /// Red.
-    R,
-    /// Green.
-    G,
-    /// Blue.
-    B,
-    /// Alpha.
-    A,
-}
-
-impl Channel {
-    /// A colour without alpha, or one channel of it as a grey.
-    #[inline]
-    fn of(channel: Option<Channel>, colour: Rgb) -> Rgb {
-        match channel {
-            None => colour,
-            Some(Channel::R) => Rgb::grey(colour.r),
-            Some(Channel::G) => Rgb::grey(colour.g),
-            Some(Channel::B) => Rgb::grey(colour.b),
-            Some(Channel::A) => Rgb::WHITE,
-        }
-    }
 }
 
 impl Texture {
@@ -245,7 +187,7 @@ impl Texture {
     #[inline]
     fn look_up(&self, image: &Image, uv: Vec2) -> Rgb {
         if let Texels::Formula(formula) = &image.texels {
-            return self.eval_procedural(formula, uv);
+            return self.eval_procedural(&**formula, uv);
         }
         if !image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
@@ -272,7 +214,7 @@ impl Texture {
 
     /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
     #[inline(never)]
-    fn eval_procedural(&self, formula: &Formula, uv: Vec2) -> Rgb {
+    fn eval_procedural(&self, formula: &dyn ComputedTexels, uv: Vec2) -> Rgb {
         let downwards = |uv: Vec2| Vec2::new(uv.x, 1.0 - uv.y);
         let uv = self.transform.map_or(uv, |transform| downwards(transform.apply(downwards(uv))));
         if !uv.is_finite() {

@@ -1,6 +1,7 @@
 //! A cyclorama: a floor that curves up into a wall, so that no edge is visible behind the model.
 
 use super::framing::Framing;
+use super::options::GROUND;
 use crate::mesh::Mesh;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DVec3, Vec3};
@@ -30,7 +31,7 @@ pub(super) fn level(framing: &Framing, faces_down: bool) -> Mesh {
     let corner = |(x, z): (f64, f64)| (middle + DVec3::new(x, 0.0, z) * half).as_vec3();
     let triangles = if faces_down { vec![[0, 2, 1], [0, 3, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
     let positions = corners.map(corner).to_vec();
-    Mesh { name: super::GROUND.to_owned(), positions, triangles, ..Mesh::default() }
+    Mesh { name: GROUND.to_owned(), positions, triangles, ..Mesh::default() }
 }
 
 /// The cove behind a model, as seen by the studio's camera; it also extends behind the camera.
@@ -50,7 +51,7 @@ pub(super) fn cove(framing: &Framing) -> Mesh {
         ));
     }
     profile.push(((BEHIND + BEND) * radius, (BEND + WALL) * radius, -away));
-    let mut mesh = Mesh { name: super::GROUND.to_owned(), ..Mesh::default() };
+    let mut mesh = Mesh { name: GROUND.to_owned(), ..Mesh::default() };
     for (back, up, normal) in profile {
         for side in [-WIDE, WIDE] {
             let p = foot + away * back + DVec3::Y * up + right * (side * radius);

@@ -8,10 +8,12 @@ mod place;
 mod ramp;
 mod scale;
 
+use super::image::{ComputedTexels, centre};
 use super::{ColourMap, Filter, Image, NumberMap, Texels, Texture};
 use crate::{Reader, SceneError, Spec};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
+use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -47,6 +49,16 @@ pub struct Formula {
     parts: Vec<Arc<Texture>>,
     pattern: Arc<dyn Pattern>,
     cost: usize,
+}
+
+impl ComputedTexels for Formula {
+    fn at(&self, uv: Vec2) -> Rgb {
+        self.pattern.at(uv)
+    }
+
+    fn is_same(&self, other: &dyn ComputedTexels) -> bool {
+        (other as &dyn Any).downcast_ref() == Some(self)
+    }
 }
 
 impl PartialEq for Formula {
@@ -119,14 +131,14 @@ impl Texture {
     pub fn by_formula(spec: Spec, parts: Vec<Arc<Texture>>, is_data: bool) -> Result<Texture, SceneError> {
         let formula = Formula::new(spec, parts)?;
         let (name, side) = (formula.spec.kind.clone(), formula.side());
-        let image = Image { width: side, height: side, texels: Texels::Formula(formula) };
+        let image = Image { width: side, height: side, texels: Texels::Formula(Arc::new(formula)) };
         Ok(Texture::of(&name, Arc::new(image), is_data))
     }
 
     /// Its procedural texture, if it is one.
     pub fn formula(&self) -> Option<&Formula> {
         match &self.image.texels {
-            Texels::Formula(formula) => Some(formula),
+            Texels::Formula(formula) => (&**formula as &dyn Any).downcast_ref(),
             _ => None,
         }
     }
@@ -163,12 +175,6 @@ impl Texture {
         let texels = (0..width * height).map(|i| formula.at(centre(i, width, height))).collect();
         Texture { filter: Filter::Linear, ..Texture::new(&self.name, width, height, texels, self.is_data) }
     }
-}
-
-/// The texture coordinates of the centre of a texel.
-pub(super) fn centre(index: usize, width: usize, height: usize) -> Vec2 {
-    let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
-    Vec2::new(x / width as f32, 1.0 - y / height as f32)
 }
 
 /// The textures to which the parameters of a procedural texture refer by index.

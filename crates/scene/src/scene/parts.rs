@@ -1,0 +1,137 @@
+//! What a scene consists of at all times.
+
+use super::lambertian::Lambertian;
+use super::may_pass::MayPass;
+use crate::cameras::Camera;
+use crate::corners::corner_uvs;
+use crate::geometry::Geometry;
+use crate::lights::{Light, MeshLight, Picture, SphereLight};
+use crate::materials::Material;
+use crate::placed::Placed;
+use crate::sides::Sides;
+use crate::texture::{ColourMap, Texture};
+use bilux_math::{Aabb, Rgb};
+use std::sync::Arc;
+
+/// A light of the scene.
+#[derive(Clone)]
+pub struct SceneLight {
+    /// The user's name for it; may be empty.
+    pub name: String,
+    /// The light.
+    pub light: Arc<dyn Light>,
+    /// Its colour in `cast`, `whitted` and `cook`.
+    pub classic_colour: Rgb,
+}
+
+impl SceneLight {
+    pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
+        SceneLight { name: name.to_owned(), light, classic_colour: Rgb::BLACK }
+    }
+}
+
+/// The parts of a scene that do not change with time.
+pub(crate) struct SceneParts {
+    pub(super) geometry: Geometry,
+    pub(super) materials: Vec<Arc<dyn Material>>,
+    pub(super) lights: Vec<SceneLight>,
+    /// The light index of each object, then of each sphere.
+    pub(super) object_lights: Vec<Option<u32>>,
+    pub(super) cameras: Vec<(String, Arc<dyn Camera>)>,
+    /// The textures of each material that can be filtered.
+    pub(super) textures: Vec<Vec<Arc<Texture>>>,
+    pub(super) classic_ambient: Rgb,
+    pub(super) has_backdrop: bool,
+    pub(super) has_surroundings: bool,
+    pub(super) has_nested: bool,
+    pub(super) has_holes: bool,
+    pub(super) hides_backs: bool,
+    /// For each object, then for each sphere.
+    pub(super) passes: Vec<MayPass>,
+    pub(super) disperses: bool,
+    pub(super) absorbs: bool,
+    /// For each object of triangles, see [`Scene::is_lambertian`].
+    pub(super) lambertian: Vec<Lambertian>,
+}
+
+impl SceneParts {
+    pub(crate) fn new(
+        geometry: Geometry,
+        materials: Vec<Arc<dyn Material>>,
+        mut lights: Vec<SceneLight>,
+        panels: &[(usize, Rgb)],
+        sphere_lights: &[(String, Option<Rgb>)],
+        cameras: Vec<(String, Arc<dyn Camera>)>,
+        textures: Vec<Vec<Arc<Texture>>>,
+    ) -> SceneParts {
+        let mut object_lights = vec![None; geometry.objects().len()];
+        for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
+            let (triangles, motion) = geometry.object_triangles(i as u32);
+            let material = &materials[object.material as usize];
+            let even = || ColourMap { colour: material.emission(), texture: None };
+            let varies = material.emission_map().is_some() || material.opacity().is_some();
+            let picture = varies.then(|| Picture {
+                map: material.emission_map().cloned().unwrap_or_else(even),
+                opacity: material.opacity().cloned(),
+                uvs: corner_uvs(&object.mesh),
+            });
+            let given = (material.emission(), picture, material.emission_sides());
+            let mirrored = object.motion.at(0.0).mirrors();
+            let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
+            let first = geometry.first_primitive(i as u32);
+            if let Some(light) = MeshLight::new(triangles, mirrored, first, motion, given, classic) {
+                object_lights[i] = Some(lights.len() as u32);
+                lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
+            }
+        }
+        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(sphere_lights).enumerate() {
+            let material = &materials[sphere.material as usize];
+            let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
+            let primitive = geometry.sphere_primitive(i as u32);
+            let light = SphereLight::new(*sphere, primitive, radiance, *classic);
+            object_lights.push(Some(lights.len() as u32));
+            lights.push(SceneLight::new(name, Arc::new(light)));
+        }
+        let of_object = |o: &Placed| o.motion.at(0.0).bounds(&o.mesh.bounds());
+        let bounds = geometry
+            .objects()
+            .iter()
+            .filter(|o| !o.gives_light)
+            .map(of_object)
+            .fold(Aabb::EMPTY, Aabb::union);
+        for light in &mut lights {
+            light.classic_colour = light.light.classic_colour(&bounds);
+        }
+        let classic_ambient = lights.iter().map(|l| l.light.classic_ambient()).sum();
+        let has_backdrop = lights.iter().any(|l| l.light.is_backdrop());
+        let surrounds =
+            |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
+        let has_surroundings = lights.iter().any(surrounds);
+        let of_object = |o: &Placed| materials[o.material as usize].nested();
+        let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
+        let has_holes = materials.iter().any(|material| material.opacity().is_some());
+        let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
+        let passes = MayPass::of_all(&geometry, &materials);
+        let disperses = materials.iter().any(|material| material.disperses());
+        let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
+        let lambertian = geometry.objects().iter().map(|o| Lambertian::of(o, &materials)).collect();
+        SceneParts {
+            geometry,
+            materials,
+            lights,
+            object_lights,
+            cameras,
+            textures,
+            classic_ambient,
+            has_backdrop,
+            has_surroundings,
+            has_nested,
+            has_holes,
+            hides_backs,
+            passes,
+            disperses,
+            absorbs,
+            lambertian,
+        }
+    }
+}
