@@ -12,7 +12,7 @@ use super::repository::Repository;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The crates that have none.
-const CRATES: &[&str] = &["crates/math", "crates/transport"];
+const CRATES: &[&str] = &["crates/math", "crates/scene", "crates/transport", "crates/validation"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let crates = CRATES.iter().map(|folder| Modules::read(repository, folder));

@@ -7,15 +7,12 @@
 //! direction, so it samples some of its directions about the geometric normal, to cover those that a bent normal makes
 //! visible.
 
+use super::lobe_frame::NEARLY_FLAT;
 use super::{Bsdf, BsdfSample, Lambert, Lobe, TransportMode};
 use bilux_math::{Frame, Rgb, Vec3};
 
 /// The maximum fraction of directions from a light that are sampled about the geometric normal.
 const MAX_FLAT: f32 = 0.25;
-
-/// The cosine between the shading normal and the triangle's above which nothing bends: what faces away then is seen
-/// within a tenth of a degree of the surface.
-pub(super) const NEARLY_FLAT: f32 = 1.0 - 1e-6;
 
 /// Reaches every direction on a side.
 const DIFFUSE: Lobe = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });

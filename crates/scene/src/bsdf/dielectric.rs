@@ -1,6 +1,6 @@
 //! A smooth boundary between two media that do not absorb: Fresnel's equations and Snell's law.
 
-use super::{BsdfEntry, BsdfSample, Lobe, ThinFilm, TransportMode};
+use super::{BsdfEntry, BsdfSample, Lobe, ThinFilm, TransportMode, fresnel_dielectric, refract};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -42,6 +42,12 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
+    /// The same with another index.
+    #[inline]
+    pub(super) fn of_index(self, eta: f32) -> Dielectric {
+        Dielectric { eta, ..self }
+    }
+
     #[inline]
     pub(super) fn eval(&self, _wo: Vec3, _wi: Vec3, _mode: TransportMode) -> Rgb {
         Rgb::BLACK
@@ -125,84 +131,4 @@ pub(super) fn shares(reflected: Rgb) -> (f32, [Rgb; 2]) {
     let mean = (reflected.r + reflected.g + reflected.b) * (1.0 / 3.0);
     let over = |share: Rgb, mean: f32| if mean > 0.0 { share * (1.0 / mean) } else { Rgb::WHITE };
     (mean, [over(reflected, mean), over(Rgb::WHITE + reflected * -1.0, 1.0 - mean)])
-}
-
-/// The reflectance of a smooth boundary for unpolarised light.
-///
-/// `cos_theta`, 0..=1, belongs to the incident direction, and `eta` is the index of the far side over the near side.
-/// The result is 1 under total internal reflection. [pbrt 2023, 9.3.5]
-pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
-    let cos_i = cos_theta.clamp(0.0, 1.0);
-    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return 1.0;
-    }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    (parallel * parallel + perpendicular * perpendicular) * 0.5
-}
-
-/// Schlick's approximation to [`fresnel_dielectric`], including total internal reflection: from the denser side it uses
-/// the cosine of the refracted direction. [Schlick 1994, eq. 15]
-pub fn schlick(cos_theta: f32, eta: f32) -> f32 {
-    let cos_i = cos_theta.clamp(0.0, 1.0);
-    let r0 = ((1.0 - eta) / (1.0 + eta)) * ((1.0 - eta) / (1.0 + eta));
-    let cos = if eta < 1.0 {
-        let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-        if sin2_t >= 1.0 {
-            return 1.0;
-        }
-        (1.0 - sin2_t).sqrt()
-    } else {
-        cos_i
-    };
-    let m = 1.0 - cos;
-    r0 + (1.0 - r0) * (m * m) * (m * m) * m
-}
-
-/// The refracted direction, away from the surface; `n` is on the side of `wo`, and `eta` is the index of the far side
-/// over the near side. `None` under total internal reflection.
-pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
-    let cos_i = wo.dot(n);
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return None;
-    }
-    let cos_t = (1.0 - sin2_t).sqrt();
-    Some((n * (cos_i / eta - cos_t) - wo / eta).normalize())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn snell_holds() {
-        let n = Vec3::Z;
-        for eta in [1.5, 1.0 / 1.5, 1.33] {
-            for degrees in [1.0f32, 20.0, 40.0] {
-                let (sin, cos) = bilux_math::transcendental::sin_cos(degrees.to_radians());
-                let wi = refract(Vec3::new(sin, 0.0, cos), n, eta).unwrap();
-                assert!((sin - eta * -wi.x).abs() < 1e-6, "eta {eta}, {degrees} degrees");
-                assert!(wi.z < 0.0);
-            }
-        }
-    }
-
-    #[test]
-    fn beyond_the_critical_angle_all_is_reflected() {
-        let grazing = Vec3::new(0.8, 0.0, 0.6);
-        assert!(refract(grazing, Vec3::Z, 1.0 / 1.5).is_none());
-        assert_eq!(fresnel_dielectric(0.6, 1.0 / 1.5), 1.0);
-        assert_eq!(schlick(0.6, 1.0 / 1.5), 1.0);
-    }
-
-    #[test]
-    fn schlick_is_near_fresnel() {
-        for i in 0..=100 {
-            let cos = i as f32 / 100.0;
-            assert!((schlick(cos, 1.5) - fresnel_dielectric(cos, 1.5)).abs() < 0.06, "cos {cos}");
-        }
-    }
 }

@@ -97,7 +97,7 @@ impl Lobe {
     /// The same lobe with another index.
     pub(super) fn of_index(self, eta: f32) -> Lobe {
         match self {
-            Lobe::Dielectric(glass) => Lobe::Dielectric(Dielectric { eta, ..glass }),
+            Lobe::Dielectric(glass) => Lobe::Dielectric(glass.of_index(eta)),
             Lobe::RoughDielectric(glass) => glass.of_index(eta),
             Lobe::CoatedDielectric(clear) => Lobe::CoatedDielectric(clear.of_index(eta)),
             other => other,

@@ -1,92 +1,22 @@
-//! A lobe with a normal of its own, such as a smooth coat over a rough base: a [`Bsdf`] split into two parts, each
-//! about a single normal. Their sum keeps every guarantee of a [`Bsdf`].
+//! The normal of a lobe that has its own.
 
-use super::bent::NEARLY_FLAT;
-use super::{Bsdf, BsdfSample, TransportMode};
-use bilux_math::{Frame, Rgb, Vec2, Vec3};
+use bilux_math::Vec3;
+
+/// The cosine between the shading normal and the triangle's above which nothing bends: what faces away then is seen
+/// within a tenth of a degree of the surface.
+pub(super) const NEARLY_FLAT: f32 = 1.0 - 1e-6;
 
 /// The lobe's index, and its normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LobeFrame {
-    index: u8,
-    n: Vec3,
-    bends: bool,
+    pub(super) index: u8,
+    pub(super) n: Vec3,
+    pub(super) bends: bool,
 }
 
 impl LobeFrame {
-    /// [`Bsdf::bending`] of the lobe.
+    /// [`super::Bsdf::bending`] of the lobe.
     pub(super) fn bend(&mut self, n_geom: Vec3) {
         self.bends = self.n.dot(n_geom) < NEARLY_FLAT;
-    }
-}
-
-/// The lobes about the shared normal, and the lobe about its own.
-pub(super) struct Parts([Bsdf; 2]);
-
-impl Bsdf {
-    /// The same BSDF with one of its lobes, by index, about a normal of its own.
-    pub fn with_lobe_frame(self, index: usize, n: Vec3) -> Bsdf {
-        let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
-        let apart = LobeFrame { index: index as u8, n, bends: false };
-        Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
-    }
-
-    /// The two parts, if a lobe has its own normal.
-    #[inline]
-    pub(super) fn parts(&self) -> Option<Parts> {
-        self.apart.as_ref().map(|apart| self.split_lobes(apart))
-    }
-
-    #[inline(never)]
-    fn split_lobes(&self, apart: &LobeFrame) -> Parts {
-        let index = usize::from(apart.index);
-        let about = |frame, bends| Bsdf { bends, splits: self.splits, ..Bsdf::empty(frame, self.n_geom) };
-        let mut shared = about(self.frame, self.bends);
-        let mut own = about(Frame::from_normal(apart.n), apart.bends);
-        let mut place = 0;
-        for (i, (weight, lobe)) in self.weighted().enumerate() {
-            if i == index {
-                own.set(0, *lobe, weight);
-            } else {
-                shared.set(place, *lobe, weight);
-                place += 1;
-            }
-        }
-        Parts([shared, own])
-    }
-}
-
-impl Parts {
-    /// [`Bsdf::eval_and_pdf`].
-    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        let (mut scattered, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);
-        for part in &self.0 {
-            let strength = part.strength_along(wo);
-            let (f, p) = part.eval_and_pdf(wo, wi, mode);
-            scattered += f;
-            pdf += strength * p;
-            total += strength;
-        }
-        (scattered, if total > 0.0 { pdf / total } else { 0.0 })
-    }
-
-    /// [`Bsdf::sample`].
-    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
-        let [shared, own] = &self.0;
-        let share = shared.strength_along(wo) / (shared.strength_along(wo) + own.strength_along(wo));
-        let (chosen, share, u_choice) = if u_choice < share {
-            (shared, share, u_choice / share)
-        } else {
-            (own, 1.0 - share, (u_choice - share) / (1.0 - share))
-        };
-        let mut sample = chosen.sample(wo, u_choice.clamp(0.0, 1.0 - f32::EPSILON), u, mode)?;
-        if sample.is_delta {
-            sample.weight = sample.weight / share;
-            sample.pdf_solid_angle *= share;
-            return (sample.pdf_solid_angle > 0.0).then_some(sample);
-        }
-        let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
-        (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
-        (pdf_solid_angle > 0.0).then_some(sample)
     }
 }

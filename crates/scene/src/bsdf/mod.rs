@@ -17,6 +17,7 @@ mod conductor;
 mod delta;
 mod dielectric;
 mod for_wo;
+mod fresnel;
 mod fuzz;
 mod ggx;
 mod lambert;
@@ -25,20 +26,23 @@ mod lobe_frame;
 mod microfacet_reflection;
 mod mirror;
 mod mixed;
+mod parts;
 mod phong_lobe;
 mod rough_dielectric;
 mod rough_diffuse;
 mod sample;
 mod thin_film;
+mod transport_mode;
 
 pub use albedo::Albedo;
 pub use bent::faces_away;
 pub use coated_dielectric::CoatedDielectric;
 pub use coated_diffuse::CoatedDiffuse;
 pub use coating::Coating;
-pub use conductor::{Conductor, Fresnel, fresnel_conductor};
-pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
 pub use for_wo::BsdfForWo;
+pub use fresnel::{Fresnel, fresnel_conductor, fresnel_dielectric, refract, schlick};
 pub use fuzz::{Fuzz, FuzzAlbedo};
 pub use ggx::Ggx;
 pub use lambert::Lambert;
@@ -50,30 +54,11 @@ pub use rough_dielectric::RoughDielectric;
 pub use rough_diffuse::RoughDiffuse;
 pub use sample::BsdfSample;
 pub use thin_film::ThinFilm;
+pub use transport_mode::TransportMode;
 
 use crate::wavelength::Wavelength;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use lobe_frame::LobeFrame;
-
-/// The quantity that a path carries: radiance from the lights, or importance from the camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TransportMode {
-    /// The path began at the camera: refraction scales radiance by the square of the relative index.
-    Radiance,
-    /// The path began at a light.
-    Importance,
-}
-
-impl TransportMode {
-    /// The quantity that the same path carries when traced from its other end.
-    #[inline]
-    pub fn reversed(self) -> TransportMode {
-        match self {
-            TransportMode::Radiance => TransportMode::Importance,
-            TransportMode::Importance => TransportMode::Radiance,
-        }
-    }
-}
 
 /// A shading normal can raise importance by more than this only for a direction within rounding of the surface itself.
 const MAX_TURNED: f32 = (1u64 << 60) as f32;
