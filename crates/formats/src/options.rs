@@ -23,7 +23,7 @@ pub struct ReadOptions {
     /// The time in seconds at which the scene is posed, in formats whose animations deform meshes (glTF).
     pub time: f32,
     /// If true, also samples the whole animation, to find where objects move
-    /// ([`bilux_scene::Inventory::movement`]).
+    /// ([`bilux_scene::SceneBuilder::movement`]).
     pub whole_movement: bool,
     /// The animation to play, by name or by number from 0; by default the first, and those that animate other
     /// targets.

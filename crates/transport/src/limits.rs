@@ -6,7 +6,7 @@ pub const DEFAULT_MAX_DEPTH: u32 = 16;
 /// The maximum depth that may be requested.
 pub const MAX_DEPTH: u32 = 1000;
 
-/// Maximum number of samples of one pixel: with [`SAMPLE_BITS`], sums cannot overflow.
+/// Maximum number of samples of one pixel, so that sums cannot overflow.
 pub const MAX_SAMPLES: u32 = 1 << 22;
 
 /// A sample is clamped to ±2⁴¹ steps.

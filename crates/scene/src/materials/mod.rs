@@ -1,7 +1,7 @@
 //! Materials of surfaces. Each material has its own file; the table is [`MATERIALS`].
 //!
-//! A material has two descriptions at a point: its [`Bsdf`], for the physical integrators, and its [`ClassicMaterial`],
-//! for Equations 1 and 2 of the paper. R₀ is the reflectance at normal incidence, and the opaque base is the part that
+//! A material has two descriptions at a point: its [`crate::Bsdf`], for the physical integrators, and its
+//! [`crate::ClassicMaterial`], for Equations 1 and 2 of the paper. R₀ is the reflectance at normal incidence, and the opaque base is the part that
 //! is neither metal nor clear. The two correspond as follows:
 //!
 //! | material | ka | kd | ks | kt | exponent | reflectivity | Fresnel |

@@ -7,7 +7,7 @@ use bilux_math::colour::srgb_decode;
 use rayon::prelude::*;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-/// The coarser levels of a texture's image, finest first; empty until a render asks for them ([`super::mipmaps::build`]).
+/// The coarser levels of a texture's image, finest first; empty until a render asks for them.
 ///
 /// They derive from the image alone, and so compare as equal.
 #[derive(Clone, Debug, Default)]
