@@ -104,8 +104,8 @@ mod tests {
             ("lib.rs", "mod a;\nmod b;\nmod c;\n"),
             ("a/mod.rs", "mod deep;\n"),
             ("a/deep.rs", "use crate::b;\nfn f() { b::g() }\n"),
-            ("b.rs", "use crate::c::*;\npub fn g() {}\n"),
-            ("c.rs", "fn f() -> super::a::deep::X {}\n"),
+            ("b.rs", "use crate::c::all;\npub fn g() { for x in all() {} }\n"),
+            ("c.rs", "pub fn all() -> R { R { ..super::a::deep::X } }\n"),
         ]);
         assert_eq!(
             found,

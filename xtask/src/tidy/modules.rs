@@ -119,8 +119,13 @@ impl Module {
     fn new(place: Vec<String>, file: &str, tokens: &[Token], has_child: impl Fn(&str) -> bool) -> Module {
         let (imports, rest) = imports(tokens);
         let rest = outside_tables(&rest);
-        let is_start = |at: usize| {
-            at == 0 || (rest[at - 1].text != "::" && rest[at - 1].text != "." && rest[at - 1].text != "in")
+        // A name in a path, a field, a declaration or the scope of a visibility is none; after `..` it is one.
+        let before = |at: usize, back: usize| at.checked_sub(back).map_or("", |at| rest[at].text);
+        let is_start = |at: usize| match before(at, 1) {
+            "::" | "mod" => false,
+            "." => before(at, 2) == ".",
+            "in" => before(at, 2) != "(",
+            _ => true,
         };
         let starts: Vec<usize> = (0..rest.len()).filter(|&at| is_start(at)).collect();
         let mut paths = Vec::new();

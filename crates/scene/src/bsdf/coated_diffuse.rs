@@ -2,6 +2,7 @@
 //! out again. [Kulla 2017] A rough base scatters like [`RoughDiffuse`]: its light is scaled like a Lambertian one's, so
 //! that no more comes out than went in.
 
+use super::rough_diffuse::GAUSS;
 use super::{Albedo, BsdfEntry, BsdfSample, Coating, FuzzAlbedo, Ggx, Lobe, RoughDiffuse, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -58,18 +59,6 @@ pub struct CoatedDiffuse {
     cover: Coating,
     rough_diffuse: Option<RoughDiffuse>,
 }
-
-/// Gauss-Legendre nodes and weights on 0..=1.
-pub(super) const GAUSS: [(f32, f32); 8] = [
-    (0.019_855_07, 0.050_614_27),
-    (0.101_666_76, 0.111_190_52),
-    (0.237_233_8, 0.156_853_32),
-    (0.408_282_7, 0.181_341_89),
-    (0.591_717_3, 0.181_341_89),
-    (0.762_766_2, 0.156_853_32),
-    (0.898_333_24, 0.111_190_52),
-    (0.980_144_9, 0.050_614_27),
-];
 
 impl CoatedDiffuse {
     /// Reflects `albedo`, 0..=1, of the light that passes the boundary and the coating.

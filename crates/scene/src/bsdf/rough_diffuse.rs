@@ -15,6 +15,18 @@ pub struct RoughDiffuse {
     again: Rgb,
 }
 
+/// Gauss-Legendre nodes and weights on 0..=1.
+pub(super) const GAUSS: [(f32, f32); 8] = [
+    (0.019_855_07, 0.050_614_27),
+    (0.101_666_76, 0.111_190_52),
+    (0.237_233_8, 0.156_853_32),
+    (0.408_282_7, 0.181_341_89),
+    (0.591_717_3, 0.181_341_89),
+    (0.762_766_2, 0.156_853_32),
+    (0.898_333_24, 0.111_190_52),
+    (0.980_144_9, 0.050_614_27),
+];
+
 impl RoughDiffuse {
     /// From a roughness, 0..=1, the colour of the microfacets, and the fraction `gets_in` of light that reaches them by
     /// cosine.
@@ -23,7 +35,7 @@ impl RoughDiffuse {
         let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
         // The light that reaches the microfacets, and the part of it that is scattered again.
         let (mut all, mut left) = (0.0, 0.0);
-        for (t, w) in super::coated_diffuse::GAUSS {
+        for (t, w) in GAUSS {
             let here = w * 4.0 * t * t * t * gets_in(t * t);
             all += here;
             left += here * unscaled.left(t * t);
