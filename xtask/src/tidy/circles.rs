@@ -20,9 +20,14 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 }
 
 /// Which parts of a folder use which, each with the file and the line of the first use.
-type Arrows = BTreeMap<(String, String), (String, usize)>;
+pub(super) type Arrows = BTreeMap<(String, String), (String, usize)>;
 
 fn check_crate(modules: &Modules) -> Vec<Violation> {
+    arrows(modules).values().flat_map(circles).collect()
+}
+
+/// The arrows of each folder, by its place; that of the crate is empty.
+pub(super) fn arrows(modules: &Modules) -> BTreeMap<Vec<String>, Arrows> {
     let mut folders: BTreeMap<Vec<String>, Arrows> = BTreeMap::new();
     for user in modules.iter() {
         for (used, line) in modules.used_by(user).filter(|(used, _)| used.place != user.place) {
@@ -31,7 +36,7 @@ fn check_crate(modules: &Modules) -> Vec<Violation> {
             arrows.entry(parts).or_insert_with(|| (user.file.clone(), line));
         }
     }
-    folders.values().flat_map(circles).collect()
+    folders
 }
 
 /// The folder that has both modules in it, and the parts of that folder to which they belong.

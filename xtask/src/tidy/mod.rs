@@ -13,6 +13,7 @@ mod ignored_tests;
 mod links;
 mod manifests;
 mod modules;
+mod reading_order;
 mod registries;
 mod repository;
 mod rust_text;
@@ -41,6 +42,7 @@ const RULES: &[Rule] = &[
     Rule { name: "manifests", check: manifests::check },
     Rule { name: "directions", check: directions::check },
     Rule { name: "circles", check: circles::check },
+    Rule { name: "reading-order", check: reading_order::check },
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
     Rule { name: "front-page", check: front_page::check },
