@@ -2,24 +2,17 @@
 
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::materials::normal_incidence_reflectance;
+use bilux_scene::materials::{self, AsPrincipled, SHARED};
 use bilux_scene::{MATERIALS, Spec, Value};
 
 /// The number under a key, if there is one.
 pub(crate) fn number(spec: &Spec, key: &str) -> Option<f32> {
-    as_number(spec.parameters.find(key)?.0)
+    spec.number(key)
 }
 
 /// The colour under a key, if there is one; white for a texture.
 pub(crate) fn colour(spec: &Spec, key: &str) -> Option<Rgb> {
-    match spec.parameters.find(key)?.0 {
-        Value::List(list) => {
-            let channel = |i: usize| list.get(i).and_then(as_number);
-            Some(Rgb::new(channel(0)?, channel(1)?, channel(2)?))
-        }
-        Value::Texture(_) => Some(Rgb::WHITE),
-        one => as_number(one).map(Rgb::grey),
-    }
+    spec.colour(key)
 }
 
 /// The point or direction under a key, if there is one.
@@ -65,19 +58,15 @@ impl MaterialSupport<'_> {
     }
 }
 
-/// Sets `out` to a metal with the colour of a named metal or of its index of refraction.
-pub(crate) fn coloured_metal(out: Spec, metal: &Spec) -> Spec {
-    let shade = Value::from(normal_incidence_reflectance(metal).unwrap_or(Rgb::grey(0.9)));
-    let taken = |key: &str, default| metal.parameters.find(key).map_or(default, |(value, _)| value.clone());
-    out.with("base_color", taken("reflectance", shade))
-        .with("base_metalness", 1.0)
-        .with("specular_roughness", taken("roughness", 0.3.into()))
-}
-
-fn as_number(value: &Value) -> Option<f32> {
-    match *value {
-        Value::Integer(i) => Some(i as f32),
-        Value::Number(x) => Some(x as f32),
-        _ => None,
+/// A material as `principled`, with warnings about what that leaves out; `None` where it is not described so.
+pub(crate) fn as_principled(spec: &Spec, format: &'static str, writing: &mut Writing) -> Option<Spec> {
+    let row = MATERIALS.iter().find(|row| row.entry.name == spec.kind)?;
+    let AsPrincipled { keeps, differs, .. } = row.principled?;
+    if !differs.is_empty() {
+        let kind = row.entry.name;
+        writing.warn(format!("a {kind} material is written as metallic-roughness, which {differs}"));
     }
+    let of_kinds = &[(row.entry.name, keeps)];
+    MaterialSupport { format, of_kinds, of_any: SHARED, textured: None }.warn_unsupported(spec, writing);
+    materials::as_principled(spec)
 }

@@ -118,6 +118,28 @@ impl Spec {
         Spec { name: name.to_owned(), kind: kind.to_owned(), ..Spec::default() }
     }
 
+    /// The number under a key, if there is one.
+    pub fn number(&self, key: &str) -> Option<f32> {
+        self.parameters.find(key)?.0.as_number().map(|x| x as f32)
+    }
+
+    /// The colour under a key, if there is one; white for a texture.
+    pub fn colour(&self, key: &str) -> Option<Rgb> {
+        match self.parameters.find(key)?.0 {
+            Value::List(list) => {
+                let channel = |i: usize| list.get(i)?.as_number().map(|x| x as f32);
+                Some(Rgb::new(channel(0)?, channel(1)?, channel(2)?))
+            }
+            Value::Texture(_) => Some(Rgb::WHITE),
+            one => one.as_number().map(|x| Rgb::grey(x as f32)),
+        }
+    }
+
+    /// The value under a key, or a default.
+    pub fn value_or(&self, key: &str, default: impl Into<Value>) -> Value {
+        self.parameters.find(key).map_or_else(|| default.into(), |(value, _)| value.clone())
+    }
+
     /// The same spec with one more parameter.
     pub fn with(mut self, key: &str, value: impl Into<Value>) -> Spec {
         self.parameters.set(key, value);

@@ -5,10 +5,10 @@ use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
-use crate::values::{MaterialSupport, colour, coloured_metal, number, texture};
+use crate::values::{MaterialSupport, as_principled, colour, number, texture};
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
-use bilux_scene::materials::with_indices;
+use bilux_scene::materials::{self, with_indices};
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Writes all materials except the plain one to a library file; returns the name of each material.
@@ -92,7 +92,10 @@ fn write_material(
     out: &mut Vec<u8>,
 ) -> Result<(), FormatError> {
     let spec = &*with_indices(spec);
-    if !HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind) {
+    let is_known = HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind);
+    let principled = if is_known { None } else { as_principled(spec, "OBJ", writing) };
+    let spec = principled.as_ref().unwrap_or(spec);
+    if !is_known && principled.is_none() {
         writing.warn(format!(
             "OBJ files cannot store the material '{}': a diffuse one is written instead",
             spec.kind
@@ -104,7 +107,8 @@ fn write_material(
         "phong" => write_phong(spec, out),
         "principled" => write_principled(spec, scene, writing, out)?,
         "conductor" => {
-            write_principled(&coloured_metal(Spec::new(&spec.name, "principled"), spec), scene, writing, out)?
+            let metal = materials::as_principled(spec);
+            write_principled(metal.as_ref().unwrap_or(spec), scene, writing, out)?
         }
         "mirror" => {
             push_colour(out, "Kd", Rgb::BLACK);

@@ -2,7 +2,10 @@
 
 use super::metals::{METALS, NAMES};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
-use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, VISIBLE_SIDES, colour_map, reflectance};
+use super::{
+    AsPrincipled, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, VISIBLE_SIDES, colour_map,
+    reflectance,
+};
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -59,6 +62,17 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         };
         Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader, inputs)? }))
     },
+    principled: Some(AsPrincipled {
+        keeps: &["metal", "eta", "k", "reflectance", "roughness"],
+        differs: "",
+        convert: |material, principled| {
+            let colour = normal_incidence_reflectance(material).unwrap_or(Rgb::grey(0.9));
+            principled
+                .with("base_color", material.value_or("reflectance", colour))
+                .with("base_metalness", 1.0)
+                .with("specular_roughness", material.value_or("roughness", 0.3))
+        },
+    }),
 };
 
 /// A metal's reflectance at normal incidence; `None` if the spec is not a valid conductor.

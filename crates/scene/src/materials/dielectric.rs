@@ -3,8 +3,8 @@
 use super::glasses::{NAMES, glass_indices};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
 use super::{
-    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, colour_map,
-    reflectance, spread,
+    ABSORPTION, AsPrincipled, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN,
+    colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, RoughDielectric};
 use crate::classic::ClassicMaterial;
@@ -14,6 +14,7 @@ use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::transcendental::exp;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -63,6 +64,11 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             translucency: reader.number("translucency").to_radians(),
         }))
     },
+    principled: Some(AsPrincipled {
+        keeps: &["glass", "eta", "dispersion", "tint", "absorption", "thin", "roughness"],
+        differs: "",
+        convert: as_principled,
+    }),
 };
 
 pub(super) const PRIORITY: Parameter = Parameter {
@@ -104,6 +110,27 @@ pub fn with_indices(spec: &Spec) -> Cow<'_, Spec> {
         spec.parameters.set("dispersion", 20.0 / abbe_number);
     }
     Cow::Owned(spec)
+}
+
+fn as_principled(material: &Spec, principled: Spec) -> Spec {
+    let material = &*with_indices(material);
+    let absorbed = material.colour("absorption").unwrap_or(Rgb::BLACK);
+    let mut out = principled
+        .with("base_color", material.value_or("tint", 1.0))
+        .with("transmission_weight", 1.0)
+        .with("specular_ior", material.value_or("eta", 1.5))
+        .with("specular_roughness", material.value_or("roughness", 0.0))
+        .with("thin_walled", material.value_or("thin", false));
+    if let Some(dispersion) = material.number("dispersion") {
+        // A scale on the dispersion of an Abbe number, 20 by default.
+        out = out
+            .with("transmission_dispersion_scale", dispersion.min(1.0))
+            .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0));
+    }
+    if !absorbed.is_black() {
+        out = out.with("transmission_depth", 1.0).with("transmission_color", absorbed.map(|a| exp(-a)));
+    }
+    out
 }
 
 struct Glass {

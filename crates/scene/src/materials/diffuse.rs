@@ -1,8 +1,8 @@
 //! `diffuse`: matte, equally bright from every direction.
 
 use super::{
-    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
-    VISIBLE_SIDES, colour_map, number_map, reflectance,
+    AsPrincipled, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
+    OPACITY, VISIBLE_SIDES, colour_map, number_map, reflectance,
 };
 use crate::bsdf::{Albedo, Bsdf, CoatedDiffuse, Coating, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
@@ -42,6 +42,19 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             roughness: number_map(reader, "roughness", inputs)?,
         }))
     },
+    principled: Some(AsPrincipled {
+        keeps: &["reflectance", "roughness"],
+        differs: "",
+        convert: |material, mut principled| {
+            if let Some((roughness, at)) = material.parameters.find("roughness") {
+                principled.parameters.set_at("base_diffuse_roughness", roughness.clone(), at.clone());
+            }
+            principled
+                .with("base_color", material.value_or("reflectance", 0.7))
+                .with("specular_weight", 0.0)
+                .with("specular_roughness", 1.0)
+        },
+    }),
 };
 
 struct Diffuse {

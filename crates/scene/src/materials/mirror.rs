@@ -1,8 +1,8 @@
 //! `mirror`: reflects like polished metal.
 
 use super::{
-    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
-    VISIBLE_SIDES, colour_map, reflectance, spread,
+    AsPrincipled, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
+    OPACITY, VISIBLE_SIDES, colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Lobe, Mirror};
 use crate::classic::ClassicMaterial;
@@ -34,6 +34,16 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             gloss: reader.number("gloss").to_radians(),
         }))
     },
+    principled: Some(AsPrincipled {
+        keeps: &["reflectance"],
+        differs: "",
+        convert: |material, principled| {
+            principled
+                .with("base_color", material.value_or("reflectance", 0.95))
+                .with("base_metalness", 1.0)
+                .with("specular_roughness", 0.0)
+        },
+    }),
 };
 
 struct MirrorMaterial {

@@ -44,6 +44,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         }
         Ok(Arc::new(Mix { a, b, amount: number_map(reader, "amount", inputs)? }))
     },
+    principled: None,
 };
 
 const fn part(name: &'static str, summary: &'static str) -> Parameter {

@@ -16,6 +16,7 @@
 //!
 //! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.
 
+mod as_principled;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -37,6 +38,7 @@ mod visible;
 use crate::bsdf::MAX_LOBES;
 use crate::error::SceneError;
 use crate::parameters::{Reader, Span, Spec};
+pub use as_principled::{AsPrincipled, SHARED};
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 pub use conductor::normal_incidence_reflectance;
@@ -58,6 +60,8 @@ pub struct MaterialEntry {
     pub entry: Entry,
     /// Makes one from its parameters.
     pub build: BuildMaterial,
+    /// What it is as `principled`; `None` for `principled` itself and for mixtures.
+    pub principled: Option<AsPrincipled>,
 }
 
 /// Builds a material from its parameters and the rest of the scene.
@@ -108,6 +112,12 @@ pub fn build(spec: &Spec, inputs: &MaterialInputs) -> Result<Arc<dyn Material>, 
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
     let reader = Reader::new(spec, &row.entry)?;
     modifiers::apply((row.build)(&reader, inputs)?, &row.entry, &reader, inputs)
+}
+
+/// The material as `principled`; `None` where its row does not say.
+pub fn as_principled(spec: &Spec) -> Option<Spec> {
+    let row = MATERIALS.iter().find(|row| row.entry.name == spec.kind)?;
+    Some(row.principled?.apply(spec))
 }
 
 const ABSORPTION: Parameter = Parameter {

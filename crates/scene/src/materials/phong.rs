@@ -5,8 +5,8 @@
 //! together, so that it never reflects more light than it receives.
 
 use super::{
-    ABSORPTION, EMISSION, EMISSION_SCALE, EMISSION_SIDES, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
-    OPACITY, THIN, colour_map, reflectance, spread,
+    ABSORPTION, AsPrincipled, EMISSION, EMISSION_SCALE, EMISSION_SIDES, ETA, Material, MaterialEntry, NORMAL,
+    NORMAL_SCALE, OPACITY, THIN, colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use crate::classic::ClassicMaterial;
@@ -73,6 +73,17 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             },
         }))
     },
+    principled: Some(AsPrincipled {
+        keeps: &["kd", "ks", "exponent"],
+        differs: "reflects slightly differently",
+        convert: |material, principled| {
+            let exponent = material.number("exponent").unwrap_or(10.0).max(0.0);
+            principled
+                .with("base_color", material.value_or("kd", 0.7))
+                .with("specular_color", material.value_or("ks", 0.2))
+                .with("specular_roughness", (2.0 / (exponent + 2.0)).sqrt().sqrt())
+        },
+    }),
 };
 
 struct Phong {

@@ -1,12 +1,13 @@
 //! Writes glTF materials: the inverse of [`super::super::material`].
 
 use super::Document;
-use super::kinds::{OF_ANY, OTHERS, as_principled};
+use super::kinds::as_principled;
 use super::pictures::Channel;
 use crate::FormatError;
 use crate::values::{MaterialSupport, colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
+use bilux_scene::materials::SHARED;
 use bilux_scene::{Spec, Texture, Value};
 use serde_json::{Value as Json, json};
 use std::f32::consts::TAU;
@@ -76,9 +77,8 @@ impl Document<'_> {
     /// Writes a material of any kind.
     pub(super) fn material(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Json, FormatError> {
         let principled = as_principled(spec, self, writing);
-        OTHERS.warn_unsupported(spec, writing);
         let in_tables = NUMBERS.iter().map(|row| row.0).chain(COLOURS.iter().map(|row| row.0));
-        let of_any: Vec<&str> = in_tables.chain(OF_ANY.iter().copied()).collect();
+        let of_any: Vec<&str> = in_tables.chain(SHARED.iter().copied()).collect();
         let textured = [&of_any[..], &TEXTURED].concat();
         let of_kinds = &[("principled", ELSEWHERE)];
         MaterialSupport { format: "glTF", of_kinds, of_any: &of_any, textured: Some(&textured) }

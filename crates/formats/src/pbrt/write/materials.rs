@@ -7,7 +7,7 @@ use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::pbrt::materials::{extinction_of, reflected_inside};
 use crate::pbrt::spectra::GLASSES;
-use crate::values::{colour, number, texture};
+use crate::values::{as_principled, colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
@@ -26,6 +26,9 @@ impl Document<'_> {
     ) -> Result<(String, Rgb), FormatError> {
         let plain = with_indices(spec);
         let spec = if GLASSES.iter().any(|(_, ours)| is_of(spec, ours)) { spec } else { &*plain };
+        let is_known = HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind);
+        let principled = if is_known { None } else { as_principled(spec, "pbrt", writing) };
+        let spec = principled.as_ref().unwrap_or(spec);
         HOLDS.warn_unsupported(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {

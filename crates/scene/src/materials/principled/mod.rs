@@ -147,6 +147,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         };
         Ok(Arc::new(Principled { maps, even, sigma_a, priority: reader.integer("priority") as u32 }))
     },
+    principled: None,
 };
 
 /// The minimum transmission colour: a smaller one would need an absorption beyond the range of numbers.
