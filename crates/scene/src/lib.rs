@@ -45,7 +45,7 @@ pub use cameras::{CAMERAS, Camera, CameraConnection, CameraSample};
 pub use classic::{ClassicLight, ClassicMaterial};
 pub use error::{SceneError, Warning};
 pub use inventory::{Animation, Inventory};
-pub use lights::{EmissionSample, LIGHTS, Light, LightSample};
+pub use lights::{ClassicLighting, EmissionSample, LIGHTS, Light, LightSample, LightTracing};
 pub use materials::{MATERIALS, Material, Nested};
 pub use mesh::Mesh;
 pub use orientation::{Orientation, OrientationSource};

@@ -17,7 +17,7 @@ pub struct Emission {
 }
 
 /// How often light subpaths are aimed at each cell of each light, in a grid on the unit square of
-/// [`bilux_scene::Light::aim`].
+/// [`bilux_scene::LightTracing::aim`].
 #[derive(Clone, Debug)]
 pub struct Guide {
     /// Cells along each side of a light's square.
@@ -88,7 +88,7 @@ impl Emission {
 
     /// The density with which a light subpath begins at a light, along a line through `p`; the other parameters are
     /// those of
-    /// [`bilux_scene::Light::emission_pdf`].
+    /// [`bilux_scene::LightTracing::emission_pdf`].
     pub(crate) fn pdf(
         &self,
         scene: &Scene,

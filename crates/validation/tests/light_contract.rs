@@ -4,8 +4,8 @@ use bilux_math::glam::DVec3;
 use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::shapes::{cuboid, icosphere, quad};
 use bilux_scene::{
-    AccelChoice, ClassicLight, EmissionSample, LIGHTS, Light, LightSample, Mesh, Object, Primitive,
-    SceneBuilder, Spec, Surface, Texture, Value,
+    AccelChoice, ClassicLight, ClassicLighting, EmissionSample, LIGHTS, Light, LightSample, LightTracing,
+    Mesh, Object, Primitive, SceneBuilder, Spec, Surface, Texture, Value,
 };
 use bilux_validation::chi_square::uniforms;
 use bilux_validation::light_contract::{CHECKS, LightCase};
@@ -207,6 +207,28 @@ impl Light for BuggyLight {
         self.light.pdf_area(from, hit)
     }
 
+    fn samples_all_light(&self) -> bool {
+        self.light.samples_all_light()
+    }
+
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
+        self.light.emits_towards(hit, wo)
+    }
+
+    fn le(&self, direction: Vec3) -> Rgb {
+        self.light.le(direction)
+    }
+
+    fn is_delta(&self) -> bool {
+        self.light.is_delta()
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        self.light.power(bounds)
+    }
+}
+
+impl LightTracing for BuggyLight {
     fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
         let pdf = self.light.direct_pdf(sample, from);
         if let Defect::Density(defect) = self.defect { defect(pdf, sample) } else { pdf }
@@ -226,14 +248,6 @@ impl Light for BuggyLight {
         self.light.unaimed_pdf(bounds, pdf_direct, direction, cos)
     }
 
-    fn samples_all_light(&self) -> bool {
-        self.light.samples_all_light()
-    }
-
-    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
-        self.light.emits_towards(hit, wo)
-    }
-
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
         self.light.emission_pdf(bounds, pdf_direct, direction, cos)
     }
@@ -241,19 +255,9 @@ impl Light for BuggyLight {
     fn is_infinite(&self) -> bool {
         self.light.is_infinite()
     }
+}
 
-    fn le(&self, direction: Vec3) -> Rgb {
-        self.light.le(direction)
-    }
-
-    fn is_delta(&self) -> bool {
-        self.light.is_delta()
-    }
-
-    fn power(&self, bounds: &Aabb) -> f32 {
-        self.light.power(bounds)
-    }
-
+impl ClassicLighting for BuggyLight {
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         self.light.classic(from, time, u, extent)
     }

@@ -1,7 +1,9 @@
 //! `ambient`: the constant light of Equation 1. Nature has no such light, and the physical integrators ignore it: use
 //! an `environment` for them.
 
-use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample, colour};
+use super::{
+    BuiltLight, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing, colour,
+};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use bilux_math::registry::Entry;
@@ -31,6 +33,16 @@ impl Light for Ambient {
         0.0
     }
 
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        0.0
+    }
+}
+
+impl LightTracing for Ambient {
     fn sample_le(&self, _: &Aabb, _time: f32, _u_point: Vec2, _u_direction: Vec2) -> Option<EmissionSample> {
         None
     }
@@ -50,15 +62,9 @@ impl Light for Ambient {
     fn is_infinite(&self) -> bool {
         false
     }
+}
 
-    fn is_delta(&self) -> bool {
-        true
-    }
-
-    fn power(&self, _bounds: &Aabb) -> f32 {
-        0.0
-    }
-
+impl ClassicLighting for Ambient {
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         None
     }

@@ -3,7 +3,8 @@
 use super::distant::{Across, disc_pdf_area, ray};
 use super::sun::Sun;
 use super::{
-    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
+    colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -67,6 +68,17 @@ impl Light for Directional {
         0.0
     }
 
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        self.irradiance.luminance() * PI * radius * radius
+    }
+}
+
+impl LightTracing for Directional {
     fn sample_le(&self, bounds: &Aabb, _time: f32, u_point: Vec2, _u: Vec2) -> Option<EmissionSample> {
         let pdf_emission = self.emission_pdf(bounds, 1.0, -self.towards, 1.0);
         ray(bounds, Across::Anywhere(u_point), -self.towards, self.irradiance, (pdf_emission, 1.0))
@@ -87,16 +99,9 @@ impl Light for Directional {
     fn is_infinite(&self) -> bool {
         true
     }
+}
 
-    fn is_delta(&self) -> bool {
-        true
-    }
-
-    fn power(&self, bounds: &Aabb) -> f32 {
-        let radius = bounds.radius();
-        self.irradiance.luminance() * PI * radius * radius
-    }
-
+impl ClassicLighting for Directional {
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         Some(ClassicLight { wi: self.towards, position: None, strength: 1.0, clearance: 0.0 })
     }

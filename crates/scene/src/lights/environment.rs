@@ -2,7 +2,7 @@
 
 use super::distant::{Across, disc_pdf_area, ray};
 use super::environment_map::EnvironmentMap;
-use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample};
+use super::{BuiltLight, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing};
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
@@ -107,6 +107,26 @@ impl Light for Environment {
         if self.backdrop || hit.is_some() { 0.0 } else { warp::sphere_pdf_solid_angle() }
     }
 
+    fn le(&self, direction: Vec3) -> Rgb {
+        let pole = if direction.y < 0.0 { self.ground } else { self.zenith };
+        self.horizon.lerp(pole, direction.y.abs())
+    }
+
+    fn is_backdrop(&self) -> bool {
+        self.backdrop
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        if self.backdrop { 0.0 } else { self.mean().luminance() * 4.0 * PI * PI * radius * radius }
+    }
+}
+
+impl LightTracing for Environment {
     fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let towards = warp::sample_sphere(u_direction);
         let pdf_direct = warp::sphere_pdf_solid_angle();
@@ -132,25 +152,9 @@ impl Light for Environment {
     fn is_infinite(&self) -> bool {
         true
     }
+}
 
-    fn le(&self, direction: Vec3) -> Rgb {
-        let pole = if direction.y < 0.0 { self.ground } else { self.zenith };
-        self.horizon.lerp(pole, direction.y.abs())
-    }
-
-    fn is_backdrop(&self) -> bool {
-        self.backdrop
-    }
-
-    fn is_delta(&self) -> bool {
-        false
-    }
-
-    fn power(&self, bounds: &Aabb) -> f32 {
-        let radius = bounds.radius();
-        if self.backdrop { 0.0 } else { self.mean().luminance() * 4.0 * PI * PI * radius * radius }
-    }
-
+impl ClassicLighting for Environment {
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         None
     }

@@ -7,7 +7,7 @@
 //! and the two strategies together do better than if each tried to find all of the light. [Karlík 2019]
 
 use super::distant::{Across, disc_pdf_area, ray};
-use super::{EmissionSample, Light, LightSample};
+use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use crate::texture::Texture;
@@ -220,32 +220,8 @@ impl Light for EnvironmentMap {
         if hit.is_some() { 0.0 } else { self.pdf(&self.asked, wi) }
     }
 
-    fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
-        let (towards, _) = self.sample(&self.sent, u_direction)?;
-        let pdf_direct = self.pdf(&self.asked, towards);
-        let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
-    }
-
-    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
-        let (towards, pdf) = self.sample(&self.sent, u)?;
-        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, self.pdf(&self.asked, towards)))
-    }
-
-    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
-        self.pdf(&self.sent, -direction)
-    }
-
-    fn emission_pdf(&self, bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
-        self.pdf(&self.sent, -direction) * disc_pdf_area(bounds)
-    }
-
     fn samples_all_light(&self) -> bool {
         false
-    }
-
-    fn is_infinite(&self) -> bool {
-        true
     }
 
     fn le(&self, direction: Vec3) -> Rgb {
@@ -268,7 +244,35 @@ impl Light for EnvironmentMap {
         let radius = bounds.radius();
         if self.is_backdrop { 0.0 } else { self.mean.luminance() * 4.0 * PI * PI * radius * radius }
     }
+}
 
+impl LightTracing for EnvironmentMap {
+    fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
+        let (towards, _) = self.sample(&self.sent, u_direction)?;
+        let pdf_direct = self.pdf(&self.asked, towards);
+        let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
+    }
+
+    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let (towards, pdf) = self.sample(&self.sent, u)?;
+        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, self.pdf(&self.asked, towards)))
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+        self.pdf(&self.sent, -direction)
+    }
+
+    fn emission_pdf(&self, bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+        self.pdf(&self.sent, -direction) * disc_pdf_area(bounds)
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
+    }
+}
+
+impl ClassicLighting for EnvironmentMap {
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         None
     }

@@ -7,8 +7,8 @@ use crate::surface::Surface;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::any::Any;
 
-/// A light source.
-pub trait Light: Any + Send + Sync {
+/// A light source, as a point of the scene sees it: what camera subpaths and the tracer need.
+pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
     /// Samples a direction from which light arrives at `from`; `None` if none does.
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample>;
 
@@ -19,7 +19,7 @@ pub trait Light: Any + Send + Sync {
 
     /// False when [`Light::sample_li`] leaves light to BSDF sampling, in directions where its density is zero.
     ///
-    /// [`Light::sample_le`] emits that light nevertheless. [Karlík 2019]
+    /// [`LightTracing::sample_le`] emits that light nevertheless. [Karlík 2019]
     fn samples_all_light(&self) -> bool {
         true
     }
@@ -31,6 +31,30 @@ pub trait Light: Any + Send + Sync {
         0.0
     }
 
+    /// False where a point of its surface emits no light towards `wo`, because the light is one-sided.
+    fn emits_towards(&self, _hit: &Surface, _wo: Vec3) -> bool {
+        true
+    }
+
+    /// Radiance from infinity, along a direction away from the scene.
+    fn le(&self, _direction: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    /// True when only the camera sees it, and it lights nothing ([`crate::Scene::shows`]).
+    fn is_backdrop(&self) -> bool {
+        false
+    }
+
+    /// True for a delta light, which no ray can hit by chance.
+    fn is_delta(&self) -> bool;
+
+    /// Approximately the luminance of the power that it emits into the scene, in W, for choosing among lights.
+    fn power(&self, bounds: &Aabb) -> f32;
+}
+
+/// What light subpaths need of a light source: the rays that leave it.
+pub trait LightTracing {
     /// Samples a ray of light into a scene within `bounds`, at a time in seconds.
     ///
     /// `None` where no light leaves, or where the scene has no size that an infinite light could aim at.
@@ -45,18 +69,18 @@ pub trait Light: Any + Send + Sync {
         sample.pdf_direct
     }
 
-    /// The density ([`EmissionSample::pdf_emission`]) with which [`Light::sample_le`] emits a ray along `direction`.
+    /// The density ([`EmissionSample::pdf_emission`]) with which [`LightTracing::sample_le`] emits a ray along `direction`.
     ///
     /// `direction` is a unit vector away from the light. `pdf_direct` is the direct density of the ray's origin
     /// ([`EmissionSample::pdf_direct`], whose mean suffices if it depends on the receiver). `cos` is
     /// [`EmissionSample::cos`].
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
 
-    /// Like [`Light::sample_le`], but aimed ([`Light::aim`]): `u` picks the rest, the point on a finite light or the
+    /// Like [`LightTracing::sample_le`], but aimed ([`LightTracing::aim`]): `u` picks the rest, the point on a finite light or the
     /// direction of an infinite one. The sample's `pdf_emission` is the density of the rest alone.
     fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample>;
 
-    /// The density of the rest that [`Light::sample_le_aimed`] picks; otherwise like [`Light::emission_pdf`].
+    /// The density of the rest that [`LightTracing::sample_le_aimed`] picks; otherwise like [`LightTracing::emission_pdf`].
     fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
 
     /// The aim of a ray of light through `p` along `direction`, as a point on the unit square.
@@ -79,28 +103,10 @@ pub trait Light: Any + Send + Sync {
 
     /// True for an infinite light, whose direct density is one of directions.
     fn is_infinite(&self) -> bool;
+}
 
-    /// False where a point of its surface emits no light towards `wo`, because the light is one-sided.
-    fn emits_towards(&self, _hit: &Surface, _wo: Vec3) -> bool {
-        true
-    }
-
-    /// Radiance from infinity, along a direction away from the scene.
-    fn le(&self, _direction: Vec3) -> Rgb {
-        Rgb::BLACK
-    }
-
-    /// True when only the camera sees it, and it lights nothing ([`crate::Scene::shows`]).
-    fn is_backdrop(&self) -> bool {
-        false
-    }
-
-    /// True for a delta light, which no ray can hit by chance.
-    fn is_delta(&self) -> bool;
-
-    /// Approximately the luminance of the power that it emits into the scene, in W, for choosing among lights.
-    fn power(&self, bounds: &Aabb) -> f32;
-
+/// What Equations 1 and 2 need of a light source.
+pub trait ClassicLighting {
     /// The light under Equations 1 and 2, from its centre offset by `extent` (0..=1) of its size towards the point that
     /// `u` picks; `None` where it does not shine.
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight>;

@@ -2,7 +2,7 @@
 
 use super::cumulative::Cumulative;
 use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
-use super::{EmissionSample, Light, LightSample, Sides};
+use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, Sides};
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
 use crate::surface::{Surface, gamma};
@@ -257,6 +257,21 @@ impl Light for MeshLight {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
+        let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
+        self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        self.radiance.luminance() * self.world_area(0.0) * PI * self.sides.count()
+    }
+}
+
+impl LightTracing for MeshLight {
     fn sample_le(
         &self,
         bounds: &Aabb,
@@ -293,23 +308,12 @@ impl Light for MeshLight {
         pdf_direct * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
     }
 
-    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
-        let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
-        self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
-    }
-
     fn is_infinite(&self) -> bool {
         false
     }
+}
 
-    fn is_delta(&self) -> bool {
-        false
-    }
-
-    fn power(&self, _bounds: &Aabb) -> f32 {
-        self.radiance.luminance() * self.world_area(0.0) * PI * self.sides.count()
-    }
-
+impl ClassicLighting for MeshLight {
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
         let (point, LightTriangle { corners, normal, .. }, _) = self.sample_point(time, u);

@@ -24,7 +24,7 @@ mod sun;
 pub use crate::light_sample::LightSample;
 pub use crate::sides::Sides;
 pub use emission_sample::EmissionSample;
-pub use light::Light;
+pub use light::{ClassicLighting, Light, LightTracing};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
 pub use mesh_light::{MeshLight, Picture};
 pub use sphere::SphereLight;

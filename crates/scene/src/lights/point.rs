@@ -1,7 +1,8 @@
 //! `point`: light from a point, the same in all directions.
 
 use super::{
-    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
+    colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
@@ -69,6 +70,16 @@ impl Light for Point {
         0.0
     }
 
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        self.intensity.luminance() * 4.0 * PI
+    }
+}
+
+impl LightTracing for Point {
     fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let direction = warp::sample_sphere(u_direction);
         ray(self.position, direction, self.intensity, self.emission_pdf(bounds, 1.0, direction, 1.0))
@@ -89,15 +100,9 @@ impl Light for Point {
     fn is_infinite(&self) -> bool {
         false
     }
+}
 
-    fn is_delta(&self) -> bool {
-        true
-    }
-
-    fn power(&self, _bounds: &Aabb) -> f32 {
-        self.intensity.luminance() * 4.0 * PI
-    }
-
+impl ClassicLighting for Point {
     fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         let wi = (self.position - from).try_normalize()?;
         Some(ClassicLight { wi, position: Some(self.position), strength: 1.0, clearance: 0.0 })

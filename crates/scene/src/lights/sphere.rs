@@ -4,7 +4,8 @@
 //! far away. [Shirley 1996, 4.2] The density of a point on it therefore depends on the receiver.
 
 use super::{
-    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
+    colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -173,6 +174,20 @@ impl Light for SphereLight {
         self.li_pdf_solid_angle(from, wi, Some(hit)) * (-hit.n_geom.dot(wi) / to_light.length_squared())
     }
 
+    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
+        hit.n_geom.dot(wo) > 0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        self.radiance.luminance() * PI / self.uniform_pdf_area()
+    }
+}
+
+impl LightTracing for SphereLight {
     fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
         let distance2 = from.distance_squared(sample.p);
         let pdf = |cone: Cone| warp::cap_pdf_solid_angle(cone.height) * (sample.cos() / distance2);
@@ -209,22 +224,12 @@ impl Light for SphereLight {
         self.uniform_pdf_area() * warp::cosine_hemisphere_pdf_solid_angle(cos)
     }
 
-    fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
-        hit.n_geom.dot(wo) > 0.0
-    }
-
     fn is_infinite(&self) -> bool {
         false
     }
+}
 
-    fn is_delta(&self) -> bool {
-        false
-    }
-
-    fn power(&self, _bounds: &Aabb) -> f32 {
-        self.radiance.luminance() * PI / self.uniform_pdf_area()
-    }
-
+impl ClassicLighting for SphereLight {
     fn classic(&self, from: Vec3, _time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let radius = self.sphere.radius;
         let within = warp::sample_sphere(u) * (radius * extent);

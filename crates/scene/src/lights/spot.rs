@@ -1,7 +1,8 @@
 //! `spot`: light from a point into a cone, with a soft edge.
 
 use super::{
-    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
+    colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -89,6 +90,17 @@ impl Light for Spot {
         0.0
     }
 
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        // The smooth edge emits half of the light in its range of cosines.
+        self.intensity.luminance() * TAU * (1.0 - 0.5 * (self.cos_inner + self.cos_outer))
+    }
+}
+
+impl LightTracing for Spot {
     fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let local = warp::sample_cone(u_direction, self.cos_outer);
         let direction = Frame::from_normal(self.axis).to_world(local).normalize();
@@ -115,16 +127,9 @@ impl Light for Spot {
     fn is_infinite(&self) -> bool {
         false
     }
+}
 
-    fn is_delta(&self) -> bool {
-        true
-    }
-
-    fn power(&self, _bounds: &Aabb) -> f32 {
-        // The smooth edge emits half of the light in its range of cosines.
-        self.intensity.luminance() * TAU * (1.0 - 0.5 * (self.cos_inner + self.cos_outer))
-    }
-
+impl ClassicLighting for Spot {
     fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         let wi = (self.position - from).try_normalize()?;
         let strength = self.falloff(wi);

@@ -1,7 +1,7 @@
 //! A uniformly bright disc at infinity: the sun, which casts soft shadows and appears in mirrors.
 
 use super::distant::{Across, disc_pdf_area, ray};
-use super::{EmissionSample, Light, LightSample};
+use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use bilux_math::transcendental::sin;
@@ -49,6 +49,24 @@ impl Light for Sun {
         if hit.is_some() || self.le(wi).is_black() { 0.0 } else { warp::cap_pdf_solid_angle(self.height) }
     }
 
+    /// Compares the chord between the directions, which keeps digits that their cosine would lose.
+    fn le(&self, direction: Vec3) -> Rgb {
+        let is_within = (direction - self.towards).length_squared() <= 2.0 * self.height * (1.0 + 1e-4);
+        if is_within { self.radiance } else { Rgb::BLACK }
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        // Integrated over the disc perpendicular to each ray, not over a surface that faces the sun's centre.
+        self.radiance.luminance() * 2.0 * PI * self.height * PI * radius * radius
+    }
+}
+
+impl LightTracing for Sun {
     fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let towards = self.direction(u_direction);
         let pdf_direct = warp::cap_pdf_solid_angle(self.height);
@@ -72,23 +90,9 @@ impl Light for Sun {
     fn is_infinite(&self) -> bool {
         true
     }
+}
 
-    /// Compares the chord between the directions, which keeps digits that their cosine would lose.
-    fn le(&self, direction: Vec3) -> Rgb {
-        let is_within = (direction - self.towards).length_squared() <= 2.0 * self.height * (1.0 + 1e-4);
-        if is_within { self.radiance } else { Rgb::BLACK }
-    }
-
-    fn is_delta(&self) -> bool {
-        false
-    }
-
-    fn power(&self, bounds: &Aabb) -> f32 {
-        let radius = bounds.radius();
-        // Integrated over the disc perpendicular to each ray, not over a surface that faces the sun's centre.
-        self.radiance.luminance() * 2.0 * PI * self.height * PI * radius * radius
-    }
-
+impl ClassicLighting for Sun {
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         Some(ClassicLight { wi: self.towards, position: None, strength: 1.0, clearance: 0.0 })
     }
