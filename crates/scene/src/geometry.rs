@@ -22,8 +22,8 @@ use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
-pub(crate) use surface_point::SurfacePoint;
-use surface_point::{normal_at, point_with_error};
+pub use surface_point::{PointAndNormals, StillTriangle};
+use surface_point::{normal_at, normals_of, point_with_error};
 
 /// All surfaces, and the trees over them.
 pub struct Geometry {
@@ -316,18 +316,22 @@ impl Geometry {
         strokes.surface(ray, hit, &to_world, object)
     }
 
-    /// The point of a hit on a triangle of the common tree, which does not move; `None` for other shapes.
+    /// A triangle of the common tree, which does not move; `None` for other shapes.
     #[inline]
-    pub(crate) fn still_point(&self, hit: &Hit) -> Option<SurfacePoint> {
+    pub(crate) fn still_triangle(&self, hit: &Hit) -> Option<StillTriangle> {
         let still = self.still.as_ref().filter(|_| hit.instance == 0)?;
         let (object, triangle) = self.locate(hit.primitive());
-        let mesh = &*self.objects[object as usize].mesh;
-        let corners = still.triangles()[hit.primitive as usize].map(Vec3::from);
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let (p, p_error) = point_with_error(corners, weights);
-        let (to_world, mirrors) = self.place(object, 0.0);
-        let normal = normal_at(mesh, mesh.triangles[triangle as usize], weights, &to_world);
-        Some(SurfacePoint::new(p, p_error, corners, mirrors, normal))
+        let placed = &self.objects[object as usize];
+        let mesh = &*placed.mesh;
+        let normal = |i: u32| mesh.normals.get(i as usize).copied().unwrap_or(Vec3::ZERO);
+        let inverse = placed.motion.static_transform()?.inverse_matrix();
+        Some(StillTriangle {
+            corners: still.triangles()[hit.primitive as usize].map(Vec3::from),
+            normals: mesh.triangles[triangle as usize].map(normal),
+            inverse: [inverse.x_axis.truncate(), inverse.y_axis.truncate(), inverse.z_axis.truncate()],
+            turn: if self.mirrored[object as usize] { -1.0 } else { 1.0 },
+            is_smooth: !mesh.normals.is_empty(),
+        })
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -350,7 +354,7 @@ impl Geometry {
         };
         let in_world = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
         let normal = normal_at(mesh, mesh.triangles[triangle as usize], weights, to_world);
-        let SurfacePoint { n_geom, n_shade, .. } = SurfacePoint::new(p, p_error, in_world, mirrors, normal);
+        let [n_geom, n_shade] = normals_of(in_world, mirrors, normal);
         let between = |[a, b, c]: [Vec2; 3]| a * weights[0] + b * weights[1] + c * weights[2];
         let uv = between(triangle_uvs(mesh, mesh.triangles[triangle as usize]));
         let uv2 = if mesh.uvs2.is_empty() { uv } else { between(indices.map(|i| mesh.uvs2[i])) };

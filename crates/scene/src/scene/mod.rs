@@ -1,7 +1,7 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
 mod lambertian;
-mod lambertian_point;
+mod lambertian_triangle;
 mod may_pass;
 mod parts;
 mod sheets;
@@ -20,7 +20,6 @@ use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
 use lambertian::Lambertian;
-pub use lambertian_point::LambertianPoint;
 use may_pass::MayPass;
 pub use parts::SceneLight;
 pub(crate) use parts::SceneParts;

@@ -5,18 +5,22 @@
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::paths::Paths;
-use super::vertices::{Point, Vertices};
+use super::triangles::Triangles;
+use super::vertices::{NO_PATH, Vertices};
 use crate::integrators::path::Path;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::faces_away;
-use bilux_scene::scene::LambertianPoint;
 use bilux_scene::surface::offset_origin;
 use std::f32::consts::FRAC_1_PI;
 
 /// What Lambertian vertices have beyond the others.
 pub(super) struct Diffuse {
+    triangles: Triangles,
+    /// The lanes of other shapes, each with its point, the bound on its error, its geometric normal, and its shading
+    /// normal.
+    others: Vec<(usize, [Vec3; 3], Vec3)>,
     n_shade: Columns3,
     reflectance: Columns3,
     next: NextRays,
@@ -39,6 +43,8 @@ struct NextRays {
 impl Default for Diffuse {
     fn default() -> Diffuse {
         Diffuse {
+            triangles: Triangles::default(),
+            others: Vec::new(),
             n_shade: ZERO3,
             reflectance: ZERO3,
             next: NextRays {
@@ -78,43 +84,59 @@ impl Paths {
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
     fn gather(&mut self, v: &mut Vertices, d: &mut Diffuse, chunk: &[(u32, u32, Hit)], task: &mut Task) {
         v.count = 0;
+        d.others.clear();
         let is_clear = task.scene().has_clear_media();
-        for (index, object, hit) in chunk {
+        let mut hits = [0; LANES];
+        for (number, (index, object, hit)) in chunk.iter().enumerate() {
             let one = &mut self.paths[*index as usize];
-            let walk = &mut one.walk;
-            if walk.depth >= task.max_depth {
+            if one.walk.depth >= task.max_depth {
                 continue;
             }
-            let wo = -Vec3::from(walk.ray.direction);
-            let plain = if is_clear { task.tracer.lambertian_point(*object, hit) } else { None };
-            let (point, n_shade, reflectance) = match plain {
-                Some(LambertianPoint { p, p_error, n_geom, n_shade, reflectance }) => {
-                    let (primitive, time) = (hit.primitive(), walk.ray.time);
-                    (Point { p, p_error, n_geom, primitive, time }, n_shade, reflectance)
+            let (i, wo) = (v.count, -Vec3::from(one.walk.ray.direction));
+            let plain = if is_clear { task.tracer.lambertian_triangle(*object, hit) } else { None };
+            let reflectance = match plain {
+                Some((triangle, reflectance)) => {
+                    d.triangles.put(i, &triangle, hit);
+                    reflectance
                 }
                 None => {
-                    let surface = task.tracer.surface(&walk.ray, hit);
+                    let surface = task.tracer.surface(&one.walk.ray, hit);
                     let reflectance = task.scene().material(&surface).lambertian_reflectance(&surface);
                     if !is_clear && !faces_away(surface.n_shade, surface.n_geom, wo) {
+                        let walk = &mut one.walk;
                         let arrived = walk.media.closest_from(task.tracer, &walk.ray, surface);
                         walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
                     }
-                    (Point::from(&surface), surface.n_shade, reflectance)
+                    d.others.push((i, [surface.p, surface.p_error, surface.n_geom], surface.n_shade));
+                    reflectance
                 }
             };
-            if faces_away(n_shade, point.n_geom, wo) {
-                // Few normals do, and are bent.
-                self.general_hits.push((*index, *hit));
-                continue;
-            }
             one.begin_event(task);
             one.sampler.enter(u64::from(one.walk.depth) + 1);
-            let i = v.push(*index, &point, wo, &one.sampler);
-            put(&mut d.n_shade, i, n_shade.to_array());
+            v.push_path(*index, (hit.primitive(), one.walk.ray.time), wo, &one.sampler);
             put(&mut d.reflectance, i, reflectance.to_array());
             put(&mut d.next.beta, i, one.walk.beta.to_array());
             d.next.eta_scale.0[i] = one.walk.eta_scale;
-            self.shaded.push(*index);
+            hits[i] = number;
+        }
+        d.triangles.points(
+            task.scene().cpu_level(),
+            [&mut v.p, &mut v.p_error, &mut v.n_geom],
+            &mut d.n_shade,
+        );
+        for &(i, point, n_shade) in &d.others {
+            v.put_point(i, point);
+            put(&mut d.n_shade, i, n_shade.to_array());
+        }
+        for i in 0..v.count {
+            if faces_away(vec3(&d.n_shade, i), vec3(&v.n_geom, i), vec3(&v.wo, i)) {
+                // Few normals do, and are bent.
+                let (index, _, hit) = chunk[hits[i]];
+                self.general_hits.push((index, hit));
+                v.paths[i] = NO_PATH;
+            } else {
+                self.shaded.push(v.paths[i]);
+            }
         }
     }
 
@@ -126,7 +148,7 @@ impl Paths {
         v.draw_points(level, v.dimension);
         run_at(level, Scatter { v, d });
         let mut plays = false;
-        for i in 0..v.count {
+        for i in (0..v.count).filter(|&i| v.paths[i] != NO_PATH) {
             let depth = self.paths[v.paths[i] as usize].walk.depth + 1;
             d.next.plays.0[i] = if depth > path.roulette_depth() { 1.0 } else { 0.0 };
             plays |= depth > path.roulette_depth();
@@ -135,7 +157,7 @@ impl Paths {
             v.draw_numbers(level, v.dimension + 1);
             run_at(level, Survive { v, next: &mut d.next });
         }
-        for i in (0..v.count).filter(|&i| d.next.goes_on.0[i] != 0.0) {
+        for i in (0..v.count).filter(|&i| d.next.goes_on.0[i] != 0.0 && v.paths[i] != NO_PATH) {
             let walk = &mut self.paths[v.paths[i] as usize].walk;
             walk.ray = v.leaving(i, vec3(&d.next.origin, i), vec3(&d.next.direction, i));
             walk.beta = rgb(&d.next.beta, i);
@@ -199,7 +221,7 @@ impl Stage for Scatter<'_> {
     #[inline(always)]
     fn run(self) {
         let Vertices { p, p_error, n_geom, wo, u, .. } = self.v;
-        let Diffuse { n_shade, reflectance, next } = self.d;
+        let Diffuse { n_shade, reflectance, next, .. } = self.d;
         for i in 0..LANES {
             let frame = Frame::from_normal(vec3(n_shade, i));
             let cos_o = vec3(wo, i).dot(frame.n);

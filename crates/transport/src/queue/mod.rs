@@ -10,6 +10,7 @@ mod general;
 mod lanes;
 mod light_samples;
 mod paths;
+mod triangles;
 mod vertices;
 
 use crate::camera_rays::CameraRays;

@@ -14,6 +14,9 @@ use bilux_math::Vec3;
 use bilux_scene::surface::{leaving, offset_origin};
 use bilux_scene::{CpuLevel, Primitive, Ray, Scene, Surface};
 
+/// Stands for a lane whose path is shaded elsewhere.
+pub(super) const NO_PATH: u32 = u32::MAX;
+
 /// The vertices, and what light samples bring them.
 pub(super) struct Vertices {
     pub(super) count: usize,
@@ -89,16 +92,34 @@ impl Default for Vertices {
 impl Vertices {
     /// Adds the vertex of a path whose sampler has entered it; returns its lane.
     pub(super) fn push(&mut self, path: u32, point: &Point, wo: Vec3, sampler: &PixelSampler) -> usize {
+        let i = self.push_path(path, (point.primitive, point.time), wo, sampler);
+        self.put_point(i, [point.p, point.p_error, point.n_geom]);
+        i
+    }
+
+    /// The same without the point.
+    #[inline]
+    pub(super) fn push_path(
+        &mut self,
+        path: u32,
+        (primitive, time): (Primitive, f32),
+        wo: Vec3,
+        sampler: &PixelSampler,
+    ) -> usize {
         let i = self.count;
         self.paths[i] = path;
-        (self.primitives[i], self.times[i]) = (point.primitive, point.time);
+        (self.primitives[i], self.times[i]) = (primitive, time);
         (self.streams[i], self.reversed_indices[i]) = sampler.state();
-        put(&mut self.p, i, point.p.to_array());
-        put(&mut self.p_error, i, point.p_error.to_array());
-        put(&mut self.n_geom, i, point.n_geom.to_array());
         put(&mut self.wo, i, wo.to_array());
         self.count += 1;
         i
+    }
+
+    /// Sets a lane's point, the bound on its error, and its geometric normal.
+    pub(super) fn put_point(&mut self, i: usize, [p, p_error, n_geom]: [Vec3; 3]) {
+        put(&mut self.p, i, p.to_array());
+        put(&mut self.p_error, i, p_error.to_array());
+        put(&mut self.n_geom, i, n_geom.to_array());
     }
 
     /// Draws a number for each path, into the first column of `u`.
@@ -179,7 +200,7 @@ impl Paths {
         let is_clear = scene.has_clear_media();
         for (i, &light) in picked.iter().enumerate().take(v.count) {
             let brought = rgb(&v.shadow.light, i);
-            if brought.is_black() {
+            if brought.is_black() || v.paths[i] == NO_PATH {
                 continue;
             }
             let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));

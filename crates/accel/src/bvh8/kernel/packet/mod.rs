@@ -10,6 +10,8 @@
 //! All of this skips only what [`super::body`] would skip too, or less; the triangle test is the same, operation by
 //! operation. So the hits are the same.
 
+mod estimate;
+mod exact;
 mod frustum;
 mod masked;
 mod orientation;

@@ -198,7 +198,7 @@ impl<W: Wide> MixedLanes<W> {
         // SAFETY: as the caller promises; the numbers along the other axes are three rows of four further on, and six.
         unsafe {
             let (y, z) = (x.add(3 * LANES), x.add(6 * LANES));
-            self.from_origins(packet, from, [W::splat(*x), W::splat(*y), W::splat(*z)])
+            self.minus_origins(packet, from, [W::splat(*x), W::splat(*y), W::splat(*z)])
         }
     }
 
@@ -207,7 +207,7 @@ impl<W: Wide> MixedLanes<W> {
     /// # Safety
     /// The machine must have the level.
     #[inline(always)]
-    unsafe fn from_origins(self, packet: &Packet, from: usize, [x, y, z]: [W; 3]) -> [W; 3] {
+    unsafe fn minus_origins(self, packet: &Packet, from: usize, [x, y, z]: [W; 3]) -> [W; 3] {
         // SAFETY: as the caller promises.
         unsafe {
             let x = x.sub(W::load(packet.origin[0].at(from)));
@@ -238,9 +238,9 @@ impl<W: Wide> Orientation<W> for MixedLanes<W> {
     unsafe fn relative(self, packet: &Packet, from: usize, [x, y, z]: Corners<W>) -> Corners<W> {
         // SAFETY: as the trait demands.
         unsafe {
-            let a = self.from_origins(packet, from, [x[0], y[0], z[0]]);
-            let b = self.from_origins(packet, from, [x[1], y[1], z[1]]);
-            let c = self.from_origins(packet, from, [x[2], y[2], z[2]]);
+            let a = self.minus_origins(packet, from, [x[0], y[0], z[0]]);
+            let b = self.minus_origins(packet, from, [x[1], y[1], z[1]]);
+            let c = self.minus_origins(packet, from, [x[2], y[2], z[2]]);
             [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]]
         }
     }

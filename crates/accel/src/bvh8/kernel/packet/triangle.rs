@@ -2,6 +2,8 @@
 
 use super::super::leaf::block_bytes;
 use super::super::node_format;
+use super::estimate::{Estimate, edge, estimate};
+use super::exact::{Exact, exact};
 use super::orientation::{Corners, Orientation};
 use super::rays::{Packet, RAYS, Row};
 use super::wide::{Float, Half, Narrow, Wide};
@@ -16,40 +18,6 @@ pub(super) struct Group<'p, O> {
     /// Its first ray.
     from: usize,
 }
-
-/// What single precision knows of a triangle that may be hit.
-struct Estimate<W> {
-    /// No distance is less, and none is greater.
-    t: [W; 2],
-    /// Rays whose hit is beyond doubt, but for its distance.
-    certain: u32,
-    /// Rays to which the edges run clockwise.
-    below: u32,
-}
-
-/// The exact stage, for half of a group.
-struct Exact<H: Half> {
-    /// Rays that pass the edges on different sides.
-    mixed: u32,
-    /// Those whose determinant is neither zero nor infinite nor NaN.
-    sound: u32,
-    /// Those for which it is negative.
-    below: u32,
-    det: H,
-    v: H,
-    w: H,
-    t: H::Narrow,
-}
-
-/// The error of an estimated distance, relative to the largest distance of a corner and to the condition of the
-/// determinant: 32 units of rounding, where the proof in docs/adr/0032-incoherent-packets.md needs 20.
-const ESTIMATE: f32 = 32.0 / 16_777_216.0;
-
-/// Below this, products may have lost digits to underflow.
-const TINY: f32 = 1.0 / (1u128 << 100) as f32;
-
-/// Determinants that are this much smaller than their terms are left to the exact stage.
-const WORST_CONDITION: f32 = 1024.0;
 
 impl<'p, O> Group<'p, O> {
     #[inline(always)]
@@ -131,7 +99,11 @@ impl<'p, O> Group<'p, O> {
                 return self.decide::<W, ANY>(corners, block, lane, mask);
             }
             let inside = zero.lt(least) | greatest.lt(zero);
-            let Estimate { t: [low, high], certain, below } = self.estimate([u, v, w], z, inside);
+            let Estimate { t: [low, high], certain, below } = {
+                let slowness = W::load(self.packet.slowness.at(from));
+                let forwards = |x| self.orientation.forwards(self.packet, from, x);
+                estimate([u, v, w], z, slowness, inside, forwards)
+            };
             let (nearest_low, nearest) =
                 (W::load(self.packet.t_low.at(from)), W::load(self.packet.t.at(from)));
             let t_min = W::load(self.packet.t_min.at(from));
@@ -155,39 +127,6 @@ impl<'p, O> Group<'p, O> {
             }
             let doubtful = mask & !hits;
             if doubtful == 0 { hits } else { hits | self.decide::<W, ANY>(corners, block, lane, doubtful) }
-        }
-    }
-
-    /// The distance of a triangle whose edges, with the sizes of their terms, are given.
-    ///
-    /// # Safety
-    /// As for [`Group::resolve`].
-    #[inline(always)]
-    unsafe fn estimate<W: Wide>(&self, [u, v, w]: [(W, W); 3], z: [W; 3], inside: u32) -> Estimate<W>
-    where
-        O: Orientation<W>,
-    {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let det = u.0.add(v.0).add(w.0);
-            let inverse = W::splat(1.0).div(det);
-            let along = u.0.fmadd(z[0], v.0.fmadd(z[1], w.0.mul(z[2])));
-            let slowness = W::load(self.packet.slowness.at(self.from));
-            let t = self.orientation.forwards(self.packet, self.from, along.mul(inverse)).mul(slowness);
-            let size = u.1.add(v.1).add(w.1);
-            let reach = z[0].abs().max(z[1].abs()).max(z[2].abs());
-            let condition = size.mul(inverse.abs());
-            let error = condition.mul(W::splat(ESTIMATE)).mul(reach.mul(slowness));
-            let (low, high) = (t.sub(error), t.add(error));
-            let (tiny, infinity) = (W::splat(TINY), W::splat(f32::INFINITY));
-            let certain = inside
-                & condition.lt(W::splat(WORST_CONDITION))
-                & tiny.lt(size)
-                & tiny.lt(size.mul(reach))
-                & tiny.lt(error)
-                & W::splat(f32::NEG_INFINITY).lt(low)
-                & high.lt(infinity);
-            Estimate { t: [low, high], certain, below: det.lt(W::splat(0.0)) }
         }
     }
 
@@ -434,39 +373,6 @@ impl<'p, O> Group<'p, O> {
             // SAFETY: as the caller promises.
             unsafe { self.packet.set_limits::<W>(self.from) };
         }
-    }
-}
-
-/// On which side of an edge the rays pass, and the size of the terms from which that is computed.
-///
-/// # Safety
-/// The machine must have the level.
-#[inline(always)]
-unsafe fn edge<W: Wide>(x: [W; 3], y: [W; 3], p: usize, q: usize) -> (W, W) {
-    // SAFETY: as the caller promises.
-    unsafe {
-        let (a, b) = (x[p].mul(y[q]), y[p].mul(x[q]));
-        (a.sub(b), a.abs().add(b.abs()))
-    }
-}
-
-/// # Safety
-/// The machine must have the level.
-#[inline(always)]
-unsafe fn exact<H: Half>([x, y, z]: Corners<H>, depth: H::Narrow) -> Exact<H> {
-    // SAFETY: as the caller promises.
-    unsafe {
-        let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
-        let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
-        let zero = H::splat(0.0);
-        let mixed = (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (zero.lt(u) | zero.lt(v) | zero.lt(w));
-        let det = u.add(v).add(w);
-        let infinity = H::splat(f64::INFINITY);
-        let (below, above) = (det.lt(zero), zero.lt(det));
-        let sound = (below & zero.sub(infinity).lt(det)) | (above & det.lt(infinity));
-        let along = u.mul(z[0]).add(v.mul(z[1])).add(w.mul(z[2]));
-        let t = along.div(det.mul(H::widen(depth))).narrow();
-        Exact { mixed, sound, below, det, v, w, t }
     }
 }
 

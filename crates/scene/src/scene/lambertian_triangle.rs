@@ -1,0 +1,21 @@
+//! Triangles of surfaces that integrators shade many at a time.
+
+use super::Tracer;
+use super::lambertian::Lambertian;
+use crate::geometry::StillTriangle;
+use bilux_accel::Hit;
+use bilux_math::Rgb;
+
+impl Tracer<'_> {
+    /// The triangle of an object that was hit, and the object's reflectance if that is the same everywhere. Its
+    /// [`StillTriangle::point`] is that of [`Tracer::surface`], in less time. `None` for points and lines, and for all other
+    /// objects.
+    #[inline]
+    pub fn lambertian_triangle(&self, object: u32, hit: &Hit) -> Option<(StillTriangle, Rgb)> {
+        let parts = &self.scene.parts;
+        let Some(Lambertian::Constant(reflectance)) = parts.lambertian.get(object as usize) else {
+            return None;
+        };
+        Some((parts.geometry.still_triangle(hit)?, *reflectance))
+    }
+}

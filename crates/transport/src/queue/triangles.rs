@@ -1,0 +1,88 @@
+//! Points on up to [`LANES`] triangles, in columns.
+
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
+use bilux_accel::Hit;
+use bilux_scene::CpuLevel;
+use bilux_scene::geometry::StillTriangle;
+
+/// The triangles, and where they are hit.
+pub(super) struct Triangles {
+    corners: [Columns3; 3],
+    normals: [Columns3; 3],
+    inverse: [Columns3; 3],
+    turn: Column,
+    /// 1 where the mesh has normals, otherwise 0.
+    is_smooth: Column,
+    u: Column,
+    v: Column,
+}
+
+impl Default for Triangles {
+    fn default() -> Triangles {
+        Triangles {
+            corners: [ZERO3; 3],
+            normals: [ZERO3; 3],
+            inverse: [ZERO3; 3],
+            turn: Column::ZERO,
+            is_smooth: Column::ZERO,
+            u: Column::ZERO,
+            v: Column::ZERO,
+        }
+    }
+}
+
+impl Triangles {
+    /// Sets the triangle of a lane.
+    #[inline]
+    pub(super) fn put(&mut self, i: usize, triangle: &StillTriangle, hit: &Hit) {
+        let StillTriangle { corners, normals, inverse, turn, is_smooth } = *triangle;
+        for k in 0..3 {
+            put(&mut self.corners[k], i, corners[k].to_array());
+            put(&mut self.normals[k], i, normals[k].to_array());
+            put(&mut self.inverse[k], i, inverse[k].to_array());
+        }
+        self.turn.0[i] = turn;
+        self.is_smooth.0[i] = if is_smooth { 1.0 } else { 0.0 };
+        (self.u.0[i], self.v.0[i]) = (hit.u, hit.v);
+    }
+
+    /// Computes the points, the bounds on their errors, and their geometric and shading normals.
+    pub(super) fn points(
+        &self,
+        level: CpuLevel,
+        [p, p_error, n_geom]: [&mut Columns3; 3],
+        n_shade: &mut Columns3,
+    ) {
+        run_at(level, Points { triangles: self, p, p_error, n_geom, n_shade });
+    }
+}
+
+struct Points<'a> {
+    triangles: &'a Triangles,
+    p: &'a mut Columns3,
+    p_error: &'a mut Columns3,
+    n_geom: &'a mut Columns3,
+    n_shade: &'a mut Columns3,
+}
+
+impl Stage for Points<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Points { triangles, p, p_error, n_geom, n_shade } = self;
+        let Triangles { corners, normals, inverse, turn, is_smooth, u, v } = triangles;
+        for i in 0..LANES {
+            let triangle = StillTriangle {
+                corners: [vec3(&corners[0], i), vec3(&corners[1], i), vec3(&corners[2], i)],
+                normals: [vec3(&normals[0], i), vec3(&normals[1], i), vec3(&normals[2], i)],
+                inverse: [vec3(&inverse[0], i), vec3(&inverse[1], i), vec3(&inverse[2], i)],
+                turn: turn.0[i],
+                is_smooth: is_smooth.0[i] != 0.0,
+            };
+            let point = triangle.point(u.0[i], v.0[i]);
+            put(p, i, point[0].to_array());
+            put(p_error, i, point[1].to_array());
+            put(n_geom, i, point[2].to_array());
+            put(n_shade, i, point[3].to_array());
+        }
+    }
+}
