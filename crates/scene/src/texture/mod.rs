@@ -119,8 +119,7 @@ impl Texture {
         match &self.image.texels {
             // Larger bytes are larger numbers, so that only the largest need to be decoded.
             Texels::Bytes(bytes) if rises && self.image.is_whole() => {
-                let most = bytes.iter().fold([0; 4], |a, b| std::array::from_fn(|i| a[i].max(b[i])));
-                let image = Image { width: 1, height: 1, texels: Texels::Bytes(vec![most]) };
+                let image = Image { width: 1, height: 1, texels: Texels::Bytes(vec![largest(bytes)]) };
                 self.finished(self.raw(&image, 0, 0))
             }
             _ => self.texels().fold(Rgb::BLACK, greater),
@@ -288,6 +287,20 @@ impl ColourMap {
             None => self.colour,
         }
     }
+}
+
+/// The maximum of each channel.
+fn largest(texels: &[[u8; 4]]) -> [u8; 4] {
+    const TEXELS: usize = 16;
+    let (blocks, rest) = texels.as_chunks::<TEXELS>();
+    let mut largest = [[0; 4]; TEXELS];
+    for block in blocks {
+        for (largest, byte) in largest.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
+            *largest = (*largest).max(*byte);
+        }
+    }
+    let greater = |a: [u8; 4], b: &[u8; 4]| std::array::from_fn(|i| a[i].max(b[i]));
+    largest.iter().chain(rest).fold([0; 4], greater)
 }
 
 #[cfg(test)]
