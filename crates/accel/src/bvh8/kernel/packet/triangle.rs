@@ -185,7 +185,10 @@ impl<'p, O> Group<'p, O> {
     /// # Safety
     /// As for [`Group::test`].
     #[inline(always)]
-    unsafe fn name<W: Wide>(&mut self, block: *const u8, lane: usize, mask: u32) {
+    unsafe fn name<W: Wide>(&mut self, block: *const u8, lane: usize, mask: u32)
+    where
+        O: Orientation<W>,
+    {
         // SAFETY: as the caller promises; a tree has fewer numbers than 32 bits can count.
         unsafe {
             let place = block.cast::<f32>().add(lane).offset_from(self.packet.base()) as u32;
@@ -195,7 +198,9 @@ impl<'p, O> Group<'p, O> {
             {
                 let at = self.from + half;
                 Float::<W>::put(primitive, mask, self.packet.primitive.at_mut(at));
-                Float::<W>::put(place, mask, self.packet.place.at_mut(at));
+                if O::ESTIMATES {
+                    Float::<W>::put(place, mask, self.packet.place.at_mut(at));
+                }
             }
         }
     }
@@ -282,11 +287,16 @@ impl<'p, O> Group<'p, O> {
     /// # Safety
     /// As for [`Group::resolve`].
     #[inline(always)]
-    unsafe fn keep<W: Wide>(&mut self, from: usize, mask: u32, t: Float<W>, [u, v]: [Float<W>; 2]) {
+    unsafe fn keep<W: Wide>(&mut self, from: usize, mask: u32, t: Float<W>, [u, v]: [Float<W>; 2])
+    where
+        O: Orientation<W>,
+    {
         // SAFETY: as the caller promises.
         unsafe {
             t.store_some(mask, self.packet.t.at_mut(from));
-            t.store_some(mask, self.packet.t_low.at_mut(from));
+            if O::ESTIMATES {
+                t.store_some(mask, self.packet.t_low.at_mut(from));
+            }
             u.store_some(mask, self.packet.u.at_mut(from));
             v.store_some(mask, self.packet.v.at_mut(from));
         }
