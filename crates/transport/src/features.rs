@@ -17,7 +17,7 @@ use crate::settings::{RenderSettings, threads};
 use crate::window::{TILE, Window};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
-use bilux_scene::{Camera, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
+use bilux_scene::{Camera, ClassicMaterial, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -134,21 +134,29 @@ pub fn coverage(
 /// Adds one sample to each pixel of a tile.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.scene, false);
-    for (i, sum) in sums.iter_mut().enumerate() {
-        let (x, y) = tile.position(i);
-        let (ray, _) = eye.sample(&mut tracer, x, y, sample);
-        sum.add(&mut tracer, &ray, sample);
+    let places = (0..sums.len()).map(|i| tile.position(i));
+    let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(&mut tracer, x, y, sample).0).collect();
+    let mut hits = vec![None; rays.len()];
+    tracer.hits(&rays, &mut hits);
+    for ((sum, ray), hit) in sums.iter_mut().zip(&rays).zip(hits) {
+        let surface = hit.map(|hit| tracer.surface(ray, &hit));
+        sum.add(&mut tracer, ray, surface, sample);
     }
 }
 
 impl Sums {
-    fn add(&mut self, tracer: &mut Tracer, ray: &Ray, sample: u32) {
+    /// Adds a sample, given its camera ray and the first surface along it.
+    fn add(&mut self, tracer: &mut Tracer, ray: &Ray, mut surface: Option<Surface>, sample: u32) {
         let scene = tracer.scene;
         let mut media = Media::at_start(tracer, ray);
         let (mut ray, mut beta) = (*ray, Rgb::WHITE);
         for event in 0..=MAX_SMOOTH {
             let direction = Vec3::from(ray.direction);
-            let Some((surface, passed)) = media.closest(tracer, &ray) else {
+            if event > 0 {
+                surface = tracer.closest(&ray);
+            }
+            let arrived = surface.and_then(|surface| media.closest_from(tracer, &ray, surface));
+            let Some((surface, passed)) = arrived else {
                 self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
                 return;
             };
@@ -156,12 +164,16 @@ impl Sums {
             if event == 0 {
                 self.add_surface(scene, &surface, sample);
             }
-            let bsdf = media.bsdf(scene, &surface, &Wavelength::D);
-            let smooth = (bsdf.is_delta() && event < MAX_SMOOTH)
-                .then(|| bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance))
-                .flatten();
+            let classic = scene.material(&surface).classic(&surface);
+            // Where there is a diffuse lobe, not all lobes are smooth.
+            let may_be_smooth = event < MAX_SMOOTH && classic.kd.is_black();
+            let smooth =
+                may_be_smooth.then(|| media.bsdf(scene, &surface, &Wavelength::D)).and_then(|bsdf| {
+                    let only_way = || bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance);
+                    bsdf.is_delta().then(only_way).flatten()
+                });
             let Some(next) = smooth else {
-                self.albedo += beta * albedo(scene, &surface, -direction);
+                self.albedo += beta * albedo(&classic, scene.emission(&surface, -direction));
                 let faces = surface.n_geom.dot(direction) < 0.0;
                 self.normal += if faces { surface.n_shade } else { -surface.n_shade };
                 return;
@@ -184,9 +196,7 @@ impl Sums {
 }
 
 /// The albedo of a surface by the colours of its material, or its emission where that is larger.
-fn albedo(scene: &Scene, surface: &Surface, wo: Vec3) -> Rgb {
-    let classic = scene.material(surface).classic(surface);
-    let glows = scene.emission(surface, wo);
+fn albedo(classic: &ClassicMaterial, glows: Rgb) -> Rgb {
     let channel = |c: usize| (classic.kd[c] + classic.ks[c].max(classic.kt[c])).max(glows[c]);
     Rgb::from_array([0, 1, 2].map(channel)).clamp(0.0, 1.0)
 }
