@@ -31,6 +31,10 @@ pub const DARK: f32 = 0.3;
 /// Side of a block that has one noise value, in pixels.
 const BLOCK: u32 = 8;
 
+/// The part of a sample's time that has to be left for one more. The first samples take longer than the later ones, since
+/// caches are cold.
+const NEARLY_ONE: f64 = 0.9;
+
 /// Watches a film as samples are added.
 pub(crate) struct StopMonitor {
     stop: Stop,
@@ -64,8 +68,9 @@ impl StopMonitor {
         {
             let elapsed = self.begun.elapsed();
             let each = elapsed.as_secs_f64() / f64::from(self.done);
-            let fits = (limit.saturating_sub(elapsed).as_secs_f64() / each.max(1e-9)) as u32;
-            length = length.min(fits);
+            let fits = limit.saturating_sub(elapsed).as_secs_f64() / each.max(1e-9);
+            let last = u32::from(fits >= NEARLY_ONE);
+            length = length.min((fits as u32).max(last));
         }
         let is_fine =
             matches!((self.noise(), self.stop.noise), (Some(noise), Some(enough)) if noise <= enough);
