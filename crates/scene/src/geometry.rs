@@ -330,7 +330,6 @@ impl Geometry {
             normals: mesh.triangles[triangle as usize].map(normal),
             inverse: [inverse.x_axis.truncate(), inverse.y_axis.truncate(), inverse.z_axis.truncate()],
             turn: if self.mirrored[object as usize] { -1.0 } else { 1.0 },
-            is_smooth: !mesh.normals.is_empty(),
         })
     }
 

@@ -42,19 +42,37 @@ fn settings() -> RenderSettings {
     RenderSettings { threads: 2, seed: 3, ..RenderSettings::new(37, 29, 6) }
 }
 
-fn one_by_one(scene: &Scene, name: &str) -> (Film, Counters) {
-    let rendered = shoot(scene, &OneByOne(integrator(name)), &settings());
+fn one_by_one(scene: &Scene, name: &str, settings: &RenderSettings) -> (Film, Counters) {
+    let rendered = shoot(scene, &OneByOne(integrator(name)), settings);
     (rendered.film, rendered.counters)
 }
 
 fn assert_same(name: &str, scene: &Scene) {
+    assert_same_with(name, scene, &settings());
+}
+
+fn assert_same_with(name: &str, scene: &Scene, settings: &RenderSettings) {
     for queued in QUEUED {
-        let together = shoot(scene, &*integrator(queued), &settings());
-        let (film, counters) = one_by_one(scene, queued);
+        let together = shoot(scene, &*integrator(queued), settings);
+        let (film, counters) = one_by_one(scene, queued, settings);
         let same = film.to_rgb().iter().zip(together.film.to_rgb()).filter(|(a, b)| **a == *b).count();
-        assert!(film == together.film, "{name}, {queued}: {same} of {} pixels are the same", 37 * 29);
+        let pixels = film.to_rgb().len();
+        assert!(film == together.film, "{name}, {queued}: {same} of {pixels} pixels are the same");
         assert_eq!(counters, together.counters, "{name}, {queued}");
     }
+}
+
+/// Many samples of a tile: as paths end, others begin, so that paths of different lengths are shaded together.
+#[test]
+fn queues_that_are_refilled_give_the_same() {
+    let settings = RenderSettings { threads: 2, seed: 5, ..RenderSettings::new(18, 16, 32) };
+    let mut holes = mixed();
+    let lace = diffuse(0.8f32).with("opacity", 0.5f32);
+    put(&mut holes, "lace", ball(Vec3::new(0.0, 0.5, 1.0), 0.5, 8, true), lace);
+    assert_same_with("mixed", &built(&mixed()), &settings);
+    assert_same_with("holes", &built(&holes), &settings);
+    let spec = Spec::new("", "cornell");
+    assert_same_with("cornell", &built(&bilux_scene::generators::generate(&spec).unwrap()), &settings);
 }
 
 #[test]
@@ -167,7 +185,7 @@ fn every_level_of_instructions_gives_the_same() {
             let scene = mixed().build(&accel, [0.0, 0.0], 1.0).unwrap();
             shoot(&scene, &*integrator(queued), &settings()).film
         };
-        let truth = one_by_one(&built(&mixed()), queued).0;
+        let truth = one_by_one(&built(&mixed()), queued, &settings()).0;
         for level in CpuLevel::ALL {
             assert!(at(level) == truth, "{queued}, {}", level.name());
         }

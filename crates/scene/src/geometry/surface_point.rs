@@ -18,14 +18,12 @@ pub(super) fn normals_of([a, b, c]: [Vec3; 3], mirrors: bool, normal: Option<Vec
 pub struct StillTriangle {
     /// Its corners in world space.
     pub corners: [Vec3; 3],
-    /// The normals of its corners in object space; zero where the mesh has none.
+    /// The normals of its corners in object space; zero where the mesh has none, so that the triangle's own counts.
     pub normals: [Vec3; 3],
     /// The axes of the inverse of its object's transform.
     pub inverse: [Vec3; 3],
     /// The orientation of its front: -1 if mirrored, otherwise 1.
     pub turn: f32,
-    /// Whether the mesh has normals.
-    pub is_smooth: bool,
 }
 
 /// A point of a triangle in world space: `p`, the bound on its rounding error, and the geometric and shading normals.
@@ -36,14 +34,13 @@ impl StillTriangle {
     /// Compiles to vector instructions in a loop.
     #[inline(always)]
     pub fn point(&self, u: f32, v: f32) -> PointAndNormals {
-        let StillTriangle { corners: [a, b, c], normals, inverse, turn, is_smooth } = *self;
+        let StillTriangle { corners: [a, b, c], normals, inverse, turn } = *self;
         let weights = [1.0 - u - v, u, v];
         let (p, p_error) = point_with_error([a, b, c], weights);
         let winding = unit_or_lane((b - a).cross(c - a), Vec3::Y) * turn;
         let n = blend(normals, weights);
-        let smooth =
-            unit_or_lane(Vec3::new(inverse[0].dot(n), inverse[1].dot(n), inverse[2].dot(n)), winding);
-        let n_shade = pick(is_smooth, smooth, winding);
+        let n = Vec3::new(inverse[0].dot(n), inverse[1].dot(n), inverse[2].dot(n));
+        let n_shade = unit_or_lane(n, winding);
         [p, p_error, pick(n_shade.dot(winding) < 0.0, -winding, winding), n_shade]
     }
 }

@@ -11,8 +11,6 @@ pub(super) struct Triangles {
     normals: [Columns3; 3],
     inverse: [Columns3; 3],
     turn: Column,
-    /// 1 where the mesh has normals, otherwise 0.
-    is_smooth: Column,
     u: Column,
     v: Column,
 }
@@ -24,7 +22,6 @@ impl Default for Triangles {
             normals: [ZERO3; 3],
             inverse: [ZERO3; 3],
             turn: Column::ZERO,
-            is_smooth: Column::ZERO,
             u: Column::ZERO,
             v: Column::ZERO,
         }
@@ -35,14 +32,13 @@ impl Triangles {
     /// Sets the triangle of a lane.
     #[inline]
     pub(super) fn put(&mut self, i: usize, triangle: &StillTriangle, hit: &Hit) {
-        let StillTriangle { corners, normals, inverse, turn, is_smooth } = *triangle;
+        let StillTriangle { corners, normals, inverse, turn } = *triangle;
         for k in 0..3 {
             put(&mut self.corners[k], i, corners[k].to_array());
             put(&mut self.normals[k], i, normals[k].to_array());
             put(&mut self.inverse[k], i, inverse[k].to_array());
         }
         self.turn.0[i] = turn;
-        self.is_smooth.0[i] = if is_smooth { 1.0 } else { 0.0 };
         (self.u.0[i], self.v.0[i]) = (hit.u, hit.v);
     }
 
@@ -69,14 +65,13 @@ impl Stage for Points<'_> {
     #[inline(always)]
     fn run(self) {
         let Points { triangles, p, p_error, n_geom, n_shade } = self;
-        let Triangles { corners, normals, inverse, turn, is_smooth, u, v } = triangles;
+        let Triangles { corners, normals, inverse, turn, u, v } = triangles;
         for i in 0..LANES {
             let triangle = StillTriangle {
                 corners: [vec3(&corners[0], i), vec3(&corners[1], i), vec3(&corners[2], i)],
                 normals: [vec3(&normals[0], i), vec3(&normals[1], i), vec3(&normals[2], i)],
                 inverse: [vec3(&inverse[0], i), vec3(&inverse[1], i), vec3(&inverse[2], i)],
                 turn: turn.0[i],
-                is_smooth: is_smooth.0[i] != 0.0,
             };
             let point = triangle.point(u.0[i], v.0[i]);
             put(p, i, point[0].to_array());
