@@ -21,9 +21,6 @@ use std::sync::{Mutex, PoisonError};
 /// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
 
-/// Samples of a job between two looks at whether it was cancelled.
-const JOB_PART: usize = 1 << 14;
-
 /// Runs some passes over all tiles, on all threads.
 pub(crate) fn all_passes(
     pool: &rayon::ThreadPool,
@@ -172,15 +169,10 @@ impl<'a> Work<'a> {
         tracer: &mut Tracer<'a>,
         (part, queue): (&mut Film, &mut PathQueue),
     ) -> bool {
-        for samples in samples.all().chunks(JOB_PART) {
-            if self.progress.is_cancelled() {
-                return false;
-            }
-            queue.take(path, &self.eye, tracer, samples, |(x, y, sample), light| {
-                part.add(x, y, sample, light)
-            });
-        }
-        true
+        let is_cancelled = || self.progress.is_cancelled();
+        queue.take(path, &self.eye, tracer, &samples.all(), is_cancelled, |(x, y, sample), light| {
+            part.add(x, y, sample, light)
+        })
     }
 
     /// The same for subpaths from both ends.

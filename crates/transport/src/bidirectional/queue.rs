@@ -32,6 +32,14 @@ pub(crate) struct BothEndsQueue<const N: usize = 1> {
     shadow_rays: [ShadowRays<Unoccluded<N>>; 2],
 }
 
+/// The camera subpaths of all samples, and what they find.
+struct CameraPaths<'b, const N: usize, T> {
+    both_ends: &'b BothEnds<'b, N>,
+    samples: &'b [QueuedSample],
+    walks: Vec<Walk<'b, N>>,
+    tallies: &'b mut [T],
+}
+
 /// What a connection brings if its shadow ray hits nothing.
 struct Unoccluded<const N: usize> {
     sample: u32,
@@ -59,26 +67,20 @@ impl<const N: usize> BothEndsQueue<N> {
         if both_ends.shows {
             self.light_paths.show_to_camera(samples, task, techniques, add_splat);
         }
-        let mut walks: Vec<Walk<N>> =
-            samples.iter().map(|sample| both_ends.leave_camera(&sample.ray)).collect();
+        let walks = samples.iter().map(|sample| both_ends.leave_camera(&sample.ray)).collect();
         self.active.clear();
         self.active.extend((0..samples.len() as u32).filter(|&i| samples[i as usize].is_wanted));
+        let mut camera_paths = CameraPaths { both_ends, samples, walks, tallies };
         while !self.active.is_empty() {
-            self.arrive(both_ends, samples, &mut walks, task, tallies);
-            self.connect(both_ends, samples, task, tallies);
-            self.scatter(both_ends, samples, &mut walks, task, tallies);
+            self.arrive(&mut camera_paths, task);
+            self.connect(&mut camera_paths, task);
+            self.scatter(&mut camera_paths, task);
         }
     }
 
     /// Takes every camera subpath to its next vertex, or out of the scene.
-    fn arrive<T: Tally<N>>(
-        &mut self,
-        both_ends: &BothEnds<N>,
-        samples: &[QueuedSample],
-        walks: &mut [Walk<N>],
-        task: &mut Task,
-        tallies: &mut [T],
-    ) {
+    fn arrive<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
+        let CameraPaths { both_ends, samples, walks, tallies } = paths;
         self.rays.clear();
         self.rays.extend(self.active.iter().map(|&i| walks[i as usize].ray));
         self.hits.clear();
@@ -106,13 +108,8 @@ impl<const N: usize> BothEndsQueue<N> {
     }
 
     /// Connects every vertex with lights and with its light subpath.
-    fn connect<T: Tally<N>>(
-        &mut self,
-        both_ends: &BothEnds<N>,
-        samples: &[QueuedSample],
-        task: &mut Task,
-        tallies: &mut [T],
-    ) {
+    fn connect<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
+        let CameraPaths { both_ends, samples, tallies, .. } = paths;
         self.shadow_rays.iter_mut().for_each(ShadowRays::clear);
         let is_clear = task.scene().has_clear_media();
         for (z, (sample, sampler)) in self.vertices.iter().zip(&mut self.samples) {
@@ -136,14 +133,8 @@ impl<const N: usize> BothEndsQueue<N> {
     }
 
     /// Merges every vertex with photons, and sends its subpath on.
-    fn scatter<T: Tally<N>>(
-        &mut self,
-        both_ends: &BothEnds<N>,
-        samples: &[QueuedSample],
-        walks: &mut [Walk<N>],
-        task: &mut Task,
-        tallies: &mut [T],
-    ) {
+    fn scatter<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
+        let CameraPaths { both_ends, samples, walks, tallies } = paths;
         self.next.clear();
         for (z, (index, sampler)) in self.vertices.iter().zip(&self.samples) {
             let i = *index as usize;

@@ -1,7 +1,6 @@
 //! Many paths at a time. A queue advances all of its paths by one event, then by the next: their rays are traced in
-//! batches, and what surfaces and lights have in common is computed in
-//! vector loops. An integrator says what happens to *one*
-//! path ([`Path::interact`]); the queue decides which paths come next, in which order. It gives the same light as
+//! batches, and what surfaces and lights have in common is computed in vector loops. An integrator says what happens to
+//! *one* path ([`Path::interact`]); the queue decides which paths come next, in which order. It gives the same light as
 //! following one path after the other, bit for bit. See docs/adr/0011-one-path-or-waves.md.
 
 mod camera;
@@ -52,16 +51,18 @@ impl PathQueue {
 
     /// Takes samples: a pixel's column and row, and the sample's index. `add` receives the light of each, as they end.
     ///
-    /// As paths end, others begin, so that the queue is never less than half full until the last of them.
+    /// As paths end, others begin, so that the queue is never less than half full until the last of them. False when it
+    /// was cancelled on the way.
     pub(crate) fn take<'a>(
         &mut self,
         path: &Path,
         rays: &CameraRays<'a>,
         tracer: &mut Tracer<'a>,
         samples: &[(u32, u32, u32)],
+        is_cancelled: impl Fn() -> bool,
         mut add: impl FnMut((u32, u32, u32), Rgb),
-    ) {
-        let Some(&(x, y, index)) = samples.first() else { return };
+    ) -> bool {
+        let Some(&(x, y, index)) = samples.first() else { return true };
         // Its tools serve all paths; each path has its own random numbers and wavelength.
         let (_, mut task) = rays.sample(tracer, x, y, index);
         self.state.paths.clear();
@@ -69,13 +70,16 @@ impl PathQueue {
         self.free.clear();
         let mut waiting = samples;
         loop {
-            if self.active.len() <= PATHS / 2 {
+            if self.active.len() <= PATHS / 2 && !waiting.is_empty() {
+                if is_cancelled() {
+                    return false;
+                }
                 let (now, later) = waiting.split_at(waiting.len().min(PATHS - self.active.len()));
                 self.begin(rays, now, &mut task);
                 waiting = later;
             }
             if self.active.is_empty() {
-                return;
+                return true;
             }
             self.advance(path, &mut task);
             for &index in &self.active {
