@@ -1,10 +1,12 @@
 //! Choosing among many by given weights.
 
+use super::guide;
+
 /// A cumulative distribution.
 pub(super) struct Cumulative {
     /// `sums[i]` is the total probability of `0..=i`; the last is 1.
     sums: Vec<f32>,
-    /// For equal parts of 0..1, about where the search among many begins: [Chen 1974]'s guide table.
+    /// A guide to search them; empty if they are few.
     guide: Vec<u32>,
 }
 
@@ -23,9 +25,7 @@ impl Cumulative {
         if let Some(last) = sums.last_mut() {
             *last = 1.0;
         }
-        let parts = if sums.len() > FEW { sums.len() } else { 0 };
-        let first = |part: usize| sums.partition_point(|&sum| sum <= part as f32 / parts as f32) as u32;
-        let guide = (0..parts).map(first).collect();
+        let guide = if sums.len() > FEW { guide::guide(&sums).collect() } else { Vec::new() };
         Cumulative { sums, guide }
     }
 
@@ -47,19 +47,11 @@ impl Cumulative {
     /// The number of sums that are at most `u`, but never all of them.
     #[inline]
     fn find(&self, u: f32) -> usize {
-        let last = self.sums.len() - 1;
-        let Some(most) = self.guide.len().checked_sub(1) else {
+        if self.guide.is_empty() {
+            let last = self.sums.len() - 1;
             return self.sums.iter().map(|&sum| usize::from(sum <= u)).sum::<usize>().min(last);
-        };
-        let mut at = self.guide[((u * self.guide.len() as f32) as usize).min(most)] as usize;
-        // The part may have been rounded up.
-        while at > 0 && self.sums[at - 1] > u {
-            at -= 1;
         }
-        while at < last && self.sums[at] <= u {
-            at += 1;
-        }
-        at
+        guide::find(&self.sums, &self.guide, u)
     }
 }
 

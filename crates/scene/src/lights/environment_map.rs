@@ -6,11 +6,12 @@
 //! Direct lighting samples only directions that are brighter than the average: BSDF sampling finds the rest as well,
 //! and the two strategies together do better than if each tried to find all of the light. [Karlík 2019]
 
+use super::distribution_2d::{Cell, Distribution2d};
 use super::distant::{Across, disc_pdf_area, ray};
 use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
-use crate::texture::Texture;
+use crate::texture::{Texels, Texture};
 use bilux_math::transcendental::{acos, atan2, sin_cos, sin_cos_f64};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -19,6 +20,8 @@ use std::sync::Arc;
 /// An environment map as a light.
 pub(super) struct EnvironmentMap {
     texture: Arc<Texture>,
+    /// The texels are used as they are stored.
+    is_plain: bool,
     scale: Rgb,
     /// The rotation of the map, as a fraction of a whole turn.
     turn: f32,
@@ -29,20 +32,11 @@ pub(super) struct EnvironmentMap {
     /// Heights of the rows' edges on the unit sphere, from the top down.
     heights: Vec<f64>,
     /// The distribution for emission sampling.
-    sent: Chances,
+    sent: Distribution2d,
     /// The distribution for direct lighting.
-    asked: Chances,
+    asked: Distribution2d,
     /// Radiance averaged over all directions.
     mean: Rgb,
-}
-
-/// The probability of each cell; empty if there are no rows.
-#[derive(Default)]
-struct Chances {
-    /// For each row, the fraction of all light in it and the rows above.
-    row_cdf: Vec<f64>,
-    /// For each cell, the fraction of its row's light in it and the cells to its left.
-    cell_cdf: Vec<f64>,
 }
 
 /// The maximum number of cells on each side, however large the map.
@@ -52,14 +46,34 @@ const FINE: usize = 512;
 /// Black parts of the map still get this fraction of a uniform sky's density.
 const FLOOR: f64 = 1e-3;
 
+/// Larger maps are not decoded: they would take three times the memory.
+const MAX_DECODED: usize = 1 << 23;
+
+/// True when the texels are stored as the colours that they stand for.
+fn has_plain_floats(texture: &Texture) -> bool {
+    let is_plain = texture.factor == Rgb::WHITE && texture.channel.is_none() && texture.threshold.is_none();
+    is_plain && matches!(texture.image.texels, Texels::Floats { .. })
+}
+
+/// The same map with plain texels, if it is not too large.
+fn decoded(texture: Arc<Texture>) -> Arc<Texture> {
+    let (width, height) = (texture.width(), texture.height());
+    if !texture.image.is_whole() || width.saturating_mul(height) > MAX_DECODED {
+        return texture;
+    }
+    Arc::new(Texture::new(&texture.name, width, height, texture.texels().collect(), texture.is_data))
+}
+
 impl EnvironmentMap {
     /// A map whose colours are multiplied by `scale`, rotated to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
         // Densities are defined per texel.
         let texture = texture.baked(false).map_or(texture, |(picture, _)| Arc::new(picture));
+        let texture = if has_plain_floats(&texture) { texture } else { decoded(texture) };
         let (columns, rows) = (texture.width().min(MAX.0), texture.height().min(MAX.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
         let mut map = EnvironmentMap {
+            is_plain: has_plain_floats(&texture),
             texture,
             scale,
             turn: rotation / TAU,
@@ -67,8 +81,8 @@ impl EnvironmentMap {
             columns,
             rows,
             heights: (0..=rows).map(height).collect(),
-            sent: Chances::default(),
-            asked: Chances::default(),
+            sent: Distribution2d::default(),
+            asked: Distribution2d::default(),
             mean: Rgb::BLACK,
         };
         map.add_up();
@@ -106,7 +120,7 @@ impl EnvironmentMap {
                 cells.iter().map(|cell| (cell + even).max(0.0)).collect::<Vec<_>>()
             };
             let rows = cells.chunks_exact(self.columns).enumerate().flat_map(of_row);
-            Chances::new(&rows.collect::<Vec<_>>(), self.columns)
+            Distribution2d::new(&rows.collect::<Vec<_>>(), self.columns)
         };
         let floor = FLOOR * if all > 0.0 { even } else { 1.0 };
         (self.sent, self.asked) = (over(floor), over(-even));
@@ -118,16 +132,24 @@ impl EnvironmentMap {
     }
 
     /// The map at a position in texels, filtered bilinearly, wrapped around and clamped at the poles.
+    #[inline]
     fn texel(&self, at: Vec2) -> Rgb {
         let (width, height) = (self.texture.width(), self.texture.height());
+        // Positions are at least 0, and so these at least -1/2.
         let (x, y) = (at.x - 0.5, at.y - 0.5);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let column = |x: f32| (x as i64).rem_euclid(width as i64) as usize;
+        let floor = |x: f32| if x < 0.0 { -1.0 } else { (x as usize) as f32 };
+        let (fx, fy) = (x - floor(x), y - floor(y));
+        let left = (floor(x) + 1.0) as usize;
+        let column = |x: usize| if x < width { x } else { x % width };
+        let (x0, x1) = (column(left + width - 1), column(left));
         let row = |y: f32| (y.max(0.0) as usize).min(height - 1);
-        let (x0, x1) = (column(x.floor()), column(x.floor() + 1.0));
-        let (y0, y1) = (row(y.floor()), row(y.floor() + 1.0));
-        let texel = |x: usize, y: usize| self.texture.texel(x, y);
-        texel(x0, y0).lerp(texel(x1, y0), fx).lerp(texel(x0, y1).lerp(texel(x1, y1), fx), fy)
+        let (y0, y1) = (row(floor(y)) * width, row(floor(y) + 1.0) * width);
+        let four = [y0 + x0, y0 + x1, y1 + x0, y1 + x1];
+        let [a, b, c, d] = match &self.texture.image.texels {
+            Texels::Floats { colours, .. } if self.is_plain => four.map(|i| colours[i]),
+            _ => four.map(|i| self.texture.texel(i % width, i / width)),
+        };
+        a.lerp(b, fx).lerp(c.lerp(d, fx), fy)
     }
 
     /// The position of a direction in the map, 0..=1 from the left and from the top.
@@ -137,82 +159,45 @@ impl EnvironmentMap {
     }
 
     /// Density over solid angle; zero where there is no map.
-    fn pdf(&self, chances: &Chances, direction: Vec3) -> f32 {
-        if self.is_backdrop || chances.row_cdf.is_empty() {
-            return 0.0;
-        }
-        let place = self.place(direction);
-        let row = ((place.y * self.rows as f32) as usize).min(self.rows - 1);
-        let column = ((place.x * self.columns as f32) as usize).min(self.columns - 1);
-        let share = share(&chances.row_cdf, row) * share(chances.cells_of(row), column);
-        (share / self.solid_angle(row)) as f32
+    fn pdf(&self, cells: &Distribution2d, direction: Vec3) -> f32 {
+        if self.is_backdrop || cells.is_empty() { 0.0 } else { self.pdf_at(cells, self.place(direction)) }
     }
 
-    /// Samples a direction towards the map, with its density.
-    fn sample(&self, chances: &Chances, u: Vec2) -> Option<(Vec3, f32)> {
-        if self.is_backdrop || chances.row_cdf.is_empty() {
+    #[inline]
+    fn pdf_at(&self, cells: &Distribution2d, place: Vec2) -> f32 {
+        let row = ((place.y * self.rows as f32) as usize).min(self.rows - 1);
+        let column = ((place.x * self.columns as f32) as usize).min(self.columns - 1);
+        (cells.probability(row, column) / self.solid_angle(row)) as f32
+    }
+
+    #[inline]
+    fn le_at(&self, place: Vec2) -> Rgb {
+        let (width, height) = (self.texture.width() as f32, self.texture.height() as f32);
+        self.texel(place * Vec2::new(width, height)) * self.scale
+    }
+
+    /// Samples a direction towards the map, with its place and its density.
+    fn sample(&self, cells: &Distribution2d, u: Vec2) -> Option<(Vec3, Vec2, f32)> {
+        if self.is_backdrop || cells.is_empty() {
             return None;
         }
-        let (row, down) = choose(&chances.row_cdf, u.y);
-        let (column, right) = choose(chances.cells_of(row), u.x);
+        let Cell { row, column, right, down } = cells.choose(u);
         let (top, bottom) = (self.heights[row], self.heights[row + 1]);
         let y = top + (bottom - top) * down;
         let turned = (column as f64 + right) / self.columns as f64;
         let (sin, cos) = sin_cos((turned as f32 + self.turn - 0.5) * TAU);
         let r = (1.0 - y * y).max(0.0).sqrt() as f32;
         let direction = Vec3::new(r * sin, y as f32, -r * cos).normalize();
-        let pdf = self.pdf(chances, direction);
-        (pdf > 0.0).then_some((direction, pdf))
+        let place = self.place(direction);
+        let pdf = self.pdf_at(cells, place);
+        (pdf > 0.0).then_some((direction, place, pdf))
     }
-}
-
-impl Chances {
-    /// Probabilities in proportion to the cells' values; empty if all of them are zero.
-    fn new(cells: &[f64], columns: usize) -> Chances {
-        let mut chances = Chances::default();
-        let mut row_sum = 0.0;
-        for cells in cells.chunks_exact(columns) {
-            let begin = chances.cell_cdf.len();
-            let mut sum = 0.0;
-            for cell in cells {
-                sum += cell;
-                chances.cell_cdf.push(sum);
-            }
-            if sum > 0.0 {
-                chances.cell_cdf[begin..].iter_mut().for_each(|c| *c /= sum);
-            }
-            row_sum += sum;
-            chances.row_cdf.push(row_sum);
-        }
-        if row_sum <= 0.0 {
-            return Chances::default();
-        }
-        chances.row_cdf.iter_mut().for_each(|r| *r /= row_sum);
-        chances
-    }
-
-    fn cells_of(&self, row: usize) -> &[f64] {
-        let columns = self.cell_cdf.len() / self.row_cdf.len();
-        &self.cell_cdf[row * columns..(row + 1) * columns]
-    }
-}
-
-fn share(cdf: &[f64], i: usize) -> f64 {
-    cdf[i] - if i == 0 { 0.0 } else { cdf[i - 1] }
-}
-
-/// The interval that a number picks, and the number's position within it.
-fn choose(cdf: &[f64], u: f32) -> (usize, f64) {
-    let u = f64::from(u);
-    let i = cdf.partition_point(|&c| c <= u).min(cdf.len() - 1);
-    let (share, end) = (share(cdf, i), cdf[i]);
-    (i, if share > 0.0 { (1.0 - (end - u) / share).clamp(0.0, 1.0) } else { 0.5 })
 }
 
 impl Light for EnvironmentMap {
     fn sample_li(&self, _from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
-        let (wi, pdf_solid_angle) = self.sample(&self.asked, u)?;
-        let (li, n_light) = (self.le(wi), Vec3::ZERO);
+        let (wi, place, pdf_solid_angle) = self.sample(&self.asked, u)?;
+        let (li, n_light) = (self.le_at(place), Vec3::ZERO);
         Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 })
     }
 
@@ -228,8 +213,16 @@ impl Light for EnvironmentMap {
         if self.rows == 0 {
             return Rgb::BLACK;
         }
-        let (width, height) = (self.texture.width() as f32, self.texture.height() as f32);
-        self.texel(self.place(direction) * Vec2::new(width, height)) * self.scale
+        self.le_at(self.place(direction))
+    }
+
+    fn le_and_pdf(&self, _from: Vec3, direction: Vec3) -> (Rgb, f32) {
+        if self.rows == 0 {
+            return (Rgb::BLACK, 0.0);
+        }
+        let place = self.place(direction);
+        let is_sampled = !self.is_backdrop && !self.asked.is_empty();
+        (self.le_at(place), if is_sampled { self.pdf_at(&self.asked, place) } else { 0.0 })
     }
 
     fn is_backdrop(&self) -> bool {
@@ -248,15 +241,15 @@ impl Light for EnvironmentMap {
 
 impl LightTracing for EnvironmentMap {
     fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
-        let (towards, _) = self.sample(&self.sent, u_direction)?;
+        let (towards, place, _) = self.sample(&self.sent, u_direction)?;
         let pdf_direct = self.pdf(&self.asked, towards);
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le_at(place), (pdf_emission, pdf_direct))
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
-        let (towards, pdf) = self.sample(&self.sent, u)?;
-        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, self.pdf(&self.asked, towards)))
+        let (towards, place, pdf) = self.sample(&self.sent, u)?;
+        ray(bounds, Across::At(aim), -towards, self.le_at(place), (pdf, self.pdf(&self.asked, towards)))
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {

@@ -41,6 +41,11 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
         Rgb::BLACK
     }
 
+    /// [`Light::le`] of a ray from `from` that leaves the scene, and [`Light::li_pdf_solid_angle`] of its direction.
+    fn le_and_pdf(&self, from: Vec3, direction: Vec3) -> (Rgb, f32) {
+        (self.le(direction), self.li_pdf_solid_angle(from, direction, None))
+    }
+
     /// True when only the camera sees it, and it lights nothing ([`crate::Scene::shows`]).
     fn is_backdrop(&self) -> bool {
         false

@@ -130,6 +130,11 @@ impl Scene {
         &self.parts.lights
     }
 
+    /// The lights that rays reach where they leave the scene, each with its index in [`Scene::lights`].
+    pub fn infinite_lights(&self) -> impl Iterator<Item = (usize, &dyn Light)> {
+        self.parts.infinite.iter().map(|&index| (index, &*self.parts.lights[index].light))
+    }
+
     /// Index in [`Scene::lights`] of an object that is a light.
     pub fn light_index_of(&self, object: u32) -> Option<usize> {
         self.parts.object_lights[object as usize].map(|i| i as usize)
@@ -224,8 +229,8 @@ impl Scene {
 
     /// Radiance from infinity, along a direction away from the scene, after this many specular events.
     pub fn background(&self, direction: Vec3, events: u32) -> Rgb {
-        let shown = self.parts.lights.iter().filter(|l| self.shows(&*l.light, events, true));
-        shown.map(|l| l.light.le(direction)).sum()
+        let shown = self.infinite_lights().filter(|(_, light)| self.shows(*light, events, true));
+        shown.map(|(_, light)| light.le(direction)).sum()
     }
 
     /// True when an infinite light is visible to a ray after this many scattering events, all specular if `specular`.

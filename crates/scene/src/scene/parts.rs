@@ -43,6 +43,8 @@ pub(crate) struct SceneParts {
     pub(super) classic_ambient: Rgb,
     pub(super) has_backdrop: bool,
     pub(super) has_surroundings: bool,
+    /// Indices of the infinite lights.
+    pub(super) infinite: Vec<usize>,
     pub(super) has_nested: bool,
     pub(super) has_holes: bool,
     pub(super) hides_backs: bool,
@@ -106,6 +108,7 @@ impl SceneParts {
         let has_backdrop = lights.iter().any(|l| l.light.is_backdrop());
         let surrounds =
             |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
+        let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
         let of_object = |o: &Placed| materials[o.material as usize].nested();
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
@@ -125,6 +128,7 @@ impl SceneParts {
             classic_ambient,
             has_backdrop,
             has_surroundings,
+            infinite,
             has_nested,
             has_holes,
             hides_backs,

@@ -33,17 +33,18 @@ impl EmitterHit {
 pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(EmitterHit)) {
     let scene = task.scene();
     let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
-    for (index, light) in scene.lights().iter().enumerate() {
-        let light = &light.light;
-        let radiance = light.le(direction);
-        if radiance.is_black() || !scene.shows(&**light, walk.depth, walk.specular) {
+    for (index, light) in scene.infinite_lights() {
+        let (radiance, pdf) = match walk.depth {
+            0 => (light.le(direction), 0.0),
+            _ => light.le_and_pdf(origin, direction),
+        };
+        if radiance.is_black() || !scene.shows(light, walk.depth, walk.specular) {
             continue;
         }
         if walk.depth == 0 || light.is_backdrop() {
             visit(EmitterHit::only(radiance));
             continue;
         }
-        let pdf = light.li_pdf_solid_angle(origin, direction, None);
         let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
         visit(EmitterHit { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
     }

@@ -209,18 +209,22 @@ impl Path {
         let direction = Vec3::from(walk.ray.direction);
         task.note(walk.depth, || format!("leaves the scene towards {direction}"));
         let mut sum = Rgb::BLACK;
-        for (index, light) in task.scene().lights().iter().enumerate() {
-            let radiance = light.light.le(direction);
-            if radiance.is_black() || !task.scene().shows(&*light.light, walk.depth, walk.specular) {
+        for (index, light) in task.scene().infinite_lights() {
+            let (radiance, sampled) = match walk.last {
+                Some((from, pdf)) => {
+                    let (radiance, light_pdf) = light.le_and_pdf(from, direction);
+                    (radiance, Some((pdf, light_pdf)))
+                }
+                None => (light.le(direction), None),
+            };
+            if radiance.is_black() || !task.scene().shows(light, walk.depth, walk.specular) {
                 continue;
             }
-            sum += match walk.last {
-                _ if light.light.is_backdrop() => radiance,
-                None => radiance,
-                Some((from, pdf)) => {
-                    let light_pdf = light.light.li_pdf_solid_angle(from, direction, None);
+            sum += match sampled {
+                Some((pdf, light_pdf)) if !light.is_backdrop() => {
                     radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
                 }
+                _ => radiance,
             };
         }
         sum
