@@ -20,6 +20,18 @@ pub fn sin_cos_near_zero(x: f32) -> (f32, f32) {
     (sin, cos)
 }
 
+/// Sine and cosine of an angle in whole turns, 0..=1, without a branch. The error is at most one unit in the last place of
+/// [`sin_cos_near_zero`] for the angle's distance from the nearest quarter turn.
+#[inline(always)]
+pub fn sin_cos_of_turns(turns: f32) -> (f32, f32) {
+    let quarters = 4.0 * turns;
+    let nearest = (quarters + 0.5) as i32;
+    let (sin, cos) = sin_cos_near_zero((quarters - nearest as f32) * std::f32::consts::FRAC_PI_2);
+    let (sin, cos) = if nearest & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    let signed = |x: f32, is_negative: bool| if is_negative { -x } else { x };
+    (signed(sin, nearest & 2 != 0), signed(cos, (nearest + 1) & 2 != 0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -36,6 +48,17 @@ mod tests {
             };
             assert!(places(sin, exact_sin) <= 1.0, "sin {x}: {sin}, {exact_sin}");
             assert!(places(cos, exact_cos) <= 1.0, "cos {x}: {cos}, {exact_cos}");
+        }
+    }
+
+    #[test]
+    fn turns_go_all_around() {
+        for i in 0..=100_000 {
+            let turns = i as f32 / 100_000.0;
+            let (sin, cos) = sin_cos_of_turns(turns);
+            let (exact_sin, exact_cos) = sin_cos_f64(f64::from(turns) * std::f64::consts::TAU);
+            assert!((f64::from(sin) - exact_sin).abs() < 2e-7, "sin {turns}: {sin}, {exact_sin}");
+            assert!((f64::from(cos) - exact_cos).abs() < 2e-7, "cos {turns}: {cos}, {exact_cos}");
         }
     }
 }

@@ -50,7 +50,7 @@ pub use materials::{MATERIALS, Material, Nested};
 pub use mesh::Mesh;
 pub use orientation::{Orientation, OrientationSource};
 pub use parameters::{Parameters, Reader, Spec, Value};
-pub use scene::{Scene, Tracer};
+pub use scene::{Scene, Shading, Tracer};
 pub use span::Span;
 pub use strokes::StrokeWidths;
 pub use surface::Surface;

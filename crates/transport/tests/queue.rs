@@ -3,9 +3,11 @@
 
 mod common;
 
-use bilux_math::{Rgb, Transform, Vec3};
+use bilux_math::hash::{hash_words, unit_f32};
+use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec};
+use bilux_scene::texture::Texture;
+use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{Film, Merging, PixelIntegrator, RenderSettings, Splats, Task};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life};
 use std::sync::Arc;
@@ -138,6 +140,61 @@ fn every_kind_of_shape_is_the_same() {
     assert_same("instances", &built(&instances));
 }
 
+/// Textures of 4x4 texels, with everything from nothing to all of it.
+fn texture(seed: u64, is_data: bool) -> Arc<Texture> {
+    let number = |i: usize, k: u64| unit_f32(hash_words([seed, i as u64, k]) as u32);
+    let texel = |i: usize| {
+        Rgb::new(number(i, 0), number(i, 1), number(i, 2)).map(|c| (c * 1.5 - 0.25).clamp(0.0, 1.0))
+    };
+    Arc::new(Texture::new("numbers", 4, 4, (0..16).map(texel).collect(), is_data))
+}
+
+/// Plastic, metal and everything between, smooth in places, with normal maps, emission and colours at vertices.
+fn opaque_bases() -> SceneBuilder {
+    let mut scene = mixed();
+    scene.textures.extend([texture(1, false), texture(2, true), texture(3, true), texture(4, true)]);
+    let principled = || Spec::new("", "principled");
+    let textured = || {
+        principled()
+            .with("base_color", Value::Texture(0))
+            .with("base_metalness", Value::Texture(1))
+            .with("specular_roughness", Value::Texture(2))
+    };
+    let mesh = ball(Vec3::new(0.3, 0.5, 1.3), 0.5, 6, true);
+    let uvs = mesh.positions.iter().map(|p| Vec2::new(p.x * 2.0, p.y * 2.0)).collect();
+    let vertex_kd =
+        mesh.positions.iter().map(|p| Rgb::from_array((*p * 0.4 + Vec3::splat(0.5)).to_array())).collect();
+    let mesh = Mesh { uvs, ..(*mesh).clone() };
+    let moved = |x: f32, mesh: &Mesh| {
+        let positions = mesh.positions.iter().map(|p| *p + Vec3::X * x).collect();
+        Arc::new(Mesh { positions, ..mesh.clone() })
+    };
+    put(&mut scene, "textured", moved(0.0, &mesh), textured());
+    let bumpy = textured().with("normal", Value::Texture(3)).with("normal_scale", 2.0f32);
+    put(&mut scene, "bumpy", moved(1.1, &mesh), bumpy.clone());
+    put(&mut scene, "glowing", moved(-1.1, &mesh), bumpy.with("emission", Rgb::new(0.2, 0.1, 0.4)));
+    let painted = Mesh { vertex_kd, ..mesh.clone() };
+    put(&mut scene, "painted", moved(2.2, &painted), principled().with("specular_roughness", 0.4f32));
+    let shiny = principled().with("base_metalness", 1.0f32).with("specular_roughness", 0.04f32);
+    put(&mut scene, "shiny", moved(-2.2, &mesh), shiny);
+    let dark = principled().with("base_color", 0.0f32).with("specular_weight", 0.0f32);
+    put(&mut scene, "dark", ball(Vec3::new(0.0, 0.2, 2.2), 0.2, 5, true), dark);
+    put(&mut scene, "faceted", ball(Vec3::new(0.6, 0.2, 2.2), 0.2, 5, false), textured());
+    scene
+}
+
+#[test]
+fn plastic_and_metal_are_the_same() {
+    let scene = opaque_bases();
+    assert_same("opaque bases", &built(&scene));
+    let mut absorbs = scene.clone();
+    let tinted = Spec::new("tinted", "dielectric").with("absorption", Rgb::new(2.0, 0.3, 0.1));
+    put(&mut absorbs, "around", ball(Vec3::new(0.3, 0.5, 1.3), 0.7, 8, true), tinted);
+    assert_same("opaque bases in glass", &built(&absorbs));
+    let shallow = RenderSettings { max_depth: 2, ..settings() };
+    assert_same_with("opaque bases, few bounces", &built(&scene), &shallow);
+}
+
 #[test]
 fn every_kind_of_medium_is_the_same() {
     let glass = |name: &str| Spec::new(name, "dielectric");
@@ -182,10 +239,10 @@ fn every_level_of_instructions_gives_the_same() {
         let at = |cpu_level: CpuLevel| {
             let mut accel = AccelChoice::default();
             accel.options.cpu_level = cpu_level;
-            let scene = mixed().build(&accel, [0.0, 0.0], 1.0).unwrap();
+            let scene = opaque_bases().build(&accel, [0.0, 0.0], 1.0).unwrap();
             shoot(&scene, &*integrator(queued), &settings()).film
         };
-        let truth = one_by_one(&built(&mixed()), queued, &settings()).0;
+        let truth = one_by_one(&built(&opaque_bases()), queued, &settings()).0;
         for level in CpuLevel::ALL {
             assert!(at(level) == truth, "{queued}, {}", level.name());
         }

@@ -29,6 +29,7 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Mirror(m) => m.reflectance == Rgb::WHITE,
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
         Lobe::MicrofacetReflection(gloss) => gloss.is_white(),
+        Lobe::OpaqueBase(base) => base.is_white(),
         Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
         Lobe::CoatedDiffuse(_) | Lobe::CoatedDielectric(_) | Lobe::Fuzz(_) => false,
     }

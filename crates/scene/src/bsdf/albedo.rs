@@ -22,7 +22,9 @@ const FACETS: [u32; 2] = [8, 16];
 /// For one cosine and roughness: the gain at each index, then the total reflected by opaque microfacets.
 type Entry = [f32; INDICES + 1];
 
-struct Table {
+/// The table.
+#[derive(Debug)]
+pub struct AlbedoTable {
     at: [[Entry; COSINES]; ROUGHNESSES],
     /// Cosine-weighted means over the hemisphere.
     mean: [Entry; ROUGHNESSES],
@@ -31,7 +33,7 @@ struct Table {
     left_before: [[f32; COSINES]; ROUGHNESSES],
 }
 
-static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
+static TABLE: LazyLock<AlbedoTable> = LazyLock::new(AlbedoTable::new);
 
 /// The single-bounce albedo of the microfacets of a boundary between two media.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +53,15 @@ impl Albedo {
     /// The albedo of microfacets on a boundary whose index, below over above, is `eta`, at least 1. Anisotropic
     /// microfacets use the smaller alpha of the two directions, which reflects more.
     pub fn new(ggx: &Ggx, eta: f32) -> Albedo {
+        Albedo::of_alpha(ggx.least(), eta)
+    }
+
+    /// The same for isotropic microfacets.
+    #[inline(always)]
+    pub(super) fn of_alpha(alpha: f32, eta: f32) -> Albedo {
         let amplitude = ((eta - 1.0) / (eta + 1.0)).clamp(0.0, 1.0);
         Albedo {
-            roughness: ggx.least().clamp(0.0, 1.0).sqrt() * (ROUGHNESSES - 1) as f32,
+            roughness: alpha.clamp(0.0, 1.0).sqrt() * (ROUGHNESSES - 1) as f32,
             index: amplitude.sqrt() * (INDICES - 1) as f32,
             straight: amplitude * amplitude,
         }
@@ -109,6 +117,49 @@ impl Albedo {
         lerp(TABLE.left[row][k], TABLE.left[row + 1][k], between) / whole
     }
 
+    /// [`Albedo::opaque_at`] and [`Albedo::at`], but for rounding, without a branch.
+    #[inline(always)]
+    pub(super) fn pair_at(&self, table: &AlbedoTable, cos: f32) -> [f32; 2] {
+        let (column, share) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        let of = |row: usize| {
+            let [a, b] = [&table.at[row][column], &table.at[row][column + 1]].map(|entry| self.pair(entry));
+            [lerp(a[0], b[0], share), lerp(a[1], b[1], share)]
+        };
+        self.mixed(of(row), of(row + 1), between)
+    }
+
+    /// [`Albedo::opaque_mean`] and [`Albedo::mean`], as in [`Albedo::pair_at`].
+    #[inline(always)]
+    pub(super) fn pair_mean(&self, table: &AlbedoTable) -> [f32; 2] {
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        self.mixed(self.pair(&table.mean[row]), self.pair(&table.mean[row + 1]), between)
+    }
+
+    /// The total of an entry, and its gain at the index.
+    #[inline(always)]
+    fn pair(&self, entry: &Entry) -> [f32; 2] {
+        let (index, share) = place(self.index, INDICES);
+        [entry[INDICES], lerp(entry[index], entry[index + 1], share)]
+    }
+
+    /// Between two pairs: the total, and the reflected fraction.
+    #[inline(always)]
+    fn mixed(&self, a: [f32; 2], b: [f32; 2], share: f32) -> [f32; 2] {
+        let (total, gain) = (lerp(a[0], b[0], share), lerp(a[1], b[1], share));
+        [total, total * self.straight + gain * (1.0 - self.straight)]
+    }
+
+    #[inline(always)]
+    pub(super) fn to_numbers(self) -> [f32; 3] {
+        [self.roughness, self.index, self.straight]
+    }
+
+    #[inline(always)]
+    pub(super) fn from_numbers([roughness, index, straight]: [f32; 3]) -> Albedo {
+        Albedo { roughness, index, straight }
+    }
+
     /// One number of the four entries around a position, interpolated bilinearly.
     #[inline]
     fn entry(&self, cos: f32, of: impl Fn(&Entry) -> f32) -> f32 {
@@ -137,19 +188,25 @@ impl Albedo {
 }
 
 /// The first of the two neighbouring entries, and the position's fraction of the way to the second.
-#[inline]
+#[inline(always)]
 fn place(x: f32, count: usize) -> (usize, f32) {
-    let first = (x as usize).min(count - 2);
+    let first = (x as i32).clamp(0, count as i32 - 2) as usize;
     (first, x - first as f32)
 }
 
-#[inline]
+#[inline(always)]
 fn lerp(a: f32, b: f32, share: f32) -> f32 {
     a + (b - a) * share
 }
 
-impl Table {
-    fn new() -> Table {
+impl AlbedoTable {
+    /// The only one; it is computed on first use.
+    #[inline]
+    pub fn shared() -> &'static AlbedoTable {
+        &TABLE
+    }
+
+    fn new() -> AlbedoTable {
         let step = |i: usize, count: usize| i as f32 / (count - 1) as f32;
         let at: [[Entry; COSINES]; ROUGHNESSES] = std::array::from_fn(|row| {
             let roughness = step(row, ROUGHNESSES);
@@ -173,7 +230,7 @@ impl Table {
             let of = |k: usize| left[row][k] * (fourth(k + 1) - fourth(k));
             std::array::from_fn(|k| (0..k).map(of).sum())
         });
-        Table { at, mean, left, left_before }
+        AlbedoTable { at, mean, left, left_before }
     }
 }
 

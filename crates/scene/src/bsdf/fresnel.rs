@@ -22,7 +22,7 @@ pub enum Fresnel {
 }
 
 /// The cosine of 82 degrees, near which Schlick's curve is steepest and the reflectance of real metals dips.
-const COS_82: f32 = 0.139_173_1;
+pub(super) const COS_82: f32 = 0.139_173_1;
 
 impl Fresnel {
     /// The reflectance at normal incidence, 0..=1, and the factor on Schlick's approximation at 82 degrees, 0..=1;
@@ -63,12 +63,15 @@ impl Fresnel {
 }
 
 /// [Schlick 1994, eq. 15]
-fn schlick_from(straight: Rgb, cos: f32) -> Rgb {
+#[inline(always)]
+pub(super) fn schlick_from(straight: Rgb, cos: f32) -> Rgb {
     let m = 1.0 - cos;
     straight.lerp(Rgb::WHITE, (m * m) * (m * m) * m)
 }
 
-fn dent(cos: f32) -> f32 {
+/// What [`Fresnel::tinted`] subtracts, but for a factor.
+#[inline(always)]
+pub(super) fn dent(cos: f32) -> f32 {
     let m = 1.0 - cos;
     cos * (m * m) * (m * m) * (m * m)
 }
@@ -100,6 +103,17 @@ pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     (parallel * parallel + perpendicular * perpendicular) * 0.5
+}
+
+/// [`fresnel_dielectric`] without a branch, for an index of at least 1: light from the less dense side is never reflected
+/// totally. 0 for an index of 1.
+#[inline(always)]
+pub(super) fn fresnel_on_denser(cos_i: f32, eta: f32) -> f32 {
+    let cos_t = (1.0 - (1.0 - cos_i * cos_i) / (eta * eta)).max(0.0).sqrt();
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let reflected = (parallel * parallel + perpendicular * perpendicular) * 0.5;
+    if eta > 1.0 { reflected } else { 0.0 }
 }
 
 /// The refracted direction, away from the surface; `n` is on the side of `wo`, and `eta` is the index of the far side

@@ -18,7 +18,7 @@ pub struct Ggx {
 }
 
 /// A surface with a smaller alpha is smooth, and no direction's alpha is smaller: f32 cannot hold sharper peaks.
-const MIN_ALPHA: f32 = 1e-3;
+pub(super) const MIN_ALPHA: f32 = 1e-3;
 
 impl Ggx {
     /// A smooth surface.

@@ -2,7 +2,7 @@
 
 use super::{
     BsdfSample, CoatedDielectric, CoatedDiffuse, Conductor, Dielectric, Fuzz, Lambert, MicrofacetReflection,
-    Mirror, PhongLobe, RoughDielectric, TransportMode,
+    Mirror, OpaqueBase, PhongLobe, RoughDielectric, TransportMode,
 };
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -24,6 +24,8 @@ pub enum Lobe {
     RoughDielectric(RoughDielectric),
     /// Microfacets of glass, metal or both, with multiple scattering between them.
     MicrofacetReflection(MicrofacetReflection),
+    /// Metal, or a dielectric above a diffuse base, or both.
+    OpaqueBase(OpaqueBase),
     /// Diffuse reflection below a boundary.
     CoatedDiffuse(CoatedDiffuse),
     /// Glass below a coating.
@@ -42,6 +44,7 @@ macro_rules! each_lobe {
             Lobe::Conductor($l) => $body,
             Lobe::RoughDielectric($l) => $body,
             Lobe::MicrofacetReflection($l) => $body,
+            Lobe::OpaqueBase($l) => $body,
             Lobe::CoatedDiffuse($l) => $body,
             Lobe::CoatedDielectric($l) => $body,
             Lobe::Fuzz($l) => $body,
@@ -115,6 +118,7 @@ impl Lobe {
             Lobe::Lambert(_)
             | Lobe::Phong(_)
             | Lobe::RoughDielectric(_)
+            | Lobe::OpaqueBase(_)
             | Lobe::CoatedDiffuse(_)
             | Lobe::Fuzz(_) => false,
         }
@@ -160,6 +164,7 @@ pub const BSDFS: &[BsdfEntry] = &[
     super::rough_dielectric::ENTRY,
     super::phong_lobe::ENTRY,
     super::microfacet_reflection::ENTRY,
+    super::opaque_base::ENTRY,
     super::coated_diffuse::ENTRY,
     super::coated_dielectric::ENTRY,
     super::fuzz::ENTRY,

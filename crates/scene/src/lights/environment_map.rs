@@ -6,8 +6,8 @@
 //! Direct lighting samples only directions that are brighter than the average: BSDF sampling finds the rest as well,
 //! and the two strategies together do better than if each tried to find all of the light. [Karlík 2019]
 
-use super::distribution_2d::{Cell, Distribution2d};
 use super::distant::{Across, disc_pdf_area, ray};
+use super::distribution_2d::{Cell, Distribution2d};
 use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;

@@ -1,6 +1,6 @@
 //! What a material answers.
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, OpaqueBaseInputs};
 use crate::classic::ClassicMaterial;
 use crate::sides::Sides;
 use crate::surface::Surface;
@@ -22,6 +22,15 @@ pub trait Material: Send + Sync {
     }
     /// That reflectance where it is the same everywhere, on meshes without colours at their vertices.
     fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        None
+    }
+    /// True when its [`Bsdf`] is a single [`OpaqueBase`](crate::bsdf::OpaqueBase) about the shading normal wherever
+    /// [`Material::opaque_base`] gives its inputs, and hardly anything else elsewhere.
+    fn is_opaque_base(&self) -> bool {
+        false
+    }
+    /// The inputs of that lobe at a point; `None` where the surface is polished.
+    fn opaque_base(&self, _surface: &Surface) -> Option<OpaqueBaseInputs> {
         None
     }
     /// The same point under Equations 1 and 2.

@@ -5,7 +5,7 @@ use super::emission::{self, SurfaceEmission};
 use super::normal_map::{self, NormalMap};
 use super::visible::VISIBLE_SIDES;
 use super::{Material, MaterialInputs, Nested, opacity};
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, OpaqueBaseInputs};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -65,6 +65,14 @@ impl Material for ModifiedMaterial {
 
     fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
         self.material.constant_lambertian_reflectance().filter(|_| self.is_lambertian())
+    }
+
+    fn is_opaque_base(&self) -> bool {
+        self.material.is_opaque_base()
+    }
+
+    fn opaque_base(&self, surface: &Surface) -> Option<OpaqueBaseInputs> {
+        self.material.opaque_base(surface)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

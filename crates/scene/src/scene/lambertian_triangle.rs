@@ -1,7 +1,6 @@
 //! Triangles of surfaces that integrators shade many at a time.
 
 use super::Tracer;
-use super::lambertian::Lambertian;
 use crate::geometry::StillTriangle;
 use bilux_accel::Hit;
 use bilux_math::Rgb;
@@ -13,9 +12,7 @@ impl Tracer<'_> {
     #[inline]
     pub fn lambertian_triangle(&self, object: u32, hit: &Hit) -> Option<(StillTriangle, Rgb)> {
         let parts = &self.scene.parts;
-        let Some(Lambertian::Constant(reflectance)) = parts.lambertian.get(object as usize) else {
-            return None;
-        };
-        Some((parts.geometry.still_triangle(hit)?, *reflectance))
+        let reflectance = parts.shading.get(object as usize)?.constant?;
+        Some((parts.geometry.still_triangle(hit)?, reflectance))
     }
 }

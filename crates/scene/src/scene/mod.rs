@@ -1,9 +1,9 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
-mod lambertian;
 mod lambertian_triangle;
 mod may_pass;
 mod parts;
+mod shading;
 mod sheets;
 mod tracer;
 
@@ -19,10 +19,10 @@ use crate::texture::mipmaps;
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
-use lambertian::Lambertian;
 use may_pass::MayPass;
 pub use parts::SceneLight;
 pub(crate) use parts::SceneParts;
+pub use shading::Shading;
 use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
@@ -214,11 +214,10 @@ impl Scene {
         self.cpu_level
     }
 
-    /// True when an object emits nothing, and its BSDF is a single Lambertian lobe: its surfaces are shaded many at a
-    /// time.
+    /// How the surfaces of an object scatter, for shading many at a time.
     #[inline]
-    pub fn is_lambertian(&self, object: u32) -> bool {
-        self.parts.lambertian.get(object as usize).is_some_and(|kind| !matches!(kind, Lambertian::No))
+    pub fn shading(&self, object: u32) -> Shading {
+        self.parts.shading.get(object as usize).map_or(Shading::General, |object| object.kind)
     }
 
     /// True when some material refracts each wavelength differently.

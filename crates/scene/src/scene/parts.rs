@@ -1,7 +1,7 @@
 //! What a scene consists of at all times.
 
-use super::lambertian::Lambertian;
 use super::may_pass::MayPass;
+use super::shading::ObjectShading;
 use crate::cameras::Camera;
 use crate::corners::corner_uvs;
 use crate::geometry::Geometry;
@@ -52,8 +52,8 @@ pub(crate) struct SceneParts {
     pub(super) passes: Vec<MayPass>,
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
-    /// For each object of triangles, see [`Scene::is_lambertian`].
-    pub(super) lambertian: Vec<Lambertian>,
+    /// For each object of triangles.
+    pub(super) shading: Vec<ObjectShading>,
 }
 
 impl SceneParts {
@@ -117,7 +117,7 @@ impl SceneParts {
         let passes = MayPass::of_all(&geometry, &materials);
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
-        let lambertian = geometry.objects().iter().map(|o| Lambertian::of(o, &materials)).collect();
+        let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
         SceneParts {
             geometry,
             materials,
@@ -135,7 +135,7 @@ impl SceneParts {
             passes,
             disperses,
             absorbs,
-            lambertian,
+            shading,
         }
     }
 }

@@ -163,7 +163,7 @@ impl Path {
     /// or `None` where the path ends.
     #[inline]
     pub(crate) fn arrive(&self, walk: &mut Walk, surface: &Surface, task: &mut Task) -> Option<Bsdf> {
-        walk.light += task.seen(walk.beta, walk.is_split) * self.emitted(task, walk, surface);
+        self.collect(walk, surface, task);
         if walk.depth >= task.max_depth {
             return None;
         }
@@ -171,6 +171,12 @@ impl Path {
         let bsdf = walk.media.bsdf(task.scene(), surface, &task.wavelength);
         walk.is_split |= bsdf.splits();
         Some(bsdf)
+    }
+
+    /// Collects the light that a surface emits.
+    #[inline]
+    pub(crate) fn collect(&self, walk: &mut Walk, surface: &Surface, task: &mut Task) {
+        walk.light += task.seen(walk.beta, walk.is_split) * self.emitted(task, walk, surface);
     }
 
     /// The last part of [`Path::interact`]: goes on in another direction, or ends.

@@ -8,6 +8,8 @@ mod diffuse;
 mod general;
 mod lanes;
 mod light_samples;
+mod next_rays;
+mod opaque;
 mod paths;
 mod triangles;
 mod vertices;
@@ -18,9 +20,10 @@ use crate::media::Media;
 use crate::task::Task;
 use bilux_accel::Hit;
 use bilux_math::Rgb;
-use bilux_scene::{Ray, Tracer, Wavelength};
+use bilux_scene::{Ray, Shading, Tracer, Wavelength};
 use diffuse::Diffuse;
 use general::General;
+use opaque::Opaque;
 use paths::{Paths, QueuedPath};
 use std::any::Any;
 use vertices::Vertices;
@@ -40,6 +43,7 @@ pub(crate) struct PathQueue {
     hits: Vec<Option<Hit>>,
     vertices: Box<Vertices>,
     diffuse: Box<Diffuse>,
+    opaque: Box<Opaque>,
     general: General,
 }
 
@@ -144,13 +148,14 @@ impl PathQueue {
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
-            if task.scene().is_lambertian(object) {
-                self.state.diffuse_hits.push((index, object, *hit));
-            } else {
-                self.state.general_hits.push((index, *hit));
+            match task.scene().shading(object) {
+                Shading::Lambertian => self.state.diffuse_hits.push((index, object, *hit)),
+                Shading::OpaqueBase => self.state.opaque_hits.push((index, *hit)),
+                Shading::General => self.state.general_hits.push((index, *hit)),
             }
         }
         self.state.shade_diffuse((&mut self.vertices, &mut self.diffuse), path, task);
+        self.state.shade_opaque((&mut self.vertices, &mut self.opaque), path, task);
         self.state.shade_general((&mut self.vertices, &mut self.general), path, task);
         self.state.add_direct_light(task);
         std::mem::swap(&mut self.active, &mut self.state.next);

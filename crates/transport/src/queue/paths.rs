@@ -72,6 +72,7 @@ pub(super) struct Paths {
     pub(super) connections: Connections,
     /// Path, object, hit.
     pub(super) diffuse_hits: Vec<(u32, u32, Hit)>,
+    pub(super) opaque_hits: Vec<(u32, Hit)>,
     pub(super) general_hits: Vec<(u32, Hit)>,
     /// Paths that go on after it.
     pub(super) next: Vec<u32>,
@@ -85,6 +86,7 @@ impl Paths {
         self.next.clear();
         self.connections.clear();
         self.diffuse_hits.clear();
+        self.opaque_hits.clear();
         self.general_hits.clear();
         self.shaded.clear();
     }

@@ -3,7 +3,7 @@
 use super::super::normal_map::{self, NormalMap};
 use super::super::{MaterialInputs, colour_map, number_map};
 use super::point::Point;
-use crate::bsdf::ThinFilm;
+use crate::bsdf::{OpaqueBaseInputs, ThinFilm, is_rough};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::{ColourMap, NumberMap, Patch};
@@ -110,6 +110,35 @@ impl Maps {
             &self.film_ior,
         ];
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
+    }
+
+    /// True when nothing is above the base, and the base is opaque, the same in all directions, and not polished
+    /// everywhere.
+    pub(super) fn are_of_opaque_base(&self) -> bool {
+        let absent = [
+            &self.transmission_weight,
+            &self.coat_weight,
+            &self.fuzz_weight,
+            &self.passing,
+            &self.film_weight,
+            &self.base_roughness,
+            &self.anisotropy,
+        ];
+        let roughness = &self.specular_roughness;
+        !absent.into_iter().any(is_there) && (roughness.texture.is_some() || is_rough(roughness.number))
+    }
+
+    /// What an opaque base is made of at a point; `vertex` is a factor on its colour.
+    pub(super) fn opaque_base_at(&self, uv: impl Into<Patch>, vertex: Rgb) -> OpaqueBaseInputs {
+        let uv = uv.into();
+        OpaqueBaseInputs {
+            base_color: (self.base_color.at(uv) * vertex).clamp(0.0, 1.0),
+            metalness: self.base_metalness.at(uv),
+            specular_weight: self.specular_weight.at(uv),
+            specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
+            roughness: self.specular_roughness.at(uv),
+            ior: self.specular_ior.at(uv),
+        }
     }
 
     pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {

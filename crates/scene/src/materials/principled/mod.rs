@@ -12,7 +12,7 @@ use super::{
     COAT_NORMAL, COAT_NORMAL_SCALE, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry,
     NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, VISIBLE_SIDES, reflectance,
 };
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Lobe, OpaqueBase, OpaqueBaseInputs, is_rough};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::surface::Surface;
@@ -128,7 +128,14 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, inputs| {
         let maps = Maps::read(reader, inputs)?;
-        let even = maps.are_constant().then(|| Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()));
+        let is_opaque_base = maps.are_of_opaque_base();
+        let even = maps.are_constant().then(|| {
+            let inputs = maps.opaque_base_at(Vec2::ZERO, Rgb::WHITE);
+            match is_opaque_base {
+                true => opaque_base([Vec3::Z; 2], &inputs),
+                false => Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()),
+            }
+        });
         let depth = reader.number("transmission_depth");
         let is_deep = !maps.tints_surface;
         if is_deep && maps.transmission_color.texture.is_some() {
@@ -145,10 +152,21 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         } else {
             Rgb::BLACK
         };
-        Ok(Arc::new(Principled { maps, even, sigma_a, priority: reader.integer("priority") as u32 }))
+        Ok(Arc::new(Principled {
+            maps,
+            even,
+            is_opaque_base,
+            sigma_a,
+            priority: reader.integer("priority") as u32,
+        }))
     },
     principled: None,
 };
+
+/// The opaque base about a shading normal; the other is geometric.
+fn opaque_base([n_shade, n_geom]: [Vec3; 2], inputs: &OpaqueBaseInputs) -> Bsdf {
+    Bsdf::of(n_shade, n_geom, Lobe::OpaqueBase(OpaqueBase::new(inputs)))
+}
 
 /// The minimum transmission colour: a smaller one would need an absorption beyond the range of numbers.
 const DARKEST: f32 = 1e-6;
@@ -168,6 +186,8 @@ struct Principled {
     maps: Maps,
     /// The precomputed BSDF, if no texture varies over the surface.
     even: Option<Bsdf>,
+    /// Nothing is above the opaque base.
+    is_opaque_base: bool,
     sigma_a: Rgb,
     priority: u32,
 }
@@ -203,6 +223,16 @@ impl Principled {
 }
 
 impl Material for Principled {
+    fn is_opaque_base(&self) -> bool {
+        self.is_opaque_base
+    }
+
+    fn opaque_base(&self, surface: &Surface) -> Option<OpaqueBaseInputs> {
+        let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
+        let inputs = self.maps.opaque_base_at(surface.uvs(), vertex);
+        (self.is_opaque_base && is_rough(inputs.roughness)).then_some(inputs)
+    }
+
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         if is_there(&self.maps.coat_weight) {
             let n = self.coat_normal(surface);
@@ -214,9 +244,15 @@ impl Material for Principled {
             Some(even) if surface.vertex_kd.is_none() && surface.handedness > 0.0 => {
                 even.moved_to(surface.n_shade, surface.n_geom)
             }
+            _ if self.is_opaque_base => match self.opaque_base(surface) {
+                Some(inputs) => opaque_base([surface.n_shade, surface.n_geom], &inputs),
+                None => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
+            },
             _ => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
         };
-        bsdf.turn_along(surface.tangent);
+        if self.needs_tangents() {
+            bsdf.turn_along(surface.tangent);
+        }
         bsdf
     }
 

@@ -1,0 +1,39 @@
+//! Which surfaces integrators shade many at a time.
+
+use crate::materials::Material;
+use crate::placed::Placed;
+use bilux_math::Rgb;
+use std::sync::Arc;
+
+/// How the surfaces of an object scatter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// By one Lambertian lobe; they emit nothing.
+    Lambertian,
+    /// By one [`OpaqueBase`](crate::bsdf::OpaqueBase) where [`Material::opaque_base`] gives its inputs.
+    OpaqueBase,
+    /// In any way.
+    General,
+}
+
+/// [`Shading`] with what it needs.
+#[derive(Clone, Copy)]
+pub(super) struct ObjectShading {
+    pub(super) kind: Shading,
+    /// The reflectance, where it is Lambertian and the same everywhere; the triangles, if there are any, are in the
+    /// common tree, and do not move.
+    pub(super) constant: Option<Rgb>,
+}
+
+impl ObjectShading {
+    pub(super) fn of(object: &Placed, materials: &[Arc<dyn Material>]) -> ObjectShading {
+        let material = &materials[object.material as usize];
+        if object.gives_light || !material.is_lambertian() || !material.emission().is_black() {
+            let kind = if material.is_opaque_base() { Shading::OpaqueBase } else { Shading::General };
+            return ObjectShading { kind, constant: None };
+        }
+        let is_plain = !object.in_own_tree() && object.mesh.vertex_kd.is_empty();
+        let constant = material.constant_lambertian_reflectance().filter(|_| is_plain);
+        ObjectShading { kind: Shading::Lambertian, constant }
+    }
+}

@@ -1,0 +1,141 @@
+//! How paths leave surfaces, [`LANES`] of them at a time: throughput, Russian roulette, the next ray.
+//!
+//! Every expression is the one that a single path evaluates ([`Path::interact`]), in the same order, so that the bits are
+//! the same.
+
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
+use super::paths::{Paths, QueuedPath};
+use super::vertices::{NO_PATH, Vertices};
+use crate::integrators::path::Path;
+use bilux_math::Vec3;
+use bilux_scene::CpuLevel;
+use bilux_scene::surface::offset_origin;
+
+/// The next ray of each path.
+pub(super) struct NextRays {
+    /// Throughput: before the vertex, then after it.
+    beta: Columns3,
+    eta_scale: Column,
+    origin: Columns3,
+    pub(super) direction: Columns3,
+    pdf: Column,
+    /// 1 where Russian roulette is played, otherwise 0.
+    plays: Column,
+    /// 1 where the path goes on, otherwise 0.
+    pub(super) goes_on: Column,
+}
+
+impl Default for NextRays {
+    fn default() -> NextRays {
+        NextRays {
+            beta: ZERO3,
+            eta_scale: Column::ZERO,
+            origin: ZERO3,
+            direction: ZERO3,
+            pdf: Column::ZERO,
+            plays: Column::ZERO,
+            goes_on: Column::ZERO,
+        }
+    }
+}
+
+impl NextRays {
+    /// A lane's path as it arrives.
+    #[inline]
+    pub(super) fn put_path(&mut self, i: usize, path: &QueuedPath) {
+        put(&mut self.beta, i, path.walk.beta.to_array());
+        self.eta_scale.0[i] = path.walk.eta_scale;
+    }
+}
+
+impl Paths {
+    /// Sends every path on in the direction that was sampled for it, and lists those that survive.
+    ///
+    /// `direction` and `goes_on` have the directions, and `scattered` and `pdf` of the vertices their BSDFs.
+    pub(super) fn send_on(&mut self, v: &mut Vertices, next: &mut NextRays, path: &Path, level: CpuLevel) {
+        run_at(level, Leave { v, next });
+        let mut plays = false;
+        for i in (0..v.count).filter(|&i| v.paths[i] != NO_PATH) {
+            let depth = self.paths[v.paths[i] as usize].walk.depth + 1;
+            next.plays.0[i] = if depth > path.roulette_depth() { 1.0 } else { 0.0 };
+            plays |= depth > path.roulette_depth();
+        }
+        if plays {
+            v.draw_numbers(level, v.dimension + 1);
+            run_at(level, Survive { v, next });
+        }
+        for i in (0..v.count).filter(|&i| next.goes_on.0[i] != 0.0 && v.paths[i] != NO_PATH) {
+            let walk = &mut self.paths[v.paths[i] as usize].walk;
+            walk.ray = v.leaving(i, vec3(&next.origin, i), vec3(&next.direction, i));
+            walk.beta = rgb(&next.beta, i);
+            walk.depth += 1;
+            walk.specular = false;
+            walk.last = Some((vec3(&v.p, i), next.pdf.0[i]));
+            self.next.push(v.paths[i]);
+        }
+    }
+}
+
+/// The weight for choosing the only lobe, by which its density is multiplied and divided again.
+#[inline(always)]
+pub(super) fn density(strength: f32, pdf: f32) -> f32 {
+    let weighted = strength * pdf;
+    if strength > 0.0 { weighted / strength } else { 0.0 }
+}
+
+/// True when two directions are on the same sides of the triangle and of the interpolated surface.
+#[inline(always)]
+pub(super) fn sides_agree([n_geom, n_shade]: [Vec3; 2], wo: Vec3, wi: Vec3) -> bool {
+    (wo.dot(n_geom) * wi.dot(n_geom)) * (wo.dot(n_shade) * wi.dot(n_shade)) > 0.0
+}
+
+/// Throughput after the vertex, and the ray.
+struct Leave<'a> {
+    v: &'a Vertices,
+    next: &'a mut NextRays,
+}
+
+impl Stage for Leave<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Leave { v: Vertices { p, p_error, n_geom, wo, scattered, pdf, .. }, next } = self;
+        for i in 0..LANES {
+            let (wo, wi, n_geom) = (vec3(wo, i), vec3(&next.direction, i), vec3(n_geom, i));
+            let changes_side = wo.dot(n_geom) * wi.dot(n_geom) < 0.0;
+            let beta = rgb(&next.beta, i) * (rgb(scattered, i) / pdf.0[i]);
+            let is_black = (beta.r == 0.0) & (beta.g == 0.0) & (beta.b == 0.0);
+            let goes_on = !changes_side & (pdf.0[i] > 0.0) & !is_black;
+            next.goes_on.0[i] = if goes_on { next.goes_on.0[i] } else { 0.0 };
+            next.pdf.0[i] = pdf.0[i];
+            put(&mut next.beta, i, beta.to_array());
+        }
+        for i in 0..LANES {
+            let (from, n, wi) = (vec3(p, i), vec3(n_geom, i), vec3(&next.direction, i));
+            put(&mut next.origin, i, offset_origin(from, vec3(p_error, i), n, wi).to_array());
+        }
+    }
+}
+
+/// Russian roulette, as in [`Path::interact`].
+struct Survive<'a> {
+    v: &'a Vertices,
+    next: &'a mut NextRays,
+}
+
+impl Stage for Survive<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Survive { v: Vertices { u, .. }, next } = self;
+        for i in 0..LANES {
+            let beta = rgb(&next.beta, i);
+            let survival = (beta.max_channel() * next.eta_scale.0[i]).min(0.95);
+            let (plays, survives) = (next.plays.0[i] != 0.0, u[0].0[i] < survival);
+            let scaled = beta / survival;
+            let of = |c: f32, scaled: f32| if plays & survives { scaled } else { c };
+            put(&mut next.beta, i, [of(beta.r, scaled.r), of(beta.g, scaled.g), of(beta.b, scaled.b)]);
+            // NaN must reach the film, which reports it.
+            let goes_on = !plays | survives | survival.is_nan();
+            next.goes_on.0[i] = if goes_on { next.goes_on.0[i] } else { 0.0 };
+        }
+    }
+}
