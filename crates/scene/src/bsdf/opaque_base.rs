@@ -271,63 +271,72 @@ impl OpaqueBaseForWo {
     /// The number of numbers that it consists of.
     pub const NUMBERS: usize = 28;
 
-    /// All of it, for keeping many in columns.
+    /// All of it, for keeping many in columns. There is no loop here that a compiler would have to unroll.
     #[inline(always)]
     pub fn to_numbers(self) -> [f32; OpaqueBaseForWo::NUMBERS] {
-        let OpaqueBaseForWo { wo, alpha, eta, glass, straight, dip, metalness, albedo, again, base, .. } =
-            self;
-        let [roughness, index, reflected] = albedo.to_numbers();
-        let (lone, colours) = (
-            [alpha, eta, metalness, self.shadow, self.bound, self.gloss_share, self.strength],
-            [glass, straight, dip, again, base],
-        );
-        let mut numbers = [0.0; OpaqueBaseForWo::NUMBERS];
-        numbers[..7].copy_from_slice(&lone);
-        numbers[7..13].copy_from_slice(&[roughness, index, reflected, wo.x, wo.y, wo.z]);
-        for (i, colour) in colours.into_iter().enumerate() {
-            numbers[13 + 3 * i..][..3].copy_from_slice(&colour.to_array());
-        }
-        numbers
+        let OpaqueBaseForWo { wo, glass, straight, dip, again, base, .. } = self;
+        let [roughness, index, reflected] = self.albedo.to_numbers();
+        let [a, b, c] = [self.alpha, self.eta, self.metalness];
+        let [d, e, f, g] = [self.shadow, self.bound, self.gloss_share, self.strength];
+        let [h, i, j] = [glass.r, glass.g, glass.b];
+        let [k, l, m] = [straight.r, straight.g, straight.b];
+        let [n, o, p] = [dip.r, dip.g, dip.b];
+        let [q, r, s] = [again.r, again.g, again.b];
+        let [t, u, v] = [base.r, base.g, base.b];
+        [
+            a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, roughness, index, reflected,
+            wo.x, wo.y, wo.z,
+        ]
     }
 
     /// The inverse of [`OpaqueBaseForWo::to_numbers`].
     #[inline(always)]
     pub fn from_numbers(numbers: [f32; OpaqueBaseForWo::NUMBERS]) -> OpaqueBaseForWo {
         let [
-            alpha,
-            eta,
-            metalness,
-            shadow,
-            bound,
-            gloss_share,
-            strength,
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            g,
+            h,
+            i,
+            j,
+            k,
+            l,
+            m,
+            n,
+            o,
+            p,
+            q,
+            r,
+            s,
+            t,
+            u,
+            v,
             roughness,
             index,
             reflected,
             x,
             y,
             z,
-            ..,
         ] = numbers;
-        let colour = |i: usize| Rgb::new(numbers[13 + 3 * i], numbers[14 + 3 * i], numbers[15 + 3 * i]);
-        let albedo = Albedo::from_numbers([roughness, index, reflected]);
-        let [glass, straight, dip, again, base] = [0, 1, 2, 3, 4].map(colour);
-        let wo = Vec3::new(x, y, z);
         OpaqueBaseForWo {
-            wo,
-            alpha,
-            eta,
-            glass,
-            straight,
-            dip,
-            metalness,
-            albedo,
-            again,
-            base,
-            shadow,
-            bound,
-            gloss_share,
-            strength,
+            wo: Vec3::new(x, y, z),
+            alpha: a,
+            eta: b,
+            metalness: c,
+            shadow: d,
+            bound: e,
+            gloss_share: f,
+            strength: g,
+            glass: Rgb::new(h, i, j),
+            straight: Rgb::new(k, l, m),
+            dip: Rgb::new(n, o, p),
+            again: Rgb::new(q, r, s),
+            base: Rgb::new(t, u, v),
+            albedo: Albedo::from_numbers([roughness, index, reflected]),
         }
     }
 

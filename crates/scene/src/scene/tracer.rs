@@ -225,18 +225,21 @@ impl<'s> Tracer<'s> {
     /// `n` gives the normal at the end of each, see [`Tracer::ending_on`].
     pub fn all_occluded(&mut self, rays: &[Ray], n: impl Fn(usize) -> Vec3, occluded: &mut [bool]) {
         occluded.fill(true);
+        let (scene, mut is_asked) = (self.scene, false);
         if let Some(tree) = self.batch_tree(rays) {
-            tree.any_hits(rays, &self.scene.query, occluded);
-            let all = !self.scene.may_pass_surfaces();
-            self.counters.rays +=
-                if all { rays.len() } else { occluded.iter().filter(|o| !**o).count() } as u64;
-            if all {
-                return;
-            }
+            tree.any_hits(rays, &scene.query, occluded);
+            is_asked = true;
         }
-        // A ray that hits nothing is free. One that hits something may pass it.
-        for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate().filter(|(_, (_, hit))| **hit) {
-            *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
+        // A ray that hits nothing is free. One that hits something may pass it, if any surface lets any ray pass.
+        let is_known = |ray: &Ray, hits: bool| {
+            is_asked && (!hits || (scene.sheets.is_none() && !scene.parts.may_pass(ray)))
+        };
+        for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+            if is_known(ray, *occluded) {
+                self.counters.rays += 1;
+            } else {
+                *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
+            }
         }
     }
 

@@ -23,6 +23,8 @@ pub(super) struct Opaque {
     lobes: [Column; OpaqueBaseForWo::NUMBERS],
     /// What the table of albedos says.
     albedos: [Column; 5],
+    /// The number that picks one of the lobe's two densities.
+    u_choice: Column,
     next: NextRays,
 }
 
@@ -51,6 +53,7 @@ impl Default for Opaque {
             n_shade: ZERO3,
             lobes: [Column::ZERO; OpaqueBaseForWo::NUMBERS],
             albedos: [Column::ZERO; 5],
+            u_choice: Column::ZERO,
             next: NextRays::default(),
         }
     }
@@ -99,10 +102,10 @@ impl Paths {
             let eval = |v: &mut Vertices, level| run_at(level, Eval::<true> { v, o });
             self.connect(v, task, eval, |walk, _, _| walk.media);
             v.draw_numbers(level, v.dimension + 1);
-            let u_choice = v.u[0];
+            o.u_choice = v.u[0];
             v.dimension += 2;
             v.draw_points(level, v.dimension);
-            run_at(level, Sample { v, o, u_choice: &u_choice });
+            run_at(level, Sample { v, o });
             run_at(level, Eval::<false> { v, o });
             self.send_on(v, &mut o.next, path, level);
         }
@@ -161,33 +164,45 @@ struct Build<'a> {
 impl Stage for Build<'_> {
     #[inline(always)]
     fn run(self) {
+        // Read once: as far as the compiler knows, what the loop writes might change it.
+        let table = self.o.table;
         let Vertices { wo, .. } = self.v;
-        let Opaque { table, inputs, n_shade, lobes, albedos, .. } = self.o;
+        let Opaque { inputs, n_shade, lobes, albedos, .. } = self.o;
         for i in 0..LANES {
             let cos_o = vec3(wo, i).dot(vec3(n_shade, i));
             let OpaqueBaseAlbedos { mean, at_normal, along_wo } = inputs.at(i).look_up(cos_o, table);
-            let numbers = [mean[0], mean[1], at_normal, along_wo[0], along_wo[1]];
-            for (column, number) in albedos.iter_mut().zip(numbers) {
-                column.0[i] = number;
-            }
+            put_numbers(albedos, i, [mean[0], mean[1], at_normal, along_wo[0], along_wo[1]]);
         }
         for i in 0..LANES {
             let wo = Frame::from_normal(vec3(n_shade, i)).to_local(vec3(wo, i));
-            let [opaque_mean, mean, at_normal, opaque, boundary] =
-                albedos.each_ref().map(|column| column.0[i]);
+            let [opaque_mean, mean, at_normal, opaque, boundary] = numbers_at(albedos, i);
             let albedos =
                 OpaqueBaseAlbedos { mean: [opaque_mean, mean], at_normal, along_wo: [opaque, boundary] };
-            let numbers = OpaqueBaseForWo::new(&inputs.at(i), wo, &albedos).to_numbers();
-            for (column, number) in lobes.iter_mut().zip(numbers) {
-                column.0[i] = number;
-            }
+            put_numbers(lobes, i, OpaqueBaseForWo::new(&inputs.at(i), wo, &albedos).to_numbers());
         }
+    }
+}
+
+/// A lane of many columns.
+#[inline(always)]
+fn numbers_at<const N: usize>(columns: &[Column; N], i: usize) -> [f32; N] {
+    let mut numbers = [0.0; N];
+    for (number, column) in numbers.iter_mut().zip(columns) {
+        *number = column.0[i];
+    }
+    numbers
+}
+
+#[inline(always)]
+fn put_numbers<const N: usize>(columns: &mut [Column; N], i: usize, numbers: [f32; N]) {
+    for (column, number) in columns.iter_mut().zip(numbers) {
+        column.0[i] = number;
     }
 }
 
 #[inline(always)]
 fn lobe_at(lobes: &[Column; OpaqueBaseForWo::NUMBERS], i: usize) -> OpaqueBaseForWo {
-    OpaqueBaseForWo::from_numbers(lobes.each_ref().map(|column| column.0[i]))
+    OpaqueBaseForWo::from_numbers(numbers_at(lobes, i))
 }
 
 /// The BSDF for the light samples, or for the next directions.
@@ -199,8 +214,9 @@ struct Eval<'a, const OF_LIGHTS: bool> {
 impl<const OF_LIGHTS: bool> Stage for Eval<'_, OF_LIGHTS> {
     #[inline(always)]
     fn run(self) {
+        let table = self.o.table;
         let Vertices { n_geom, wo, light, scattered, pdf, .. } = self.v;
-        let Opaque { table, n_shade, lobes, albedos: [opaque, boundary, ..], next, .. } = self.o;
+        let Opaque { n_shade, lobes, albedos: [opaque, boundary, ..], next, .. } = self.o;
         let directions = if OF_LIGHTS { &light.wi } else { &next.direction };
         for i in 0..LANES {
             let cos_i = vec3(directions, i).dot(vec3(n_shade, i));
@@ -222,18 +238,17 @@ impl<const OF_LIGHTS: bool> Stage for Eval<'_, OF_LIGHTS> {
 struct Sample<'a> {
     v: &'a Vertices,
     o: &'a mut Opaque,
-    u_choice: &'a Column,
 }
 
 impl Stage for Sample<'_> {
     #[inline(always)]
     fn run(self) {
         let Vertices { wo, u, .. } = self.v;
-        let Opaque { n_shade, lobes, next, .. } = self.o;
+        let Opaque { n_shade, lobes, u_choice, next, .. } = self.o;
         for i in 0..LANES {
             let (frame, lobe) = (Frame::from_normal(vec3(n_shade, i)), lobe_at(lobes, i));
             // What is left of the number after the only lobe was chosen.
-            let (strength, rest) = (lobe.strength(), self.u_choice.0[i] * lobe.strength());
+            let (strength, rest) = (lobe.strength(), u_choice.0[i] * lobe.strength());
             let left = (rest / strength).clamp(0.0, 1.0 - f32::EPSILON);
             let left = if rest < strength { left } else { 1.0 - f32::EPSILON };
             let local = lobe.sample(left, Vec2::new(u[0].0[i], u[1].0[i]));
