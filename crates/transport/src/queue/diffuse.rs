@@ -96,11 +96,8 @@ impl Paths {
             d.next.put_path(i, one);
             hits[i] = number;
         }
-        d.triangles.points(
-            task.scene().cpu_level(),
-            [&mut v.p, &mut v.p_error, &mut v.n_geom],
-            &mut d.n_shade,
-        );
+        let points = d.triangles.points(task.scene().cpu_level());
+        (v.p, v.p_error, v.n_geom, d.n_shade) = (points.p, points.p_error, points.n_geom, points.n_shade);
         for &(i, point, n_shade) in &d.others {
             v.put_point(i, point);
             put(&mut d.n_shade, i, n_shade.to_array());

@@ -24,11 +24,17 @@ pub(super) struct LightSamples {
     triangles: Triangles,
 }
 
-/// The triangles of a mesh light on which the samples are.
+/// The triangles of a mesh light on which the samples are, and all else that [`SampleTriangles`] needs.
 struct Triangles {
     corners: [Columns3; 3],
     normal: Columns3,
     pdf_area: Column,
+    /// The points that receive the light.
+    from: Columns3,
+    /// The sampler's numbers; the first of each is what is left after a triangle was chosen.
+    u: [Column; 2],
+    probability: f32,
+    sides: Sides,
 }
 
 impl Default for LightSamples {
@@ -42,7 +48,15 @@ impl Default for LightSamples {
             clearance: Column::ZERO,
             pdf: Column::ZERO,
             is_delta: Column::ZERO,
-            triangles: Triangles { corners: [ZERO3; 3], normal: ZERO3, pdf_area: Column::ZERO },
+            triangles: Triangles {
+                corners: [ZERO3; 3],
+                normal: ZERO3,
+                pdf_area: Column::ZERO,
+                from: ZERO3,
+                u: [Column::ZERO; 2],
+                probability: 0.0,
+                sides: Sides::Both,
+            },
         }
     }
 }
@@ -104,7 +118,9 @@ impl LightSamples {
             samples.triangles.pdf_area.0[i] = pdf_area;
         }
         (samples.is_infinite, samples.is_delta) = (Column::ZERO, Column::ZERO);
-        run_at(level, SampleTriangles { samples, p, u, probability, sides: mesh.sides() });
+        (samples.triangles.from, samples.triangles.u) = (*p, *u);
+        (samples.triangles.probability, samples.triangles.sides) = (probability, mesh.sides());
+        run_at(level, SampleTriangles { samples });
         for (i, &triangle) in indices.iter().enumerate().take(count) {
             let is_there = samples.pdf.0[i] > 0.0;
             let weights = || barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
@@ -114,26 +130,23 @@ impl LightSamples {
     }
 }
 
-/// Points on the triangles; the first number of each is what is left after a triangle was chosen.
+/// Points on the triangles.
 struct SampleTriangles<'a> {
     samples: &'a mut LightSamples,
-    p: &'a Columns3,
-    u: &'a [Column; 2],
-    probability: f32,
-    sides: Sides,
 }
 
 impl Stage for SampleTriangles<'_> {
     #[inline(always)]
     fn run(self) {
-        let SampleTriangles { samples, p, u, probability, sides } = self;
-        let LightSamples { wi, towards, n_light, clearance, pdf, triangles, .. } = samples;
+        let LightSamples { wi, towards, n_light, clearance, pdf, triangles, .. } = self.samples;
+        let (probability, sides) = (triangles.probability, triangles.sides);
         for i in 0..LANES {
-            let corners: [Vec3; 3] = [0, 1, 2].map(|corner: usize| vec3(&triangles.corners[corner], i));
+            let [a, b, c] = &triangles.corners;
+            let corners: [Vec3; 3] = [vec3(a, i), vec3(b, i), vec3(c, i)];
             let normal = vec3(&triangles.normal, i);
             let triangle = LightTriangle { corners, normal, pdf_area: triangles.pdf_area.0[i] };
-            let weights = barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
-            let sample = TriangleSample::new(vec3(p, i), &triangle, weights, sides);
+            let weights = barycentric(Vec2::new(triangles.u[0].0[i], triangles.u[1].0[i]));
+            let sample = TriangleSample::new(vec3(&triangles.from, i), &triangle, weights, sides);
             put(wi, i, sample.wi.to_array());
             put(towards, i, sample.point.to_array());
             put(n_light, i, sample.n_light.to_array());

@@ -13,6 +13,15 @@ pub(super) struct Triangles {
     turn: Column,
     u: Column,
     v: Column,
+    points: Points,
+}
+
+/// The points, the bounds on their errors, and their geometric and shading normals.
+pub(super) struct Points {
+    pub(super) p: Columns3,
+    pub(super) p_error: Columns3,
+    pub(super) n_geom: Columns3,
+    pub(super) n_shade: Columns3,
 }
 
 impl Default for Triangles {
@@ -24,6 +33,7 @@ impl Default for Triangles {
             turn: Column::ZERO,
             u: Column::ZERO,
             v: Column::ZERO,
+            points: Points { p: ZERO3, p_error: ZERO3, n_geom: ZERO3, n_shade: ZERO3 },
         }
     }
 }
@@ -42,30 +52,22 @@ impl Triangles {
         (self.u.0[i], self.v.0[i]) = (hit.u, hit.v);
     }
 
-    /// Computes the points, the bounds on their errors, and their geometric and shading normals.
-    pub(super) fn points(
-        &self,
-        level: CpuLevel,
-        [p, p_error, n_geom]: [&mut Columns3; 3],
-        n_shade: &mut Columns3,
-    ) {
-        run_at(level, Points { triangles: self, p, p_error, n_geom, n_shade });
+    /// The points where they are hit.
+    pub(super) fn points(&mut self, level: CpuLevel) -> &Points {
+        run_at(level, FindPoints { triangles: self });
+        &self.points
     }
 }
 
-struct Points<'a> {
-    triangles: &'a Triangles,
-    p: &'a mut Columns3,
-    p_error: &'a mut Columns3,
-    n_geom: &'a mut Columns3,
-    n_shade: &'a mut Columns3,
+struct FindPoints<'a> {
+    triangles: &'a mut Triangles,
 }
 
-impl Stage for Points<'_> {
+impl Stage for FindPoints<'_> {
     #[inline(always)]
     fn run(self) {
-        let Points { triangles, p, p_error, n_geom, n_shade } = self;
-        let Triangles { corners, normals, inverse, turn, u, v } = triangles;
+        let Triangles { corners, normals, inverse, turn, u, v, points } = self.triangles;
+        let Points { p, p_error, n_geom, n_shade } = points;
         for i in 0..LANES {
             let triangle = StillTriangle {
                 corners: [vec3(&corners[0], i), vec3(&corners[1], i), vec3(&corners[2], i)],
