@@ -120,6 +120,9 @@ pub fn render(
             }
         }
     }
+    if let Some(batches) = &mut batches {
+        batches.finish();
+    }
     Ok(Rendered { interval, batch_means: batches, ..rendered })
 }
 
@@ -162,7 +165,7 @@ impl<'a> Run<'a> {
                 break;
             }
             if let Some(shown) = shown {
-                rendered.film.add_iterations(&shown.into_iterations(), 1)?;
+                rendered.film.add_iterations(shown.into_iterations(), 1)?;
             }
         }
         Ok(rendered)

@@ -204,14 +204,17 @@ impl Iterations {
 
 impl Film {
     /// Adds whole iterations.
-    pub(crate) fn add_iterations(&mut self, splats: &Iterations, iterations: u32) -> Result<(), FilmError> {
-        self.make_room_for_splats()?;
-        for (sum, more) in self.splats.iter_mut().zip(&splats.sums) {
-            add(sum, *more);
+    pub(crate) fn add_iterations(&mut self, splats: Iterations, iterations: u32) -> Result<(), FilmError> {
+        if self.splats.is_empty() {
+            (self.splats, self.iterations) = (splats.sums, zeroed(self.window().pixels())?);
+        } else {
+            for (sum, more) in self.splats.iter_mut().zip(splats.sums) {
+                add(sum, more);
+            }
         }
         self.iterations.iter_mut().for_each(|count| *count += iterations);
-        for (index, failures) in &splats.failures {
-            self.failures_at(*index as usize).absorb(failures);
+        for (index, failures) in splats.failures {
+            self.failures_at(index as usize).absorb(&failures);
         }
         Ok(())
     }

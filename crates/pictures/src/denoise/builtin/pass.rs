@@ -4,7 +4,6 @@ use super::MARGIN;
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
 use super::linear::Moments;
 use super::planes::{Light, Planes};
-use crate::PictureError;
 use rayon::prelude::*;
 
 /// Rows that one thread processes at a time.
@@ -29,33 +28,25 @@ const BEYOND: f32 = 2.0;
 /// Up to this step, passes fit a slope to the light too. Neighbours farther away differ by more than the noise where there is a slope.
 const LAST_LINEAR: usize = 2;
 
-/// Applies one pass to the light.
-///
-/// # Errors
-/// Returns an error when the machine has no memory left.
-pub(super) fn pass(light: &Light, guides: &Guides, step: usize) -> Result<Light, PictureError> {
-    let (width, height) = (light.planes.width, light.planes.height);
-    let mut smooth = Planes::new(width, height, 4)?;
-    let stride = smooth.stride();
-    let bands: Vec<usize> = (0..height).step_by(BAND).collect();
-    let done: Vec<[Vec<f32>; 4]> = bands
-        .par_iter()
-        .map(|&first| {
+/// Applies one pass to the light, and stores the result in `smooth`, which has the same size.
+pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Light) {
+    let (width, height, stride) = (light.planes.width, light.planes.height, light.planes.stride());
+    let within = MARGIN * stride..(MARGIN + height) * stride;
+    let bands = |plane| <[f32]>::par_chunks_mut(plane, BAND * stride);
+    let planes = smooth.planes.planes.iter_mut().map(|plane| bands(&mut plane[within.clone()]));
+    if let Ok([r, g, b, v]) = <[_; 4]>::try_from(planes.collect::<Vec<_>>()) {
+        (r, g, b, v).into_par_iter().enumerate().for_each(|(i, (r, g, b, v))| {
+            let first = i * BAND;
             let mut band = Band::new(light, guides, step, first..(first + BAND).min(height));
             band.take_all();
-            band.finish()
-        })
-        .collect();
-    for (first, band) in bands.iter().zip(&done) {
-        for (plane, rows) in smooth.planes.iter_mut().zip(band) {
-            for (row, samples) in rows.chunks_exact(width).enumerate() {
-                let at = (first + row + MARGIN) * stride + MARGIN;
-                plane[at..at + width].copy_from_slice(samples);
+            for (to, samples) in [r, g, b, v].into_iter().zip(band.finish()) {
+                for (to, row) in to.chunks_exact_mut(stride).zip(samples.chunks_exact(width)) {
+                    to[MARGIN..MARGIN + width].copy_from_slice(row);
+                }
             }
-        }
+        });
     }
-    smooth.pad();
-    Ok(Light { planes: smooth })
+    smooth.planes.pad();
 }
 
 /// Some rows while neighbours are being added.

@@ -57,6 +57,24 @@ impl Planes {
         Rgb::new(self.planes[0][i], self.planes[1][i], self.planes[2][i])
     }
 
+    /// Replaces the samples of each pixel in four planes, given their index; the margins stay as they are.
+    pub(super) fn update(&mut self, new: impl Fn(usize, [f32; 4]) -> [f32; 4]) {
+        for y in 0..self.height {
+            let first = self.index(0, y);
+            for i in first..first + self.width {
+                let samples = new(i, std::array::from_fn(|k| self.planes[k][i]));
+                self.planes.iter_mut().zip(samples).for_each(|(plane, sample)| plane[i] = sample);
+            }
+        }
+    }
+
+    /// Adds planes of the same size.
+    pub(super) fn add(&mut self, more: &Planes) {
+        for (plane, more) in self.planes.iter_mut().zip(&more.planes) {
+            plane.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+    }
+
     /// Repeats the edges in the margins.
     pub(super) fn pad(&mut self) {
         let (stride, width, height) = (self.stride(), self.width, self.height);
@@ -91,13 +109,12 @@ pub(super) fn divisor(albedo: Rgb) -> Rgb {
 }
 
 impl Light {
+    /// The light of a layer, divided by the albedo: `by`.
     pub(super) fn of(
         size: (usize, usize),
         layer: Layer,
-        albedo: Option<&[Rgb]>,
+        by: &impl Fn(usize) -> Rgb,
     ) -> Result<Light, PictureError> {
-        let width = size.0;
-        let by = |i: usize| albedo.map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
         let variance = |i: usize| match &layer.variance {
@@ -109,10 +126,9 @@ impl Light {
         };
         let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), variance(i))).collect();
         drop((layer, guessed));
-        let pixels = outliers::without(size, &pixels);
+        let pixels = outliers::without(size, pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
-        let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
-        let blurred = blur(&raw, width);
+        let blurred = blur(&pixels, size.0);
         let planes = Planes::filled(size, |i| {
             let Rgb { r, g, b } = pixels[i].0;
             [r, g, b, blurred[i]]
@@ -142,16 +158,16 @@ fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec
     (0..width * height).map(one).collect()
 }
 
-/// Means over 3 × 3 pixels.
-fn blur(plane: &[f32], width: usize) -> Vec<f32> {
-    let height = plane.len() / width;
-    let mut all = vec![0.0; plane.len()];
+/// Means of the variances of 3 × 3 pixels.
+fn blur(pixels: &[(Rgb, f32)], width: usize) -> Vec<f32> {
+    let height = pixels.len() / width;
+    let mut all = vec![0.0; pixels.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         let rows =
-            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &plane[y * width..(y + 1) * width]);
+            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &pixels[y * width..(y + 1) * width]);
         for (x, sum) in row.iter_mut().enumerate() {
             let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
-            *sum = rows.iter().map(|row| row[left] + row[x] + row[right]).sum::<f32>() / 9.0;
+            *sum = rows.iter().map(|row| row[left].1 + row[x].1 + row[right].1).sum::<f32>() / 9.0;
         }
     });
     all
