@@ -6,6 +6,7 @@ use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, Task, denois
 use bilux_pictures::{Picture, PictureError};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{Film, push_variance};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// The value of the setting `denoise` that lets the kind of picture decide.
@@ -103,7 +104,7 @@ impl Source for Outcome {
         let (width, height) = (window.width as usize, rows.len());
         let pixels = rows.start * width..rows.end * width;
         let light = |of: fn(&Film, u32, u32) -> Rgb| {
-            let places = pixels.clone().map(|i| window.position(i));
+            let places = pixels.clone().into_par_iter().map(|i| window.position(i));
             places.map(|(x, y)| of(&self.film, x, y)).collect()
         };
         let [camera, light_paths] = match self.batch_means.as_ref().and_then(|b| b.variance(pixels.clone())) {

@@ -108,6 +108,16 @@ impl BatchMeans {
         self.samples = samples;
     }
 
+    /// Bytes of memory that the batches take.
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        let of_layer = |layer: &Layer| {
+            let counts = if let Counts::Each(counts) = &layer.counts { size_of_val(&counts[..]) } else { 0 };
+            size_of::<Rgb>() * (layer.means.capacity() + layer.squares.capacity()) + counts
+        };
+        self.layers.iter().map(of_layer).sum()
+    }
+
     /// Frees what only more batches would need.
     pub(crate) fn finish(&mut self) {
         self.layers.iter_mut().for_each(|layer| layer.means = Vec::new());
@@ -212,5 +222,58 @@ mod tests {
         let mut batches = BatchMeans::default();
         batches.close(&Film::new(1, 1, 0).unwrap(), 1);
         assert_eq!(batches.variance(0..1), None);
+    }
+
+    /// What a picture of 1920 × 1080 takes while it is rendered hangs on this.
+    #[test]
+    fn only_what_is_needed_is_stored() {
+        let mut film = Film::new(8, 8, 20).unwrap();
+        film.make_room_for_splats().unwrap();
+        let mut batches = BatchMeans::default();
+        let mut take = |batches: &mut BatchMeans, samples: u32| {
+            film.counts.fill(samples);
+            film.iterations.fill(samples);
+            batches.close(&film, samples);
+            batches.bytes()
+        };
+        let both_layers = 2 * 64 * size_of::<Rgb>();
+        assert_eq!(take(&mut batches, 1), both_layers);
+        assert_eq!([2, 3, 4].map(|samples| take(&mut batches, samples)), [2 * both_layers; 3]);
+        batches.finish();
+        assert_eq!(batches.bytes(), both_layers);
+        assert!(batches.variance(0..64).is_some());
+        // One batch says nothing, so it leaves nothing.
+        let mut one = BatchMeans::default();
+        take(&mut one, 1);
+        one.finish();
+        assert_eq!((one.bytes(), one.variance(0..64)), (0, None));
+    }
+
+    /// A bad sample makes the numbers of samples differ.
+    #[test]
+    fn a_bad_sample_does_not_count() {
+        let film = |bad: Option<u32>, samples: u32| {
+            let mut film = Film::new(2, 1, 20).unwrap();
+            for sample in 0..samples {
+                let light = Rgb::grey(if bad == Some(sample) { f32::NAN } else { sample as f32 });
+                film.add(0, 0, sample, light);
+                film.add(1, 0, sample, Rgb::grey(sample as f32));
+            }
+            film
+        };
+        let variances = |bad| {
+            let mut batches = BatchMeans::default();
+            [2, 5].map(|samples| batches.close(&film(bad, samples), samples));
+            batches.finish();
+            batches.variance(0..2).unwrap()[0].iter().map(|v| v.g).collect::<Vec<_>>()
+        };
+        // The mean of 0 and 1 is 0.5; of 0 to 4 it is 2, with or without 2, and 1.75 without 3.
+        let expected =
+            |mean: f32, count: f32| (mean - 0.5) * (mean - 0.5) * 2.0 * count / (count - 2.0) / count;
+        for (bad, mean, count) in [(None, 2.0, 5.0), (Some(2), 2.0, 4.0), (Some(3), 1.75, 4.0)] {
+            let found = variances(bad);
+            assert!((found[0] - expected(mean, count)).abs() < 1e-4, "{bad:?}: {found:?}");
+            assert!((found[1] - expected(2.0, 5.0)).abs() < 1e-4, "{bad:?}: {found:?}");
+        }
     }
 }

@@ -18,6 +18,7 @@ use bilux_math::registry::Entry;
 use guides::Guides;
 use pass::pass;
 use planes::{Light, Planes};
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Duration;
 
@@ -43,7 +44,7 @@ const STEPS: [usize; 4] = [1, 2, 4, 8];
 const MARGIN: usize = 2 * 8 + 1;
 
 /// Rows that are filtered at a time: a picture of any height takes no more memory than this many rows.
-const MAX_ROWS: usize = 256;
+const MAX_ROWS: usize = 288;
 
 /// The distance over which one row can affect another: the reach of all passes, of the means of variances, outliers
 /// and guesses before them, and of the edges after them.
@@ -95,11 +96,7 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     for light in lights {
         let mut light = smooth_light(light, &guides)?.planes;
         if has_albedo {
-            light.update(|at, [r, g, b, variance]| {
-                let back = planes::divisor(guides.albedo(at));
-                let Rgb { r, g, b } = Rgb::new(r, g, b) * back;
-                [r, g, b, variance * planes::mean(back * back)]
-            });
+            multiply(&mut light, &guides);
         }
         match &mut sum {
             Some(sum) => sum.add(&light),
@@ -112,6 +109,19 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     }
     colours.pad();
     edges::rebuilt(&colours, &guides)
+}
+
+/// Multiplies light by the albedo that it was divided by.
+fn multiply(light: &mut Planes, guides: &Guides) {
+    let first = |y: usize| guides.planes.index(0, y);
+    light.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
+        let [r, g, b, variance] = &mut row[..] else { return };
+        for x in 0..r.len() {
+            let back = planes::divisor(guides.albedo(first(y) + x));
+            Rgb { r: r[x], g: g[x], b: b[x] } = Rgb::new(r[x], g[x], b[x]) * back;
+            variance[x] *= planes::mean(back * back);
+        }
+    });
 }
 
 /// The denoised light of a layer.

@@ -14,8 +14,8 @@ const NOISE: f32 = 0.4;
 
 /// The pixels without fireflies, and their variances; both come from the brightest neighbour that counts.
 pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) -> Vec<(Rgb, f32)> {
-    let lights: Vec<f32> = pixels.iter().map(|(colour, _)| colour.luminance()).collect();
-    let variances: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
+    let lights: Vec<f32> = pixels.par_iter().map(|(colour, _)| colour.luminance()).collect();
+    let variances: Vec<f32> = pixels.par_iter().map(|(_, variance)| *variance).collect();
     let mut without = pixels;
     without.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         for (x, (colour, variance)) in row.iter_mut().enumerate() {

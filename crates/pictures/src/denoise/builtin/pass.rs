@@ -30,22 +30,16 @@ const LAST_LINEAR: usize = 2;
 
 /// Applies one pass to the light, and stores the result in `smooth`, which has the same size.
 pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Light) {
-    let (width, height, stride) = (light.planes.width, light.planes.height, light.planes.stride());
-    let within = MARGIN * stride..(MARGIN + height) * stride;
-    let bands = |plane| <[f32]>::par_chunks_mut(plane, BAND * stride);
-    let planes = smooth.planes.planes.iter_mut().map(|plane| bands(&mut plane[within.clone()]));
-    if let Ok([r, g, b, v]) = <[_; 4]>::try_from(planes.collect::<Vec<_>>()) {
-        (r, g, b, v).into_par_iter().enumerate().for_each(|(i, (r, g, b, v))| {
-            let first = i * BAND;
-            let mut band = Band::new(light, guides, step, first..(first + BAND).min(height));
-            band.take_all();
-            for (to, samples) in [r, g, b, v].into_iter().zip(band.finish()) {
-                for (to, row) in to.chunks_exact_mut(stride).zip(samples.chunks_exact(width)) {
-                    to[MARGIN..MARGIN + width].copy_from_slice(row);
-                }
-            }
-        });
-    }
+    let width = light.planes.width;
+    smooth.planes.rows_mut().par_chunks_mut(BAND).enumerate().for_each(|(i, rows)| {
+        let mut band = Band::new(light, guides, step, i * BAND..i * BAND + rows.len());
+        band.take_all();
+        for (plane, samples) in band.finish().iter().enumerate() {
+            rows.iter_mut()
+                .zip(samples.chunks_exact(width))
+                .for_each(|(to, row)| to[plane].copy_from_slice(row));
+        }
+    });
     smooth.planes.pad();
 }
 

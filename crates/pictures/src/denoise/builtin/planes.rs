@@ -19,26 +19,35 @@ impl Planes {
     /// Planes of zeros.
     pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
         let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
-        let planes = (0..count).map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
+        let planes =
+            (0..count).into_par_iter().map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
         Ok(Planes { width, height, planes })
     }
 
     /// Fills each plane with its samples, pixel by pixel.
     pub(super) fn filled<const N: usize>(
         (width, height): (usize, usize),
-        at: impl Fn(usize) -> [f32; N],
+        at: impl Fn(usize) -> [f32; N] + Sync,
     ) -> Result<Planes, PictureError> {
         let mut all = Planes::new(width, height, N)?;
-        for y in 0..height {
+        all.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
             for x in 0..width {
-                let to = all.index(x, y);
-                for (plane, value) in all.planes.iter_mut().zip(at(y * width + x)) {
-                    plane[to] = value;
-                }
+                row.iter_mut().zip(at(y * width + x)).for_each(|(plane, sample)| plane[x] = sample);
             }
-        }
+        });
         all.pad();
         Ok(all)
+    }
+
+    /// The rows, each with its samples in every plane, without the margins.
+    pub(super) fn rows_mut(&mut self) -> Vec<Vec<&mut [f32]>> {
+        let (stride, width) = (self.stride(), self.width);
+        let mut rows: Vec<_> = (0..self.height).map(|_| Vec::with_capacity(self.planes.len())).collect();
+        for plane in &mut self.planes {
+            let samples = plane.chunks_exact_mut(stride).skip(MARGIN);
+            rows.iter_mut().zip(samples).for_each(|(row, all)| row.push(&mut all[MARGIN..MARGIN + width]));
+        }
+        rows
     }
 
     /// The distance from one row to the next.
@@ -57,22 +66,11 @@ impl Planes {
         Rgb::new(self.planes[0][i], self.planes[1][i], self.planes[2][i])
     }
 
-    /// Replaces the samples of each pixel in four planes, given their index; the margins stay as they are.
-    pub(super) fn update(&mut self, new: impl Fn(usize, [f32; 4]) -> [f32; 4]) {
-        for y in 0..self.height {
-            let first = self.index(0, y);
-            for i in first..first + self.width {
-                let samples = new(i, std::array::from_fn(|k| self.planes[k][i]));
-                self.planes.iter_mut().zip(samples).for_each(|(plane, sample)| plane[i] = sample);
-            }
-        }
-    }
-
     /// Adds planes of the same size.
     pub(super) fn add(&mut self, more: &Planes) {
-        for (plane, more) in self.planes.iter_mut().zip(&more.planes) {
+        self.planes.par_iter_mut().zip(&more.planes).for_each(|(plane, more)| {
             plane.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-        }
+        });
     }
 
     /// Repeats the edges in the margins.
@@ -113,7 +111,7 @@ impl Light {
     pub(super) fn of(
         size: (usize, usize),
         layer: Layer,
-        by: &impl Fn(usize) -> Rgb,
+        by: &(impl Fn(usize) -> Rgb + Sync),
     ) -> Result<Light, PictureError> {
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
@@ -124,7 +122,8 @@ impl Light {
             }
             None => guessed[i],
         };
-        let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), variance(i))).collect();
+        let pixels = (0..size.0 * size.1).into_par_iter().map(|i| (colour(i), variance(i)));
+        let pixels: Vec<(Rgb, f32)> = pixels.collect();
         drop((layer, guessed));
         let pixels = outliers::without(size, pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
