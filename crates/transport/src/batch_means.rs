@@ -263,7 +263,7 @@ mod tests {
         };
         let variances = |bad| {
             let mut batches = BatchMeans::default();
-            [2, 5].map(|samples| batches.close(&film(bad, samples), samples));
+            [2, 5].into_iter().for_each(|samples| batches.close(&film(bad, samples), samples));
             batches.finish();
             batches.variance(0..2).unwrap()[0].iter().map(|v| v.g).collect::<Vec<_>>()
         };
