@@ -12,7 +12,7 @@ const TRIANGLE: u64 = 170;
 const STROKE: u64 = 150;
 /// Bytes per instance of a repeated object, including its entry in the top-level tree; measured at 295.
 const INSTANCE: u64 = 350;
-/// Bytes per pixel, with its sums, its layers, and what measuring the noise and denoising take; measured up to 180, while photons are used.
+/// Bytes per pixel, with its sums, its layers, and what measuring the noise and denoising take; measured up to 180.
 const PIXEL: u64 = 200;
 
 fn trees_over(mesh: &Mesh) -> u64 {

@@ -14,18 +14,18 @@ pub fn return_large_blocks() {
         unsafe extern "C" {
             fn mallopt(parameter: c_int, value: c_int) -> c_int;
         }
-        /// `M_MMAP_THRESHOLD` of `malloc.h`. Setting it also stops glibc from raising it.
-        const LEAST_BYTES_OF_OWN_PAGES: c_int = -3;
-        /// `M_TRIM_THRESHOLD`: so much of the heap's end may stay free. Setting the other one lowers it, and threads that take turns with
+        /// Of `malloc.h`: from this size on, a block has its own pages. Setting it also stops glibc from raising it.
+        const M_MMAP_THRESHOLD: c_int = -3;
+        /// Of `malloc.h`: so much of the heap's end may stay free. Setting the other one lowers it, and threads that take turns with
         /// smaller blocks would give them back and get them again all the time.
-        const MOST_BYTES_FREE: c_int = -1;
+        const M_TRIM_THRESHOLD: c_int = -1;
         /// Larger than what threads allocate for a tile, smaller than a plane of a picture.
         const LARGE: c_int = 1 << 20;
         // SAFETY: `mallopt` takes two numbers, refuses those that it does not know, and may be called at any
         // time; other threads do not exist yet.
         unsafe {
-            mallopt(LEAST_BYTES_OF_OWN_PAGES, LARGE);
-            mallopt(MOST_BYTES_FREE, LARGE);
+            mallopt(M_MMAP_THRESHOLD, LARGE);
+            mallopt(M_TRIM_THRESHOLD, LARGE);
         }
     }
 }
