@@ -391,5 +391,6 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         stop: settings.stop,
         interval: false,
         batch_means: false,
+        ids: false,
     })
 }

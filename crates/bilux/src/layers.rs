@@ -1,11 +1,12 @@
 //! What is derived from a render besides its light: layers, and the denoised picture.
 
 use crate::{Error, Job, Outcome};
-use bilux_pictures::Picture;
-use bilux_pictures::PictureError;
-use bilux_pictures::denoise::{DenoiserChoice, Noisy, Source, Task, denoiser, repainted};
+use bilux_math::Rgb;
+use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, Task, denoiser, repainted};
+use bilux_pictures::{Picture, PictureError};
 use bilux_transport::aovs::Aov;
-use bilux_transport::{Window, push_variance};
+use bilux_transport::{Film, push_variance};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// The value of the setting `denoise` that lets the kind of picture decide.
@@ -25,6 +26,7 @@ impl Job {
     pub fn with_layers(&mut self, wanted: &[Aov]) {
         self.features |= wanted.iter().any(|aov| aov.is_feature());
         self.render.batch_means |= wanted.contains(&Aov::Variance);
+        self.render.ids |= wanted.contains(&Aov::Ids);
     }
 
     /// Chooses what denoises the picture, if anything does: the denoiser that the setting `denoise` names, or, if the
@@ -71,17 +73,12 @@ impl Outcome {
     /// # Errors
     /// If memory is short, or the picture already has such layers.
     pub fn push_layers(&self, picture: &mut Picture, wanted: &[Aov]) -> Result<(), Error> {
-        self.push_rows(picture, 0..self.film.window().height as usize, wanted)
-    }
-
-    /// Adds layers to a picture of some rows of the film's window.
-    fn push_rows(&self, picture: &mut Picture, rows: Range<usize>, wanted: &[Aov]) -> Result<(), Error> {
         if let Some(features) = &self.features {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
-            features.push_layers(picture, rows.clone(), wants)?;
+            features.push_layers(picture, wants)?;
         }
         if let Some(batches) = self.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
-            push_variance(picture, rows, &self.film, batches)?;
+            push_variance(picture, &self.film, batches)?;
         }
         Ok(())
     }
@@ -94,15 +91,6 @@ impl Outcome {
         let smooth = chosen.denoiser.denoise(self)?;
         Ok(self.encoded(repainted(self.light()?, &smooth)))
     }
-
-    /// Some rows of the film's window, with all the layers that guide denoisers.
-    fn noisy(&self, rows: Range<usize>) -> Result<Noisy, Error> {
-        let window = self.film.window();
-        let (y, height) = (window.y + rows.start as u32, rows.len() as u32);
-        let mut picture = self.film.window_to_picture(Window { y, height, ..window })?;
-        self.push_rows(&mut picture, rows.clone(), &FOR_DENOISERS)?;
-        Ok(Noisy::of(&picture, 0..rows.len())?)
-    }
 }
 
 impl Source for Outcome {
@@ -112,6 +100,30 @@ impl Source for Outcome {
     }
 
     fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
-        self.noisy(rows).map_err(|error| PictureError::Malformed(error.to_string()))
+        let window = self.film.window();
+        let (width, height) = (window.width as usize, rows.len());
+        let pixels = rows.start * width..rows.end * width;
+        let light = |of: fn(&Film, u32, u32) -> Rgb| {
+            let places = pixels.clone().into_par_iter().map(|i| window.position(i));
+            places.map(|(x, y)| of(&self.film, x, y)).collect()
+        };
+        let [camera, light_paths] = match self.batch_means.as_ref().and_then(|b| b.variance(pixels.clone())) {
+            Some(variances) => variances.map(Some),
+            None => [None, None],
+        };
+        let mut layers = vec![Layer { colour: light(Film::pixel), variance: camera }];
+        if light_paths.as_ref().is_some_and(|variance| !variance.is_empty()) {
+            layers.push(Layer { colour: light(Film::splatted), variance: light_paths });
+        }
+        let features = self.features.as_ref();
+        let noisy = Noisy {
+            width,
+            height,
+            layers,
+            albedo: features.map(|features| features.albedo[pixels.clone()].to_vec()),
+            normal: features.map(|f| f.normal[pixels.clone()].iter().map(|n| n.to_array()).collect()),
+            depth: features.map(|features| features.depth[pixels.clone()].to_vec()),
+        };
+        Ok(noisy.separated())
     }
 }

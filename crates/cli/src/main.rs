@@ -5,6 +5,7 @@
 #![allow(unreachable_pub)]
 
 mod advice;
+mod allocator;
 mod arguments;
 mod choices;
 mod commands;
@@ -36,6 +37,7 @@ const CLOSED_PIPE: u8 = 128 + 13;
 
 fn main() -> ExitCode {
     report_panics();
+    allocator::return_large_blocks();
     let result = match Arguments::try_parse() {
         Ok(arguments) => run(&arguments),
         Err(answer) => print_answer(&advice::added(answer)),

@@ -23,25 +23,68 @@ pub struct BatchMeans {
     /// The sum of the weights of all differences.
     weights: f32,
     /// Light that camera paths have brought, and light that light paths have left.
-    layers: [Vec<Pixel>; 2],
+    layers: [Layer; 2],
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Pixel {
-    count: u32,
-    mean: Rgb,
-    /// The weighted sum of squared differences, each scaled to the variance of one sample.
-    squares: Rgb,
+/// Light of one kind. A large picture holds it while it is rendered, so nothing is stored before it is needed, or after.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Layer {
+    counts: Counts,
+    /// The mean of each pixel; empty once there are no more batches to come.
+    means: Vec<Rgb>,
+    /// The weighted sum of each pixel's squared differences, each scaled to the variance of one sample; empty up to the second batch.
+    squares: Vec<Rgb>,
 }
 
-impl Pixel {
-    /// Adds a batch, given the mean of all samples with it [Chan 1983].
-    fn add(&mut self, mean: Rgb, count: u32) {
-        let batch = count.saturating_sub(self.count);
-        let apart = mean - self.mean;
-        let scale = if batch > 0 { self.count as f32 * count as f32 / batch as f32 } else { 0.0 };
-        self.squares = self.squares * DECAY + apart * apart * scale;
-        (self.mean, self.count) = (mean, count);
+/// Samples in the mean of each pixel.
+#[derive(Clone, Debug, PartialEq)]
+enum Counts {
+    /// The same for every pixel, as long as no sample is bad.
+    Same(u32),
+    Each(Vec<u32>),
+}
+
+impl Default for Counts {
+    fn default() -> Counts {
+        Counts::Same(0)
+    }
+}
+
+impl Counts {
+    fn of(counts: &[u32]) -> Counts {
+        match counts {
+            [first, rest @ ..] if rest.iter().any(|count| count != first) => Counts::Each(counts.to_vec()),
+            _ => Counts::Same(counts.first().copied().unwrap_or(0)),
+        }
+    }
+
+    fn at(&self, pixel: usize) -> u32 {
+        match self {
+            Counts::Same(count) => *count,
+            Counts::Each(counts) => counts[pixel],
+        }
+    }
+}
+
+impl Layer {
+    /// Adds a batch, given the means of all samples with it and their numbers [Chan 1983].
+    fn add(&mut self, means: impl ExactSizeIterator<Item = Rgb>, counts: &[u32]) {
+        let counts = Counts::of(counts);
+        if self.means.is_empty() {
+            self.means.extend(means);
+        } else {
+            self.squares.resize(means.len(), Rgb::BLACK);
+            let sums = self.means.iter_mut().zip(&mut self.squares).enumerate();
+            for ((i, (old, squares)), mean) in sums.zip(means) {
+                let (before, after) = (self.counts.at(i), counts.at(i));
+                let batch = after.saturating_sub(before);
+                let scale = if batch > 0 { before as f32 * after as f32 / batch as f32 } else { 0.0 };
+                let apart = mean - *old;
+                *squares = *squares * DECAY + apart * apart * scale;
+                *old = mean;
+            }
+        }
+        self.counts = counts;
     }
 }
 
@@ -59,16 +102,25 @@ impl BatchMeans {
             return;
         }
         let is_first = self.samples == 0;
-        let pixels = film.window().pixels();
-        for layer in [0, 1] {
-            let means = means(film, layer, 0..pixels);
-            self.layers[layer].resize(means.len(), Pixel::default());
-            for (pixel, (mean, count)) in self.layers[layer].iter_mut().zip(means) {
-                pixel.add(mean, count);
-            }
-        }
+        self.layers[0].add(sampled(film), &film.counts);
+        self.layers[1].add(splatted(film), &film.iterations);
         self.weights = if is_first { 0.0 } else { self.weights * DECAY + 1.0 };
         self.samples = samples;
+    }
+
+    /// Bytes of memory that the batches take.
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        let of_layer = |layer: &Layer| {
+            let counts = if let Counts::Each(counts) = &layer.counts { size_of_val(&counts[..]) } else { 0 };
+            size_of::<Rgb>() * (layer.means.capacity() + layer.squares.capacity()) + counts
+        };
+        self.layers.iter().map(of_layer).sum()
+    }
+
+    /// Frees what only more batches would need.
+    pub(crate) fn finish(&mut self) {
+        self.layers.iter_mut().for_each(|layer| layer.means = Vec::new());
     }
 
     /// The variance of the mean that camera paths give some pixels of the film's window, and of the mean that light paths give, where there are
@@ -76,42 +128,38 @@ impl BatchMeans {
     pub fn variance(&self, pixels: Range<usize>) -> Option<[Vec<Rgb>; 2]> {
         (self.weights > 0.0).then(|| {
             [0, 1].map(|layer| {
-                let some = self.layers[layer].get(pixels.clone()).unwrap_or(&[]);
-                some.iter().map(|p| p.squares * (1.0 / (self.weights * p.count.max(1) as f32))).collect()
+                let Layer { counts, squares, .. } = &self.layers[layer];
+                let share = |i: usize| 1.0 / (self.weights * counts.at(i).max(1) as f32);
+                let some = squares.get(pixels.clone()).unwrap_or(&[]);
+                pixels.clone().zip(some).map(|(i, squares)| *squares * share(i)).collect()
             })
         })
     }
 }
 
-/// The mean of each pixel's samples and their number, by camera paths or by light paths; nothing where there are no light paths.
-fn means(film: &Film, layer: usize, pixels: Range<usize>) -> impl ExactSizeIterator<Item = (Rgb, u32)> + '_ {
-    let pixels = if layer == 1 && film.splats.is_empty() { 0..0 } else { pixels };
-    pixels.map(move |i| {
-        let (x, y) = film.window().position(i);
-        match layer {
-            0 => (film.sampled(x, y), film.counts[i]),
-            _ => (film.splatted(x, y), film.iterations[i]),
-        }
-    })
+/// The mean of each pixel's own samples.
+fn sampled(film: &Film) -> impl ExactSizeIterator<Item = Rgb> + '_ {
+    let place = |i| film.window().position(i);
+    (0..film.window().pixels()).map(place).map(|(x, y)| film.sampled(x, y))
 }
 
-/// Adds the layer `variance` to a picture of some rows of a film's window, and where light paths have left any light, `light` (which is a
-/// part of the picture) and `light_variance`. Adds nothing as long as there are fewer than two batches.
+/// The light of each pixel that light paths have left; nothing where there are no light paths.
+fn splatted(film: &Film) -> impl ExactSizeIterator<Item = Rgb> + '_ {
+    let place = |i| film.window().position(i);
+    (0..film.splats.len()).map(place).map(|(x, y)| film.splatted(x, y))
+}
+
+/// Adds the layer `variance` to a picture of a film's window, and where light paths have left any light, `light` (which is a part of
+/// the picture) and `light_variance`. Adds nothing as long as there are fewer than two batches.
 ///
 /// # Errors
 /// When the picture has another size, or has such layers already.
-pub fn push_variance(
-    picture: &mut Picture,
-    rows: Range<usize>,
-    film: &Film,
-    batches: &BatchMeans,
-) -> Result<(), FilmError> {
-    let width = film.window().width as usize;
-    let pixels = rows.start * width..rows.end * width;
-    let Some([camera, light]) = batches.variance(pixels.clone()) else { return Ok(()) };
+pub fn push_variance(picture: &mut Picture, film: &Film, batches: &BatchMeans) -> Result<(), FilmError> {
+    let pixels = 0..film.window().pixels();
+    let Some([camera, light]) = batches.variance(pixels) else { return Ok(()) };
     picture.push_rgb("variance", &camera)?;
     if !light.is_empty() {
-        let splats: Vec<Rgb> = means(film, 1, pixels).map(|(mean, _)| mean).collect();
+        let splats: Vec<Rgb> = splatted(film).collect();
         picture.push_rgb("light", &splats)?;
         picture.push_rgb("light_variance", &light)?;
     }
@@ -174,5 +222,58 @@ mod tests {
         let mut batches = BatchMeans::default();
         batches.close(&Film::new(1, 1, 0).unwrap(), 1);
         assert_eq!(batches.variance(0..1), None);
+    }
+
+    /// What a picture of 1920 × 1080 takes while it is rendered hangs on this.
+    #[test]
+    fn only_what_is_needed_is_stored() {
+        let mut film = Film::new(8, 8, 20).unwrap();
+        film.make_room_for_splats().unwrap();
+        let mut batches = BatchMeans::default();
+        let mut take = |batches: &mut BatchMeans, samples: u32| {
+            film.counts.fill(samples);
+            film.iterations.fill(samples);
+            batches.close(&film, samples);
+            batches.bytes()
+        };
+        let both_layers = 2 * 64 * size_of::<Rgb>();
+        assert_eq!(take(&mut batches, 1), both_layers);
+        assert_eq!([2, 3, 4].map(|samples| take(&mut batches, samples)), [2 * both_layers; 3]);
+        batches.finish();
+        assert_eq!(batches.bytes(), both_layers);
+        assert!(batches.variance(0..64).is_some());
+        // One batch says nothing, so it leaves nothing.
+        let mut one = BatchMeans::default();
+        take(&mut one, 1);
+        one.finish();
+        assert_eq!((one.bytes(), one.variance(0..64)), (0, None));
+    }
+
+    /// A bad sample makes the numbers of samples differ.
+    #[test]
+    fn a_bad_sample_does_not_count() {
+        let film = |bad: Option<u32>, samples: u32| {
+            let mut film = Film::new(2, 1, 20).unwrap();
+            for sample in 0..samples {
+                let light = Rgb::grey(if bad == Some(sample) { f32::NAN } else { sample as f32 });
+                film.add(0, 0, sample, light);
+                film.add(1, 0, sample, Rgb::grey(sample as f32));
+            }
+            film
+        };
+        let variances = |bad| {
+            let mut batches = BatchMeans::default();
+            [2, 5].into_iter().for_each(|samples| batches.close(&film(bad, samples), samples));
+            batches.finish();
+            batches.variance(0..2).unwrap()[0].iter().map(|v| v.g).collect::<Vec<_>>()
+        };
+        // The mean of 0 and 1 is 0.5; of 0 to 4 it is 2, with or without 2, and 1.75 without 3.
+        let expected =
+            |mean: f32, count: f32| (mean - 0.5) * (mean - 0.5) * 2.0 * count / (count - 2.0) / count;
+        for (bad, mean, count) in [(None, 2.0, 5.0), (Some(2), 2.0, 4.0), (Some(3), 1.75, 4.0)] {
+            let found = variances(bad);
+            assert!((found[0] - expected(mean, count)).abs() < 1e-4, "{bad:?}: {found:?}");
+            assert!((found[1] - expected(2.0, 5.0)).abs() < 1e-4, "{bad:?}: {found:?}");
+        }
     }
 }

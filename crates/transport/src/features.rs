@@ -19,7 +19,6 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, ClassicMaterial, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Camera rays per pixel, even where the picture has fewer samples: they show denoisers which mixture of surfaces an
@@ -42,7 +41,8 @@ pub struct Features {
     /// Metres from the camera along its rays to the first surface, averaged over the rays that hit one; infinite where
     /// none does.
     pub depth: Vec<f32>,
-    /// One more than the index of the object that a pixel's first sample hits; 0 for none.
+    /// One more than the index of the object that a pixel's first sample hits; 0 for none. Empty unless it was asked for
+    /// ([`RenderSettings::ids`]).
     pub object: Vec<u32>,
     /// The same for its material.
     pub material: Vec<u32>,
@@ -96,7 +96,7 @@ pub fn features(
             break;
         }
     }
-    Features::of(window, &tiles, done).map(Some)
+    Features::of(window, tiles, done, settings.ids).map(Some)
 }
 
 /// The fraction of each pixel's first samples whose camera rays hit something, 0..=1, in rows of the film's window, the
@@ -202,15 +202,21 @@ fn albedo(classic: &ClassicMaterial, glows: Rgb) -> Rgb {
 }
 
 impl Features {
-    fn of(window: Window, tiles: &[(Window, Vec<Sums>)], samples: u32) -> Result<Features, RenderError> {
+    fn of(
+        window: Window,
+        tiles: Vec<(Window, Vec<Sums>)>,
+        samples: u32,
+        ids: bool,
+    ) -> Result<Features, RenderError> {
         let (pixels, share) = (window.pixels(), 1.0 / samples as f32);
+        let with_id = if ids { pixels } else { 0 };
         let mut all = Features {
             window,
             albedo: zeroed(pixels)?,
             normal: zeroed(pixels)?,
             depth: zeroed(pixels)?,
-            object: zeroed(pixels)?,
-            material: zeroed(pixels)?,
+            object: zeroed(with_id)?,
+            material: zeroed(with_id)?,
         };
         for (tile, sums) in tiles {
             for (i, sum) in sums.iter().enumerate() {
@@ -218,40 +224,33 @@ impl Features {
                 let Some(at) = window.index(x, y) else { continue };
                 (all.albedo[at], all.normal[at]) = (sum.albedo * share, sum.normal * share);
                 all.depth[at] = if sum.hits > 0 { sum.depth / sum.hits as f32 } else { f32::INFINITY };
-                (all.object[at], all.material[at]) = (sum.object, sum.material);
+                if ids {
+                    (all.object[at], all.material[at]) = (sum.object, sum.material);
+                }
             }
         }
         Ok(all)
     }
 
-    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth` and `id` to a picture of some rows of the window,
-    /// counted from its top row.
+    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth` and `id` to a picture of the window.
     ///
     /// # Errors
     /// When the picture has a different size, or already has such layers.
-    pub fn push_layers(
-        &self,
-        picture: &mut Picture,
-        rows: Range<usize>,
-        wanted: impl Fn(&str) -> bool,
-    ) -> Result<(), FilmError> {
-        let width = self.window.width as usize;
-        let pixels = rows.start * width..rows.end * width;
+    pub fn push_layers(&self, picture: &mut Picture, wanted: impl Fn(&str) -> bool) -> Result<(), FilmError> {
         if wanted("albedo") {
-            picture.push_rgb("albedo", &self.albedo[pixels.clone()])?;
+            picture.push_rgb("albedo", &self.albedo)?;
         }
         if wanted("normal") {
             for (axis, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
-                let along = self.normal[pixels.clone()].iter().map(|n| n[axis]);
-                picture.push_channel(name, along.collect())?;
+                picture.push_channel(name, self.normal.iter().map(|n| n[axis]).collect())?;
             }
         }
         if wanted("depth") {
-            picture.push_channel("depth.Z", self.depth[pixels.clone()].to_vec())?;
+            picture.push_channel("depth.Z", self.depth.clone())?;
         }
-        if wanted("id") {
-            picture.push_integer_plane("id.object", self.object[pixels.clone()].to_vec())?;
-            picture.push_integer_plane("id.material", self.material[pixels].to_vec())?;
+        if wanted("id") && !self.object.is_empty() {
+            picture.push_integer_plane("id.object", self.object.clone())?;
+            picture.push_integer_plane("id.material", self.material.clone())?;
         }
         Ok(())
     }

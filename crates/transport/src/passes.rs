@@ -230,7 +230,7 @@ impl<'a> Work<'a> {
         let Some(iterations) = all.remove(&pass) else { return Ok(()) };
         drop(all);
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
-        film.add_iterations(&iterations, self.passes[pass].len() as u32)
+        film.add_iterations(iterations, self.passes[pass].len() as u32)
     }
 
     /// The film with its coverage, and whether anything is missing.

@@ -120,6 +120,9 @@ pub fn render(
             }
         }
     }
+    if let Some(batches) = &mut batches {
+        batches.finish();
+    }
     Ok(Rendered { interval, batch_means: batches, ..rendered })
 }
 
@@ -149,20 +152,28 @@ impl<'a> Run<'a> {
         let shows_photons = self.integrator.merging().is_some_and(Merging::shows_photons);
         for samples in iterations(self.integrator, samples) {
             let mut eye = self.eye();
-            let shown = shows_photons.then(|| IterationSplats::new(settings, self.scale, whole.len()));
+            let film = &mut rendered.film;
+            let shown = shows_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
             let shown = shown.transpose()?;
-            let photons = pool.install(|| Photons::of_iteration(&eye, &whole, samples.start, shown.as_ref()));
+            let trace = |shown: Option<&IterationSplats>| {
+                pool.install(|| Photons::of_iteration(&self.eye(), &whole, samples.start, shown))
+            };
+            let photons = trace(shown.as_ref());
             if let Some((photons, counters)) = &photons {
                 rendered.counters += *counters;
                 eye.photons = Some(photons);
             }
             let passes = passes(&samples);
             rendered = all_passes(pool, eye, tiles.clone(), passes, self.progress, rendered)?;
+            match shown {
+                Some(shown) if rendered.cancelled => {
+                    shown.take_back(&mut rendered.film, whole.len(), |shown| drop(trace(Some(shown))));
+                }
+                Some(shown) => shown.complete(&mut rendered.film),
+                None => {}
+            }
             if rendered.cancelled {
                 break;
-            }
-            if let Some(shown) = shown {
-                rendered.film.add_iterations(&shown.into_iterations(), 1)?;
             }
         }
         Ok(rendered)

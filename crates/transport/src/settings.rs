@@ -42,6 +42,8 @@ pub struct RenderSettings {
     pub interval: bool,
     /// Estimate the variance of each pixel ([`crate::Rendered::batch_means`]), which denoisers need.
     pub batch_means: bool,
+    /// Keep the ids of objects and materials ([`crate::Features::object`]), which only compositors need.
+    pub ids: bool,
 }
 
 /// The point that represents a pixel.
@@ -83,6 +85,7 @@ impl RenderSettings {
             stop: Stop::default(),
             interval: false,
             batch_means: false,
+            ids: false,
         }
     }
 

@@ -139,25 +139,48 @@ impl<const N: usize> Tally<N> for Splats<'_> {
     }
 }
 
-/// The splats of one iteration's light subpaths, where they are traced before its camera subpaths.
+/// The splats of one iteration's light subpaths, where they are traced before its camera subpaths. They are added to those of the
+/// iterations before, so that there is one sum of all, and not another of this iteration.
 pub(crate) struct IterationSplats<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,
+    /// 1, or -1 where they are taken back.
+    sign: i64,
     iterations: Mutex<Iterations>,
 }
 
 impl<'a> IterationSplats<'a> {
-    pub(crate) fn new(
+    /// Takes the splats of a film, to which those of an iteration will be added; they have to be returned.
+    pub(crate) fn of_film(
+        film: &mut Film,
         settings: &'a RenderSettings,
-        scale_exponent: i32,
         tiles: usize,
     ) -> Result<IterationSplats<'a>, FilmError> {
-        let iterations = Mutex::new(Iterations::new(settings.window().pixels(), tiles)?);
-        Ok(IterationSplats { settings, scale_exponent, iterations })
+        film.make_room_for_splats()?;
+        let (sums, failures) = (std::mem::take(&mut film.splats), Vec::new());
+        let iterations = Mutex::new(Iterations { sums, failures, tiles_left: tiles });
+        Ok(IterationSplats { settings, scale_exponent: film.scale_exponent(), sign: 1, iterations })
     }
 
-    pub(crate) fn into_iterations(self) -> Iterations {
-        self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner)
+    /// Returns them to the film: the iteration is complete.
+    pub(crate) fn complete(self, film: &mut Film) {
+        let Iterations { sums, failures, .. } =
+            self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner);
+        film.splats = sums;
+        film.count_iterations(failures, 1);
+    }
+
+    /// Returns them to the film without the iteration, whose light subpaths `trace` traces once more: sums of integers are exact.
+    pub(crate) fn take_back(self, film: &mut Film, tiles: usize, trace: impl FnOnce(&Self)) {
+        let mut iterations = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if film.iterations.iter().all(|count| *count == 0) {
+            film.iterations = Vec::new();
+            return;
+        }
+        iterations.tiles_left = tiles;
+        let negative = IterationSplats { sign: -1, iterations: Mutex::new(iterations), ..self };
+        trace(&negative);
+        film.splats = negative.iterations.into_inner().unwrap_or_else(PoisonError::into_inner).sums;
     }
 }
 
@@ -173,6 +196,7 @@ impl<'a, const N: usize> LightPathVisitor<N> for IterationSplats<'a> {
     }
 
     fn take(&self, _tile: usize, mut splats: Splats<'a>) {
+        splats.deposits.iter_mut().for_each(|deposit| deposit.steps = deposit.steps.map(|n| self.sign * n));
         self.iterations.lock().unwrap_or_else(PoisonError::into_inner).take(&mut splats.deposits);
     }
 }
@@ -204,15 +228,22 @@ impl Iterations {
 
 impl Film {
     /// Adds whole iterations.
-    pub(crate) fn add_iterations(&mut self, splats: &Iterations, iterations: u32) -> Result<(), FilmError> {
-        self.make_room_for_splats()?;
-        for (sum, more) in self.splats.iter_mut().zip(&splats.sums) {
-            add(sum, *more);
+    pub(crate) fn add_iterations(&mut self, splats: Iterations, iterations: u32) -> Result<(), FilmError> {
+        if self.splats.is_empty() {
+            (self.splats, self.iterations) = (splats.sums, zeroed(self.window().pixels())?);
+        } else {
+            for (sum, more) in self.splats.iter_mut().zip(splats.sums) {
+                add(sum, more);
+            }
         }
-        self.iterations.iter_mut().for_each(|count| *count += iterations);
-        for (index, failures) in &splats.failures {
-            self.failures_at(*index as usize).absorb(failures);
-        }
+        self.count_iterations(splats.failures, iterations);
         Ok(())
+    }
+
+    fn count_iterations(&mut self, failures: Vec<(u32, PixelFailures)>, iterations: u32) {
+        self.iterations.iter_mut().for_each(|count| *count += iterations);
+        for (index, failures) in failures {
+            self.failures_at(index as usize).absorb(&failures);
+        }
     }
 }

@@ -155,13 +155,13 @@ impl Sums {
             StrategyPicture { strategy, weighted: mean(0), unweighted: mean(1) }
         });
         let mut pictures: Vec<StrategyPicture> = here.collect();
-        for (strategy, sums) in self.there {
-            let mean = |sums: &Iterations| -> Result<Vec<Rgb>, FilmError> {
+        for (strategy, [weighted, unweighted]) in self.there {
+            let mean = |sums: Iterations| -> Result<Vec<Rgb>, FilmError> {
                 let mut film = Film::windowed(settings.width, settings.height, window, scale_exponent)?;
                 film.add_iterations(sums, count)?;
                 Ok((0..window.pixels()).map(|i| window.position(i)).map(|(x, y)| film.pixel(x, y)).collect())
             };
-            let (weighted, unweighted) = (mean(&sums[0])?, mean(&sums[1])?);
+            let (weighted, unweighted) = (mean(weighted)?, mean(unweighted)?);
             pictures.push(StrategyPicture { strategy, weighted, unweighted });
         }
         pictures.sort_by_key(|picture| picture.strategy);

@@ -10,7 +10,8 @@ use common::{built, diffuse, floor, integrator, look, put, quad, still_life};
 fn seen(builder: &SceneBuilder, settings: &RenderSettings) -> Features {
     let scene = built(builder);
     let camera = &*scene.cameras()[0].1;
-    features(&scene, camera, &*integrator("path"), settings, None, &Silent).unwrap().unwrap()
+    let settings = RenderSettings { ids: true, ..settings.clone() };
+    features(&scene, camera, &*integrator("path"), &settings, None, &Silent).unwrap().unwrap()
 }
 
 const RED: Rgb = Rgb { r: 0.7, g: 0.2, b: 0.1 };

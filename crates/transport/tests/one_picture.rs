@@ -149,6 +149,26 @@ fn cancelled_renders_are_complete_up_to_their_coverage() {
     }
 }
 
+/// The light of an iteration's photons is added to the film before its camera rays are traced.
+#[test]
+fn cancelled_renders_have_no_light_of_an_incomplete_iteration() {
+    let scene = built(&still_life());
+    let vcm = integrators::build(&Spec::new("", "vcm").with("joins", false)).unwrap();
+    let camera = scene.cameras()[0].1.clone();
+    let settings = RenderSettings { threads: 3, ..RenderSettings::new(40, 40, 4) };
+    let splats = |film: &Film| (0..1600).map(|i| film.splatted(i % 40, i / 40)).collect::<Vec<_>>();
+    for (stop, complete) in [(1, 0), (1000, 0), (1601, 1), (4000, 2)] {
+        let stopping = StopAfter(AtomicU64::new(0), stop);
+        let stopped = render(&scene, &*camera, &*vcm, &settings, &stopping).unwrap();
+        assert!(stopped.cancelled);
+        let whole =
+            shoot(&scene, &*vcm, &RenderSettings { samples: 0..complete.max(1), ..settings.clone() }).film;
+        let expected = if complete == 0 { vec![Rgb::BLACK; 1600] } else { splats(&whole) };
+        assert!(splats(&stopped.film) == expected, "stopped after {stop}");
+        assert!(splats(&whole).iter().any(|light| !light.is_black()));
+    }
+}
+
 /// Returns NaN for rays towards the upper right.
 struct Broken;
 

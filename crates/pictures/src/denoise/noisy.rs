@@ -75,35 +75,43 @@ impl Noisy {
             let what = "there is nothing to denoise without the channels R, G and B, or Y";
             return Err(PictureError::Malformed(what.to_owned()));
         };
-        let mut colour = joined(planes.map(|plane| &plane[pixels.clone()]))?;
-        let mut light = rgb(["light.R", "light.G", "light.B"])?;
-        for (i, colour) in colour.iter_mut().enumerate() {
-            // Colours that are not finite become black, without affecting anything else.
-            if !colour.is_finite() {
-                *colour = Rgb::BLACK;
-                continue;
-            }
-            if let Some(light) = &mut light {
-                light[i] = if light[i].is_finite() { light[i] } else { Rgb::BLACK };
-                *colour = *colour - light[i];
-            }
-        }
-        let variance = rgb(["variance.R", "variance.G", "variance.B"])?;
-        let mut layers = vec![Layer { colour, variance: variance.map(finite_or_black) }];
-        if let Some(colour) = light {
+        let colour = joined(planes.map(|plane| &plane[pixels.clone()]))?;
+        let mut layers = vec![Layer { colour, variance: rgb(["variance.R", "variance.G", "variance.B"])? }];
+        if let Some(colour) = rgb(["light.R", "light.G", "light.B"])? {
             let variance = rgb(["light_variance.R", "light_variance.G", "light_variance.B"])?;
-            layers.push(Layer { colour, variance: variance.map(finite_or_black) });
+            layers.push(Layer { colour, variance });
         }
-        let normal = rgb(["normal.X", "normal.Y", "normal.Z"])?.map(finite_or_black);
-        Ok(Noisy {
+        let normal = rgb(["normal.X", "normal.Y", "normal.Z"])?;
+        let noisy = Noisy {
             width,
             height,
             layers,
-            albedo: rgb(["albedo.R", "albedo.G", "albedo.B"])?
-                .map(|plane| finite_or_black(plane).into_iter().map(|c| c.clamp(0.0, 1.0)).collect()),
+            albedo: rgb(["albedo.R", "albedo.G", "albedo.B"])?,
             normal: normal.map(|plane| plane.into_iter().map(|n| n.to_array()).collect()),
             depth: picture.channel("depth.Z").map(|depth| depth[pixels.clone()].to_vec()),
-        })
+        };
+        Ok(noisy.separated())
+    }
+
+    /// The same where the first layer is still the whole picture, and nothing has been checked: takes the other layers out of the
+    /// first, and makes every value finite. Pixels that are not finite become black, without affecting anything else.
+    pub fn separated(mut self) -> Noisy {
+        if let [whole, parts @ ..] = &mut *self.layers {
+            for part in parts {
+                part.colour.iter_mut().for_each(finite_or_black);
+                whole.colour.iter_mut().zip(&part.colour).for_each(|(whole, part)| *whole = *whole - *part);
+            }
+            whole.colour.iter_mut().for_each(finite_or_black);
+        }
+        let variances = self.layers.iter_mut().filter_map(|layer| layer.variance.as_mut());
+        variances.flatten().for_each(finite_or_black);
+        for albedo in self.albedo.iter_mut().flatten() {
+            finite_or_black(albedo);
+            *albedo = albedo.clamp(0.0, 1.0);
+        }
+        let normals = self.normal.iter_mut().flatten();
+        normals.filter(|n| !n.iter().all(|x| x.is_finite())).for_each(|n| *n = [0.0; 3]);
+        self
     }
 
     /// Total number of pixels.
@@ -119,8 +127,8 @@ fn joined([r, g, b]: [&[f32]; 3]) -> Result<Vec<Rgb>, PictureError> {
     Ok(all)
 }
 
-/// Replaces colours that are not finite by black.
-fn finite_or_black(mut plane: Vec<Rgb>) -> Vec<Rgb> {
-    plane.iter_mut().filter(|c| !c.is_finite()).for_each(|c| *c = Rgb::BLACK);
-    plane
+fn finite_or_black(colour: &mut Rgb) {
+    if !colour.is_finite() {
+        *colour = Rgb::BLACK;
+    }
 }

@@ -5,6 +5,8 @@
 
 use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
 use super::planes::Planes;
+use crate::PictureError;
+use crate::limits::zeroed;
 use bilux_math::Rgb;
 use rayon::prelude::*;
 
@@ -37,18 +39,25 @@ const COLUMNS: usize = 10;
 
 /// The picture with its edge pixels reconstructed. `colours` has three planes, and the variance of each pixel in a
 /// fourth.
-pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Vec<Rgb> {
-    let (width, height) = (colours.width, colours.height);
+///
+/// # Errors
+/// Returns an error when the machine has no memory left.
+pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Result<Vec<Rgb>, PictureError> {
+    let width = colours.width;
     let is_edge = edges(guides);
-    let row = |y: usize| {
-        let at = |x: usize| {
+    let mut all = zeroed("denoising", width * colours.height)?;
+    all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, to) in row.iter_mut().enumerate() {
             let i = colours.index(x, y);
             let own = colours.rgb(y * width + x);
-            if is_edge[i] { Fit::around(colours, guides, i).blended(own, colours.planes[3][i]) } else { own }
-        };
-        (0..width).map(at).collect::<Vec<_>>()
-    };
-    (0..height).into_par_iter().flat_map_iter(row).collect()
+            *to = if is_edge[i] {
+                Fit::around(colours, guides, i).blended(own, colours.planes[3][i])
+            } else {
+                own
+            };
+        }
+    });
+    Ok(all)
 }
 
 /// Marks the pixels that have a neighbour with another surface; the result includes the margin around the picture,

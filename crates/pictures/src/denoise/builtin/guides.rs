@@ -3,6 +3,7 @@
 use super::planes::Planes;
 use crate::PictureError;
 use crate::denoise::Noisy;
+use bilux_math::Rgb;
 
 /// The planes: 1 within the picture and 0 beyond; albedo; normals; depth, its slope across columns and down rows, and
 /// the reciprocal of the expected depth difference between neighbours; and inverse depth, 0 where nothing is visible.
@@ -56,6 +57,12 @@ impl Guides {
             within
         };
         Ok(Guides { planes })
+    }
+
+    /// The albedo at an index of the planes.
+    pub(super) fn albedo(&self, i: usize) -> Rgb {
+        let [r, g, b] = [0, 1, 2].map(|c| self.planes.planes[ALBEDO + c][i]);
+        Rgb::new(r, g, b)
     }
 }
 

@@ -10,7 +10,7 @@ mod outliers;
 mod pass;
 mod planes;
 
-use super::{Denoiser, DenoiserEntry, Layer, Noisy, Source};
+use super::{Denoiser, DenoiserEntry, Noisy, Source};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
@@ -18,6 +18,7 @@ use bilux_math::registry::Entry;
 use guides::Guides;
 use pass::pass;
 use planes::{Light, Planes};
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Duration;
 
@@ -43,7 +44,7 @@ const STEPS: [usize; 4] = [1, 2, 4, 8];
 const MARGIN: usize = 2 * 8 + 1;
 
 /// Rows that are filtered at a time: a picture of any height takes no more memory than this many rows.
-const MAX_ROWS: usize = 512;
+const MAX_ROWS: usize = 288;
 
 /// The distance over which one row can affect another: the reach of all passes, of the means of variances, outliers
 /// and guesses before them, and of the edges after them.
@@ -82,76 +83,53 @@ impl Denoiser for Builtin {
     }
 }
 
-/// The sum of the denoised layers.
-fn smoothed(noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
+/// The sum of the denoised layers. What is not needed any more is freed as early as possible: this takes some hundred bytes per pixel.
+fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
+    let (size, layers) = ((noisy.width, noisy.height), std::mem::take(&mut noisy.layers));
+    let albedo = noisy.albedo.as_deref();
+    let divided = |layer| Light::of(size, layer, &|i| albedo.map_or(Rgb::WHITE, |a| planes::divisor(a[i])));
+    let lights = layers.into_iter().map(divided).collect::<Result<Vec<_>, _>>()?;
     let guides = Guides::of(&noisy)?;
-    let Noisy { width, height, layers, albedo, .. } = noisy;
-    let mut sum = vec![[0.0; 4]; width * height];
-    for layer in layers {
-        let light = smooth_light((width, height), layer, albedo.as_deref(), &guides)?;
-        let back = |i: usize| albedo.as_ref().map_or(Rgb::WHITE, |albedo| planes::divisor(albedo[i]));
-        for (i, sum) in sum.iter_mut().enumerate() {
-            let (back, variance) =
-                (back(i), light.planes.planes[3][light.planes.index(i % width, i / width)]);
-            let Rgb { r, g, b } = light.planes.rgb(i) * back;
-            let own = [r, g, b, variance * planes::mean(back * back)];
-            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+    let has_albedo = albedo.is_some();
+    drop(noisy);
+    let mut sum: Option<Planes> = None;
+    for light in lights {
+        let mut light = smooth_light(light, &guides)?.planes;
+        if has_albedo {
+            multiply(&mut light, &guides);
+        }
+        match &mut sum {
+            Some(sum) => sum.add(&light),
+            None => sum = Some(light),
         }
     }
-    if albedo.is_none() {
-        return Ok(sum.into_iter().map(|[r, g, b, _]| Rgb::new(r, g, b)).collect());
+    let Some(mut colours) = sum else { return Ok(Vec::new()) };
+    if !has_albedo {
+        return Ok((0..size.0 * size.1).map(|i| colours.rgb(i)).collect());
     }
-    let colours = Planes::filled((width, height), |i| sum[i])?;
-    Ok(edges::rebuilt(&colours, &guides))
+    colours.pad();
+    edges::rebuilt(&colours, &guides)
 }
 
-/// The denoised light of a layer, with the albedo divided out.
-fn smooth_light(
-    size: (usize, usize),
-    layer: Layer,
-    albedo: Option<&[Rgb]>,
-    guides: &Guides,
-) -> Result<Light, PictureError> {
-    STEPS.iter().try_fold(Light::of(size, layer, albedo)?, |light, &step| pass(&light, guides, step))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Picture;
-    use bilux_math::hash::{hash_words, unit_f32};
-
-    /// A picture with every layer, all noise, and with guides that separate few pixels.
-    fn noise(width: usize, height: usize) -> Picture {
-        let mut picture = Picture::new(width, height).unwrap();
-        let layers = ["", "albedo", "normal", "depth", "variance", "light", "light_variance"];
-        for (k, layer) in layers.into_iter().enumerate() {
-            let names: &[&str] = match layer {
-                "normal" => &["X", "Y", "Z"],
-                "depth" => &["Z"],
-                _ => &["R", "G", "B"],
-            };
-            for (c, name) in names.iter().enumerate() {
-                let apart = if ["albedo", "normal", "depth"].contains(&layer) { 0.001 } else { 1.0 };
-                let at = |i| 1.0 + apart * unit_f32(hash_words([i as u64, (3 * k + c) as u64]) as u32);
-                let samples = (0..width * height).map(at).collect();
-                picture.push_channel(crate::picture::qualified(layer, name), samples).unwrap();
-            }
+/// Multiplies light by the albedo that it was divided by.
+fn multiply(light: &mut Planes, guides: &Guides) {
+    let first = |y: usize| guides.planes.index(0, y);
+    light.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
+        let [r, g, b, variance] = &mut row[..] else { return };
+        for x in 0..r.len() {
+            let back = planes::divisor(guides.albedo(first(y) + x));
+            Rgb { r: r[x], g: g[x], b: b[x] } = Rgb::new(r[x], g[x], b[x]) * back;
+            variance[x] *= planes::mean(back * back);
         }
-        picture
-    }
+    });
+}
 
-    /// Strips leave no visible seam: each includes all rows that its passes reach.
-    #[test]
-    fn strips_match_the_whole_picture_to_the_bit() {
-        let picture = noise(37, MAX_ROWS + 83);
-        let whole = smoothed(picture.rows(0..picture.height()).unwrap()).unwrap();
-        let strips = Builtin::new(2).unwrap().denoise(&picture).unwrap();
-        assert!(whole == strips);
-        // And no more rows than needed: with one row less, there would be a difference.
-        let rows = picture.height() / 2;
-        let with = |reach: usize| smoothed(picture.rows(0..rows + reach).unwrap()).unwrap();
-        assert!(whole[..rows * 37] == with(REACH)[..rows * 37]);
-        assert!(whole[..rows * 37] != with(REACH - 12)[..rows * 37]);
+/// The denoised light of a layer.
+fn smooth_light(mut light: Light, guides: &Guides) -> Result<Light, PictureError> {
+    let mut smooth = Light { planes: Planes::new(light.planes.width, light.planes.height, 4)? };
+    for step in STEPS {
+        pass(&light, guides, step, &mut smooth);
+        std::mem::swap(&mut light, &mut smooth);
     }
+    Ok(light)
 }

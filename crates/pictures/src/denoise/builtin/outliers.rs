@@ -13,21 +13,21 @@ const TOO_BRIGHT: f32 = 1.3;
 const NOISE: f32 = 0.4;
 
 /// The pixels without fireflies, and their variances; both come from the brightest neighbour that counts.
-pub(super) fn without((width, height): (usize, usize), pixels: &[(Rgb, f32)]) -> Vec<(Rgb, f32)> {
-    let lights: Vec<f32> = pixels.iter().map(|(colour, _)| colour.luminance()).collect();
-    let row = |y: usize| {
-        let of = |x: usize| {
-            let (colour, variance) = pixels[y * width + x];
-            match brightest((width, height), &lights, x, y) {
-                Some(j) if variance.sqrt() > NOISE * (lights[y * width + x] - lights[j]) => {
-                    (colour * (lights[j] / lights[y * width + x]), pixels[j].1)
-                }
-                _ => (colour, variance),
+pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) -> Vec<(Rgb, f32)> {
+    let lights: Vec<f32> = pixels.par_iter().map(|(colour, _)| colour.luminance()).collect();
+    let variances: Vec<f32> = pixels.par_iter().map(|(_, variance)| *variance).collect();
+    let mut without = pixels;
+    without.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, (colour, variance)) in row.iter_mut().enumerate() {
+            let light = lights[y * width + x];
+            if let Some(j) = brightest((width, height), &lights, x, y)
+                && variance.sqrt() > NOISE * (light - lights[j])
+            {
+                (*colour, *variance) = (*colour * (lights[j] / light), variances[j]);
             }
-        };
-        (0..width).map(of).collect::<Vec<_>>()
-    };
-    (0..height).into_par_iter().flat_map_iter(row).collect()
+        }
+    });
+    without
 }
 
 /// The brightest neighbour that counts, for a pixel that is far brighter than it. Most pixels are not, which the

@@ -4,7 +4,6 @@ use super::MARGIN;
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
 use super::linear::Moments;
 use super::planes::{Light, Planes};
-use crate::PictureError;
 use rayon::prelude::*;
 
 /// Rows that one thread processes at a time.
@@ -29,33 +28,19 @@ const BEYOND: f32 = 2.0;
 /// Up to this step, passes fit a slope to the light too. Neighbours farther away differ by more than the noise where there is a slope.
 const LAST_LINEAR: usize = 2;
 
-/// Applies one pass to the light.
-///
-/// # Errors
-/// Returns an error when the machine has no memory left.
-pub(super) fn pass(light: &Light, guides: &Guides, step: usize) -> Result<Light, PictureError> {
-    let (width, height) = (light.planes.width, light.planes.height);
-    let mut smooth = Planes::new(width, height, 4)?;
-    let stride = smooth.stride();
-    let bands: Vec<usize> = (0..height).step_by(BAND).collect();
-    let done: Vec<[Vec<f32>; 4]> = bands
-        .par_iter()
-        .map(|&first| {
-            let mut band = Band::new(light, guides, step, first..(first + BAND).min(height));
-            band.take_all();
-            band.finish()
-        })
-        .collect();
-    for (first, band) in bands.iter().zip(&done) {
-        for (plane, rows) in smooth.planes.iter_mut().zip(band) {
-            for (row, samples) in rows.chunks_exact(width).enumerate() {
-                let at = (first + row + MARGIN) * stride + MARGIN;
-                plane[at..at + width].copy_from_slice(samples);
-            }
+/// Applies one pass to the light, and stores the result in `smooth`, which has the same size.
+pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Light) {
+    let width = light.planes.width;
+    smooth.planes.rows_mut().par_chunks_mut(BAND).enumerate().for_each(|(i, rows)| {
+        let mut band = Band::new(light, guides, step, i * BAND..i * BAND + rows.len());
+        band.take_all();
+        for (plane, samples) in band.finish().iter().enumerate() {
+            rows.iter_mut()
+                .zip(samples.chunks_exact(width))
+                .for_each(|(to, row)| to[plane].copy_from_slice(row));
         }
-    }
-    smooth.pad();
-    Ok(Light { planes: smooth })
+    });
+    smooth.planes.pad();
 }
 
 /// Some rows while neighbours are being added.

@@ -19,26 +19,35 @@ impl Planes {
     /// Planes of zeros.
     pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
         let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
-        let planes = (0..count).map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
+        let planes =
+            (0..count).into_par_iter().map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
         Ok(Planes { width, height, planes })
     }
 
     /// Fills each plane with its samples, pixel by pixel.
     pub(super) fn filled<const N: usize>(
         (width, height): (usize, usize),
-        at: impl Fn(usize) -> [f32; N],
+        at: impl Fn(usize) -> [f32; N] + Sync,
     ) -> Result<Planes, PictureError> {
         let mut all = Planes::new(width, height, N)?;
-        for y in 0..height {
+        all.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
             for x in 0..width {
-                let to = all.index(x, y);
-                for (plane, value) in all.planes.iter_mut().zip(at(y * width + x)) {
-                    plane[to] = value;
-                }
+                row.iter_mut().zip(at(y * width + x)).for_each(|(plane, sample)| plane[x] = sample);
             }
-        }
+        });
         all.pad();
         Ok(all)
+    }
+
+    /// The rows, each with its samples in every plane, without the margins.
+    pub(super) fn rows_mut(&mut self) -> Vec<Vec<&mut [f32]>> {
+        let (stride, width) = (self.stride(), self.width);
+        let mut rows: Vec<_> = (0..self.height).map(|_| Vec::with_capacity(self.planes.len())).collect();
+        for plane in &mut self.planes {
+            let samples = plane.chunks_exact_mut(stride).skip(MARGIN);
+            rows.iter_mut().zip(samples).for_each(|(row, all)| row.push(&mut all[MARGIN..MARGIN + width]));
+        }
+        rows
     }
 
     /// The distance from one row to the next.
@@ -55,6 +64,13 @@ impl Planes {
     pub(super) fn rgb(&self, pixel: usize) -> Rgb {
         let i = self.index(pixel % self.width, pixel / self.width);
         Rgb::new(self.planes[0][i], self.planes[1][i], self.planes[2][i])
+    }
+
+    /// Adds planes of the same size.
+    pub(super) fn add(&mut self, more: &Planes) {
+        self.planes.par_iter_mut().zip(&more.planes).for_each(|(plane, more)| {
+            plane.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        });
     }
 
     /// Repeats the edges in the margins.
@@ -91,13 +107,12 @@ pub(super) fn divisor(albedo: Rgb) -> Rgb {
 }
 
 impl Light {
+    /// The light of a layer, divided by the albedo: `by`.
     pub(super) fn of(
         size: (usize, usize),
         layer: Layer,
-        albedo: Option<&[Rgb]>,
+        by: &(impl Fn(usize) -> Rgb + Sync),
     ) -> Result<Light, PictureError> {
-        let width = size.0;
-        let by = |i: usize| albedo.map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
         let variance = |i: usize| match &layer.variance {
@@ -107,12 +122,12 @@ impl Light {
             }
             None => guessed[i],
         };
-        let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), variance(i))).collect();
+        let pixels = (0..size.0 * size.1).into_par_iter().map(|i| (colour(i), variance(i)));
+        let pixels: Vec<(Rgb, f32)> = pixels.collect();
         drop((layer, guessed));
-        let pixels = outliers::without(size, &pixels);
+        let pixels = outliers::without(size, pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
-        let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
-        let blurred = blur(&raw, width);
+        let blurred = blur(&pixels, size.0);
         let planes = Planes::filled(size, |i| {
             let Rgb { r, g, b } = pixels[i].0;
             [r, g, b, blurred[i]]
@@ -142,16 +157,16 @@ fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec
     (0..width * height).map(one).collect()
 }
 
-/// Means over 3 × 3 pixels.
-fn blur(plane: &[f32], width: usize) -> Vec<f32> {
-    let height = plane.len() / width;
-    let mut all = vec![0.0; plane.len()];
+/// Means of the variances of 3 × 3 pixels.
+fn blur(pixels: &[(Rgb, f32)], width: usize) -> Vec<f32> {
+    let height = pixels.len() / width;
+    let mut all = vec![0.0; pixels.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         let rows =
-            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &plane[y * width..(y + 1) * width]);
+            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &pixels[y * width..(y + 1) * width]);
         for (x, sum) in row.iter_mut().enumerate() {
             let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
-            *sum = rows.iter().map(|row| row[left] + row[x] + row[right]).sum::<f32>() / 9.0;
+            *sum = rows.iter().map(|row| row[left].1 + row[x].1 + row[right].1).sum::<f32>() / 9.0;
         }
     });
     all
