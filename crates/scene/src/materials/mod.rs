@@ -8,6 +8,7 @@
 //! | --- | --- | --- | --- | --- | --- | --- | --- |
 //! | `phong` | as given | as given | as given | as given | as given | as given | where kt > 0 |
 //! | `diffuse` | reflectance | reflectance | 0 | 0 | – | 0 | no |
+//! | `translucent` | reflectance | reflectance | 0 | 0 | – | 0 | no |
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
 //! | `conductor` | 0 | 0 | R₀ | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
@@ -33,6 +34,7 @@ mod opacity;
 mod phong;
 mod principled;
 mod roughness;
+mod translucent;
 mod visible;
 
 use crate::bsdf::MAX_LOBES;
@@ -93,6 +95,7 @@ pub fn metal_indices(name: &str) -> Option<[Rgb; 2]> {
 pub const MATERIALS: &[MaterialEntry] = &[
     phong::ENTRY,
     diffuse::ENTRY,
+    translucent::ENTRY,
     mirror::ENTRY,
     conductor::ENTRY,
     dielectric::ENTRY,

@@ -59,6 +59,25 @@ typed! {
         /// Strength of the normal map; default `1`.
         normal_scale: f32,
     }
+    /// Paper, leaves, lampshades: diffuse reflection and diffuse transmission.
+    Translucent = "translucent" {
+        /// Fraction of the light that is reflected; default `0.4`.
+        reflectance: impl Into<crate::Value>,
+        /// Fraction that leaves on the other side; where the two are more than 1 together, both are scaled down; default `0.4`.
+        transmittance: impl Into<crate::Value>,
+        /// Emitted radiance (W/(m² sr)); default `0`.
+        emission: impl Into<crate::Value>,
+        /// Factor on the emission; default `1`.
+        emission_scale: bilux_math::Rgb,
+        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        emission_sides: &str,
+        /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
+        opacity: impl Into<crate::Value>,
+        /// Normal map in tangent space, with green up as in OpenGL and glTF; default `none`.
+        normal: impl Into<crate::Value>,
+        /// Strength of the normal map; default `1`.
+        normal_scale: f32,
+    }
     /// A perfect mirror.
     Mirror = "mirror" {
         /// Reflected fraction of the light; default `0.95`.
