@@ -213,7 +213,8 @@ impl OpaqueBaseForWo {
         let OpaqueBaseAlbedos { mean: [opaque_mean, mean], at_normal, along_wo: [opaque, boundary] } =
             *albedos;
         let (alpha, opacity, amplitude) = (roughness * roughness, 1.0 - metalness, inputs.amplitude());
-        let glass = specular_color * opacity;
+        // Without a boundary there is no reflection at it.
+        let glass = specular_color * if amplitude > 0.0 { opacity } else { 0.0 };
         let straight = base_color * specular_weight;
         let dip = schlick_from(straight, COS_82) * (Rgb::WHITE - specular_color) * (1.0 / dent(COS_82));
         // ∫ (1-µ)⁵ 2µ dµ and ∫ µ (1-µ)⁶ 2µ dµ

@@ -112,9 +112,21 @@ impl Maps {
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
     }
 
-    /// True when nothing is above the base, and the base is opaque, the same in all directions, and not polished
-    /// everywhere.
+    /// True when nothing is above the base, and the base is opaque, reflects at its surface in the same way in all
+    /// directions, and is not polished everywhere.
     pub(super) fn are_of_opaque_base(&self) -> bool {
+        let roughness = &self.specular_roughness;
+        let is_rough = roughness.texture.is_some() || is_rough(roughness.number);
+        self.are_bare() && !self.are_lambertian() && !is_there(&self.anisotropy) && is_rough
+    }
+
+    /// True when there is nothing but a Lambertian base.
+    pub(super) fn are_lambertian(&self) -> bool {
+        self.are_bare() && !is_there(&self.specular_weight) && !is_there(&self.base_metalness)
+    }
+
+    /// True when nothing is above the base, which is opaque, and whose diffuse part is Lambertian.
+    fn are_bare(&self) -> bool {
         let absent = [
             &self.transmission_weight,
             &self.coat_weight,
@@ -122,10 +134,8 @@ impl Maps {
             &self.passing,
             &self.film_weight,
             &self.base_roughness,
-            &self.anisotropy,
         ];
-        let roughness = &self.specular_roughness;
-        !absent.into_iter().any(is_there) && (roughness.texture.is_some() || is_rough(roughness.number))
+        !absent.into_iter().any(is_there)
     }
 
     /// What an opaque base is made of at a point; `vertex` is a factor on its colour.

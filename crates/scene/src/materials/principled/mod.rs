@@ -223,6 +223,20 @@ impl Principled {
 }
 
 impl Material for Principled {
+    fn is_lambertian(&self) -> bool {
+        self.maps.are_lambertian()
+    }
+
+    fn lambertian_reflectance(&self, surface: &Surface) -> Rgb {
+        let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
+        (self.maps.base_color.at(surface.uvs()).clamp(0.0, 1.0) * vertex).clamp(0.0, 1.0)
+    }
+
+    fn constant_lambertian_reflectance(&self) -> Option<Rgb> {
+        let is_constant = self.is_lambertian() && self.maps.base_color.texture.is_none();
+        is_constant.then(|| self.maps.base_color.colour.clamp(0.0, 1.0))
+    }
+
     fn is_opaque_base(&self) -> bool {
         self.is_opaque_base
     }
