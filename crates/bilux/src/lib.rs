@@ -29,6 +29,7 @@ pub mod series;
 pub mod settings;
 mod shadow;
 pub mod strategies;
+pub mod tables;
 mod writing;
 
 pub use bilux_accel as accel;
