@@ -3,7 +3,6 @@
 
 use bilux::math::glam::DMat4;
 use bilux::math::{Transform, Vec2, Vec3};
-use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -32,9 +31,15 @@ fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
     format!("({}{comma})", sides.join(", "))
 }
 
-fn floats<'py>(array: &Bound<'py, PyUntypedArray>) -> PyResult<PyReadonlyArrayDyn<'py, f32>> {
-    let array = array.call_method1("astype", ("float32", "K", "unsafe", false, false))?;
-    Ok(array.extract::<PyReadonlyArrayDyn<'py, f32>>()?)
+/// The numbers as 32-bit floats, row by row, whatever the layout of the array.
+fn floats(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<f32>> {
+    if let Ok(singles) = array.extract::<PyReadonlyArrayDyn<'_, f32>>() {
+        let view = singles.as_array();
+        return Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[f32]>::to_vec));
+    }
+    let array = array.call_method1("astype", ("float64", "C", "unsafe", false, false))?;
+    let doubles = array.extract::<PyReadonlyArrayDyn<'_, f64>>()?;
+    Ok(doubles.as_array().iter().map(|&number| number as f32).collect())
 }
 
 /// Rows of `N` finite numbers.
@@ -51,11 +56,7 @@ pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> P
             "{name}: its shape is {shape}, but must be (n, {N}), one row for each{advice}"
         )));
     }
-    let floats = floats(&array)?;
-    let rows = match floats.as_slice() {
-        Ok(slice) => slice.as_chunks::<N>().0.to_vec(),
-        Err(_) => strided::<N>(&floats),
-    };
+    let rows = floats(&array)?.as_chunks::<N>().0.to_vec();
     match rows.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
         None => Ok(rows),
         Some(bad) => Err(PyValueError::new_err(format!(
@@ -63,14 +64,6 @@ pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> P
             rows[bad]
         ))),
     }
-}
-
-/// The rows of an array that is not contiguous.
-fn strided<const N: usize>(floats: &PyReadonlyArrayDyn<'_, f32>) -> Vec<[f32; N]> {
-    let view = floats.as_array();
-    let view: Option<ArrayView2<'_, f32>> = view.into_dimensionality().ok();
-    let rows = view.map(|view| view.axis_iter(Axis(0)).map(|row| std::array::from_fn(|i| row[i])).collect());
-    rows.unwrap_or_default()
 }
 
 /// Points or directions.
@@ -104,7 +97,8 @@ pub(crate) fn triangles(name: &str, argument: &Bound<'_, PyAny>, count: usize) -
     }
     let array = array.call_method1("astype", ("int64", "C", "unsafe", false, false))?;
     let array = array.extract::<PyReadonlyArrayDyn<'_, i64>>()?;
-    let rows = array.as_slice()?.as_chunks::<3>().0;
+    let view = array.as_array();
+    let rows = view.as_slice().unwrap_or_default().as_chunks::<3>().0;
     let in_range = |index: i64| u32::try_from(index).ok().filter(|index| (*index as usize) < count);
     let index = |row: usize, index: i64| {
         in_range(index).ok_or_else(|| {
@@ -133,7 +127,8 @@ pub(crate) fn transforms(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Ve
     }
     let array = array.call_method1("astype", ("float64", "C", "unsafe", false, false))?;
     let array = array.extract::<PyReadonlyArrayDyn<'_, f64>>()?;
-    let matrices = array.as_slice()?.as_chunks::<16>().0;
+    let view = array.as_array();
+    let matrices = view.as_slice().unwrap_or_default().as_chunks::<16>().0;
     let transform = |(i, numbers): (usize, &[f64; 16])| {
         // numpy's rows are the matrix's rows.
         Transform::from_matrix(DMat4::from_cols_array(numbers).transpose()).ok_or_else(|| {
@@ -162,7 +157,5 @@ pub(crate) fn pixels(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<([usiz
             )));
         }
     };
-    let floats = floats(&array)?;
-    let samples = floats.as_array().iter().copied().collect();
-    Ok((shape, samples))
+    Ok((shape, floats(&array)?))
 }

@@ -76,9 +76,10 @@ impl Layer {
                 }
                 Err(_) => {
                     let numbers = pixels.extract::<PyReadonlyArrayDyn<'_, f32>>()?;
-                    let samples = match numbers.as_slice() {
-                        Ok(slice) => slice.iter().copied().skip(c).step_by(count).collect(),
-                        Err(_) => numbers.as_array().iter().copied().skip(c).step_by(count).collect(),
+                    let view = numbers.as_array();
+                    let samples = match view.as_slice() {
+                        Some(slice) => slice.iter().copied().skip(c).step_by(count).collect(),
+                        None => view.iter().copied().skip(c).step_by(count).collect(),
                     };
                     picture.push_channel(name, samples)
                 }

@@ -9,6 +9,7 @@ mod errors;
 mod forks;
 mod layer;
 mod picture;
+mod progressive;
 mod render;
 mod scene;
 mod spec;
@@ -26,6 +27,8 @@ mod _bilux {
     use crate::accel::Accel;
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
+    #[pymodule_export]
+    use crate::progressive::Progressive;
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

@@ -4,9 +4,9 @@ use crate::errors::{Error, exception, warn};
 use crate::picture::{Picture, Shown};
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
+use bilux::pictures::WriteOptions;
 use bilux::pictures::denoise::preload;
 use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
-use bilux::settings::Background;
 use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
 use bilux::{Job, Outcome};
@@ -98,7 +98,7 @@ pub(crate) fn render(
 }
 
 /// The exception after Ctrl-C, with the picture so far.
-fn interrupted(py: Python<'_>, picture: Option<Picture>) -> PyResult<PyErr> {
+pub(crate) fn interrupted(py: Python<'_>, picture: Option<Picture>) -> PyResult<PyErr> {
     let message = match picture {
         Some(_) => "the render was interrupted; the exception's attribute `picture` is the picture so far",
         None => "the render was interrupted before there was a picture",
@@ -156,19 +156,9 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
     let settings = job.settings();
-    let options = job.write_options()?;
-    let shown = Shown {
-        auto_exposure: settings.auto_exposure,
-        exposure: options.exposure,
-        curve: options.tone_map,
-        behind: match settings.background {
-            Background::Colour(_) => options.behind,
-            _ => None,
-        },
-    };
     Ok(Some(Rendered {
         picture,
-        shown,
+        shown: shown(&job)?,
         warnings: job.warnings().to_vec(),
         spp: outcome.reached.map_or_else(|| job.samples_per_pixel(), |reached| reached.spp),
         seed: settings.seed,
@@ -176,6 +166,12 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
         outcome,
     }))
+}
+
+/// How the job's pictures are shown.
+pub(crate) fn shown(job: &Job) -> Result<Shown, bilux::Error> {
+    let WriteOptions { exposure, tone_map, behind, .. } = job.write_options()?;
+    Ok(Shown { auto_exposure: job.settings().auto_exposure, exposure, curve: tone_map, behind })
 }
 
 /// The window of the picture that `crop` asks for.

@@ -3,6 +3,7 @@
 use crate::arrays;
 use crate::errors::{exception, of_scene, warn};
 use crate::picture::Picture;
+use crate::progressive::Progressive;
 use crate::render::{Request, aovs, render};
 use crate::spec::Spec;
 use crate::texture::Texture;
@@ -303,12 +304,12 @@ impl Scene {
         Ok(())
     }
 
-    /// The corners of the bounding box of all objects, without lights: two triples, or None if there are none.
+    /// The corners of the bounding box of all objects, without lights: a list of two triples, or None if there are none.
     #[getter]
-    fn bounds(&self, py: Python<'_>) -> Option<([f32; 3], [f32; 3])> {
+    fn bounds(&self, py: Python<'_>) -> Option<[(f32, f32, f32); 2]> {
         let builder = self.builder(py);
         let bounds = builder.bounds(0.0);
-        (!builder.objects.is_empty()).then(|| (bounds.min.to_array(), bounds.max.to_array()))
+        (!builder.objects.is_empty()).then(|| [bounds.min.into(), bounds.max.into()])
     }
 
     /// What was odd about the file.
@@ -335,7 +336,7 @@ impl Scene {
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
         let scene = self.builder(py).clone();
         let lost = py.detach(|| bilux::formats::write(&path, &scene, &Default::default()));
-        Ok(lost.map_err(|error| exception(error))?.iter().map(ToString::to_string).collect())
+        Ok(lost.map_err(exception)?.iter().map(ToString::to_string).collect())
     }
 
     #[pyo3(signature = (settings, aov, crop, fast, max_memory, loaded_at, callback))]
@@ -357,6 +358,18 @@ impl Scene {
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
         render(py, &scene, Request { user, aovs, crop, fast, max_memory, loaded_at, begun }, callback)
+    }
+
+    fn _progressive(
+        &self,
+        py: Python<'_>,
+        settings: &Bound<'_, PyDict>,
+        max_memory: u64,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Progressive> {
+        let user = values::parameters(settings, &mut Unresolved)?;
+        let scene = self.builder(py).clone();
+        Progressive::new(py, &scene, &user, max_memory, callback)
     }
 
     fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {

@@ -6,7 +6,7 @@ use bilux::math::registry::Entry;
 use bilux::scene::{Reader, SceneBuilder, SceneError, Span};
 use bilux::tables::{TABLES, values as values_of};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
 /// A material, a light or a camera: the name of a row of a table, and parameters.
 ///
@@ -90,12 +90,10 @@ impl Spec {
         hasher.finish()
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, String, Bound<'py, PyDict>, String))> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let (py, spec) = (slf.py(), slf.get());
-        let arguments = (spec.table.clone(), spec.kind.clone(), spec.parameters(py)?, spec.name.clone());
-        Ok((slf.get_type().into_any(), arguments))
+        let arguments = (&spec.table, &spec.kind, spec.parameters(py)?, &spec.name);
+        (slf.get_type(), arguments).into_pyobject(py)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 
 from ._types import Progress
 
@@ -31,7 +32,7 @@ def following(progress: bool | Callback) -> Iterator[Native | None]:
 def _bar() -> Iterator[Native]:
     """A bar by tqdm if it is there, else a line on standard error."""
     try:
-        from tqdm.auto import tqdm
+        tqdm = import_module("tqdm.auto").tqdm
     except ImportError:
         def line(samples: int, total: int, rays: int, seconds: float) -> None:
             percent = 100 * samples // total if total else 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal
 
 from numpy.typing import ArrayLike
@@ -194,18 +194,77 @@ class Scene(_bilux.Scene):
             >>> picture.pixels.dtype, picture.info["spp"]
             (dtype('float32'), 4)
         """
-        given = dict(integrator=integrator, spp=spp, noise=noise, time_limit=time_limit, seed=seed, threads=threads)
-        given |= dict(size=_size(size), denoise=_denoise(denoise), tonemap=tonemap, background=background)
-        given |= dict(camera=None if camera is None else str(camera), time=self._time if time is None else time)
-        if time is None and self._time == 0.0:
-            del given["time"]
-        given |= {"auto_exposure": True} if exposure == "auto" else {"exposure": exposure}
-        given |= settings
+        given = self._settings(
+            size=size, integrator=integrator, spp=spp, noise=noise, time_limit=time_limit, seed=seed, threads=threads,
+            denoise=denoise, camera=camera, time=time, exposure=exposure, tonemap=tonemap, background=background,
+            **settings,
+        )  # fmt: skip
         if fast and (spp, noise, time_limit) != (None, None, None):
             raise TypeError("fast: this sets its own limits: leave it out, or spp, noise and time_limit")
         layers = [aov] if isinstance(aov, str) else list(aov)
         with following(progress) as callback:
             return self._render(given, layers, crop, fast, max_memory, self._time, callback)
+
+    def progressive(
+        self,
+        size: tuple[int, int] | int | str | None = None,
+        integrator: str | None = None,
+        spp: int = 1024,
+        *,
+        seed: int | None = None,
+        threads: int | None = None,
+        camera: str | int | None = None,
+        time: float | None = None,
+        exposure: float | Literal["auto"] | None = None,
+        tonemap: str | None = None,
+        background: str | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        max_memory: int = MAX_MEMORY,
+        **settings: Any,
+    ) -> Iterator[Picture]:
+        """Renders ever better pictures: with 1, 2, 4, … samples per pixel, up to `spp`.
+
+        Each picture contains the samples of those before it; the last one is that of `render(spp=spp)`, to the byte.
+        Leave the loop when a picture is good enough.
+
+        Args:
+            spp: samples per pixel of the last picture.
+            size, integrator, seed, threads, camera, time, exposure, tonemap, background, progress, max_memory,
+                **settings: as for `render`.
+
+        Raises:
+            SceneError, RenderError, Interrupted: as for `render`.
+
+        Example:
+            >>> [picture.info["spp"] for picture in bilux.generate("cornell").progressive(size=16, spp=5)]
+            [1, 2, 4, 5]
+        """
+        given = self._settings(
+            size=size, integrator=integrator, spp=spp, seed=seed, threads=threads, camera=camera, time=time,
+            exposure=exposure, tonemap=tonemap, background=background, **settings,
+        )  # fmt: skip
+        if given.keys() & {"noise", "time_limit"}:
+            raise TypeError("progressive: noise and time_limit do not end it: leave the loop instead")
+        given |= {"noise": 0, "time_limit": 0}
+        with following(progress) as callback:
+            yield from self._progressive(given, max_memory, callback)
+
+    def _settings(
+        self,
+        *,
+        size: tuple[int, int] | int | str | None,
+        camera: str | int | None,
+        time: float | None,
+        exposure: float | Literal["auto"] | None,
+        denoise: bool | str | None = None,
+        **settings: Any,
+    ) -> dict[str, Any]:
+        """The settings as the tables name them."""
+        given = settings | {"size": _size(size), "denoise": _denoise(denoise)}
+        given["camera"] = None if camera is None else str(camera)
+        given["time"] = self._time or None if time is None else time
+        given |= {"auto_exposure": True} if exposure == "auto" else {"exposure": exposure}
+        return {key: value for key, value in given.items() if value is not None}
 
     def copy(self) -> Scene:
         """A copy that can be changed on its own. Meshes and textures are shared, not copied."""

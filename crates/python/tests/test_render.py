@@ -1,0 +1,191 @@
+"""Pictures: the same as those of the command line, and as numpy arrays."""
+
+import numpy as np
+import pytest
+
+import bilux
+
+
+def test_a_saved_picture_has_the_bytes_of_the_command_line(folder, command_line):
+    bilux.load("model.glb").render(size=(80, 60), spp=4).save("ours.png")
+    command_line("render", "model.glb", "-o", "theirs.png", "--size", "80x60", "--spp", 4)
+    assert (folder / "ours.png").read_bytes() == (folder / "theirs.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "words"),
+    [
+        ("cornell", dict(spp=3, aov=["albedo", "normal", "depth", "ids"]), ["--spp", 3, "--aov", "albedo,normal,depth,ids"]),
+        ("cornell", dict(spp=4, seed=7, integrator="bdpt", max_depth=3), ["--spp", 4, "--seed", 7, "-i", "bdpt", "--max-depth", 3]),
+        ("trio", dict(spp=2, background="transparent"), ["--spp", 2, "--background", "transparent"]),
+        ("trio", dict(integrator="whitted"), ["-i", "whitted"]),
+    ],
+)
+@pytest.mark.parametrize("extension", ["exr", "png"])
+def test_settings_mean_what_flags_mean(folder, command_line, kind, arguments, words, extension):
+    scene = bilux.generate(kind)
+    scene.save("scene.toml")
+    bilux.load("scene.toml").render(size=(48, 40), **arguments).save(f"ours.{extension}")
+    command_line("render", "scene.toml", "-o", f"theirs.{extension}", "--size", "48x40", *words)
+    assert (folder / f"ours.{extension}").read_bytes() == (folder / f"theirs.{extension}").read_bytes()
+
+
+def test_exposure_and_tone_curve_are_those_of_the_command_line(folder, command_line):
+    picture = bilux.load("model.glb").render(size=48, spp=2, exposure="auto", tonemap="agx")
+    picture.save("ours.png", bits=16)
+    command_line("render", "model.glb", "-o", "theirs.png", "--size", "48x48", "--spp", 2, "--exposure", "auto", "--tonemap", "agx", "--bits", 16)
+    assert (folder / "ours.png").read_bytes() == (folder / "theirs.png").read_bytes()
+
+
+def test_threads_and_crops_change_nothing():
+    scene = bilux.generate("cornell")
+    whole = scene.render(size=(64, 48), spp=4)
+    assert np.array_equal(whole.pixels, scene.render(size=(64, 48), spp=4, threads=1).pixels)
+    crop = scene.render(size=(64, 48), spp=4, integrator="path", crop=(8, 16, 24, 12))
+    assert np.array_equal(scene.render(size=(64, 48), spp=4, integrator="path").pixels[16:28, 8:32], crop.pixels)
+    assert not np.array_equal(whole.pixels, scene.render(size=(64, 48), spp=4, seed=1).pixels)
+
+
+def test_layers_are_arrays_and_never_copied():
+    picture = bilux.generate("cornell").render(size=(40, 30), spp=2, aov=["depth", "ids", "albedo", "variance"])
+    assert picture.pixels.shape == (30, 40, 3) and picture.pixels.dtype == np.float32
+    assert picture["depth"].shape == (30, 40) and np.isfinite(picture["depth"]).any()
+    assert picture["id"].dtype == np.uint32 and picture["id"].shape == (30, 40, 2)
+    assert picture["albedo"].shape == (30, 40, 3) and picture["albedo"].max() <= 1
+    assert set(picture.layers) >= {"depth", "id", "albedo"} and "normal" not in picture
+
+    def address(array):
+        return array.__array_interface__["data"][0]
+
+    assert address(picture.pixels) == address(picture.pixels) == address(np.asarray(picture))
+    assert address(picture["depth"]) == address(picture["depth"])
+    assert picture.pixels.flags.c_contiguous and picture.pixels.flags.writeable
+    mine = np.ones((4, 5, 3), np.float32)
+    assert address(bilux.Picture(mine).pixels) == address(mine)
+    with pytest.raises(KeyError, match="no layer 'normal'"):
+        picture["normal"]
+
+
+def test_what_is_changed_in_an_array_is_saved(folder):
+    picture = bilux.generate("cornell").render(size=16, spp=1)
+    picture.pixels[:] = 0.25
+    picture.pixels[3, 5] = [1, 0, 0]
+    picture.save("changed.exr")
+    read = bilux.read_picture("changed.exr").pixels
+    assert np.array_equal(read, picture.pixels) and read[3, 5].tolist() == [1, 0, 0]
+
+
+def test_pictures_are_written_read_and_compared(folder):
+    ramp = np.linspace(0, 1, 32 * 16 * 3, dtype=np.float32).reshape(16, 32, 3)
+    picture = bilux.Picture(ramp, layers={"depth": ramp[..., 0], "id": np.arange(512, dtype=np.uint32).reshape(16, 32)})
+    picture.save("ramp.exr")
+    read = bilux.read_picture("ramp.exr")
+    assert np.array_equal(read.pixels, ramp) and np.array_equal(read["depth"], ramp[..., 0])
+    assert read["id"].dtype == np.uint32 and read["id"][15, 31] == 511
+    picture.save("ramp.png")
+    shown = bilux.read_picture("ramp.png")
+    assert np.abs(shown.pixels - ramp).max() < 0.005
+    assert bilux.compare(read, picture)["rmse"] == 0 and bilux.compare(read, picture)["psnr"] == np.inf
+    assert 0 < bilux.compare(shown, ramp)["flip"] < 0.01
+    with pytest.raises(bilux.PictureError, match="32"):
+        bilux.compare(ramp, ramp[:8])
+
+
+def test_what_a_display_shows():
+    grey = bilux.Picture(np.full((2, 3, 3), 0.5, np.float32))
+    assert np.allclose(grey.tonemapped(), 0.7353569) and grey.tonemapped().shape == (2, 3, 3)
+    assert np.allclose(grey.tonemapped(exposure=1), 1)
+    assert grey.to_uint8().shape == (2, 3, 4) and grey.to_uint8()[0, 0].tolist() == [188, 188, 188, 255]
+    assert grey._repr_png_().startswith(b"\x89PNG")
+    with pytest.raises(bilux.PictureError, match="agx"):
+        grey.tonemapped("agxx")
+
+
+def test_noise_ends_a_picture_and_it_is_denoised(folder):
+    picture = bilux.generate("cornell").render(size=48, noise=0.2, integrator="path")
+    assert picture.info["noise"] <= 0.2 and picture.info["denoiser"] and "noisy" in picture.layers
+    noisy = bilux.generate("cornell").render(size=48, noise=0.2, integrator="path", denoise=False)
+    assert np.array_equal(noisy.pixels, picture["noisy"]) and noisy.info["denoiser"] is None
+    smooth = noisy.denoised("builtin")
+    assert smooth.pixels.shape == noisy.pixels.shape and not np.array_equal(smooth.pixels, noisy.pixels)
+
+
+def test_a_scene_says_what_it_does_not_know():
+    scene = bilux.generate("cornell")
+    with pytest.raises(bilux.SceneError, match="did you mean 'path'"):
+        scene.render(integrator="pth")
+    with pytest.raises(ValueError, match="roulette_depth"):
+        scene.render(roulete_depth=3)
+    with pytest.raises(ValueError, match="spp"):
+        scene.render(spp=-1)
+    with pytest.raises(ValueError, match="size"):
+        scene.render(size=(0, 10))
+    with pytest.raises(TypeError, match="size"):
+        scene.render(size=(10, 10, 10))
+    with pytest.raises(ValueError, match="layer 'depht'"):
+        scene.render(spp=1, aov=["depht"])
+    with pytest.raises(ValueError, match="crop"):
+        scene.render(size=32, spp=1, crop=(30, 0, 8, 8))
+    with pytest.raises(bilux.RenderError, match="memory"):
+        scene.render(size=4096, spp=1, max_memory=1000)
+    with pytest.raises(TypeError, match="fast"):
+        scene.render(fast=True, spp=3)
+    with pytest.raises(TypeError, match="progress"):
+        scene.render(spp=1, progress="yes")
+
+
+def test_a_picture_shows_itself_in_a_notebook(folder):
+    assert bilux.load("model.glb")._repr_png_().startswith(b"\x89PNG")
+    assert bilux.Scene()._repr_png_() is None
+
+
+@pytest.mark.parametrize(
+    ("pixels", "error", "words"),
+    [
+        (np.ones(5), ValueError, r"pixels: its shape is \[5\]"),
+        (np.ones((0, 5)), ValueError, "pixels"),
+        (np.ones((2, 2, 7)), ValueError, "1 to 4 channels"),
+        (np.ones((2, 2), complex), TypeError, "complex128"),
+        ("picture", TypeError, "pixels"),
+    ],
+)
+def test_a_picture_refuses_other_arrays(pixels, error, words):
+    with pytest.raises(error, match=words):
+        bilux.Picture(pixels)
+
+
+def test_files_that_are_missing_or_wrong(folder):
+    with pytest.raises(FileNotFoundError):
+        bilux.read_picture("nothing.png")
+    with pytest.raises(FileNotFoundError):
+        bilux.load("nothing.glb")
+    (folder / "broken.png").write_bytes(b"\x89PNG\r\n\x1a\nrest")
+    with pytest.raises(bilux.PictureError, match="broken.png"):
+        bilux.read_picture("broken.png")
+    (folder / "broken.glb").write_bytes(b"glTFrest")
+    with pytest.raises(bilux.FormatError, match="broken.glb"):
+        bilux.load("broken.glb")
+    with pytest.raises(bilux.PictureError, match="picture.xyz"):
+        bilux.Picture(np.ones((2, 2))).save("picture.xyz")
+    with pytest.raises(bilux.FormatError, match="xyzzy"):
+        bilux.generate("trio").save("model.xyzzy")
+
+
+@pytest.mark.parametrize("integrator", ["auto", "path", "bdpt", "vcm", "sppm"])
+def test_progressive_pictures_end_in_that_of_render(integrator):
+    if integrator not in bilux.integrators:
+        pytest.skip(f"there is no {integrator}")
+    scene = bilux.generate("cornell")
+    wanted = scene.render(size=24, spp=6, integrator=integrator).pixels
+    pictures = list(scene.progressive(size=24, spp=6, integrator=integrator))
+    assert [picture.info["spp"] for picture in pictures] == [1, 2, 4, 6]
+    assert np.array_equal(pictures[-1].pixels, wanted)
+    errors = [bilux.compare(picture, wanted)["rmse"] for picture in pictures]
+    assert errors[0] > errors[1] > errors[2] > errors[3] == 0
+
+
+def test_progressive_pictures_may_be_left():
+    pictures = bilux.generate("cornell").progressive(size=24, spp=1 << 20)
+    assert next(pictures).info["spp"] == 1 and next(pictures).info["spp"] == 2
+    with pytest.raises(TypeError, match="leave the loop"):
+        next(bilux.generate("cornell").progressive(noise=0.1))
