@@ -4,14 +4,17 @@
 //! and the library; there are names, defaults and documentation.
 
 mod accel;
+mod adding;
 mod arrays;
 mod errors;
 mod forks;
 mod layer;
 mod picture;
 mod progressive;
+mod rays;
 mod render;
 mod scene;
+mod shown;
 mod spec;
 mod texture;
 mod values;
@@ -35,6 +38,16 @@ mod _bilux {
     use crate::spec::{Spec, rows};
     #[pymodule_export]
     use crate::texture::Texture;
+
+    /// The licences of Bilux, and of everything in this package that others wrote.
+    ///
+    /// Example:
+    ///     >>> "MIT" in bilux.licenses()
+    ///     True
+    #[pyfunction]
+    fn licenses() -> &'static str {
+        include_str!("../../../LICENSES.txt")
+    }
 
     /// Adds the version.
     #[pymodule_init]

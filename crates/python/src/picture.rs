@@ -2,63 +2,14 @@
 
 use crate::errors::of_picture;
 use crate::layer::{Layer, layers_of};
-use bilux::math::Rgb;
+use crate::shown::Shown;
 use bilux::pictures::denoise::{Task, denoise, denoiser};
 use bilux::pictures::formats::BitDepth;
-use bilux::pictures::{ColourSpace, ToneMapEntry, WriteOptions, auto_exposure, to_display, tone_map};
-use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
+use bilux::pictures::{ColourSpace, to_display};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::PathBuf;
-
-/// How a picture is prepared for a display, unless a call says otherwise.
-#[derive(Clone, Copy)]
-pub(crate) struct Shown {
-    /// Whether the picture is also exposed automatically.
-    pub(crate) auto_exposure: bool,
-    /// Exposure in stops.
-    pub(crate) exposure: f32,
-    /// The tone curve.
-    pub(crate) curve: &'static ToneMapEntry,
-    /// The colour behind transparent pixels.
-    pub(crate) behind: Option<Rgb>,
-}
-
-impl Default for Shown {
-    fn default() -> Shown {
-        let WriteOptions { exposure, tone_map, behind, .. } = WriteOptions::default();
-        Shown { auto_exposure: false, exposure, curve: tone_map, behind }
-    }
-}
-
-impl Shown {
-    /// The same with what a call says.
-    fn with(self, exposure: Option<&Bound<'_, PyAny>>, curve: Option<&str>) -> PyResult<Shown> {
-        let mut shown = self;
-        if let Some(name) = curve {
-            shown.curve = tone_map(name).map_err(of_picture)?;
-        }
-        if let Some(exposure) = exposure {
-            let is_auto = exposure.extract::<String>().is_ok_and(|text| text == "auto");
-            shown.auto_exposure = is_auto;
-            shown.exposure = if is_auto { 0.0 } else { stops(exposure)? };
-        }
-        Ok(shown)
-    }
-
-    /// The exposure of this picture, in stops.
-    fn exposure_of(&self, picture: &bilux::pictures::Picture) -> f32 {
-        self.exposure + if self.auto_exposure { auto_exposure(picture) } else { 0.0 }
-    }
-}
-
-fn stops(exposure: &Bound<'_, PyAny>) -> PyResult<f32> {
-    let wrong = |_| PyTypeError::new_err("exposure: this is a number of stops (powers of two), or 'auto'");
-    match exposure.extract::<f32>().map_err(wrong)? {
-        stops if stops.abs() <= 64.0 => Ok(stops),
-        stops => Err(PyValueError::new_err(format!("exposure: {stops} is not from -64 to 64 stops"))),
-    }
-}
 
 /// A picture: an array of pixels, and other layers of the same size.
 ///
@@ -151,7 +102,7 @@ impl Picture {
         self.metadata.clone_ref(py)
     }
 
-    /// What is known of the render: "spp" (samples per pixel), "noise" (a fraction of the light, or None), "seconds",
+    /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the light, or None), "seconds",
     /// "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None),
     /// "seed", "rays", and "warnings". Empty for other pictures.
     #[getter]
@@ -217,7 +168,7 @@ impl Picture {
     ) -> PyResult<()> {
         let shown = self.shown.with(exposure, tonemap)?;
         let picture = self.to_rust(py)?;
-        let mut options = options(&shown, &picture);
+        let mut options = shown.options(&picture);
         options.bit_depth = match bits {
             8 => BitDepth::Eight,
             16 => BitDepth::Sixteen,
@@ -283,7 +234,7 @@ impl Picture {
     /// The bytes of a PNG, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.to_rust(py)?;
-        let options = options(&self.shown, &picture);
+        let options = self.shown.options(&picture);
         let bytes = py.detach(|| bilux::pictures::write_bytes("png", &picture, &options));
         Ok(PyBytes::new(py, &bytes.map_err(of_picture)?))
     }
@@ -294,11 +245,6 @@ impl Picture {
             if layers.is_empty() { String::new() } else { format!(", layers {}", layers.join(", ")) };
         format!("<bilux.Picture {} x {} pixels{layers}>", self.size[1], self.size[0])
     }
-}
-
-fn options(shown: &Shown, picture: &bilux::pictures::Picture) -> WriteOptions {
-    let exposure = shown.exposure_of(picture);
-    WriteOptions { exposure, tone_map: shown.curve, behind: shown.behind, ..WriteOptions::default() }
 }
 
 impl Picture {

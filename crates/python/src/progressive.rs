@@ -1,8 +1,9 @@
 //! Ever better pictures of one scene.
 
 use crate::errors::{Error, exception, warn};
-use crate::picture::{Picture, Shown};
+use crate::picture::Picture;
 use crate::render::{interrupted, shown};
+use crate::shown::Shown;
 use crate::watch::{Stopped, follow};
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::{Job, Outcome};
@@ -78,7 +79,8 @@ impl Progressive {
                 return Err(interrupted(py, last.transpose()?)?);
             }
         }
-        let more = rendered.ok_or_else(|| Error::new_err("rendering failed inside Bilux: please report this"))?;
+        let more =
+            rendered.ok_or_else(|| Error::new_err("rendering failed inside Bilux: please report this"))?;
         let mut more = more.map_err(exception)?;
         if let Some(before) = so_far.take() {
             let samples = std::mem::replace(&mut more.film, before.film);
@@ -89,5 +91,4 @@ impl Progressive {
         *so_far = Some(more);
         Ok(Some(picture))
     }
-
 }

@@ -1,7 +1,8 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
 use crate::errors::{Error, exception, warn};
-use crate::picture::{Picture, Shown};
+use crate::picture::Picture;
+use crate::shown::Shown;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
 use bilux::pictures::WriteOptions;
@@ -38,7 +39,7 @@ struct Rendered {
     shown: Shown,
     outcome: Outcome,
     warnings: Vec<Warning>,
-    spp: u32,
+    spp: f64,
     seed: u64,
     integrator: &'static str,
     denoiser: Option<String>,
@@ -160,7 +161,11 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         picture,
         shown: shown(&job)?,
         warnings: job.warnings().to_vec(),
-        spp: outcome.reached.map_or_else(|| job.samples_per_pixel(), |reached| reached.spp),
+        spp: match (outcome.cancelled, outcome.reached) {
+            (true, _) => mean_samples(&outcome),
+            (false, Some(reached)) => f64::from(reached.spp),
+            (false, None) => f64::from(job.samples_per_pixel()),
+        },
         seed: settings.seed,
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
@@ -189,11 +194,22 @@ fn window(job: &Job, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::E
     )))
 }
 
+/// The mean number of samples of a pixel.
+fn mean_samples(outcome: &Outcome) -> f64 {
+    let Window { x, y, width, height } = outcome.film.window();
+    let row = |row| (x..x + width).map(move |column| u64::from(outcome.film.samples(column, row)));
+    let all: u64 = (y..y + height).flat_map(row).sum();
+    all as f64 / (f64::from(width) * f64::from(height))
+}
+
 /// What the picture's `info` says.
 fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
     let outcome = &rendered.outcome;
-    info.set_item("spp", rendered.spp)?;
+    match rendered.outcome.cancelled {
+        true => info.set_item("spp", rendered.spp)?,
+        false => info.set_item("spp", rendered.spp as u64)?,
+    }
     info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
     info.set_item("complete", !outcome.cancelled)?;

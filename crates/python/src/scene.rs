@@ -1,19 +1,19 @@
 //! Scenes: read from files, generated, or built from arrays.
 
+use crate::adding::{Adding, mesh, of_table};
 use crate::arrays;
 use crate::errors::{exception, of_scene, warn};
 use crate::picture::Picture;
 use crate::progressive::Progressive;
 use crate::render::{Request, aovs, render};
 use crate::spec::Spec;
-use crate::texture::Texture;
 use crate::values::{self, Resolve, Unresolved};
 use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Transform;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::{Mesh, Object, SceneBuilder};
+use bilux::scene::{Object, SceneBuilder};
 use numpy::PyArray1;
-use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyDict, PyString, PyType};
@@ -25,40 +25,6 @@ use std::time::Instant;
 #[pyclass(frozen, subclass, module = "bilux._bilux", name = "Scene")]
 #[derive(Default)]
 pub(crate) struct Scene(Mutex<SceneBuilder>);
-
-/// Adds textures and materials to the scene when they are first named.
-struct Adding<'s>(&'s mut SceneBuilder);
-
-impl Resolve for Adding<'_> {
-    fn texture(&mut self, texture: &Texture) -> usize {
-        let textures = &mut self.0.textures;
-        textures.iter().position(|known| Arc::ptr_eq(known, &texture.0)).unwrap_or_else(|| {
-            textures.push(texture.0.clone());
-            textures.len() - 1
-        })
-    }
-
-    fn material(&mut self, material: &Bound<'_, Spec>) -> PyResult<usize> {
-        let spec = of_table(material, "materials")?.resolved(material.py(), self)?;
-        let materials = &mut self.0.materials;
-        Ok(materials.iter().position(|known| *known == spec).unwrap_or_else(|| {
-            materials.push(spec);
-            materials.len() - 1
-        }))
-    }
-}
-
-/// The spec, if it is one of this table.
-fn of_table<'s>(spec: &'s Bound<'_, Spec>, table: &str) -> PyResult<&'s Spec> {
-    let found = spec.get();
-    if found.table == table {
-        return Ok(found);
-    }
-    Err(PyTypeError::new_err(format!(
-        "{} is one of bilux.{}, but this needs one of bilux.{table}",
-        found.kind, found.table
-    )))
-}
 
 #[pymethods]
 impl Scene {
@@ -410,32 +376,4 @@ fn object(builder: &SceneBuilder, index: usize) -> PyResult<&Object> {
         let count = builder.objects.len();
         PyIndexError::new_err(format!("there is no object {index}: the scene has {count}, counted from 0"))
     })
-}
-
-/// A mesh from arrays.
-fn mesh(
-    vertices: &Bound<'_, PyAny>,
-    triangles: &Bound<'_, PyAny>,
-    normals: Option<&Bound<'_, PyAny>>,
-    uvs: Option<&Bound<'_, PyAny>>,
-    name: &str,
-) -> PyResult<Mesh> {
-    let positions = arrays::vectors("vertices", vertices)?;
-    let triangles = arrays::triangles("triangles", triangles, positions.len())?;
-    if triangles.is_empty() {
-        return Err(PyValueError::new_err(
-            "triangles: a mesh without triangles cannot be seen: leave it out",
-        ));
-    }
-    let normals = normals.map_or(Ok(Vec::new()), |normals| arrays::vectors("normals", normals))?;
-    let uvs = uvs.map_or(Ok(Vec::new()), |uvs| arrays::pairs("uvs", uvs))?;
-    for (argument, count) in [("normals", normals.len()), ("uvs", uvs.len())] {
-        if count != 0 && count != positions.len() {
-            return Err(PyValueError::new_err(format!(
-                "{argument}: there are {count} rows for {} vertices: give one for each vertex",
-                positions.len()
-            )));
-        }
-    }
-    Ok(Mesh { name: name.to_owned(), positions, normals, uvs, triangles, ..Mesh::default() })
 }

@@ -29,6 +29,7 @@ def test_a_callback_stops_the_render_and_keeps_the_picture():
     picture = long_render(bilux.generate("cornell"), progress=lambda progress: progress.seconds < 0.5)
     assert time.monotonic() - begun < 3
     assert not picture.info["complete"] and picture.pixels.max() > 0
+    assert 0 < picture.info["spp"] < 100_000
 
 
 def test_what_a_callback_raises_comes_out():
@@ -126,7 +127,7 @@ def test_a_scene_that_changes_during_a_render_does_not_change_the_picture(square
     assert len(begun.lights) > 0
 
 
-def test_a_forked_process_is_told_instead_of_hanging():
+def test_a_forked_process_gets_an_exception_and_does_not_hang():
     if not hasattr(__import__("os"), "fork"):
         pytest.skip("this system does not fork")
     script = """

@@ -10,7 +10,8 @@ layers are numpy arrays; `Accel` answers ray queries. What has variants is liste
 `materials()`, `lights()`, `cameras()`, `settings()` and more.
 """
 
-from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, read_picture
+from . import trimesh
+from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
 from ._tables import (
@@ -67,6 +68,7 @@ __all__ = [
     "generate",
     "generators",
     "integrators",
+    "licenses",
     "lights",
     "load",
     "materials",
@@ -75,4 +77,5 @@ __all__ = [
     "read_picture",
     "settings",
     "tonemaps",
+    "trimesh",
 ]

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "read_picture", "rows"]
+__all__ = ["Accel", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "rows"]
 
 __version__: str
 
@@ -16,6 +16,7 @@ _Path = str | os.PathLike[str]
 _Exposure = float | Literal["auto"]
 
 def rows(table: str) -> list[dict[str, Any]]: ...
+def licenses() -> str: ...
 def read_picture(path: _Path) -> Picture: ...
 def compare(picture: Picture | ArrayLike, reference: Picture | ArrayLike) -> dict[str, float]: ...
 

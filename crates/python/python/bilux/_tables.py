@@ -11,25 +11,36 @@ from ._bilux import Spec, rows
 
 
 class Parameter(NamedTuple):
-    """A parameter of an entry."""
+    """A parameter of an entry.
+
+    Attributes:
+        name: its name.
+        summary: what it is, in a line.
+        values: the values that it can take, in words.
+        unit: its unit, or nothing.
+        default: its default, or nothing if a value is required.
+    """
 
     name: str
     summary: str
     values: str
-    """The values that it can take, in words."""
     unit: str
-    """Its unit, or nothing."""
     default: str
-    """Its default, or nothing if a value is required."""
 
 
 class Entry(NamedTuple):
-    """A row of a table."""
+    """A row of a table.
+
+    Attributes:
+        name: its name.
+        summary: what it is, in a line.
+        source: the paper that it comes from, if any.
+        parameters: its parameters.
+    """
 
     name: str
     summary: str
     source: str
-    """The paper that it comes from, if any."""
     parameters: tuple[Parameter, ...]
 
     def describe(self) -> str:

@@ -15,96 +15,114 @@ Integers = NDArray[np.int64]
 
 class Hits(NamedTuple):
     """The first hit of each ray. Where a ray hits nothing, `t` is infinite, `primitive` is -1, `point` and `normal`
-    are NaN, and `u` and `v` are 0."""
+    are NaN, and `u` and `v` are 0.
+
+    Attributes:
+        t: (n,) distances along the rays, in lengths of their directions.
+        primitive: (n,) rows of the triangles.
+        u: (n,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (n,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (n, 3) points that are hit.
+        normal: (n, 3) unit normals of the triangles, on their fronts.
+    """
 
     t: Floats
-    """(n,) distances along the rays, in lengths of their directions."""
     primitive: Integers
-    """(n,) rows of the triangles."""
     u: Floats
-    """(n,) barycentric weights of the triangles' second vertices, from 0 to 1."""
     v: Floats
-    """(n,) barycentric weights of the triangles' third vertices, from 0 to 1."""
     point: Floats
-    """(n, 3) points that are hit."""
     normal: Floats
-    """(n, 3) unit normals of the triangles, on their fronts."""
 
 
 class AllHits(NamedTuple):
-    """Every hit of each ray, sorted by ray and then by distance: m rows in all."""
+    """Every hit of each ray, sorted by ray and then by distance: m rows in all.
+
+    Attributes:
+        ray: (m,) rows of the rays.
+        t: (m,) distances along the rays, in lengths of their directions.
+        primitive: (m,) rows of the triangles.
+        u: (m,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (m,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (m, 3) points that are hit.
+        normal: (m, 3) unit normals of the triangles, on their fronts.
+    """
 
     ray: Integers
-    """(m,) rows of the rays."""
     t: Floats
-    """(m,) distances along the rays, in lengths of their directions."""
     primitive: Integers
-    """(m,) rows of the triangles."""
     u: Floats
-    """(m,) barycentric weights of the triangles' second vertices, from 0 to 1."""
     v: Floats
-    """(m,) barycentric weights of the triangles' third vertices, from 0 to 1."""
     point: Floats
-    """(m, 3) points that are hit."""
     normal: Floats
-    """(m, 3) unit normals of the triangles, on their fronts."""
 
 
 class NearestPoints(NamedTuple):
     """The nearest point of the triangles to each point. Where nothing is within reach, `distance` is infinite,
-    `primitive` is -1, `point` is NaN, and `u` and `v` are 0."""
+    `primitive` is -1, `point` is NaN, and `u` and `v` are 0.
+
+    Attributes:
+        distance: (n,) distances.
+        primitive: (n,) rows of the triangles.
+        u: (n,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (n,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (n, 3) nearest points.
+    """
 
     distance: Floats
-    """(n,) distances."""
     primitive: Integers
-    """(n,) rows of the triangles."""
     u: Floats
-    """(n,) barycentric weights of the triangles' second vertices, from 0 to 1."""
     v: Floats
-    """(n,) barycentric weights of the triangles' third vertices, from 0 to 1."""
     point: Floats
-    """(n, 3) nearest points."""
 
 
 class Object(NamedTuple):
-    """An object of a scene."""
+    """An object of a scene.
+
+    Attributes:
+        name: its name, which may be empty.
+        material: what it is made of.
+        transform: (4, 4) matrix from its mesh to the scene; for objects that move, at time 0.
+        vertices: number of vertices of its mesh.
+        triangles: number of triangles of its mesh.
+    """
 
     name: str
-    """Its name, which may be empty."""
     material: Spec
-    """What it is made of."""
     transform: NDArray[np.float64]
-    """(4, 4) matrix from its mesh to the scene; for objects that move, at time 0."""
     vertices: int
-    """Number of vertices of its mesh."""
     triangles: int
-    """Number of triangles of its mesh."""
 
 
 class Mesh(NamedTuple):
-    """The arrays of a mesh, in its own coordinates."""
+    """The arrays of a mesh, in its own coordinates.
+
+    Attributes:
+        vertices: (n, 3) positions.
+        triangles: (m, 3) rows of vertices.
+        normals: (n, 3) shading normals, if it has any.
+        uvs: (n, 2) texture coordinates, v upwards, if it has any.
+    """
 
     vertices: Floats
-    """(n, 3) positions."""
     triangles: Integers
-    """(m, 3) rows of vertices."""
     normals: Floats | None
-    """(n, 3) shading normals, if it has any."""
     uvs: Floats | None
-    """(n, 2) texture coordinates, v upwards, if it has any."""
 
 
 class Progress(NamedTuple):
-    """How far a render is."""
+    """How far a render is.
+
+    Attributes:
+        samples: samples taken, over all pixels.
+        total: samples to take. If noise or time ends the render, it usually ends with fewer.
+        rays: rays traced.
+        seconds: seconds since the render began.
+    """
 
     samples: int
-    """Samples taken, over all pixels."""
     total: int
-    """Samples to take. If noise or time ends the render, it usually ends with fewer."""
     rays: int
-    """Rays traced."""
     seconds: float
-    """Seconds since the render began."""
 
     @property
     def fraction(self) -> float:

@@ -99,10 +99,9 @@ class RayMeshIntersector:
         """
         origins, directions = self._rays(ray_origins, ray_directions)
         if multiple_hits:
-            hits = self._accel.all_hits(origins, directions)
-            first = np.searchsorted(hits.ray, hits.ray)
-            kept = np.arange(len(hits.ray)) - first < max_hits
-            index_tri, index_ray = hits.primitive[kept], hits.ray[kept]
+            index_tri, index_ray = self._crossings(origins, directions)
+            kept = np.arange(len(index_ray)) - np.searchsorted(index_ray, index_ray) < max_hits
+            index_tri, index_ray = index_tri[kept], index_ray[kept]
         else:
             closest = self._accel.closest(origins, directions)
             index_ray = np.flatnonzero(closest.primitive >= 0)
@@ -159,15 +158,37 @@ class RayMeshIntersector:
         if len(near) > 0:
             origin, scale = self._placement
             places = (points[near] - origin) * scale
-            # A ray through an edge counts both of its triangles, so the majority of three rays decides.
+            # Where a ray grazes the surface at a vertex, its count may be wrong: the majority of three decides.
             odd = [self._count(places, direction) % 2 for direction in _DIRECTIONS]
             inside[near] = np.sum(odd, axis=0) >= 2
         return inside
 
     def _count(self, places: _Floats, direction: tuple[float, float, float]) -> _Integers:
-        """How many triangles lie in a direction from each place in the mesh's box."""
-        hits = self._accel.all_hits(places, [direction])
-        return np.bincount(hits.ray, minlength=len(places))
+        """How often a ray in a direction from each place in the mesh's box crosses the surface."""
+        index_ray = self._crossings(places, np.array([direction]))[1]
+        return np.bincount(index_ray, minlength=len(places))
+
+    def _crossings(self, origins: _Floats, directions: _Floats) -> tuple[_Integers, _Integers]:
+        """All hits in the mesh's box: rows of faces, and of rays. A ray through an edge or a vertex hits all triangles
+        there, but crosses the surface once: of triangles that touch, and that it enters or leaves at the same point,
+        only one counts."""
+        hits = self._accel.all_hits(origins, directions)
+        if len(hits.ray) < 2:
+            return hits.primitive, hits.ray
+        size = float(np.linalg.norm(np.diff(self._accel.bounds, axis=0)))
+        gap = np.diff(hits.t) > 4 * np.finfo(np.float32).eps * np.maximum(hits.t[1:], size)
+        place = np.concatenate([[0], np.cumsum(gap | (np.diff(hits.ray) > 0))])
+        along = np.broadcast_to(directions, origins.shape)[hits.ray]
+        enters = np.einsum("ij,ij->i", hits.normal, along) < 0
+        order = np.lexsort((hits.primitive, enters, place))
+        one, other = order[:-1], order[1:]
+        same = (place[one] == place[other]) & (enters[one] == enters[other])
+        one, other = one[same], other[same]
+        corners = np.asarray(self.mesh.triangles)
+        touch = corners[hits.primitive[one]][:, :, None] == corners[hits.primitive[other]][:, None, :]
+        kept = np.ones(len(hits.ray), bool)
+        kept[other[touch.all(axis=3).any(axis=(1, 2))]] = False
+        return hits.primitive[kept], hits.ray[kept]
 
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_built": None}
