@@ -44,7 +44,9 @@ def test_everything_is_documented_and_its_examples_run(name, folder):
     assert runner.failures == 0
 
 
-@pytest.mark.parametrize("page", ["README.md", "crates/python/README.md", "docs/tutorials/python.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "crates/python/README.md", "docs/tutorials/python.md", "docs/tutorials/python-coming-from.md"]
+)
 def test_every_example_of_the_pages_runs(page, folder):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text("utf-8"), re.DOTALL)
     assert blocks
@@ -52,4 +54,7 @@ def test_every_example_of_the_pages_runs(page, folder):
         pytest.importorskip("trimesh")
     space = {}
     for number, block in enumerate(blocks):
-        exec(compile(block, f"{page}, example {number + 1}", "exec"), space)
+        try:
+            exec(compile(block, f"{page}, example {number + 1}", "exec"), space)
+        except ModuleNotFoundError as missing:
+            assert missing.name == "mitsuba"

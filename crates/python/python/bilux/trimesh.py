@@ -43,38 +43,31 @@ class RayMeshIntersector:
         self.mesh = geometry
         self._scale_to_box = scale_to_box
         self._kind = kind
-        self._built: tuple[Any, Accel] | None = None
+        self._built: tuple[int, Accel, _Floats, float] | None = None
 
-    @property
-    def _placement(self) -> tuple[_Floats, float]:
-        """What is subtracted from positions, and by what they are then multiplied."""
-        vertices = np.asarray(self.mesh.vertices, np.float64)
-        if not self._scale_to_box or len(vertices) == 0:
-            return np.zeros(3), 1.0
-        size = float(self.mesh.scale)
-        return vertices.min(axis=0), 100.0 / size if size > 0 else 1.0
-
-    @property
-    def _accel(self) -> Accel:
+    def _placed(self) -> tuple[Accel, _Floats, float]:
+        """The structure over the mesh in its box, what is subtracted from positions, and by what they are then
+        multiplied."""
         state = hash(self.mesh)
         if self._built is None or self._built[0] != state:
-            origin, scale = self._placement
-            vertices = (np.asarray(self.mesh.vertices, np.float64) - origin) * scale
-            self._built = state, Accel(vertices, np.asarray(self.mesh.faces), kind=self._kind)
-        return self._built[1]
+            vertices = np.asarray(self.mesh.vertices, np.float64)
+            origin, scale = np.zeros(3), 1.0
+            if self._scale_to_box and len(vertices) > 0:
+                origin, scale = vertices.min(axis=0), 100.0 / (float(self.mesh.scale) or 100.0)
+            accel = Accel((vertices - origin) * scale, np.asarray(self.mesh.faces), kind=self._kind)
+            self._built = state, accel, origin, scale
+        return self._built[1:]
 
-    def _rays(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[_Floats, _Floats]:
-        """The rays in the mesh's box, with directions of unit length."""
+    def _rays(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[Accel, _Floats, _Floats]:
+        """The structure, and the rays in the mesh's box."""
+        accel, origin, scale = self._placed()
         origins = np.asarray(ray_origins, np.float64)
-        directions = np.asarray(ray_directions, np.float64)
+        directions = np.asarray(ray_directions)
         if origins.shape != directions.shape:
             raise ValueError(
                 f"Ray origin and direction don't match! {origins.shape} and {directions.shape}: give one for each"
             )
-        length = np.linalg.norm(directions, axis=-1, keepdims=True)
-        directions = np.divide(directions, length, out=np.zeros_like(directions), where=length > 0)
-        origin, scale = self._placement
-        return (origins - origin) * scale, directions
+        return accel, (origins - origin) * scale, directions
 
     def intersects_id(
         self,
@@ -97,15 +90,15 @@ class RayMeshIntersector:
             index_ray: (m,) rows of rays, in ascending order.
             locations: (m, 3) positions, if `return_locations`.
         """
-        origins, directions = self._rays(ray_origins, ray_directions)
+        accel, origins, directions = self._rays(ray_origins, ray_directions)
         if multiple_hits:
-            index_tri, index_ray = self._crossings(origins, directions)
+            index_tri, index_ray = self._crossings(accel, origins, directions)
             kept = np.arange(len(index_ray)) - np.searchsorted(index_ray, index_ray) < max_hits
             index_tri, index_ray = index_tri[kept], index_ray[kept]
         else:
-            closest = self._accel.closest(origins, directions)
-            index_ray = np.flatnonzero(closest.primitive >= 0)
-            index_tri = closest.primitive[index_ray]
+            first = accel.closest(origins, directions).primitive
+            index_ray = np.flatnonzero(first >= 0)
+            index_tri = first[index_ray]
         if not return_locations:
             return index_tri, index_ray
         return index_tri, index_ray, self._locations(ray_origins, ray_directions, index_ray, index_tri)
@@ -141,11 +134,13 @@ class RayMeshIntersector:
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> _Integers:
         """The first triangle that each ray hits: (n,) rows of faces, -1 where nothing is hit."""
-        return self._accel.closest(*self._rays(ray_origins, ray_directions)).primitive
+        accel, origins, directions = self._rays(ray_origins, ray_directions)
+        return accel.closest(origins, directions).primitive
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Whether each ray hits anything: (n,) bool."""
-        return self._accel.any(*self._rays(ray_origins, ray_directions))
+        accel, origins, directions = self._rays(ray_origins, ray_directions)
+        return accel.any(origins, directions)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether each point is inside the mesh, which must be closed: (n,) bool."""
@@ -156,29 +151,32 @@ class RayMeshIntersector:
         lower, upper = np.asarray(self.mesh.bounds)
         near = np.flatnonzero(((points >= lower) & (points <= upper)).all(axis=1))
         if len(near) > 0:
-            origin, scale = self._placement
+            accel, origin, scale = self._placed()
             places = (points[near] - origin) * scale
             # Where a ray grazes the surface at a vertex, its count may be wrong: the majority of three decides.
-            odd = [self._count(places, direction) % 2 for direction in _DIRECTIONS]
+            odd = [self._count(accel, places, direction) % 2 for direction in _DIRECTIONS]
             inside[near] = np.sum(odd, axis=0) >= 2
         return inside
 
-    def _count(self, places: _Floats, direction: tuple[float, float, float]) -> _Integers:
+    def _count(self, accel: Accel, places: _Floats, direction: tuple[float, float, float]) -> _Integers:
         """How often a ray in a direction from each place in the mesh's box crosses the surface."""
-        index_ray = self._crossings(places, np.array([direction]))[1]
+        index_ray = self._crossings(accel, places, np.array([direction]))[1]
         return np.bincount(index_ray, minlength=len(places))
 
-    def _crossings(self, origins: _Floats, directions: _Floats) -> tuple[_Integers, _Integers]:
+    def _crossings(
+        self, accel: Accel, origins: _Floats, directions: NDArray[Any]
+    ) -> tuple[_Integers, _Integers]:
         """All hits in the mesh's box: rows of faces, and of rays. A ray through an edge or a vertex hits all triangles
         there, but crosses the surface once: of triangles that touch, and that it enters or leaves at the same point,
         only one counts."""
-        hits = self._accel.all_hits(origins, directions)
+        hits = accel.all_hits(origins, directions)
         if len(hits.ray) < 2:
             return hits.primitive, hits.ray
-        size = float(np.linalg.norm(np.diff(self._accel.bounds, axis=0)))
-        gap = np.diff(hits.t) > 4 * np.finfo(np.float32).eps * np.maximum(hits.t[1:], size)
-        place = np.concatenate([[0], np.cumsum(gap | (np.diff(hits.ray) > 0))])
         along = np.broadcast_to(directions, origins.shape)[hits.ray]
+        distance = hits.t * np.linalg.norm(along, axis=1)
+        size = float(np.linalg.norm(np.diff(accel.bounds, axis=0)))
+        gap = np.diff(distance) > 4 * np.finfo(np.float32).eps * np.maximum(distance[1:], size)
+        place = np.concatenate([[0], np.cumsum(gap | (np.diff(hits.ray) > 0))])
         enters = np.einsum("ij,ij->i", hits.normal, along) < 0
         order = np.lexsort((hits.primitive, enters, place))
         one, other = order[:-1], order[1:]
