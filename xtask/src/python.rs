@@ -49,8 +49,8 @@ pub(crate) fn test() -> Result<()> {
             return Ok(());
         }
     };
-    // The tests compare with what the command line writes.
-    run_process(&mut cargo(&["build", "--quiet", "--locked", "--package", "bilux-cli"]))?;
+    // The tests compare with what the command line writes. Of the whole workspace, since the step `test` has built that.
+    run_process(&mut cargo(&["build", "--quiet", "--locked", "--workspace", "--bin", "bilux"]))?;
     let wheel = build(&builders, "dev", &target_folder().join("python/wheels"))?;
     let mut install = testers.python();
     run_process(

@@ -11,6 +11,7 @@ use bilux::scene::{SceneError, Span};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -105,7 +106,7 @@ impl Accel {
         let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
         let columns = py.detach(|| self.closest_of(&rays, &query(cull_back)));
         let columns = columns.into_python(py)?;
-        py.import("bilux._types")?.getattr("Hits")?.call1(pyo3::types::PyTuple::new(py, columns)?)
+        py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, columns)?)
     }
 
     /// Whether each ray hits anything.
@@ -191,7 +192,7 @@ impl Accel {
         let (numbers, columns) = py.detach(|| self.all_of(&rays, &query(cull_back)));
         let mut all = vec![PyArray1::from_vec(py, numbers).into_any()];
         all.extend(columns.into_python(py)?);
-        py.import("bilux._types")?.getattr("AllHits")?.call1(pyo3::types::PyTuple::new(py, all)?)
+        py.import("bilux._types")?.getattr("AllHits")?.call1(PyTuple::new(py, all)?)
     }
 
     /// The point of the triangles that is nearest to each point.
@@ -232,7 +233,7 @@ impl Accel {
         let found = columns.into_iter().take(5);
         py.import("bilux._types")?
             .getattr("NearestPoints")?
-            .call1(pyo3::types::PyTuple::new(py, found.collect::<Vec<_>>())?)
+            .call1(PyTuple::new(py, found.collect::<Vec<_>>())?)
     }
 
     /// The corners of the bounding box: an array (2, 3).
@@ -253,6 +254,26 @@ impl Accel {
         self.mesh.len()
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, accel) = (slf.py(), slf.get());
+        let corners = rows(py, accel.mesh.triangles().as_flattened().to_vec())?;
+        let indices = PyArray1::from_vec(py, (0..3 * accel.mesh.len() as i64).collect());
+        let indices = indices.call_method1("reshape", ((-1, 3),))?;
+        let restore = slf.get_type().getattr("_restored")?;
+        (restore, (corners, indices, &accel.kind, accel.quality_name())).into_pyobject(py)
+    }
+
+    #[staticmethod]
+    fn _restored(
+        py: Python<'_>,
+        corners: &Bound<'_, PyAny>,
+        indices: &Bound<'_, PyAny>,
+        kind: &str,
+        quality: &str,
+    ) -> PyResult<Accel> {
+        Accel::new(py, corners, indices, kind, quality)
+    }
+
     fn __repr__(&self) -> String {
         let megabytes = self.structure.memory_bytes() as f64 / 1e6;
         format!("<bilux.Accel '{}' of {} triangles, {megabytes:.1} MB>", self.kind, self.mesh.len())
@@ -260,6 +281,14 @@ impl Accel {
 }
 
 impl Accel {
+    fn quality_name(&self) -> &'static str {
+        match self.quality {
+            Quality::Fast => "fast",
+            Quality::Balanced => "balanced",
+            Quality::Best => "best",
+        }
+    }
+
     fn closest_of(&self, rays: &Rays, query: &Query<'_>) -> Columns {
         let mut columns = Columns::misses(rays.count);
         let Columns { t, primitive, u, v, point, normal } = &mut columns;

@@ -11,7 +11,7 @@ pub(crate) struct Layer {
     /// Empty for the main picture.
     pub(crate) name: String,
     /// Such as R, G and B.
-    components: Vec<String>,
+    pub(crate) components: Vec<String>,
     /// An array (height, width) or (height, width, channels) of float32, or of uint32 for numbers of objects.
     pub(crate) pixels: Py<PyAny>,
 }

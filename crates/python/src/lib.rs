@@ -9,6 +9,7 @@ mod arrays;
 mod errors;
 mod forks;
 mod layer;
+mod pickling;
 mod picture;
 mod progressive;
 mod rays;

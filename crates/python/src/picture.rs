@@ -2,13 +2,14 @@
 
 use crate::errors::of_picture;
 use crate::layer::{Layer, layers_of};
+use crate::pickling::{PictureValues, picture_of, values_of};
 use crate::shown::Shown;
 use bilux::pictures::denoise::{Task, denoise, denoiser};
 use bilux::pictures::formats::BitDepth;
 use bilux::pictures::{ColourSpace, to_display};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::path::PathBuf;
 
 /// A picture: an array of pixels, and other layers of the same size.
@@ -28,13 +29,13 @@ use std::path::PathBuf;
 ///     ((64, 64, 3), (64, 64))
 #[pyclass(frozen, module = "bilux")]
 pub(crate) struct Picture {
-    size: [usize; 2],
+    pub(crate) size: [usize; 2],
     /// The main picture first, whose name is empty.
-    layers: Vec<Layer>,
-    shown: Shown,
-    colour_space: ColourSpace,
-    metadata: Py<PyDict>,
-    info: Py<PyDict>,
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) shown: Shown,
+    pub(crate) colour_space: ColourSpace,
+    pub(crate) metadata: Py<PyDict>,
+    pub(crate) info: Py<PyDict>,
 }
 
 #[pymethods]
@@ -102,9 +103,10 @@ impl Picture {
         self.metadata.clone_ref(py)
     }
 
-    /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the light, or None), "seconds",
-    /// "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None),
-    /// "seed", "rays", and "warnings". Empty for other pictures.
+    /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the
+    /// light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "complete" (false if it was
+    /// stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
+    /// Empty for other pictures.
     #[getter]
     fn info(&self, py: Python<'_>) -> Py<PyDict> {
         self.info.clone_ref(py)
@@ -237,6 +239,16 @@ impl Picture {
         let options = self.shown.options(&picture);
         let bytes = py.detach(|| bilux::pictures::write_bytes("png", &picture, &options));
         Ok(PyBytes::new(py, &bytes.map_err(of_picture)?))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let restore = slf.get_type().getattr("_restored")?;
+        (restore, (values_of(slf.py(), slf.get()),)).into_pyobject(slf.py())
+    }
+
+    #[staticmethod]
+    fn _restored(py: Python<'_>, values: PictureValues) -> PyResult<Picture> {
+        picture_of(py, values)
     }
 
     fn __repr__(&self) -> String {

@@ -43,6 +43,8 @@ struct Rendered {
     seed: u64,
     integrator: &'static str,
     denoiser: Option<String>,
+    /// Seconds spent on building the scene with its trees.
+    build_seconds: f64,
 }
 
 /// The AOVs of these names.
@@ -119,7 +121,9 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
     if crop.is_none() {
         with_default_budget(&scene.settings, &mut user);
     }
+    let building = Instant::now();
     let mut job = Job::within(scene, &user, max_memory)?;
+    let build_seconds = building.elapsed().as_secs_f64();
     if watch.is_cancelled() {
         return Ok(None);
     }
@@ -169,6 +173,7 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         seed: settings.seed,
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
+        build_seconds,
         outcome,
     }))
 }
@@ -212,6 +217,7 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
     }
     info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
+    info.set_item("build_seconds", rendered.build_seconds)?;
     info.set_item("complete", !outcome.cancelled)?;
     info.set_item("integrator", rendered.integrator)?;
     info.set_item("choice", outcome.choice.as_ref().map(ToString::to_string))?;

@@ -1,5 +1,7 @@
 """Ray queries, compared with a loop in numpy."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -117,3 +119,10 @@ def test_wrong_arguments_are_named(square):
         bilux.Accel(*square, quality="good")
     with pytest.raises(ValueError, match="triangles: row 1 has the index 9"):
         bilux.Accel(square[0], [[0, 1, 2], [0, 1, 9]])
+
+
+def test_structures_are_pickled(soup):
+    accel = bilux.Accel(*soup[:2], kind="bvh", quality="fast")
+    other = pickle.loads(pickle.dumps(accel))
+    assert other.kind == "bvh" and len(other) == len(accel)
+    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(other.closest(*soup[2:]), accel.closest(*soup[2:])))

@@ -1,10 +1,12 @@
 """Renders are followed, stopped and interrupted, and leave the GIL and memory alone."""
 
+import gc
 import subprocess
 import sys
 import textwrap
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -89,14 +91,15 @@ def test_ctrl_c_leaves_what_there_is():
 def test_many_renders_in_threads_keep_memory_flat():
     resource = pytest.importorskip("resource")
     scene = bilux.generate("cornell")
-    wanted = scene.render(size=32, spp=1, threads=1).pixels
+
+    def render():
+        return scene.render(size=24, spp=1, threads=1, integrator="path", aov=["depth"])
+
+    wanted = render().pixels
     wrong = []
 
     def work():
-        for _ in range(25):
-            picture = scene.render(size=32, spp=1, threads=1)
-            if not np.array_equal(picture.pixels, wanted):
-                wrong.append(picture)
+        wrong.extend(picture for picture in (render() for _ in range(25)) if not np.array_equal(picture.pixels, wanted))
 
     def run():
         threads = [threading.Thread(target=work) for _ in range(8)]
@@ -108,7 +111,24 @@ def test_many_renders_in_threads_keep_memory_flat():
 
     warm, after = run(), run()
     assert not wrong
-    assert after - warm < 20_000, f"{warm} kB, then {after} kB"
+    assert after - warm < 20_000, f"{warm} kB after 200 renders, then {after} kB"
+
+
+def test_objects_are_freed():
+    def references():
+        gc.collect()
+        return sum(type(thing).__module__.startswith("bilux") for thing in gc.get_objects())
+
+    scene = bilux.generate("cornell")
+    picture = scene.render(size=8, spp=1)
+    pixels = weakref.ref(picture.pixels)
+    before = references()
+    for _ in range(20):
+        scene.copy().render(size=8, spp=1, integrator="path", progress=lambda progress: None)
+    assert references() == before
+    del picture
+    gc.collect()
+    assert pixels() is None
 
 
 def test_a_scene_that_changes_during_a_render_does_not_change_the_picture(square):

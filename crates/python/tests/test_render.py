@@ -1,5 +1,8 @@
 """Pictures: the same as those of the command line, and as numpy arrays."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -189,3 +192,17 @@ def test_progressive_pictures_may_be_left():
     assert next(pictures).info["spp"] == 1 and next(pictures).info["spp"] == 2
     with pytest.raises(TypeError, match="leave the loop"):
         next(bilux.generate("cornell").progressive(noise=0.1))
+
+
+def test_pictures_are_pickled_and_copied_with_all_that_they_hold(folder):
+    picture = bilux.generate("trio").render(size=24, spp=1, aov=["ids", "depth"], background="#336699", exposure=0.5)
+    for other in [pickle.loads(pickle.dumps(picture)), copy.deepcopy(picture)]:
+        assert np.array_equal(other.pixels, picture.pixels) and np.array_equal(other["id"], picture["id"])
+        assert (other.layers, other.info, other.metadata) == (picture.layers, picture.info, picture.metadata)
+        for extension in ["png", "exr"]:
+            picture.save(f"one.{extension}")
+            other.save(f"other.{extension}")
+            assert (folder / f"one.{extension}").read_bytes() == (folder / f"other.{extension}").read_bytes()
+    values = list(picture.__reduce__()[1][0])
+    with pytest.raises(ValueError, match="another version"):
+        bilux.Picture._restored(tuple([2, *values[1:]]))
