@@ -44,6 +44,7 @@ pub use error::Error;
 pub use job::{Job, Outcome};
 pub use series::Series;
 pub use settings::Settings;
+pub use writing::lost_alpha;
 
 use bilux_scene::{SceneBuilder, Spec};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Pictures whose layers are numpy arrays.
 
-use crate::errors::of_picture;
+use crate::errors::{exception, of_picture, warn};
 use crate::layer::{Layer, layers_of};
 use crate::pickling::{PictureValues, picture_of, values_of};
 use crate::shown::Shown;
@@ -181,6 +181,8 @@ impl Picture {
             let wrong = || PyValueError::new_err(format!("quality: {quality} is not from 1 to 100"));
             options.quality = within.ok_or_else(wrong)?;
         }
+        let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
+        warn(py, lost.as_slice())?;
         py.detach(|| bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
     }
 

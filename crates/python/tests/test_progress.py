@@ -166,3 +166,14 @@ def test_a_forked_process_gets_an_exception_and_does_not_hang():
     """
     run = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, timeout=60)
     assert run.returncode == 7, run.stderr
+
+
+@pytest.mark.parametrize("bar", ["tqdm", "line"])
+def test_true_shows_a_bar(monkeypatch, capsys, bar):
+    if bar == "tqdm":
+        pytest.importorskip("tqdm")
+    else:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    bilux.generate("cornell").render(size=160, spp=300, integrator="path", progress=True)
+    shown = capsys.readouterr().err
+    assert "Mrays/s" in shown and "%" in shown

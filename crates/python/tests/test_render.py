@@ -206,3 +206,10 @@ def test_pictures_are_pickled_and_copied_with_all_that_they_hold(folder):
     values = list(picture.__reduce__()[1][0])
     with pytest.raises(ValueError, match="another version"):
         bilux.Picture._restored(tuple([2, *values[1:]]))
+
+
+def test_a_format_without_alpha_warns(folder):
+    picture = bilux.generate("trio").render(size=8, spp=1, background="transparent")
+    picture.pixels[..., 3] = 0.5
+    with pytest.warns(bilux.SceneWarning, match="does not support transparency"):
+        picture.save("opaque.jpg")

@@ -197,3 +197,17 @@ def test_meshes_refuse_wrong_arrays(square, changes, error, words):
 def test_an_empty_scene_says_so():
     with pytest.raises(bilux.SceneError, match="nothing|empty"):
         bilux.Scene().render(size=16, spp=1)
+
+
+def test_a_picture_surrounds_a_scene(folder):
+    sky = bilux.Picture(np.full((8, 16, 3), [0.25, 0.5, 1.0], np.float32))
+    sky.save("sky.hdr")
+    scene = bilux.Scene()
+    scene.add_mesh([[0, 0, -9], [1, 0, -9], [0, 1, -9]], [[0, 1, 2]])
+    scene.add_camera(bilux.cameras.perspective(position=(0, 0, 0), look_at=(0, 0, 1)))
+    scene.surround("sky.hdr")
+    assert np.allclose(render(scene), [0.25, 0.5, 1.0], rtol=0.01)
+    scene.lights = [bilux.lights.environment(radiance=bilux.Texture(sky.pixels * 2))]
+    assert np.allclose(render(scene), [0.5, 1.0, 2.0], rtol=0.01)
+    with pytest.raises(bilux.Error, match="none.hdr"):
+        scene.surround("none.hdr")
