@@ -117,7 +117,7 @@ def test_many_renders_in_threads_keep_memory_flat():
 def test_objects_are_freed():
     def references():
         gc.collect()
-        return sum(type(thing).__module__.startswith("bilux") for thing in gc.get_objects())
+        return sum(str(type(thing).__module__).startswith("bilux") for thing in gc.get_objects())
 
     scene = bilux.generate("cornell")
     picture = scene.render(size=8, spp=1)
