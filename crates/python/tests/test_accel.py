@@ -75,6 +75,14 @@ def test_one_origin_or_direction_serves_all(square):
     assert accel.any([[0.5, 0.5, -2]], [[0, 0, 1]], cull_back=True).tolist() == [False]
 
 
+def test_points_on_triangles_see_each_other(square):
+    accel = bilux.Accel(*square)
+    on, above, below = [[0.4, 0.3, 0]], [[0.4, 0.3, 1]], [[0.4, 0.3, -1]]
+    assert accel.visible(on, above)[0] and accel.visible(above, on)[0]
+    assert not accel.visible(above, below)[0] and not accel.visible(above, below, margin=0)[0]
+    assert not accel.visible(on, above, margin=0)[0] and not accel.visible(above, on, margin=0)[0]
+
+
 def test_nearest_points(square):
     near = bilux.Accel(*square).nearest_point([[0.25, 0.5, 3], [2, 0, 0], [9, 9, 9]], within=4)
     assert near.distance.tolist() == [3, 1, np.inf] and near.primitive[2] == -1

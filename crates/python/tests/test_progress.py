@@ -15,7 +15,8 @@ import bilux
 
 
 def long_render(scene, **keywords):
-    return scene.render(size=400, spp=100_000, integrator="path", **keywords)
+    # If nothing stops it, the time limit does, so that the test fails instead of hanging.
+    return scene.render(size=400, spp=100_000, integrator="path", time_limit=20, denoise=False, **keywords)
 
 
 def test_a_callback_follows_the_render():
@@ -75,7 +76,8 @@ def test_ctrl_c_leaves_what_there_is():
             os.kill(os.getpid(), signal.SIGINT)
         threading.Thread(target=send).start()
         try:
-            scene.render(size=400, spp=100_000, integrator="path")
+            scene.render(size=400, spp=100_000, integrator="path", time_limit=20, denoise=False)
+            print(20)
         except KeyboardInterrupt as stopped:
             seconds = time.monotonic() - sent[0]
             assert isinstance(stopped, bilux.Interrupted)

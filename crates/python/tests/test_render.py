@@ -1,7 +1,10 @@
 """Pictures: the same as those of the command line, and as numpy arrays."""
 
+import base64
 import copy
+import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -21,13 +24,17 @@ def test_a_saved_picture_has_the_bytes_of_the_command_line(folder, command_line)
         ("cornell", dict(spp=3, aov=["albedo", "normal", "depth", "ids"]), ["--spp", 3, "--aov", "albedo,normal,depth,ids"]),
         ("cornell", dict(spp=4, seed=7, integrator="bdpt", max_depth=3), ["--spp", 4, "--seed", 7, "-i", "bdpt", "--max-depth", 3]),
         ("trio", dict(spp=2, background="transparent"), ["--spp", 2, "--background", "transparent"]),
+        ("trio", dict(spp=1, background="#336699"), ["--spp", 1, "--background", "#336699"]),
         ("trio", dict(integrator="whitted"), ["-i", "whitted"]),
+        ("cornell", dict(noise=0.3, integrator="path"), ["--noise", 0.3, "-i", "path", "--denoise=auto"]),
     ],
 )
 @pytest.mark.parametrize("extension", ["exr", "png"])
 def test_settings_mean_what_flags_mean(folder, command_line, kind, arguments, words, extension):
-    scene = bilux.generate(kind)
-    scene.save("scene.toml")
+    bilux.generate(kind).save("scene.toml")
+    # Limits of the call take precedence over samples of the scene.
+    text = (folder / "scene.toml").read_text()
+    (folder / "scene.toml").write_text(text.replace("[render]\n", "[render]\nspp = 1\n") if "[render]" in text else "[render]\nspp = 1\n" + text)
     bilux.load("scene.toml").render(size=(48, 40), **arguments).save(f"ours.{extension}")
     command_line("render", "scene.toml", "-o", f"theirs.{extension}", "--size", "48x40", *words)
     assert (folder / f"ours.{extension}").read_bytes() == (folder / f"theirs.{extension}").read_bytes()
@@ -213,3 +220,45 @@ def test_a_format_without_alpha_warns(folder):
     picture.pixels[..., 3] = 0.5
     with pytest.warns(bilux.SceneWarning, match="does not support transparency"):
         picture.save("opaque.jpg")
+
+
+def test_what_moves_is_shown_at_the_time_for_which_it_was_read(folder, command_line):
+    write_moving_triangle(folder / "moving.gltf")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        still, moved = bilux.load("moving.gltf"), bilux.load("moving.gltf", time=1)
+        picture = moved.render(size=32, spp=2)
+        assert not np.array_equal(picture.pixels, still.render(size=32, spp=2).pixels)
+        picture.save("ours.png")
+        with pytest.raises(bilux.SceneError, match=r"time=0.5"):
+            moved.render(size=32, spp=2, time=0.5)
+        assert np.array_equal(moved.copy().render(size=32, spp=2).pixels, picture.pixels)
+    command_line("render", "moving.gltf", "-o", "theirs.png", "--size", "32x32", "--spp", 2, "--at", 1, "-q")
+    assert (folder / "ours.png").read_bytes() == (folder / "theirs.png").read_bytes()
+
+
+def write_moving_triangle(path):
+    """A glTF of two triangles, one of which moves by 3 m in 1 s."""
+    parts = [np.float32([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.float32([0, 1]), np.float32([[0, 0, 0], [3, 0, 0]])]
+    buffer = b"".join(part.tobytes() for part in parts)
+    offsets = np.cumsum([0] + [part.nbytes for part in parts])
+    kinds = ["VEC3", "SCALAR", "VEC3"]
+    accessors = [
+        {"bufferView": i, "componentType": 5126, "count": len(part), "type": kind}
+        | ({"min": part.min(0).tolist(), "max": part.max(0).tolist()} if kind == "VEC3" else {"min": [0], "max": [1]})
+        for i, (part, kind) in enumerate(zip(parts, kinds))
+    ]
+    views = [{"buffer": 0, "byteOffset": int(at), "byteLength": part.nbytes} for at, part in zip(offsets, parts)]
+    channel = {"sampler": 0, "target": {"node": 0, "path": "translation"}}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0}, {"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"byteLength": len(buffer), "uri": "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [channel]}],
+    }
+    path.write_text(json.dumps(gltf))
