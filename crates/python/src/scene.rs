@@ -29,8 +29,7 @@ pub(crate) struct Scene(Mutex<SceneBuilder>);
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (*_args, **_keywords))]
-    fn new(_args: &Bound<'_, PyAny>, _keywords: Option<&Bound<'_, PyDict>>) -> Scene {
+    fn new() -> Scene {
         Scene::default()
     }
 

@@ -101,6 +101,15 @@ def test_pictures_are_written_read_and_compared(folder):
         bilux.compare(ramp, ramp[:8])
 
 
+def test_all_layers_survive_a_file_with_their_channels_in_order(folder):
+    picture = bilux.generate("trio").render(size=16, spp=2, aov=["albedo", "normal", "ids"], background="transparent")
+    picture.save("layers.exr")
+    read = bilux.read_picture("layers.exr")
+    assert np.array_equal(read.pixels, picture.pixels) and read.pixels.shape == (16, 16, 4)
+    for layer in ["albedo", "normal", "id"]:
+        assert np.array_equal(read[layer], picture[layer]), layer
+
+
 def test_what_a_display_shows():
     grey = bilux.Picture(np.full((2, 3, 3), 0.5, np.float32))
     assert np.allclose(grey.tonemapped(), 0.7353569) and grey.tonemapped().shape == (2, 3, 3)

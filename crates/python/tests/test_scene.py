@@ -195,6 +195,8 @@ def test_meshes_refuse_wrong_arrays(square, changes, error, words):
 
 
 def test_an_empty_scene_says_so():
+    with pytest.raises(TypeError, match="argument"):
+        bilux.Scene("model.glb")
     with pytest.raises(bilux.SceneError, match="nothing|empty"):
         bilux.Scene().render(size=16, spp=1)
 

@@ -155,7 +155,7 @@ class Progressive:
 
 @disjoint_base
 class Scene:
-    def __new__(cls, *_args: Any, **_keywords: Any) -> Self: ...
+    def __new__(cls) -> Self: ...
     @classmethod
     def _load(
         cls,
