@@ -166,7 +166,7 @@ impl Picture {
         exposure: Option<&Bound<'_, PyAny>>,
         tonemap: Option<&str>,
         bits: u32,
-        quality: Option<i64>,
+        quality: Option<f64>,
     ) -> PyResult<()> {
         let shown = self.shown.with(exposure, tonemap)?;
         let picture = self.to_rust(py)?;
@@ -177,9 +177,10 @@ impl Picture {
             _ => return Err(PyValueError::new_err(format!("bits: {bits} is neither 8 nor 16"))),
         };
         if let Some(quality) = quality {
-            let within = u8::try_from(quality).ok().filter(|quality| (1..=100).contains(quality));
-            let wrong = || PyValueError::new_err(format!("quality: {quality} is not from 1 to 100"));
-            options.quality = within.ok_or_else(wrong)?;
+            if !(1.0..=100.0).contains(&quality) {
+                return Err(PyValueError::new_err(format!("quality: {quality} is not from 1 to 100")));
+            }
+            options.quality = quality as u8;
         }
         let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
         warn(py, lost.as_slice())?;

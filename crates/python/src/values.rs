@@ -3,7 +3,7 @@
 use crate::texture::Texture;
 use bilux::scene::{Parameters, SceneBuilder, Value};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
@@ -51,7 +51,8 @@ pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn R
         return Ok(Value::Bool(argument.extract()?));
     }
     if argument.is_instance_of::<PyInt>() {
-        return Ok(Value::Integer(argument.extract()?));
+        let wrong = |_| PyValueError::new_err(format!("{name}: {argument} is too large a number"));
+        return Ok(Value::Integer(argument.extract().map_err(wrong)?));
     }
     if argument.is_instance_of::<PyFloat>() {
         return Ok(Value::Number(argument.extract()?));

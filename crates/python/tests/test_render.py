@@ -118,6 +118,9 @@ def test_what_a_display_shows():
     assert grey._repr_png_().startswith(b"\x89PNG")
     with pytest.raises(bilux.PictureError, match="agx"):
         grey.tonemapped("agxx")
+    for wrong in [dict(quality=0), dict(bits=7), dict(exposure=100), dict(exposure="bright")]:
+        with pytest.raises((ValueError, TypeError), match=next(iter(wrong))):
+            grey.save("never.png", **wrong)
 
 
 def test_noise_ends_a_picture_and_it_is_denoised(folder):
@@ -145,6 +148,15 @@ def test_a_scene_says_what_it_does_not_know():
         scene.render(spp=1, aov=["depht"])
     with pytest.raises(ValueError, match="crop"):
         scene.render(size=32, spp=1, crop=(30, 0, 8, 8))
+    for crop in [(-1, 0, 8, 8), (0, 0, 1 << 40, 8)]:
+        with pytest.raises(ValueError, match="crop"):
+            scene.render(size=32, spp=1, crop=crop)
+    with pytest.raises(TypeError, match="crop"):
+        scene.render(size=32, spp=1, crop=(1, 2, 3))
+    with pytest.raises(ValueError, match="seed: 1000"):
+        scene.render(size=32, spp=1, seed=10**30)
+    with pytest.raises(ValueError, match="max_memory"):
+        scene.render(size=32, spp=1, max_memory=-1)
     with pytest.raises(bilux.RenderError, match="memory"):
         scene.render(size=4096, spp=1, max_memory=1000)
     with pytest.raises(TypeError, match="fast"):

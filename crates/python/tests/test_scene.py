@@ -102,8 +102,9 @@ def test_anything_changes_between_renders(square):
     assert np.allclose(picture[12, 4], 2) and np.allclose(picture[4, 12], 3)
     scene.cameras = [view().with_(height=0.25)]
     assert np.allclose(render(scene)[8, 4], 2)
-    with pytest.raises(IndexError, match="no object 5"):
-        scene.set_material(5, bilux.materials.mirror())
+    for number in [5, -1, 10**30]:
+        with pytest.raises(IndexError, match=f"no object {number}"):
+            scene.set_material(number, bilux.materials.mirror())
     with pytest.raises(TypeError, match="cannot be pickled"):
         pickle.dumps(scene)
 

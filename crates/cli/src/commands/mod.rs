@@ -27,7 +27,7 @@ use bilux::pictures::Picture;
 use bilux::pictures::format_named;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;
-use bilux::scene::{SceneBuilder, Span, Warning};
+use bilux::scene::{SceneBuilder, Warning};
 use std::path::{Path, PathBuf};
 
 /// The exit status of a command that succeeded.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal
@@ -116,19 +117,26 @@ class Scene(_bilux.Scene):
 
     def mesh(self, object: int) -> Mesh:
         """Copies of the arrays of an object's mesh, in the mesh's own coordinates."""
-        return Mesh(*self._mesh(object))
+        return Mesh(*self._mesh(self._number(object)))
 
     def set_transform(self, object: int, transform: ArrayLike) -> None:
         """Places an object anew: a (4, 4) matrix from its mesh to the scene."""
-        self._set_transform(object, transform)
+        self._set_transform(self._number(object), transform)
 
     def set_material(self, object: int, material: Spec) -> None:
         """Makes an object of another material."""
-        self._set_material(object, material)
+        self._set_material(self._number(object), material)
 
     def remove(self, object: int) -> None:
         """Removes an object; those after it move up by one number."""
-        self._remove(object)
+        self._remove(self._number(object))
+
+    def _number(self, object: int) -> int:
+        """The number of an object that there is."""
+        number = operator.index(object)
+        if not 0 <= number < len(self):
+            raise IndexError(f"there is no object {number}: the scene has {len(self)}, counted from 0")
+        return number
 
     def render(
         self,
@@ -203,7 +211,7 @@ class Scene(_bilux.Scene):
             raise TypeError("fast: this sets its own limits: leave it out, or spp, noise and time_limit")
         layers = [aov] if isinstance(aov, str) else list(aov)
         with following(progress) as callback:
-            return self._render(given, layers, crop, fast, max_memory, self._time, callback)
+            return self._render(given, layers, _window(crop), fast, _bytes(max_memory), self._time, callback)
 
     def progressive(
         self,
@@ -247,7 +255,7 @@ class Scene(_bilux.Scene):
             raise TypeError("progressive: noise and time_limit do not end it: leave the loop instead")
         given |= {"noise": 0, "time_limit": 0}
         with following(progress) as callback:
-            yield from self._progressive(given, max_memory, callback)
+            yield from self._progressive(given, _bytes(max_memory), callback)
 
     def _settings(
         self,
@@ -300,6 +308,27 @@ def _size(size: tuple[int, int] | int | str | None) -> str | None:
         raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
 
 
+def _window(crop: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
+    """The window, if it is one."""
+    if crop is None:
+        return None
+    try:
+        x, y, width, height = (operator.index(side) for side in crop)
+    except (TypeError, ValueError):
+        raise TypeError(f"crop: {crop!r} is no window: give (x, y, width, height) in pixels") from None
+    if not all(0 <= side < 1 << 32 for side in (x, y, width, height)):
+        raise ValueError(f"crop: {crop!r} does not lie within a picture: give (x, y, width, height) in pixels")
+    return x, y, width, height
+
+
+def _bytes(max_memory: int) -> int:
+    """A number of bytes."""
+    number = operator.index(max_memory)
+    if not 0 < number < 1 << 64:
+        raise ValueError(f"max_memory: {number} is no number of bytes: 8 << 30 is the default")
+    return number
+
+
 def _denoise(denoise: bool | str | None) -> str | None:
     """The denoiser as settings have it."""
     if isinstance(denoise, bool):
@@ -350,7 +379,7 @@ def load(
         variant=variant,
         glass=glass,
         light_radius=light_radius,
-        max_memory=max_memory,
+        max_memory=_bytes(max_memory),
         allow_outside=allow_outside,
         strict=strict,
     )
