@@ -177,11 +177,13 @@ class RayMeshIntersector:
         size = float(np.linalg.norm(np.diff(accel.bounds, axis=0)))
         gap = np.diff(distance) > 4 * np.finfo(np.float32).eps * np.maximum(distance[1:], size)
         place = np.concatenate([[0], np.cumsum(gap | (np.diff(hits.ray) > 0))])
-        enters = np.einsum("ij,ij->i", hits.normal, along) < 0
-        order = np.lexsort((hits.primitive, enters, place))
-        one, other = order[:-1], order[1:]
-        same = (place[one] == place[other]) & (enters[one] == enters[other])
-        one, other = one[same], other[same]
+        together = np.diff(place) == 0
+        several = np.flatnonzero(np.append(together, False) | np.insert(together, 0, False))
+        enters = np.einsum("ij,ij->i", hits.normal[several], along[several]) < 0
+        order = np.lexsort((hits.primitive[several], enters, place[several]))
+        several, enters = several[order], enters[order]
+        same = (np.diff(place[several]) == 0) & (enters[:-1] == enters[1:])
+        one, other = several[:-1][same], several[1:][same]
         corners = np.asarray(self.mesh.triangles)
         touch = corners[hits.primitive[one]][:, :, None] == corners[hits.primitive[other]][:, None, :]
         kept = np.ones(len(hits.ray), bool)
