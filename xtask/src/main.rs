@@ -11,6 +11,7 @@ mod licences;
 mod mutants;
 mod package;
 mod process;
+mod python;
 mod test;
 mod tidy;
 mod workspace;
@@ -45,6 +46,7 @@ const CHORES: &[Chore] = &[
         summary: "check that the libraries can be published to a package registry (minutes)",
         run: package::run,
     },
+    Chore { name: "wheel", summary: "build the wheel of the Python package", run: python::wheel },
     Chore { name: "instructions", summary: "count the instructions per ray", run: instructions::run },
     Chore {
         name: "cpu-levels",

@@ -16,6 +16,7 @@ const STEPS: &[Step] = &[
     Step { name: "licences", run: |_| crate::licences::run(&[]) },
     Step { name: "clippy", run: clippy },
     Step { name: "test", run: tests },
+    Step { name: "python", run: |_| crate::python::test() },
     Step { name: "instructions", run: |_| crate::instructions::run(&[]) },
     Step { name: "reference", run: |_| crate::docs::check_reference() },
     Step { name: "doc", run: |_| crate::docs::library() },

@@ -31,6 +31,16 @@ pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     true
 }
 
+/// Lets the user's limit of noise or time end the render: otherwise a number of samples that the scene sets could end it
+/// before.
+pub fn let_limits_decide(user: &mut Parameters) {
+    let limit = ["noise", "time_limit"].into_iter().find_map(|key| user.find(key));
+    if let (None, Some((_, at))) = (user.find("spp"), limit) {
+        let at = at.clone();
+        user.set_at("spp", Value::Integer(0), at);
+    }
+}
+
 /// The time limit of a fast picture, in seconds.
 pub const FAST_SECONDS: f32 = 1.0;
 
@@ -88,6 +98,23 @@ mod tests {
         scene.set("integrator", "whitted");
         with_fast_budget(&scene, &mut user);
         assert_eq!(said(&user, "integrator"), None);
+    }
+
+    #[test]
+    fn limits_of_the_user_take_precedence_over_samples_of_the_scene() {
+        let spp = |pairs: &[(&str, Value)]| {
+            let mut user = Parameters::default();
+            pairs.iter().for_each(|(key, value)| user.set(key, value.clone()));
+            let_limits_decide(&mut user);
+            user.find("spp").map(|(value, _)| value.clone())
+        };
+        assert_eq!(spp(&[("noise", Value::Number(0.1))]), Some(Value::Integer(0)));
+        assert_eq!(spp(&[("time_limit", Value::Number(2.0))]), Some(Value::Integer(0)));
+        assert_eq!(
+            spp(&[("noise", Value::Number(0.1)), ("spp", Value::Integer(9))]),
+            Some(Value::Integer(9))
+        );
+        assert_eq!(spp(&[("seed", Value::Integer(1))]), None);
     }
 
     #[test]

@@ -29,6 +29,7 @@ pub mod series;
 pub mod settings;
 mod shadow;
 pub mod strategies;
+pub mod tables;
 mod writing;
 
 pub use bilux_accel as accel;
@@ -43,6 +44,7 @@ pub use error::Error;
 pub use job::{Job, Outcome};
 pub use series::Series;
 pub use settings::Settings;
+pub use writing::lost_alpha;
 
 use bilux_scene::{SceneBuilder, Spec};
 use std::path::Path;

@@ -2,8 +2,9 @@
 
 use crate::settings::{Background, Settings};
 use crate::{Error, Job, Outcome};
+use bilux_math::Rgb;
 use bilux_pictures::{Picture, WriteOptions};
-use bilux_scene::SceneBuilder;
+use bilux_scene::{SceneBuilder, Span, Warning};
 use std::path::Path;
 
 /// The tone curve if the studio lights a model.
@@ -24,6 +25,25 @@ pub(crate) fn auto_curve(
     let note = "the whole model is unlit, so its colours are shown as they are (--tonemap neutral adds the curve of \
                 the studio)";
     ("none", (settings.tonemap == "auto").then(|| note.to_owned()))
+}
+
+/// A warning, if a picture is transparent and the format of the file cannot be. `behind` is the colour behind the picture.
+///
+/// # Errors
+/// If no picture format has the file's extension.
+pub fn lost_alpha(picture: &Picture, path: &Path, behind: Option<Rgb>) -> Result<Option<Warning>, Error> {
+    let format = bilux_pictures::format_of_path(path)?;
+    let transparent = picture.channel("A").is_some_and(|alpha| alpha.iter().any(|&alpha| alpha < 1.0));
+    if !transparent || format.holds_alpha || behind.is_some() && format.for_display {
+        return Ok(None);
+    }
+    let instead = if format.for_display { "white" } else { "black" };
+    let message = format!(
+        "{}: {} does not support transparency and gets {instead} there: write a .png or an .exr to keep it",
+        path.display(),
+        format.entry.name
+    );
+    Ok(Some(Warning { message, at: Span::default() }))
 }
 
 impl Job {

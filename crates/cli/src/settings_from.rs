@@ -53,10 +53,7 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
     }
-    // If the scene file sets a number of samples, it must not end the render before the limit given here does.
-    if a.spp.is_none() && (a.noise.is_some() || a.time_limit.is_some()) {
-        parameters.set_at("spp", Value::Integer(0), from_flag("--noise"));
-    }
+    bilux::budget::let_limits_decide(&mut parameters);
     Ok(parameters)
 }
 

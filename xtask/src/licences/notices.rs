@@ -1,4 +1,4 @@
-//! The page with the notices of everything that the binary is built from.
+//! The page with the notices of everything that the binary and the Python package are built from.
 
 use crate::process::root;
 use crate::workspace::{Package, built_into};
@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-const BINARY: &str = "bilux-cli";
+/// What is handed out: the binary, and the Python package.
+const PRODUCTS: [&str; 2] = ["bilux-cli", "bilux-python"];
 
 const RULE: &str = "------------------------------------------------------------------------------";
 
@@ -15,7 +16,10 @@ const RULE: &str = "------------------------------------------------------------
 pub(super) fn page(packages: &[Package]) -> Result<String> {
     let own = root().join("LICENSE-MIT");
     let own = fs::read_to_string(&own).with_context(|| format!("cannot read {}", own.display()))?;
-    let parts: Vec<_> = built_into(BINARY, packages).into_iter().filter(|part| !part.member).collect();
+    let parts = PRODUCTS.iter().flat_map(|product| built_into(product, packages));
+    let mut parts: Vec<_> = parts.filter(|part| !part.member).collect();
+    parts.sort_by(|a, b| (&a.name, &a.version).cmp(&(&b.name, &b.version)));
+    parts.dedup_by(|a, b| a.id == b.id);
     let mut page = format!(
         "Bilux is licensed under the MIT licence, which follows, or, as you like, under the Apache\n\
          License 2.0 (LICENSE-APACHE in its repository).\n\n{}\n\n{RULE}\n\

@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux", LIBRARIES),
     ("bilux-bench", WITH_FACADE),
     ("bilux-cli", &["bilux", "bilux-bench"]),
+    ("bilux-python", &["bilux"]),
     ("bilux-validation", WITH_FACADE),
     ("xtask", &[]),
 ];

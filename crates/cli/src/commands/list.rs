@@ -4,99 +4,9 @@ use super::DONE;
 use crate::arguments::List;
 use crate::{output, usage};
 use anyhow::anyhow;
-use bilux::math::registry::{Entry, Parameter, ParameterKind};
+use bilux::math::registry::{Entry, Parameter};
+use bilux::tables::{TABLES, values};
 use serde_json::json;
-
-/// A table: its name, a summary of what it holds, and its rows.
-struct Table {
-    name: &'static str,
-    summary: &'static str,
-    rows: fn() -> Vec<Entry>,
-}
-
-macro_rules! rows {
-    ($table:expr) => {
-        || $table.iter().map(|row| row.entry).collect()
-    };
-}
-
-/// Every table.
-const TABLES: &[Table] = &[
-    Table {
-        name: "integrators",
-        summary: "light-transport algorithms",
-        rows: rows!(bilux::transport::integrators::INTEGRATORS),
-    },
-    Table {
-        name: "accels",
-        summary: "acceleration structures for ray queries",
-        rows: rows!(bilux::accel::ACCELERATORS),
-    },
-    Table {
-        name: "visibility",
-        summary: "hidden-surface removal",
-        rows: rows!(bilux::accel::visibility::VISIBILITY),
-    },
-    Table {
-        name: "materials",
-        summary: "what surfaces are made of",
-        rows: rows!(bilux::scene::materials::MATERIALS),
-    },
-    Table { name: "textures", summary: "procedural textures", rows: rows!(bilux::scene::texture::TEXTURES) },
-    Table {
-        name: "bsdfs",
-        summary: "lobes that materials are built from",
-        rows: rows!(bilux::scene::bsdf::BSDFS),
-    },
-    Table { name: "lights", summary: "light sources", rows: rows!(bilux::scene::lights::LIGHTS) },
-    Table { name: "cameras", summary: "kinds of camera", rows: rows!(bilux::scene::cameras::CAMERAS) },
-    Table {
-        name: "generators",
-        summary: "built-in scenes",
-        rows: rows!(bilux::scene::generators::GENERATORS),
-    },
-    Table {
-        name: "presets",
-        summary: "cameras and surroundings for files without a camera or lights",
-        rows: rows!(bilux::presets::PRESETS),
-    },
-    Table { name: "formats", summary: "formats of scene files", rows: rows!(bilux::formats::SCENE_FORMATS) },
-    Table {
-        name: "picture-formats",
-        summary: "formats of picture files",
-        rows: rows!(bilux::pictures::formats::PICTURE_FORMATS),
-    },
-    Table {
-        name: "tonemaps",
-        summary: "tone-mapping curves",
-        rows: rows!(bilux::pictures::tonemap::TONEMAPS),
-    },
-    Table {
-        name: "denoisers",
-        summary: "denoising methods, the best first",
-        rows: rows!(bilux::pictures::DENOISERS),
-    },
-    Table {
-        name: "filters",
-        summary: "pixel reconstruction filters",
-        rows: rows!(bilux::transport::filters::FILTERS),
-    },
-    Table {
-        name: "aovs",
-        summary: "arbitrary output variables: what a render can write as well as the picture",
-        rows: rows!(bilux::transport::aovs::AOVS),
-    },
-    Table {
-        name: "metrics",
-        summary: "measures of how much a picture differs from a reference",
-        rows: rows!(bilux::pictures::metrics::METRICS),
-    },
-    Table {
-        name: "settings",
-        summary: "the keys of [render] in scene files and of --set",
-        rows: || vec![bilux::settings::RENDER],
-    },
-];
 
 pub fn run(arguments: &List) -> anyhow::Result<u8> {
     let Some(table) = TABLES.iter().find(|table| table.name == arguments.what) else {
@@ -141,26 +51,9 @@ fn row_text(row: &Entry, width: usize) -> String {
         let unit = if p.unit.is_empty() { String::new() } else { format!(", in {}", p.unit) };
         let default =
             if p.default.is_empty() { "required".to_owned() } else { format!("[default: {}]", p.default) };
-        text += &format!("\n      {:<width$}  {} ({}{unit}) {default}", p.name, p.summary, kind_text(p.kind));
+        text += &format!("\n      {:<width$}  {} ({}{unit}) {default}", p.name, p.summary, values(p.kind));
     }
     text
-}
-
-fn kind_text(kind: ParameterKind) -> String {
-    match kind {
-        ParameterKind::Bool => "true or false".to_owned(),
-        ParameterKind::Integer { min, max } => format!("{min} to {max}"),
-        ParameterKind::Number { min, max } => format!("{min} to {max}"),
-        ParameterKind::Colour { min, max } => format!("colour {min} to {max}"),
-        ParameterKind::ColourTexture { min, max } => format!("colour {min} to {max}, or a texture"),
-        ParameterKind::NumberTexture { min, max } => format!("{min} to {max}, or a texture"),
-        ParameterKind::Texture => "texture".to_owned(),
-        ParameterKind::Stops { min, max } => format!("[position, colour {min} to {max}], several"),
-        ParameterKind::Vector => "x, y, z".to_owned(),
-        ParameterKind::Choice(words) => words.join("|"),
-        ParameterKind::Text => "text".to_owned(),
-        ParameterKind::Material => "a material's name".to_owned(),
-    }
 }
 
 fn row_json(row: &Entry) -> serde_json::Value {
@@ -171,7 +64,7 @@ fn row_json(row: &Entry) -> serde_json::Value {
 fn parameter_json(p: &Parameter) -> serde_json::Value {
     json!({
         "name": p.name, "summary": p.summary, "unit": p.unit,
-        "values": kind_text(p.kind), "default": p.default,
+        "values": values(p.kind), "default": p.default,
     })
 }
 

@@ -27,7 +27,7 @@ use bilux::pictures::Picture;
 use bilux::pictures::format_named;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;
-use bilux::scene::{SceneBuilder, Span, Warning};
+use bilux::scene::{SceneBuilder, Warning};
 use std::path::{Path, PathBuf};
 
 /// The exit status of a command that succeeded.
@@ -150,16 +150,5 @@ fn warn_lost_alpha(
     behind: Option<Rgb>,
     common: &Common,
 ) -> anyhow::Result<()> {
-    let format = format_of_path(output)?;
-    let transparent = picture.channel("A").is_some_and(|alpha| alpha.iter().any(|&alpha| alpha < 1.0));
-    if !transparent || format.holds_alpha || behind.is_some() && format.for_display {
-        return Ok(());
-    }
-    let instead = if format.for_display { "white" } else { "black" };
-    let message = format!(
-        "{}: {} does not support transparency and gets {instead} there: write a .png or an .exr to keep it",
-        output.display(),
-        format.entry.name
-    );
-    report_warnings(&[Warning { message, at: Span::default() }], common)
+    report_warnings(bilux::lost_alpha(picture, output, behind)?.as_slice(), common)
 }

@@ -1,0 +1,81 @@
+"""Physically based pictures of 3D scenes on the CPU, and ray queries on numpy arrays.
+
+Example:
+    >>> scene = bilux.load("model.glb")
+    >>> picture = scene.render(size=(64, 48), spp=4)
+    >>> picture.save("model.png")
+
+`Scene` is built from files (`load`), by generators (`generate`) or from arrays; `Scene.render` gives a `Picture`, whose
+layers are numpy arrays; `Accel` answers ray queries. What has variants is listed in tables: `integrators()`,
+`materials()`, `lights()`, `cameras()`, `settings()` and more.
+"""
+
+from . import trimesh
+from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, licenses, read_picture
+from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
+from ._scene import Scene, generate, load
+from ._tables import (
+    Entry,
+    Parameter,
+    Table,
+    accels,
+    aovs,
+    cameras,
+    denoisers,
+    filters,
+    formats,
+    generators,
+    integrators,
+    lights,
+    materials,
+    metrics,
+    picture_formats,
+    settings,
+    tonemaps,
+)
+from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress
+
+__all__ = [
+    "Accel",
+    "AllHits",
+    "Entry",
+    "Error",
+    "FormatError",
+    "Hits",
+    "Interrupted",
+    "Mesh",
+    "NearestPoints",
+    "Object",
+    "Parameter",
+    "Picture",
+    "PictureError",
+    "Progress",
+    "RenderError",
+    "Scene",
+    "SceneError",
+    "SceneWarning",
+    "Spec",
+    "Table",
+    "Texture",
+    "__version__",
+    "accels",
+    "aovs",
+    "cameras",
+    "compare",
+    "denoisers",
+    "filters",
+    "formats",
+    "generate",
+    "generators",
+    "integrators",
+    "licenses",
+    "lights",
+    "load",
+    "materials",
+    "metrics",
+    "picture_formats",
+    "read_picture",
+    "settings",
+    "tonemaps",
+    "trimesh",
+]

@@ -1,0 +1,405 @@
+"""Scenes: from files, generated, or from arrays."""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Literal
+
+from numpy.typing import ArrayLike
+
+from . import _bilux
+from ._bilux import Picture, Spec
+from ._progress import following
+from ._types import Mesh, Object, Progress
+
+Path = str | os.PathLike[str]
+
+MAX_MEMORY = 8 << 30
+"""The number of bytes that reading a file, and approximately rendering it, may take by default."""
+
+
+class Scene(_bilux.Scene):
+    """A scene: objects, lights and cameras. A new one is empty.
+
+    Without a camera, rendering frames everything; without lights, a studio lights it. Lengths are in metres. A scene
+    may be changed between renders, and by other threads during a render, which does not see the change.
+
+    Example:
+        >>> scene = bilux.Scene()
+        >>> red = bilux.materials.diffuse(reflectance=(0.8, 0.1, 0.1))
+        >>> scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], material=red)
+        0
+        >>> scene.render(size=(32, 32), spp=1).pixels.shape
+        (32, 32, 3)
+    """
+
+    _time: float = 0.0
+
+    def add_mesh(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        material: Spec | None = None,
+        transform: ArrayLike | None = None,
+        name: str = "",
+    ) -> int:
+        """Adds an object.
+
+        Args:
+            vertices: (n, 3) positions.
+            triangles: (m, 3) rows of vertices, counter-clockwise seen from outside.
+            normals: (n, 3) shading normals; without them, the triangles are flat.
+            uvs: (n, 2) texture coordinates, v upwards.
+            material: one of `bilux.materials`; by default grey and diffuse.
+            transform: a (4, 4) matrix from the mesh to the scene, whose last column is the translation.
+            name: a name for messages and written files.
+
+        Returns:
+            the object's number, for `set_transform` and the like.
+
+        Raises:
+            ValueError: if an array has the wrong shape, or holds what is not finite or out of range.
+            TypeError: if an array holds no numbers.
+        """
+        first, count = self._add(vertices, triangles, normals, uvs, material, transform, name)
+        if count != 1:
+            for index in reversed(range(first, first + count)):
+                self._remove(index)
+            raise ValueError("transform: this is one object, with one (4, 4) matrix; add_instances takes several")
+        return first
+
+    def add_instances(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        transforms: ArrayLike,
+        *,
+        normals: ArrayLike | None = None,
+        uvs: ArrayLike | None = None,
+        material: Spec | None = None,
+        name: str = "",
+    ) -> range:
+        """Adds the same mesh several times, which takes hardly more memory than once.
+
+        Args:
+            vertices, triangles, normals, uvs, material, name: as for `add_mesh`.
+            transforms: (k, 4, 4) matrices, one for each instance.
+
+        Returns:
+            the numbers of the k objects.
+
+        Example:
+            >>> places = np.tile(np.eye(4), (5, 1, 1))
+            >>> places[:, 0, 3] = range(5)
+            >>> bilux.Scene().add_instances([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], places)
+            range(0, 5)
+        """
+        first, count = self._add(vertices, triangles, normals, uvs, material, transforms, name)
+        return range(first, first + count)
+
+    def add_light(self, light: Spec) -> int:
+        """Adds one of `bilux.lights`, and returns its number in `lights`."""
+        return self._add_light(light)
+
+    def add_camera(self, camera: Spec) -> int:
+        """Adds one of `bilux.cameras`, and returns its number, which `render(camera=…)` takes."""
+        return self._add_camera(camera)
+
+    @property
+    def objects(self) -> list[Object]:
+        """What is known of each object, by its number."""
+        return [Object(*self._object(index)) for index in range(len(self))]
+
+    def mesh(self, object: int) -> Mesh:
+        """Copies of the arrays of an object's mesh, in the mesh's own coordinates."""
+        return Mesh(*self._mesh(self._number(object)))
+
+    def set_transform(self, object: int, transform: ArrayLike) -> None:
+        """Places an object anew: a (4, 4) matrix from its mesh to the scene."""
+        self._set_transform(self._number(object), transform)
+
+    def set_material(self, object: int, material: Spec) -> None:
+        """Makes an object of another material."""
+        self._set_material(self._number(object), material)
+
+    def remove(self, object: int) -> None:
+        """Removes an object; those after it move up by one number."""
+        self._remove(self._number(object))
+
+    def _number(self, object: int) -> int:
+        """The number of an object that there is."""
+        number = operator.index(object)
+        if not 0 <= number < len(self):
+            raise IndexError(f"there is no object {number}: the scene has {len(self)}, counted from 0")
+        return number
+
+    def render(
+        self,
+        size: tuple[int, int] | int | str | None = None,
+        integrator: str | None = None,
+        spp: int | None = None,
+        *,
+        noise: float | None = None,
+        time_limit: float | None = None,
+        aov: Sequence[str] = (),
+        denoise: bool | str | None = None,
+        seed: int | None = None,
+        threads: int | None = None,
+        camera: str | int | None = None,
+        time: float | None = None,
+        crop: tuple[int, int, int, int] | None = None,
+        fast: bool = False,
+        exposure: float | Literal["auto"] | None = None,
+        tonemap: str | None = None,
+        background: str | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        max_memory: int = MAX_MEMORY,
+        **settings: Any,
+    ) -> Picture:
+        """Renders a picture, with the defaults of the command line.
+
+        Runs without the GIL. Ctrl-C stops it and raises `Interrupted`, whose attribute `picture` is the picture so
+        far.
+
+        Args:
+            size: width and height in pixels; one number for a square. By default what the scene says, else 512.
+            integrator: the algorithm (`bilux.integrators`); by default what the scene says, else "auto".
+            spp: samples per pixel: the picture is then the same on every machine, to the byte.
+            noise: stop when the noise is, on average, at most this fraction of the light, such as 0.02.
+            time_limit: finish within so many seconds, denoising included. Without `spp`, `noise` and `time_limit`, the
+                picture is done at 2% noise or after 5 seconds.
+            aov: layers to give as well (`bilux.aovs`), such as "albedo", "normal", "depth", "ids", "variance".
+            denoise: True or a name (`bilux.denoisers`), or False; by default only if noise or time ends the picture.
+                The noisy picture is then its layer "noisy".
+            seed: of the random numbers.
+            threads: 0, the default, for all cores.
+            camera: by its name, or its number from 0.
+            time: what moves is shown at this time, in seconds.
+            crop: x, y, width, height of the window to render, in pixels.
+            fast: the cleanest picture that about a second allows.
+            exposure: stops (powers of two) by which formats for a display are brightened, or "auto".
+            tonemap: the tone curve for formats for a display (`bilux.tonemaps`).
+            background: "transparent", or a colour such as "white" or "#aabbcc".
+            progress: True for a bar, or a function that gets a `Progress` about 20 times a second. If it returns
+                False, the render stops, and the picture so far is returned; an exception stops it too, and comes out.
+            max_memory: bytes that it may take, approximately.
+            **settings: any other setting (`bilux.settings`), and the parameters of integrators.
+
+        Returns:
+            the picture, in linear light.
+
+        Raises:
+            SceneError: if something in the scene or a setting is wrong.
+            RenderError: if it would take too much memory.
+
+        Example:
+            >>> picture = bilux.generate("cornell").render(size=64, spp=4)
+            >>> picture.pixels.dtype, picture.info["spp"]
+            (dtype('float32'), 4)
+        """
+        given = self._settings(
+            size=size, integrator=integrator, spp=spp, noise=noise, time_limit=time_limit, seed=seed, threads=threads,
+            denoise=denoise, camera=camera, time=time, exposure=exposure, tonemap=tonemap, background=background,
+            **settings,
+        )  # fmt: skip
+        if fast and (spp, noise, time_limit) != (None, None, None):
+            raise TypeError("fast: this sets its own limits: leave it out, or spp, noise and time_limit")
+        layers = [aov] if isinstance(aov, str) else list(aov)
+        with following(progress) as callback:
+            return self._render(given, layers, _window(crop), fast, _bytes(max_memory), self._time, callback)
+
+    def progressive(
+        self,
+        size: tuple[int, int] | int | str | None = None,
+        integrator: str | None = None,
+        spp: int = 1024,
+        *,
+        seed: int | None = None,
+        threads: int | None = None,
+        camera: str | int | None = None,
+        time: float | None = None,
+        exposure: float | Literal["auto"] | None = None,
+        tonemap: str | None = None,
+        background: str | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        max_memory: int = MAX_MEMORY,
+        **settings: Any,
+    ) -> Iterator[Picture]:
+        """Renders ever better pictures: with 1, 2, 4, … samples per pixel, up to `spp`.
+
+        Each picture contains the samples of those before it; the last one is that of `render(spp=spp)`, to the byte.
+        Leave the loop when a picture is good enough.
+
+        Args:
+            spp: samples per pixel of the last picture.
+            size, integrator, seed, threads, camera, time, exposure, tonemap, background, progress, max_memory,
+                **settings: as for `render`.
+
+        Raises:
+            SceneError, RenderError, Interrupted: as for `render`.
+
+        Example:
+            >>> [picture.info["spp"] for picture in bilux.generate("cornell").progressive(size=16, spp=5)]
+            [1, 2, 4, 5]
+        """
+        given = self._settings(
+            size=size, integrator=integrator, spp=spp, seed=seed, threads=threads, camera=camera, time=time,
+            exposure=exposure, tonemap=tonemap, background=background, **settings,
+        )  # fmt: skip
+        if given.keys() & {"noise", "time_limit"}:
+            raise TypeError("progressive: noise and time_limit do not end it: leave the loop instead")
+        given |= {"noise": 0, "time_limit": 0}
+        with following(progress) as callback:
+            yield from self._progressive(given, _bytes(max_memory), callback)
+
+    def _settings(
+        self,
+        *,
+        size: tuple[int, int] | int | str | None,
+        camera: str | int | None,
+        time: float | None,
+        exposure: float | Literal["auto"] | None,
+        denoise: bool | str | None = None,
+        **settings: Any,
+    ) -> dict[str, Any]:
+        """The settings as the tables name them."""
+        given = settings | {"size": _size(size), "denoise": _denoise(denoise)}
+        given["camera"] = None if camera is None else str(camera)
+        given["time"] = self._time or None if time is None else time
+        given |= {"auto_exposure": True} if exposure == "auto" else {"exposure": exposure}
+        return {key: value for key, value in given.items() if value is not None}
+
+    def copy(self) -> Scene:
+        """A copy that can be changed on its own. Meshes and textures are shared, not copied."""
+        copy = type(self)()
+        copy._time = self._time
+        self._copy_to(copy)
+        return copy
+
+    def __copy__(self) -> Scene:
+        return self.copy()
+
+    def __deepcopy__(self, memo: object) -> Scene:
+        return self.copy()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a Scene cannot be pickled: save it with scene.save(…), and load the file where it is needed")
+
+    def _repr_png_(self) -> bytes | None:
+        """A small picture, for notebooks."""
+        if len(self) == 0:
+            return None
+        return self.render(size=(320, 240), fast=True)._repr_png_()
+
+
+def _size(size: tuple[int, int] | int | str | None) -> str | None:
+    """The size as settings have it."""
+    if size is None or isinstance(size, str):
+        return size
+    try:
+        width, height = (size, size) if isinstance(size, int) else size
+        return f"{int(width)}x{int(height)}"
+    except (TypeError, ValueError):
+        raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
+
+
+def _window(crop: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
+    """The window, if it is one."""
+    if crop is None:
+        return None
+    try:
+        x, y, width, height = (operator.index(side) for side in crop)
+    except (TypeError, ValueError):
+        raise TypeError(f"crop: {crop!r} is no window: give (x, y, width, height) in pixels") from None
+    if not all(0 <= side < 1 << 32 for side in (x, y, width, height)):
+        raise ValueError(f"crop: {crop!r} does not lie within a picture: give (x, y, width, height) in pixels")
+    return x, y, width, height
+
+
+def _bytes(max_memory: int) -> int:
+    """A number of bytes."""
+    number = operator.index(max_memory)
+    if not 0 < number < 1 << 64:
+        raise ValueError(f"max_memory: {number} is no number of bytes: 8 << 30 is the default")
+    return number
+
+
+def _denoise(denoise: bool | str | None) -> str | None:
+    """The denoiser as settings have it."""
+    if isinstance(denoise, bool):
+        return "auto" if denoise else "off"
+    return denoise
+
+
+def load(
+    path: Path,
+    *,
+    time: float = 0.0,
+    animation: str | None = None,
+    variant: str | None = None,
+    glass: Literal["auto", "thin", "solid"] = "auto",
+    light_radius: float = 0.0,
+    max_memory: int = MAX_MEMORY,
+    allow_outside: bool = False,
+    strict: bool = False,
+) -> Scene:
+    """Reads a scene file.
+
+    Args:
+        path: a glTF, GLB, OBJ, PLY, STL, OFF, pbrt or native scene, or a point cloud (`bilux.formats`).
+        time: what moves is as at this time, in seconds.
+        animation: the animation to play, by its name or number; by default the first.
+        variant: the variant of materials to show, by its name or number.
+        glass: how to read glass whose thickness the file does not give.
+        light_radius: the radius of point lights in metres, which softens their shadows.
+        max_memory: bytes that reading may take.
+        allow_outside: whether the file may refer to files outside its own folder.
+        strict: whether warnings are errors.
+
+    Returns:
+        the scene. What is odd about the file is a `SceneWarning`.
+
+    Raises:
+        FileNotFoundError: if there is no such file.
+        FormatError: if it is broken, or in no known format.
+        SceneError: if a name or a value in it is wrong.
+
+    Example:
+        >>> bilux.load("model.glb").render(size=(64, 48), spp=1).save("model.png")
+    """
+    scene: Scene = Scene._load(
+        path,
+        time=time,
+        animation=animation,
+        variant=variant,
+        glass=glass,
+        light_radius=light_radius,
+        max_memory=_bytes(max_memory),
+        allow_outside=allow_outside,
+        strict=strict,
+    )
+    scene._time = time
+    return scene
+
+
+def generate(kind: str, **parameters: Any) -> Scene:
+    """Makes a built-in scene.
+
+    Args:
+        kind: its name (`bilux.generators`), such as "cornell" or "trio".
+        **parameters: its parameters, as the table lists them.
+
+    Raises:
+        SceneError: if there is no such scene, or a parameter is wrong.
+
+    Example:
+        >>> bilux.generate("cornell").render(size=64, spp=1).width
+        64
+    """
+    scene: Scene = Scene._generate(kind, parameters)
+    return scene

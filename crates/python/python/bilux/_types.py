@@ -1,0 +1,133 @@
+"""Named tuples that the package returns."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._bilux import Spec
+
+Floats = NDArray[np.float32]
+Integers = NDArray[np.int64]
+
+
+class Hits(NamedTuple):
+    """The first hit of each ray. Where a ray hits nothing, `t` is infinite, `primitive` is -1, `point` and `normal`
+    are NaN, and `u` and `v` are 0.
+
+    Attributes:
+        t: (n,) distances along the rays, in lengths of their directions.
+        primitive: (n,) rows of the triangles.
+        u: (n,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (n,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (n, 3) points that are hit.
+        normal: (n, 3) unit normals of the triangles, on their fronts.
+    """
+
+    t: Floats
+    primitive: Integers
+    u: Floats
+    v: Floats
+    point: Floats
+    normal: Floats
+
+
+class AllHits(NamedTuple):
+    """Every hit of each ray, sorted by ray and then by distance: m rows in all.
+
+    Attributes:
+        ray: (m,) rows of the rays.
+        t: (m,) distances along the rays, in lengths of their directions.
+        primitive: (m,) rows of the triangles.
+        u: (m,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (m,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (m, 3) points that are hit.
+        normal: (m, 3) unit normals of the triangles, on their fronts.
+    """
+
+    ray: Integers
+    t: Floats
+    primitive: Integers
+    u: Floats
+    v: Floats
+    point: Floats
+    normal: Floats
+
+
+class NearestPoints(NamedTuple):
+    """The nearest point of the triangles to each point. Where nothing is within reach, `distance` is infinite,
+    `primitive` is -1, `point` is NaN, and `u` and `v` are 0.
+
+    Attributes:
+        distance: (n,) distances.
+        primitive: (n,) rows of the triangles.
+        u: (n,) barycentric weights of the triangles' second vertices, from 0 to 1.
+        v: (n,) barycentric weights of the triangles' third vertices, from 0 to 1.
+        point: (n, 3) nearest points.
+    """
+
+    distance: Floats
+    primitive: Integers
+    u: Floats
+    v: Floats
+    point: Floats
+
+
+class Object(NamedTuple):
+    """An object of a scene.
+
+    Attributes:
+        name: its name, which may be empty.
+        material: what it is made of.
+        transform: (4, 4) matrix from its mesh to the scene; for objects that move, at time 0.
+        vertices: number of vertices of its mesh.
+        triangles: number of triangles of its mesh.
+    """
+
+    name: str
+    material: Spec
+    transform: NDArray[np.float64]
+    vertices: int
+    triangles: int
+
+
+class Mesh(NamedTuple):
+    """The arrays of a mesh, in its own coordinates.
+
+    Attributes:
+        vertices: (n, 3) positions.
+        triangles: (m, 3) rows of vertices.
+        normals: (n, 3) shading normals, if it has any.
+        uvs: (n, 2) texture coordinates, v upwards, if it has any.
+    """
+
+    vertices: Floats
+    triangles: Integers
+    normals: Floats | None
+    uvs: Floats | None
+
+
+class Progress(NamedTuple):
+    """How far a render is.
+
+    Attributes:
+        samples: samples taken, over all pixels.
+        total: samples to take. If noise or time ends the render, it usually ends with fewer.
+        rays: rays traced.
+        seconds: seconds since the render began.
+    """
+
+    samples: int
+    total: int
+    rays: int
+    seconds: float
+
+    @property
+    def fraction(self) -> float:
+        """The part of the samples that is taken, from 0 to 1."""
+        return self.samples / self.total if self.total else 0.0
+
+
+__all__: list[str] = ["AllHits", "Hits", "Mesh", "NearestPoints", "Object", "Progress"]

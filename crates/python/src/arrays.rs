@@ -1,0 +1,161 @@
+//! Arrays as arguments: what is not an array of numbers of the right shape is refused with a message that names the
+//! argument. Any layout will do, read-only or not; all numbers become 32-bit floats or indices.
+
+use bilux::math::glam::DMat4;
+use bilux::math::{Transform, Vec2, Vec3};
+use numpy::{PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// An argument as an array of numbers of any shape.
+fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+    let numpy = argument.py().import("numpy")?;
+    let array = numpy.call_method1("asarray", (argument,)).map_err(|error| {
+        PyTypeError::new_err(format!("{name}: this is no array of numbers: {}", error.value(argument.py())))
+    })?;
+    let array = array.cast_into::<PyUntypedArray>()?;
+    let kind: char = array.dtype().getattr("kind")?.extract()?;
+    if !"fiu".contains(kind) {
+        let dtype = array.dtype();
+        return Err(PyTypeError::new_err(format!(
+            "{name}: an array of {dtype} is no array of numbers: convert it with .astype('float32')"
+        )));
+    }
+    Ok(array)
+}
+
+/// The shape as Python writes it.
+fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
+    let sides: Vec<String> = array.shape().iter().map(ToString::to_string).collect();
+    let comma = if sides.len() == 1 { "," } else { "" };
+    format!("({}{comma})", sides.join(", "))
+}
+
+/// The numbers as 32-bit floats, row by row, whatever the layout of the array.
+fn floats(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<f32>> {
+    if let Ok(singles) = array.extract::<PyReadonlyArrayDyn<'_, f32>>() {
+        let view = singles.as_array();
+        return Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[f32]>::to_vec));
+    }
+    let array = array.call_method1("astype", ("float64", "C", "unsafe", false, false))?;
+    let doubles = array.extract::<PyReadonlyArrayDyn<'_, f64>>()?;
+    Ok(doubles.as_array().iter().map(|&number| number as f32).collect())
+}
+
+/// Rows of `N` finite numbers.
+///
+/// # Errors
+/// `TypeError` if it is no array of numbers; `ValueError` if it has another shape, or a number is not finite.
+pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; N]>> {
+    let array = numbers(name, argument)?;
+    if array.ndim() != 2 || array.shape()[1] != N {
+        let transposed = array.ndim() == 2 && array.shape()[0] == N;
+        let advice = if transposed { format!("; transpose it: {name}.T") } else { String::new() };
+        let shape = shape_of(&array);
+        return Err(PyValueError::new_err(format!(
+            "{name}: its shape is {shape}, but must be (n, {N}), one row for each{advice}"
+        )));
+    }
+    let rows = floats(&array)?.as_chunks::<N>().0.to_vec();
+    match rows.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
+        None => Ok(rows),
+        Some(bad) => Err(PyValueError::new_err(format!(
+            "{name}: row {bad} is {:?}, which is not finite as 32-bit floats: leave it out, or correct it",
+            rows[bad]
+        ))),
+    }
+}
+
+/// Points or directions.
+pub(crate) fn vectors(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<Vec3>> {
+    Ok(rows::<3>(name, argument)?.into_iter().map(Vec3::from).collect())
+}
+
+/// Texture coordinates.
+pub(crate) fn pairs(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<Vec2>> {
+    Ok(rows::<2>(name, argument)?.into_iter().map(Vec2::from).collect())
+}
+
+/// Triangles: rows of three indices below `count`, the number of vertices.
+///
+/// # Errors
+/// As [`rows`]; also if the numbers are not whole, or an index is out of range.
+pub(crate) fn triangles(name: &str, argument: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<[u32; 3]>> {
+    let array = numbers(name, argument)?;
+    let kind: char = array.dtype().getattr("kind")?.extract()?;
+    if kind == 'f' && !array.shape().contains(&0) {
+        return Err(PyTypeError::new_err(format!(
+            "{name}: indices are whole numbers, but this is an array of {}: convert it with .astype('int64')",
+            array.dtype()
+        )));
+    }
+    if array.ndim() != 2 || array.shape()[1] != 3 {
+        return Err(PyValueError::new_err(format!(
+            "{name}: its shape is {}, but must be (n, 3), three indices of vertices for each triangle",
+            shape_of(&array)
+        )));
+    }
+    let array = array.call_method1("astype", ("int64", "C", "unsafe", false, false))?;
+    let array = array.extract::<PyReadonlyArrayDyn<'_, i64>>()?;
+    let view = array.as_array();
+    let rows = view.as_slice().unwrap_or_default().as_chunks::<3>().0;
+    let in_range = |index: i64| u32::try_from(index).ok().filter(|index| (*index as usize) < count);
+    let index = |row: usize, index: i64| {
+        in_range(index).ok_or_else(|| {
+            let most = count.saturating_sub(1);
+            PyValueError::new_err(format!(
+                "{name}: row {row} has the index {index}, but there are {count} vertices: use 0 to {most}"
+            ))
+        })
+    };
+    let of_row = |(row, &[a, b, c]): (usize, &[i64; 3])| Ok([index(row, a)?, index(row, b)?, index(row, c)?]);
+    rows.iter().enumerate().map(of_row).collect()
+}
+
+/// Transforms: one 4×4 matrix, or several, of column vectors: the last column is the translation.
+///
+/// # Errors
+/// As [`rows`]; also if a matrix is not affine or cannot be inverted.
+pub(crate) fn transforms(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<Transform>> {
+    let array = numbers(name, argument)?;
+    let ends_in_matrix = matches!(array.shape(), [4, 4] | [_, 4, 4]);
+    if !ends_in_matrix {
+        let shape = shape_of(&array);
+        return Err(PyValueError::new_err(format!(
+            "{name}: its shape is {shape}, but must be (4, 4) or (n, 4, 4), matrices of column vectors"
+        )));
+    }
+    let array = array.call_method1("astype", ("float64", "C", "unsafe", false, false))?;
+    let array = array.extract::<PyReadonlyArrayDyn<'_, f64>>()?;
+    let view = array.as_array();
+    let matrices = view.as_slice().unwrap_or_default().as_chunks::<16>().0;
+    let transform = |(i, numbers): (usize, &[f64; 16])| {
+        // numpy's rows are the matrix's rows.
+        Transform::from_matrix(DMat4::from_cols_array(numbers).transpose()).ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "{name}: matrix {i} is not affine (its last row must be 0 0 0 1), not finite, or has no inverse"
+            ))
+        })
+    };
+    matrices.iter().enumerate().map(transform).collect()
+}
+
+/// Pixels: a picture's height, width, number of channels, and samples in rows from the top.
+///
+/// # Errors
+/// As [`rows`]; also if the shape is neither (height, width) nor (height, width, channels).
+pub(crate) fn pixels(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<([usize; 3], Vec<f32>)> {
+    let array = numbers(name, argument)?;
+    let shape = match *array.shape() {
+        [height, width] => [height, width, 1],
+        [height, width, channels @ 1..=4] => [height, width, channels],
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "{name}: its shape is {}, but must be (height, width) or (height, width, channels), with 1 to 4 \
+                 channels",
+                shape_of(&array)
+            )));
+        }
+    };
+    Ok((shape, floats(&array)?))
+}

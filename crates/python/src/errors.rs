@@ -1,0 +1,63 @@
+//! Errors as Python exceptions. The classes are in `bilux/_errors.py`; the texts are those of the Rust errors.
+
+use bilux::formats::FormatError;
+use bilux::pictures::PictureError;
+use bilux::scene::{SceneError, Warning};
+use pyo3::exceptions::PyFileNotFoundError;
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::io::ErrorKind;
+
+/// The exception classes.
+mod classes {
+    pyo3::import_exception!(bilux._errors, Error);
+    pyo3::import_exception!(bilux._errors, FormatError);
+    pyo3::import_exception!(bilux._errors, PictureError);
+    pyo3::import_exception!(bilux._errors, RenderError);
+    pyo3::import_exception!(bilux._errors, SceneError);
+}
+
+pub(crate) use classes::Error;
+
+/// Any error as the exception of its kind.
+pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
+    let error = error.into();
+    let text = error.to_string();
+    match error {
+        bilux::Error::Format(FormatError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
+            PyFileNotFoundError::new_err(text)
+        }
+        bilux::Error::Format(FormatError::Scene(_)) | bilux::Error::Scene(_) | bilux::Error::Settings(_) => {
+            classes::SceneError::new_err(text)
+        }
+        bilux::Error::Format(_) => classes::FormatError::new_err(text),
+        bilux::Error::Picture(_) => classes::PictureError::new_err(text),
+        bilux::Error::Render(_) | bilux::Error::Film(_) | bilux::Error::TooLarge { .. } => {
+            classes::RenderError::new_err(text)
+        }
+        _ => Error::new_err(text),
+    }
+}
+
+/// A picture's error as its exception.
+pub(crate) fn of_picture(error: PictureError) -> PyErr {
+    exception(error)
+}
+
+/// A scene's error as its exception.
+pub(crate) fn of_scene(error: SceneError) -> PyErr {
+    exception(error)
+}
+
+/// Shows warnings as Python does: as lines on standard error, or as errors, as the user's filters say.
+///
+/// # Errors
+/// If the user's filters turn warnings into errors.
+pub(crate) fn warn(py: Python<'_>, warnings: &[Warning]) -> PyResult<()> {
+    let category = py.import("bilux._errors")?.getattr("SceneWarning")?;
+    for warning in warnings {
+        let text = CString::new(warning.to_string().replace('\0', " ")).unwrap_or_default();
+        PyErr::warn(py, &category, &text, 2)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,58 @@
+//! The Python package `bilux`: a thin front end over the library.
+//!
+//! What Python sees of it is `python/bilux/`, whose classes complete those here: here is what touches arrays, threads
+//! and the library; there are names, defaults and documentation.
+
+mod accel;
+mod adding;
+mod arrays;
+mod errors;
+mod forks;
+mod layer;
+mod pickling;
+mod picture;
+mod progressive;
+mod rays;
+mod render;
+mod scene;
+mod shown;
+mod spec;
+mod texture;
+mod values;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// The native part of the package `bilux`.
+#[pymodule]
+mod _bilux {
+    use super::*;
+    #[pymodule_export]
+    use crate::accel::Accel;
+    #[pymodule_export]
+    use crate::picture::{Picture, compare, read_picture};
+    #[pymodule_export]
+    use crate::progressive::Progressive;
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::spec::{Spec, rows};
+    #[pymodule_export]
+    use crate::texture::Texture;
+
+    /// The licences of Bilux, and of everything in this package that others wrote.
+    ///
+    /// Example:
+    ///     >>> "MIT" in bilux.licenses()
+    ///     True
+    #[pyfunction]
+    fn licenses() -> &'static str {
+        include_str!("../../../LICENSES.txt")
+    }
+
+    /// Adds the version.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,377 @@
+//! Pictures whose layers are numpy arrays.
+
+use crate::errors::{exception, of_picture, warn};
+use crate::layer::{Layer, layers_of};
+use crate::pickling::{PictureValues, picture_of, values_of};
+use crate::shown::Shown;
+use bilux::pictures::denoise::{Task, denoise, denoiser};
+use bilux::pictures::formats::BitDepth;
+use bilux::pictures::{ColourSpace, to_display};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use std::path::PathBuf;
+
+/// A picture: an array of pixels, and other layers of the same size.
+///
+/// Numbers are 32-bit floats, proportional to light (linear Rec. 709), the top row first; colours are premultiplied by
+/// alpha. The arrays are those of the picture itself, not copies: what you change in them is saved.
+///
+/// Args:
+///     pixels: an array (height, width) for a grey picture, (height, width, 3) for colours, or (height, width, 4) with
+///         alpha.
+///     layers: more arrays of the same height and width, by name.
+///     metadata: texts to store with the picture, in formats that can.
+///
+/// Example:
+///     >>> picture = bilux.generate("cornell").render(size=(64, 64), spp=4, aov=["depth"])
+///     >>> picture.pixels.shape, picture["depth"].shape
+///     ((64, 64, 3), (64, 64))
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Picture {
+    pub(crate) size: [usize; 2],
+    /// The main picture first, whose name is empty.
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) shown: Shown,
+    pub(crate) colour_space: ColourSpace,
+    pub(crate) metadata: Py<PyDict>,
+    pub(crate) info: Py<PyDict>,
+}
+
+#[pymethods]
+impl Picture {
+    #[new]
+    #[pyo3(signature = (pixels, *, layers = None, metadata = None))]
+    fn new(
+        py: Python<'_>,
+        pixels: &Bound<'_, PyAny>,
+        layers: Option<&Bound<'_, PyDict>>,
+        metadata: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Picture> {
+        let main = Layer::of_array("", pixels)?;
+        let size = main.size(py)?;
+        let mut all = vec![main];
+        for (name, pixels) in layers.into_iter().flatten() {
+            let name: String = name.extract()?;
+            let layer = Layer::of_array(&name, &pixels)?;
+            let [height, width] = layer.size(py)?;
+            if name.is_empty() || [height, width] != size {
+                return Err(PyValueError::new_err(format!(
+                    "layers: '{name}' has {width} x {height} pixels, but the picture has {} x {}",
+                    size[1], size[0]
+                )));
+            }
+            all.push(layer);
+        }
+        Ok(Picture {
+            size,
+            layers: all,
+            shown: Shown::default(),
+            colour_space: ColourSpace::default(),
+            metadata: metadata.unwrap_or_else(|| PyDict::new(py)).unbind(),
+            info: PyDict::new(py).unbind(),
+        })
+    }
+
+    /// The main picture: an array (height, width, 3), or (height, width, 4) with alpha, or (height, width) if grey.
+    #[getter]
+    fn pixels(&self, py: Python<'_>) -> Py<PyAny> {
+        self.layers.first().map_or_else(|| py.None(), |layer| layer.pixels.clone_ref(py))
+    }
+
+    /// The width in pixels.
+    #[getter]
+    fn width(&self) -> usize {
+        self.size[1]
+    }
+
+    /// The height in pixels.
+    #[getter]
+    fn height(&self) -> usize {
+        self.size[0]
+    }
+
+    /// The names of the other layers, such as "albedo" or "depth".
+    #[getter]
+    fn layers(&self) -> Vec<&str> {
+        self.layers.iter().map(|layer| &*layer.name).filter(|name| !name.is_empty()).collect()
+    }
+
+    /// Texts that are stored with the picture, in formats that can.
+    #[getter]
+    fn metadata(&self, py: Python<'_>) -> Py<PyDict> {
+        self.metadata.clone_ref(py)
+    }
+
+    /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the
+    /// light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "complete" (false if it was
+    /// stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
+    /// Empty for other pictures.
+    #[getter]
+    fn info(&self, py: Python<'_>) -> Py<PyDict> {
+        self.info.clone_ref(py)
+    }
+
+    /// The array of a layer: (height, width, channels), or (height, width) if it has one channel.
+    fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
+        let found = self.layers.iter().find(|layer| layer.name == name && !name.is_empty());
+        let pixels = found.map(|layer| layer.pixels.clone_ref(py));
+        pixels.ok_or_else(|| {
+            let known = self.layers().join(", ");
+            let known = if known.is_empty() { "it has none; ask for some with aov=[…]" } else { &known };
+            PyKeyError::new_err(format!("the picture has no layer '{name}' (layers: {known})"))
+        })
+    }
+
+    fn __contains__(&self, name: &str) -> bool {
+        self.layers().contains(&name)
+    }
+
+    #[pyo3(signature = (dtype = None, copy = None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let pixels = self.pixels(py).into_bound(py);
+        if copy != Some(true) && dtype.is_none() {
+            return Ok(pixels);
+        }
+        let keywords = PyDict::new(py);
+        keywords.set_item("copy", copy.unwrap_or(false))?;
+        let dtype = dtype.unwrap_or(pixels.getattr("dtype")?);
+        pixels.call_method("astype", (dtype,), Some(&keywords))
+    }
+
+    /// Writes the picture; the extension says in which format. An .exr also keeps all layers.
+    ///
+    /// Args:
+    ///     path: the file, which is replaced if it exists.
+    ///     exposure: stops by which formats for a display are brightened, or "auto"; by default as the render said.
+    ///     tonemap: the tone curve of formats for a display; by default as the render said.
+    ///     bits: 8 or 16 bits per channel of a PNG or PPM.
+    ///     quality: of a JPEG, from 1 to 100.
+    ///
+    /// Raises:
+    ///     PictureError: if the file cannot be written, or the format does not exist.
+    ///
+    /// Example:
+    ///     >>> bilux.Picture(np.full((2, 2, 3), 0.5)).save("grey.png")
+    #[pyo3(signature = (path, *, exposure = None, tonemap = None, bits = 8, quality = None))]
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        exposure: Option<&Bound<'_, PyAny>>,
+        tonemap: Option<&str>,
+        bits: u32,
+        quality: Option<f64>,
+    ) -> PyResult<()> {
+        let shown = self.shown.with(exposure, tonemap)?;
+        let picture = self.to_rust(py)?;
+        let mut options = shown.options(&picture);
+        options.bit_depth = match bits {
+            8 => BitDepth::Eight,
+            16 => BitDepth::Sixteen,
+            _ => return Err(PyValueError::new_err(format!("bits: {bits} is neither 8 nor 16"))),
+        };
+        if let Some(quality) = quality {
+            if !(1.0..=100.0).contains(&quality) {
+                return Err(PyValueError::new_err(format!("quality: {quality} is not from 1 to 100")));
+            }
+            options.quality = quality as u8;
+        }
+        let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
+        warn(py, lost.as_slice())?;
+        py.detach(|| bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
+    }
+
+    /// The picture as a display shows it: exposed, with a tone curve, sRGB-encoded, from 0 to 1, with straight alpha.
+    ///
+    /// Args:
+    ///     curve: the name of a tone curve (`bilux.tonemaps`); by default as the render said.
+    ///     exposure: stops, or "auto"; by default as the render said.
+    ///
+    /// Returns:
+    ///     an array (height, width, 3) or (height, width, 4) of float32.
+    #[pyo3(signature = (curve = None, *, exposure = None))]
+    fn tonemapped(
+        &self,
+        py: Python<'_>,
+        curve: Option<&str>,
+        exposure: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let shown = self.displayed(py, curve, exposure)?;
+        let layers = layers_of(py, &shown)?;
+        layers.into_iter().next().map(|layer| layer.pixels).ok_or_else(|| PyValueError::new_err("no pixels"))
+    }
+
+    /// The same in bytes, from 0 to 255: an array (height, width, 4) of uint8, as many widgets and encoders want it.
+    #[pyo3(signature = (curve = None, *, exposure = None))]
+    fn to_uint8<'py>(
+        &self,
+        py: Python<'py>,
+        curve: Option<&str>,
+        exposure: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let shown = self.displayed(py, curve, exposure)?;
+        let bytes = shown.to_rgba8().unwrap_or_default();
+        numpy::PyArray1::from_vec(py, bytes).call_method1("reshape", ((self.size[0], self.size[1], 4),))
+    }
+
+    /// The picture without noise; layers stay as they are. The layers albedo, normal, depth and variance help a lot.
+    ///
+    /// Args:
+    ///     by: the denoiser (`bilux.denoisers`), or "auto" for the best one that is there.
+    ///     threads: 0 for all cores.
+    #[pyo3(signature = (by = "auto", *, threads = 0))]
+    fn denoised(&self, py: Python<'_>, by: &str, threads: usize) -> PyResult<Picture> {
+        crate::forks::check()?;
+        let noisy = self.to_rust(py)?;
+        let smooth = py.detach(|| {
+            let chosen = denoiser(by, &Task { threads, ..Task::default() })?;
+            denoise(&noisy, &*chosen.denoiser)
+        });
+        Picture::of(py, &smooth.map_err(of_picture)?, self.shown, Some(self.info.clone_ref(py)))
+    }
+
+    /// The bytes of a PNG, for notebooks.
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let picture = self.to_rust(py)?;
+        let options = self.shown.options(&picture);
+        let bytes = py.detach(|| bilux::pictures::write_bytes("png", &picture, &options));
+        Ok(PyBytes::new(py, &bytes.map_err(of_picture)?))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let restore = slf.get_type().getattr("_restored")?;
+        (restore, (values_of(slf.py(), slf.get()),)).into_pyobject(slf.py())
+    }
+
+    #[staticmethod]
+    fn _restored(py: Python<'_>, values: PictureValues) -> PyResult<Picture> {
+        picture_of(py, values)
+    }
+
+    fn __repr__(&self) -> String {
+        let layers = self.layers();
+        let layers =
+            if layers.is_empty() { String::new() } else { format!(", layers {}", layers.join(", ")) };
+        format!("<bilux.Picture {} x {} pixels{layers}>", self.size[1], self.size[0])
+    }
+}
+
+impl Picture {
+    /// A picture of the library, its planes interleaved into arrays.
+    pub(crate) fn of(
+        py: Python<'_>,
+        picture: &bilux::pictures::Picture,
+        shown: Shown,
+        info: Option<Py<PyDict>>,
+    ) -> PyResult<Picture> {
+        let metadata = PyDict::new(py);
+        for (key, text) in &picture.metadata {
+            metadata.set_item(key, text)?;
+        }
+        Ok(Picture {
+            size: [picture.height(), picture.width()],
+            layers: layers_of(py, picture)?,
+            shown,
+            colour_space: picture.colour_space,
+            metadata: metadata.unbind(),
+            info: info.unwrap_or_else(|| PyDict::new(py).unbind()),
+        })
+    }
+
+    /// The picture as the library has it, with its arrays as they are now.
+    pub(crate) fn to_rust(&self, py: Python<'_>) -> PyResult<bilux::pictures::Picture> {
+        let [height, width] = self.size;
+        let mut picture = bilux::pictures::Picture::new(width, height).map_err(of_picture)?;
+        for layer in &self.layers {
+            layer.push_to(py, &mut picture)?;
+        }
+        picture.colour_space = self.colour_space;
+        for (key, text) in self.metadata.bind(py) {
+            picture.metadata.insert(key.extract()?, text.extract()?);
+        }
+        Ok(picture)
+    }
+
+    fn displayed(
+        &self,
+        py: Python<'_>,
+        curve: Option<&str>,
+        exposure: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<bilux::pictures::Picture> {
+        let shown = self.shown.with(exposure, curve)?;
+        let picture = self.to_rust(py)?;
+        let display = || to_display(&picture, shown.exposure_of(&picture), shown.curve);
+        py.detach(display).map_err(of_picture)
+    }
+}
+
+/// Reads a picture file.
+///
+/// Args:
+///     path: a PNG, EXR, HDR, PFM, PPM, JPEG, WebP, TIFF, BMP, TGA or KTX2.
+///
+/// Returns:
+///     the picture in linear light, with all layers of an EXR.
+///
+/// Raises:
+///     FileNotFoundError: if there is no such file.
+///     PictureError: if it is no picture.
+///
+/// Example:
+///     >>> bilux.Picture(np.ones((2, 3, 3))).save("white.png")
+///     >>> bilux.read_picture("white.png").pixels.shape
+///     (2, 3, 3)
+#[pyfunction]
+pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
+    let bytes = py.detach(|| std::fs::File::open(&path).map(|_| ()));
+    bytes?;
+    let picture = py.detach(|| bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
+    Picture::of(py, &picture.map_err(of_picture)?, Shown::default(), None)
+}
+
+/// Measures how much a picture differs from a reference.
+///
+/// Args:
+///     picture: a Picture, or an array as Picture takes it.
+///     reference: the same for what it should look like.
+///
+/// Returns:
+///     the value of each metric by its name (`bilux.metrics`): "rmse", "relmse" and "max" of the light, "psnr", "ssim"
+///     and "flip" of what a display shows. Equal pictures have an infinite "psnr".
+///
+/// Raises:
+///     PictureError: if their sizes differ, or one has no colours.
+///
+/// Example:
+///     >>> black, grey = np.zeros((8, 8, 3)), np.full((8, 8, 3), 0.5)
+///     >>> bilux.compare(grey, black)["rmse"]
+///     0.5
+#[pyfunction]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    picture: &Bound<'py, PyAny>,
+    reference: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    crate::forks::check()?;
+    let (picture, reference) = (any_picture(picture)?, any_picture(reference)?);
+    let report = py.detach(|| bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
+    let values = PyDict::new(py);
+    for (name, value) in report.values {
+        values.set_item(name, value)?;
+    }
+    Ok(values)
+}
+
+fn any_picture(argument: &Bound<'_, PyAny>) -> PyResult<bilux::pictures::Picture> {
+    let py = argument.py();
+    match argument.cast::<Picture>() {
+        Ok(picture) => picture.get().to_rust(py),
+        Err(_) => Picture::new(py, argument, None, None)?.to_rust(py),
+    }
+}

@@ -1,0 +1,230 @@
+//! Renders a scene: what the command line does between reading a scene and writing a picture.
+
+use crate::errors::{Error, exception, warn};
+use crate::picture::Picture;
+use crate::shown::Shown;
+use crate::watch::{Stopped, Watch, follow};
+use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
+use bilux::pictures::WriteOptions;
+use bilux::pictures::denoise::preload;
+use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
+use bilux::transport::Window;
+use bilux::transport::aovs::{AOVS, Aov};
+use bilux::{Job, Outcome};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::time::Instant;
+
+/// What a call asks for.
+pub(crate) struct Request {
+    /// Settings that take precedence over those of the scene.
+    pub(crate) user: Parameters,
+    /// The layers.
+    pub(crate) aovs: Vec<Aov>,
+    /// The window, if not all of the picture.
+    pub(crate) crop: Option<[u32; 4]>,
+    /// Whether to render the cleanest picture that about a second allows.
+    pub(crate) fast: bool,
+    /// The maximum number of bytes of memory.
+    pub(crate) max_memory: u64,
+    /// The time in seconds for which the scene's file was read.
+    pub(crate) loaded_at: f32,
+    /// When the call began.
+    pub(crate) begun: Instant,
+}
+
+/// A picture that was rendered, before it becomes Python's.
+struct Rendered {
+    picture: bilux::pictures::Picture,
+    shown: Shown,
+    outcome: Outcome,
+    warnings: Vec<Warning>,
+    spp: f64,
+    seed: u64,
+    integrator: &'static str,
+    denoiser: Option<String>,
+    /// Seconds spent on building the scene with its trees.
+    build_seconds: f64,
+}
+
+/// The AOVs of these names.
+///
+/// # Errors
+/// If there is no such AOV, or it is no layer.
+pub(crate) fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
+    let layers = || AOVS.iter().filter(|row| row.aov != Aov::Strategies);
+    let find = |name: &String| {
+        let found = layers().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
+        found.map(|row| row.aov).ok_or_else(|| {
+            SceneError::unknown("layer", name, layers().map(|row| row.entry.name), &Span::default())
+        })
+    };
+    names.iter().map(find).collect()
+}
+
+/// Renders a picture. Runs without the GIL, except for `callback`.
+///
+/// # Errors
+/// If anything is wrong with the scene or its settings; with what the callback raised; `Interrupted` after Ctrl-C.
+pub(crate) fn render(
+    py: Python<'_>,
+    scene: &SceneBuilder,
+    request: Request,
+    callback: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Picture> {
+    crate::forks::check()?;
+    let begun = request.begun;
+    let (rendered, stopped) = follow(py, callback, |watch| rendered(scene, request, watch));
+    if let Stopped::Raised(error) = stopped {
+        return Err(error);
+    }
+    let rendered = rendered.ok_or_else(|| {
+        Error::new_err("rendering failed inside Bilux: please report this, with the scene and the call")
+    })?;
+    let picture = match rendered {
+        Ok(Some(rendered)) => {
+            warn(py, &rendered.warnings)?;
+            let info = info(py, &rendered, begun)?.unbind();
+            Some(Picture::of(py, &rendered.picture, rendered.shown, Some(info))?)
+        }
+        Ok(None) => None,
+        Err(error) => return Err(exception(error)),
+    };
+    match (stopped, picture) {
+        (Stopped::No, Some(picture)) => Ok(picture),
+        (Stopped::Asked, Some(picture)) => Ok(picture),
+        (Stopped::Asked, None) => {
+            Err(Error::new_err("progress stopped the render before there was a picture"))
+        }
+        (_, picture) => Err(interrupted(py, picture)?),
+    }
+}
+
+/// The exception after Ctrl-C, with the picture so far.
+pub(crate) fn interrupted(py: Python<'_>, picture: Option<Picture>) -> PyResult<PyErr> {
+    let message = match picture {
+        Some(_) => "the render was interrupted; the exception's attribute `picture` is the picture so far",
+        None => "the render was interrupted before there was a picture",
+    };
+    let class = py.import("bilux._errors")?.getattr("Interrupted")?;
+    Ok(PyErr::from_value(class.call1((message, picture))?))
+}
+
+/// Does the work; `None` if it was stopped before the first sample.
+fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Option<Rendered>, bilux::Error> {
+    use bilux::transport::Progress;
+    let Request { mut user, aovs, crop, fast, max_memory, loaded_at, begun } = request;
+    let_limits_decide(&mut user);
+    if fast {
+        with_fast_budget(&scene.settings, &mut user);
+    }
+    if crop.is_none() {
+        with_default_budget(&scene.settings, &mut user);
+    }
+    let building = Instant::now();
+    let mut job = Job::within(scene, &user, max_memory)?;
+    let build_seconds = building.elapsed().as_secs_f64();
+    if watch.is_cancelled() {
+        return Ok(None);
+    }
+    let time = job.settings().time;
+    if scene.inventory.moves() && time != loaded_at {
+        return Err(bilux::Error::Settings(format!(
+            "time: the meshes of this file move, and it was read for {loaded_at} s: read it again with \
+             bilux.load(…, time={time})"
+        )));
+    }
+    job.begun_at(begun);
+    job.with_layers(&aovs);
+    if aovs.contains(&Aov::Interval) {
+        job.with_interval()?;
+    }
+    if let Some(crop) = crop {
+        job.crop(window(&job, crop)?);
+    }
+    let ends_early = job.settings().stop.is_any();
+    if ends_early && crop.is_none() && job.settings().denoise != "off" {
+        preload(job.settings().threads);
+    }
+    let denoiser = job.denoiser(crop.is_none())?;
+    let outcome = job.render(watch)?;
+    let denoiser = denoiser.filter(|_| !outcome.cancelled);
+    let mut picture = match &denoiser {
+        Some(chosen) => outcome.denoised(chosen)?,
+        None => outcome.picture()?,
+    };
+    outcome.push_layers(&mut picture, &aovs)?;
+    if denoiser.is_some() {
+        picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
+    }
+    if let Some(interval) = &outcome.interval {
+        picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
+    }
+    let settings = job.settings();
+    Ok(Some(Rendered {
+        picture,
+        shown: shown(&job)?,
+        warnings: job.warnings().to_vec(),
+        spp: match (outcome.cancelled, outcome.reached) {
+            (true, _) => mean_samples(&outcome),
+            (false, Some(reached)) => f64::from(reached.spp),
+            (false, None) => f64::from(job.samples_per_pixel()),
+        },
+        seed: settings.seed,
+        integrator: settings.integrator.entry.name,
+        denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
+        build_seconds,
+        outcome,
+    }))
+}
+
+/// How the job's pictures are shown.
+pub(crate) fn shown(job: &Job) -> Result<Shown, bilux::Error> {
+    let WriteOptions { exposure, tone_map, behind, .. } = job.write_options()?;
+    Ok(Shown { auto_exposure: job.settings().auto_exposure, exposure, curve: tone_map, behind })
+}
+
+/// The window of the picture that `crop` asks for.
+fn window(job: &Job, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::Error> {
+    let settings = job.settings();
+    let fits =
+        |at: u32, side: u32, most: u32| side > 0 && at.checked_add(side).is_some_and(|end| end <= most);
+    if fits(x, width, settings.width) && fits(y, height, settings.height) {
+        return Ok(Window { x, y, width, height });
+    }
+    Err(bilux::Error::Settings(format!(
+        "crop: the window {x}, {y}, {width}, {height} (x, y, width, height) must contain pixels and lie within the \
+         picture, which is {}x{}",
+        settings.width, settings.height
+    )))
+}
+
+/// The mean number of samples of a pixel.
+fn mean_samples(outcome: &Outcome) -> f64 {
+    let Window { x, y, width, height } = outcome.film.window();
+    let row = |row| (x..x + width).map(move |column| u64::from(outcome.film.samples(column, row)));
+    let all: u64 = (y..y + height).flat_map(row).sum();
+    all as f64 / (f64::from(width) * f64::from(height))
+}
+
+/// What the picture's `info` says.
+fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<Bound<'py, PyDict>> {
+    let info = PyDict::new(py);
+    let outcome = &rendered.outcome;
+    match rendered.outcome.cancelled {
+        true => info.set_item("spp", rendered.spp)?,
+        false => info.set_item("spp", rendered.spp as u64)?,
+    }
+    info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
+    info.set_item("seconds", begun.elapsed().as_secs_f64())?;
+    info.set_item("build_seconds", rendered.build_seconds)?;
+    info.set_item("complete", !outcome.cancelled)?;
+    info.set_item("integrator", rendered.integrator)?;
+    info.set_item("choice", outcome.choice.as_ref().map(ToString::to_string))?;
+    info.set_item("denoiser", rendered.denoiser.as_deref())?;
+    info.set_item("seed", rendered.seed)?;
+    info.set_item("rays", outcome.counters.rays)?;
+    let warnings: Vec<String> = rendered.warnings.iter().map(ToString::to_string).collect();
+    info.set_item("warnings", warnings)?;
+    Ok(info)
+}

@@ -1,0 +1,378 @@
+//! Scenes: read from files, generated, or built from arrays.
+
+use crate::adding::{Adding, mesh, of_table};
+use crate::arrays;
+use crate::errors::{exception, of_scene, warn};
+use crate::picture::Picture;
+use crate::progressive::Progressive;
+use crate::render::{Request, aovs, render};
+use crate::spec::Spec;
+use crate::values::{self, Resolve, Unresolved};
+use bilux::formats::{Glass, ReadOptions};
+use bilux::math::Transform;
+use bilux::scene::cameras::CameraSpec;
+use bilux::scene::{Object, SceneBuilder};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::{PyDict, PyString, PyType};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// The native part of `bilux.Scene`.
+#[pyclass(frozen, subclass, module = "bilux._bilux", name = "Scene")]
+#[derive(Default)]
+pub(crate) struct Scene(Mutex<SceneBuilder>);
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new() -> Scene {
+        Scene::default()
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (path, *, time, animation, variant, glass, light_radius, max_memory, allow_outside, strict))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword of bilux.load")]
+    fn _load<'py>(
+        class: &Bound<'py, PyType>,
+        path: PathBuf,
+        time: f32,
+        animation: Option<String>,
+        variant: Option<String>,
+        glass: &str,
+        light_radius: f32,
+        max_memory: u64,
+        allow_outside: bool,
+        strict: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let glass = match glass {
+            "auto" => Glass::Auto,
+            "thin" => Glass::Thin,
+            "solid" => Glass::Solid,
+            _ => {
+                let message = format!("glass: there is no '{glass}': write 'auto', 'thin' or 'solid'");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let options = ReadOptions {
+            max_memory,
+            allow_outside,
+            working_folder: Some(PathBuf::new()),
+            strict,
+            time,
+            animation,
+            variant,
+            glass,
+            light_radius,
+            ..ReadOptions::default()
+        };
+        crate::forks::check()?;
+        let py = class.py();
+        let scene = py.detach(|| bilux::load(&path, &options)).map_err(exception)?;
+        warn(py, &scene.warnings)?;
+        with_builder(class, scene)
+    }
+
+    #[classmethod]
+    #[pyo3(signature = (kind, parameters))]
+    fn _generate<'py>(
+        class: &Bound<'py, PyType>,
+        kind: &str,
+        parameters: &Bound<'_, PyDict>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        crate::forks::check()?;
+        let mut spec = bilux::scene::Spec::new("", kind);
+        spec.parameters = values::parameters(parameters, &mut Unresolved)?;
+        let scene = class.py().detach(|| bilux::generate(&spec)).map_err(exception)?;
+        with_builder(class, scene)
+    }
+
+    #[pyo3(signature = (vertices, triangles, normals, uvs, material, transforms, name))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword of Scene.add_mesh")]
+    fn _add(
+        &self,
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+        normals: Option<&Bound<'_, PyAny>>,
+        uvs: Option<&Bound<'_, PyAny>>,
+        material: Option<&Bound<'_, Spec>>,
+        transforms: Option<&Bound<'_, PyAny>>,
+        name: &str,
+    ) -> PyResult<(usize, usize)> {
+        let mesh = mesh(vertices, triangles, normals, uvs, name)?;
+        let several = transforms.is_some();
+        let transforms = match transforms {
+            Some(transforms) => arrays::transforms("transforms", transforms)?,
+            None => vec![Transform::IDENTITY],
+        };
+        let mut builder = self.builder(py);
+        let material = match material {
+            Some(material) => Adding(&mut builder).material(material)?,
+            None => {
+                let plain = bilux::scene::Spec::new("", "diffuse");
+                let known = builder.materials.iter().position(|known| *known == plain);
+                known.unwrap_or_else(|| builder.add_material(plain))
+            }
+        };
+        let mesh = Arc::new(mesh);
+        let first = builder.objects.len();
+        builder.objects.extend(transforms.iter().map(|&transform| {
+            let object = Object::new(name, mesh.clone(), material).placed(transform);
+            Object { instanced: several && transforms.len() > 1, ..object }
+        }));
+        Ok((first, transforms.len()))
+    }
+
+    /// The number of objects.
+    fn __len__(&self, py: Python<'_>) -> usize {
+        self.builder(py).objects.len()
+    }
+
+    fn _object<'py>(
+        &self,
+        py: Python<'py>,
+        index: usize,
+    ) -> PyResult<(String, Spec, Bound<'py, PyAny>, usize, usize)> {
+        let builder = self.builder(py);
+        let object = object(&builder, index)?;
+        let material = Spec::of(py, "materials", &builder.materials[object.material], &builder)?;
+        let matrix = object.motion.at(0.0).matrix().transpose().to_cols_array();
+        let matrix = matrix.iter().copied().map(f64::from).collect();
+        let matrix = PyArray1::from_vec(py, matrix).call_method1("reshape", ((4, 4),))?;
+        let (vertices, triangles) = (object.mesh.positions.len(), object.mesh.triangles.len());
+        let name = if object.name.is_empty() { &object.mesh.name } else { &object.name };
+        Ok((name.clone(), material, matrix, vertices, triangles))
+    }
+
+    fn _mesh<'py>(&self, py: Python<'py>, index: usize) -> PyResult<[Option<Bound<'py, PyAny>>; 4]> {
+        let mesh = object(&self.builder(py), index)?.mesh.clone();
+        let floats = |flat: Vec<f32>, width: usize| match flat.is_empty() {
+            true => Ok(None),
+            false => PyArray1::from_vec(py, flat).call_method1("reshape", ((-1, width as i64),)).map(Some),
+        };
+        let flat = |of: &[bilux::math::Vec3]| of.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>();
+        let triangles = mesh.triangles.iter().flatten().map(|&i| i64::from(i)).collect();
+        let triangles = PyArray1::from_vec(py, triangles).call_method1("reshape", ((-1, 3),))?;
+        let uvs = mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect();
+        Ok([
+            floats(flat(&mesh.positions), 3)?,
+            Some(triangles),
+            floats(flat(&mesh.normals), 3)?,
+            floats(uvs, 2)?,
+        ])
+    }
+
+    fn _set_transform(&self, py: Python<'_>, index: usize, transform: &Bound<'_, PyAny>) -> PyResult<()> {
+        let transforms = arrays::transforms("transform", transform)?;
+        let [transform] = transforms[..] else {
+            return Err(PyValueError::new_err("transform: one object takes one matrix, an array (4, 4)"));
+        };
+        let mut builder = self.builder(py);
+        object(&builder, index)?;
+        builder.objects[index] = builder.objects[index].clone().placed(transform);
+        Ok(())
+    }
+
+    fn _set_material(&self, py: Python<'_>, index: usize, material: &Bound<'_, Spec>) -> PyResult<()> {
+        let mut builder = self.builder(py);
+        object(&builder, index)?;
+        let material = Adding(&mut builder).material(material)?;
+        builder.objects[index].material = material;
+        Ok(())
+    }
+
+    fn _remove(&self, py: Python<'_>, index: usize) -> PyResult<()> {
+        let mut builder = self.builder(py);
+        object(&builder, index)?;
+        builder.objects.remove(index);
+        Ok(())
+    }
+
+    fn _add_light(&self, py: Python<'_>, light: &Bound<'_, Spec>) -> PyResult<usize> {
+        let mut builder = self.builder(py);
+        let light = of_table(light, "lights")?.resolved(py, &mut Adding(&mut builder))?;
+        builder.add_light(light);
+        Ok(builder.lights.len() - 1)
+    }
+
+    fn _add_camera(&self, py: Python<'_>, camera: &Bound<'_, Spec>) -> PyResult<usize> {
+        let mut builder = self.builder(py);
+        let camera = of_table(camera, "cameras")?.resolved(py, &mut Adding(&mut builder))?;
+        builder.cameras.push(CameraSpec::new(camera));
+        Ok(builder.cameras.len() - 1)
+    }
+
+    /// The materials, in the order of the scene. Assign a list of as many to replace them.
+    #[getter]
+    fn materials(&self, py: Python<'_>) -> PyResult<Vec<Spec>> {
+        let builder = self.builder(py);
+        builder.materials.iter().map(|spec| Spec::of(py, "materials", spec, &builder)).collect()
+    }
+
+    #[setter]
+    fn set_materials(&self, py: Python<'_>, materials: Vec<Bound<'_, Spec>>) -> PyResult<()> {
+        let mut builder = self.builder(py);
+        if materials.len() != builder.materials.len() {
+            return Err(PyValueError::new_err(format!(
+                "materials: there are {}, but the scene has {}: give one for each",
+                materials.len(),
+                builder.materials.len()
+            )));
+        }
+        let resolved: PyResult<Vec<_>> = materials
+            .iter()
+            .map(|spec| of_table(spec, "materials")?.resolved(spec.py(), &mut Adding(&mut builder)))
+            .collect();
+        for (slot, spec) in builder.materials.iter_mut().zip(resolved?) {
+            *slot = spec;
+        }
+        Ok(())
+    }
+
+    /// The lights. Assign a list to replace them.
+    #[getter]
+    fn lights(&self, py: Python<'_>) -> PyResult<Vec<Spec>> {
+        let builder = self.builder(py);
+        builder.lights.iter().map(|spec| Spec::of(py, "lights", spec, &builder)).collect()
+    }
+
+    #[setter]
+    fn set_lights(&self, py: Python<'_>, lights: Vec<Bound<'_, Spec>>) -> PyResult<()> {
+        let mut builder = self.builder(py);
+        let resolved: PyResult<Vec<_>> = lights
+            .iter()
+            .map(|spec| of_table(spec, "lights")?.resolved(spec.py(), &mut Adding(&mut builder)))
+            .collect();
+        builder.lights = resolved?;
+        Ok(())
+    }
+
+    /// The cameras; the first is the default. Assign a list to replace them.
+    #[getter]
+    fn cameras(&self, py: Python<'_>) -> PyResult<Vec<Spec>> {
+        let builder = self.builder(py);
+        builder.cameras.iter().map(|camera| Spec::of(py, "cameras", &camera.spec, &builder)).collect()
+    }
+
+    #[setter]
+    fn set_cameras(&self, py: Python<'_>, cameras: Vec<Bound<'_, Spec>>) -> PyResult<()> {
+        let mut builder = self.builder(py);
+        let resolved: PyResult<Vec<_>> = cameras
+            .iter()
+            .map(|spec| of_table(spec, "cameras")?.resolved(spec.py(), &mut Adding(&mut builder)))
+            .collect();
+        builder.cameras = resolved?.into_iter().map(CameraSpec::new).collect();
+        Ok(())
+    }
+
+    /// The corners of the bounding box of all objects, without lights: a list of two triples, or None if there are none.
+    #[getter]
+    fn bounds(&self, py: Python<'_>) -> Option<[(f32, f32, f32); 2]> {
+        let builder = self.builder(py);
+        let bounds = builder.bounds(0.0);
+        (!builder.objects.is_empty()).then(|| [bounds.min.into(), bounds.max.into()])
+    }
+
+    /// What was odd about the file.
+    #[getter]
+    fn warnings(&self, py: Python<'_>) -> Vec<String> {
+        self.builder(py).warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// What is worth knowing about the file though nothing is wrong with it.
+    #[getter]
+    fn notes(&self, py: Python<'_>) -> Vec<String> {
+        self.builder(py).notes.iter().map(ToString::to_string).collect()
+    }
+
+    /// Lights the scene with a picture in longitude and latitude, replacing the one that it may have.
+    #[pyo3(signature = (path))]
+    fn surround(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let options = ReadOptions { allow_outside: true, ..ReadOptions::default() };
+        let mut builder = self.builder(py);
+        bilux::presets::surround(&mut builder, &path, &options).map_err(exception)
+    }
+
+    /// Writes the scene to a file; the extension says in which format. Returns what the format cannot hold.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
+        let scene = self.builder(py).clone();
+        let lost = py.detach(|| bilux::formats::write(&path, &scene, &Default::default()));
+        Ok(lost.map_err(exception)?.iter().map(ToString::to_string).collect())
+    }
+
+    #[pyo3(signature = (settings, aov, crop, fast, max_memory, loaded_at, callback))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword of Scene.render")]
+    fn _render(
+        &self,
+        py: Python<'_>,
+        settings: &Bound<'_, PyDict>,
+        aov: Vec<String>,
+        crop: Option<[u32; 4]>,
+        fast: bool,
+        max_memory: u64,
+        loaded_at: f32,
+        callback: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Picture> {
+        let begun = Instant::now();
+        let user = values::parameters(settings, &mut Unresolved)?;
+        let aovs = aovs(&aov).map_err(of_scene)?;
+        // What others change from now on is not in this picture.
+        let scene = self.builder(py).clone();
+        render(py, &scene, Request { user, aovs, crop, fast, max_memory, loaded_at, begun }, callback)
+    }
+
+    fn _progressive(
+        &self,
+        py: Python<'_>,
+        settings: &Bound<'_, PyDict>,
+        max_memory: u64,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Progressive> {
+        let user = values::parameters(settings, &mut Unresolved)?;
+        let scene = self.builder(py).clone();
+        Progressive::new(py, &scene, &user, max_memory, callback)
+    }
+
+    fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {
+        let copy = self.builder(py).clone();
+        *other.get().builder(other.py()) = copy;
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let builder = slf.get().builder(slf.py());
+        let name: Bound<'_, PyString> = slf.get_type().name()?;
+        let triangles: usize = builder.objects.iter().map(|object| object.mesh.triangles.len()).sum();
+        Ok(format!(
+            "<bilux.{name} of {} objects, {triangles} triangles, {} materials, {} lights, {} cameras>",
+            builder.objects.len(),
+            builder.materials.len(),
+            builder.lights.len(),
+            builder.cameras.len()
+        ))
+    }
+}
+
+impl Scene {
+    /// The scene under construction. Other threads run while this one waits for it.
+    fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
+        self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// An instance of the class with this scene in it.
+fn with_builder<'py>(class: &Bound<'py, PyType>, scene: SceneBuilder) -> PyResult<Bound<'py, PyAny>> {
+    let instance = class.call0()?;
+    *instance.cast::<Scene>()?.get().builder(class.py()) = scene;
+    Ok(instance)
+}
+
+fn object(builder: &SceneBuilder, index: usize) -> PyResult<&Object> {
+    builder.objects.get(index).ok_or_else(|| {
+        let count = builder.objects.len();
+        PyIndexError::new_err(format!("there is no object {index}: the scene has {count}, counted from 0"))
+    })
+}

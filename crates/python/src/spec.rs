@@ -1,0 +1,153 @@
+//! Materials, lights and cameras as users name them: a row of a table, and values of its parameters.
+
+use crate::errors::of_scene;
+use crate::values::{self, Resolve, Unresolved};
+use bilux::math::registry::Entry;
+use bilux::scene::{Reader, SceneBuilder, SceneError, Span};
+use bilux::tables::{TABLES, values as values_of};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A material, a light or a camera: the name of a row of a table, and parameters.
+///
+/// Make one with `bilux.materials`, `bilux.lights` or `bilux.cameras`. It never changes; `with_` makes another one.
+///
+/// Example:
+///     >>> red = bilux.materials.diffuse(reflectance=(0.8, 0.1, 0.1))
+///     >>> red.kind, red.parameters["reflectance"]
+///     ('diffuse', (0.8, 0.1, 0.1))
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Spec {
+    /// Its table: "materials", "lights" or "cameras".
+    #[pyo3(get)]
+    pub(crate) table: String,
+    /// The name of its row, such as "dielectric".
+    #[pyo3(get)]
+    pub(crate) kind: String,
+    /// The name in the scene; may be empty.
+    #[pyo3(get)]
+    pub(crate) name: String,
+    parameters: Py<PyDict>,
+}
+
+/// The row of a table.
+fn entry(table: &str, kind: &str) -> Result<Entry, SceneError> {
+    let rows = TABLES.iter().find(|row| row.name == table).map_or_else(Vec::new, |table| (table.rows)());
+    let names: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    let found = rows.iter().find(|row| row.name == kind).copied();
+    let one = table.strip_suffix('s').unwrap_or(table);
+    found.ok_or_else(|| SceneError::unknown(one, kind, names, &Span::default()))
+}
+
+#[pymethods]
+impl Spec {
+    /// Checks the names and values of all parameters.
+    ///
+    /// Raises:
+    ///     SceneError: if there is no such row, or a parameter has a wrong name or a value out of range.
+    ///     TypeError: if a value is of a type that no parameter has.
+    #[new]
+    #[pyo3(signature = (table, kind, parameters, name = ""))]
+    fn new(table: &str, kind: &str, parameters: &Bound<'_, PyDict>, name: &str) -> PyResult<Spec> {
+        let entry = entry(table, kind).map_err(of_scene)?;
+        let mut spec = bilux::scene::Spec::new(name, kind);
+        spec.parameters = values::parameters(parameters, &mut Unresolved)?;
+        Reader::new(&spec, &entry).map_err(of_scene)?;
+        let parameters = parameters.copy()?.unbind();
+        Ok(Spec { table: table.to_owned(), kind: kind.to_owned(), name: name.to_owned(), parameters })
+    }
+
+    /// The parameters that are given, by name; all others have their defaults.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.parameters.bind(py).copy()
+    }
+
+    /// The same with other values of some parameters.
+    ///
+    /// Example:
+    ///     >>> dark = bilux.materials.diffuse(reflectance=0.5).with_(reflectance=0.1)
+    #[pyo3(signature = (**parameters))]
+    fn with_(&self, py: Python<'_>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Spec> {
+        let all = self.parameters(py)?;
+        if let Some(changes) = parameters {
+            all.update(changes.as_mapping())?;
+        }
+        Spec::new(&self.table, &self.kind, &all, &self.name)
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+        let Ok(other) = other.cast::<Spec>() else { return Ok(false) };
+        let other = other.get();
+        let same = (&self.table, &self.kind, &self.name) == (&other.table, &other.kind, &other.name);
+        Ok(same && self.parameters.bind(py).eq(other.parameters.bind(py))?)
+    }
+
+    fn __hash__(&self) -> u64 {
+        use std::hash::{DefaultHasher, Hash, Hasher};
+        let mut hasher = DefaultHasher::new();
+        (&self.table, &self.kind, &self.name).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, spec) = (slf.py(), slf.get());
+        let arguments = (&spec.table, &spec.kind, spec.parameters(py)?, &spec.name);
+        (slf.get_type(), arguments).into_pyobject(py)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let mut words = Vec::new();
+        if !self.name.is_empty() {
+            words.push(format!("name='{}'", self.name));
+        }
+        for (key, value) in self.parameters.bind(py) {
+            words.push(format!("{key}={}", value.repr()?));
+        }
+        Ok(format!("bilux.{}.{}({})", self.table, self.kind, words.join(", ")))
+    }
+}
+
+impl Spec {
+    /// The spec of a scene.
+    pub(crate) fn of(
+        py: Python<'_>,
+        table: &str,
+        spec: &bilux::scene::Spec,
+        scene: &SceneBuilder,
+    ) -> PyResult<Spec> {
+        Ok(Spec {
+            table: table.to_owned(),
+            kind: spec.kind.clone(),
+            name: spec.name.clone(),
+            parameters: values::dictionary(py, &spec.parameters, scene)?.unbind(),
+        })
+    }
+
+    /// The same for a scene, with textures and materials as indices.
+    pub(crate) fn resolved(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<bilux::scene::Spec> {
+        let mut spec = bilux::scene::Spec::new(&self.name, &self.kind);
+        spec.parameters = values::parameters(self.parameters.bind(py), resolve)?;
+        Ok(spec)
+    }
+}
+
+/// The rows of a table, as dictionaries with `name`, `summary`, `source` and `parameters`.
+#[pyfunction]
+pub(crate) fn rows<'py>(py: Python<'py>, table: &str) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let names = TABLES.iter().map(|table| table.name);
+    let found = TABLES.iter().find(|row| row.name == table);
+    let found =
+        found.ok_or_else(|| of_scene(SceneError::unknown("table", table, names, &Span::default())))?;
+    (found.rows)().iter().map(|row| as_dictionary(py, row)).collect()
+}
+
+fn as_dictionary<'py>(py: Python<'py>, row: &Entry) -> PyResult<Bound<'py, PyDict>> {
+    let dictionary = PyDict::new(py);
+    dictionary.set_item("name", row.name)?;
+    dictionary.set_item("summary", row.summary)?;
+    dictionary.set_item("source", row.source)?;
+    let parameters = row.parameters.iter().map(|p| (p.name, p.summary, values_of(p.kind), p.unit, p.default));
+    dictionary.set_item("parameters", parameters.collect::<Vec<_>>())?;
+    Ok(dictionary)
+}

@@ -1,0 +1,172 @@
+//! Textures from arrays and files.
+
+use crate::arrays;
+use crate::errors::of_picture;
+use bilux::math::Rgb;
+use bilux::pictures::{Limits, PictureError, Rgba8, read_rgba8};
+use bilux::scene::texture::{Filter, Image, Texels, Wrap};
+use numpy::PyReadonlyArrayDyn;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// An image on surfaces, for any parameter of a material or a light that takes a texture.
+///
+/// Args:
+///     pixels: an array (height, width), (height, width, 3) or (height, width, 4), the top row first. Of uint8, it
+///         holds colours as a screen shows them (sRGB) or, with `data=True`, fractions of 255; all other numbers are
+///         linear.
+///     data: the texture holds numbers, such as roughness or normals, instead of colours.
+///     wrap: what is beyond its edges: "repeat", "mirror" or "clamp".
+///     filter: "linear" or "nearest".
+///     name: a name for messages and written files.
+///
+/// Example:
+///     >>> checks = np.kron([[1, 0] * 4, [0, 1] * 4] * 4, np.ones((8, 8)))
+///     >>> material = bilux.materials.diffuse(reflectance=bilux.Texture(checks, filter="nearest"))
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Texture(pub(crate) Arc<bilux::scene::Texture>);
+
+#[pymethods]
+impl Texture {
+    #[new]
+    #[pyo3(signature = (pixels, *, data = false, wrap = "repeat", filter = "linear", name = ""))]
+    fn new(pixels: &Bound<'_, PyAny>, data: bool, wrap: &str, filter: &str, name: &str) -> PyResult<Texture> {
+        let image = match bytes(pixels)? {
+            Some(image) => image,
+            None => floats(pixels)?,
+        };
+        if image.width == 0 || image.height == 0 {
+            return Err(PyValueError::new_err("pixels: a texture has at least one row and one column"));
+        }
+        placed(bilux::scene::Texture::of(name, Arc::new(image), data), wrap, filter)
+    }
+
+    /// Reads a picture file as a texture.
+    ///
+    /// Args:
+    ///     path: a picture in any format that Bilux reads.
+    ///     data, wrap, filter: as for `Texture`.
+    ///
+    /// Raises:
+    ///     PictureError: if the file is no picture.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, data = false, wrap = "repeat", filter = "linear"))]
+    fn read(py: Python<'_>, path: PathBuf, data: bool, wrap: &str, filter: &str) -> PyResult<Texture> {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let bytes = py.detach(|| std::fs::read(&path))?;
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let image = py.detach(|| decoded(&bytes, extension, data)).map_err(of_picture)?;
+        let image = image.ok_or_else(|| {
+            PyValueError::new_err(format!("{}: this picture has no colours", path.display()))
+        })?;
+        placed(bilux::scene::Texture::of(&name, Arc::new(image), data), wrap, filter)
+    }
+
+    /// Its height and width in texels.
+    #[getter]
+    fn shape(&self) -> (usize, usize) {
+        (self.0.height(), self.0.width())
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Texture>().is_ok_and(|other| Arc::ptr_eq(&self.0, &other.get().0))
+    }
+
+    fn __hash__(&self) -> usize {
+        Arc::as_ptr(&self.0) as usize
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<bilux.Texture '{}', {} x {} texels>", self.0.name, self.0.width(), self.0.height())
+    }
+}
+
+impl Texture {
+    /// A texture of a scene.
+    pub(crate) fn of(texture: Arc<bilux::scene::Texture>) -> Texture {
+        Texture(texture)
+    }
+}
+
+fn placed(texture: bilux::scene::Texture, wrap: &str, filter: &str) -> PyResult<Texture> {
+    let wraps = match wrap {
+        "repeat" => Wrap::Repeat,
+        "mirror" => Wrap::Mirror,
+        "clamp" => Wrap::Clamp,
+        _ => return Err(unknown("wrap", wrap, "'repeat', 'mirror' or 'clamp'")),
+    };
+    let filter = match filter {
+        "linear" => Filter::Linear,
+        "nearest" => Filter::Nearest,
+        _ => return Err(unknown("filter", filter, "'linear' or 'nearest'")),
+    };
+    Ok(Texture(Arc::new(bilux::scene::Texture { wrap: [wraps; 2], filter, ..texture })))
+}
+
+fn unknown(argument: &str, word: &str, known: &str) -> PyErr {
+    PyValueError::new_err(format!("{argument}: there is no '{word}': write {known}"))
+}
+
+/// The image in a file; `None` if it has no colours.
+fn decoded(bytes: &[u8], extension: Option<&str>, data: bool) -> Result<Option<Image>, PictureError> {
+    let limits = Limits::default();
+    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, extension, &limits)? {
+        return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
+    }
+    let picture = bilux::pictures::read_bytes(bytes, extension, &limits)?;
+    let (width, height) = (picture.width(), picture.height());
+    let picture = if data { picture } else { picture.into_linear() };
+    let alpha = picture.channel("A").map_or_else(Vec::new, <[f32]>::to_vec);
+    let image = |colours| Image { width, height, texels: Texels::Floats { colours, alpha } };
+    Ok(picture.to_rgb().map(image))
+}
+
+/// Colours of bytes, if that is what the array holds.
+fn bytes(pixels: &Bound<'_, PyAny>) -> PyResult<Option<Image>> {
+    let Ok(array) = pixels.extract::<PyReadonlyArrayDyn<'_, u8>>() else { return Ok(None) };
+    let array = array.as_array();
+    let (height, width, channels) = match *array.shape() {
+        [height, width] => (height, width, 1),
+        [height, width, channels @ (1 | 3 | 4)] => (height, width, channels),
+        _ => return Ok(None),
+    };
+    let samples: Vec<u8> = array.iter().copied().collect();
+    let texel = |texel: &[u8]| match *texel {
+        [r, g, b, a] => [r, g, b, a],
+        [r, g, b] => [r, g, b, 255],
+        [grey, ..] => [grey, grey, grey, 255],
+        [] => [0; 4],
+    };
+    let texels = Texels::Bytes(samples.chunks_exact(channels).map(texel).collect());
+    Ok(Some(Image { width, height, texels }))
+}
+
+fn floats(pixels: &Bound<'_, PyAny>) -> PyResult<Image> {
+    let ([height, width, channels], samples) = arrays::pixels("pixels", pixels)?;
+    if let Some(bad) = samples.iter().position(|sample| !sample.is_finite()) {
+        let (row, column) = (bad / channels / width, bad / channels % width);
+        return Err(PyValueError::new_err(format!(
+            "pixels: the texel in row {row}, column {column} is not finite: correct it"
+        )));
+    }
+    let colour = |texel: &[f32]| match *texel {
+        [r, g, b, ..] => Rgb::new(r, g, b),
+        [grey, ..] => Rgb::grey(grey),
+        [] => Rgb::BLACK,
+    };
+    let texels = || samples.chunks_exact(channels);
+    let alpha = texels().filter_map(|texel| match (channels, texel.last()) {
+        (2 | 4, Some(alpha)) => Some(*alpha),
+        _ => None,
+    });
+    let alpha = alpha.collect();
+    Ok(Image { width, height, texels: Texels::Floats { colours: texels().map(colour).collect(), alpha } })
+}

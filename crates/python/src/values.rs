@@ -1,0 +1,115 @@
+//! Python's values as parameters of a scene, and back.
+
+use crate::texture::Texture;
+use bilux::scene::{Parameters, SceneBuilder, Value};
+use numpy::{PyUntypedArray, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
+
+/// Where values may name textures and materials.
+pub(crate) trait Resolve {
+    /// The index of a texture.
+    fn texture(&mut self, texture: &Texture) -> usize;
+    /// The index of a material.
+    fn material(&mut self, material: &Bound<'_, crate::spec::Spec>) -> PyResult<usize>;
+}
+
+/// Resolves everything to index 0, for checking kinds of values.
+pub(crate) struct Unresolved;
+
+impl Resolve for Unresolved {
+    fn texture(&mut self, _: &Texture) -> usize {
+        0
+    }
+    fn material(&mut self, _: &Bound<'_, crate::spec::Spec>) -> PyResult<usize> {
+        Ok(0)
+    }
+}
+
+/// Keyword arguments as parameters; those that are `None` are left out.
+pub(crate) fn parameters(keywords: &Bound<'_, PyDict>, resolve: &mut dyn Resolve) -> PyResult<Parameters> {
+    let mut parameters = Parameters::default();
+    for (key, argument) in keywords {
+        let key: String = key.extract()?;
+        if !argument.is_none() {
+            parameters.set(&key, value(&key, &argument, resolve)?);
+        }
+    }
+    Ok(parameters)
+}
+
+/// An argument as a value.
+pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn Resolve) -> PyResult<Value> {
+    if let Ok(texture) = argument.cast::<Texture>() {
+        return Ok(Value::Texture(resolve.texture(texture.get())));
+    }
+    if let Ok(material) = argument.cast::<crate::spec::Spec>() {
+        return Ok(Value::Material(resolve.material(material)?));
+    }
+    if argument.is_instance_of::<PyBool>() {
+        return Ok(Value::Bool(argument.extract()?));
+    }
+    if argument.is_instance_of::<PyInt>() {
+        let wrong = |_| PyValueError::new_err(format!("{name}: {argument} is too large a number"));
+        return Ok(Value::Integer(argument.extract().map_err(wrong)?));
+    }
+    if argument.is_instance_of::<PyFloat>() {
+        return Ok(Value::Number(argument.extract()?));
+    }
+    if argument.is_instance_of::<PyString>() {
+        return Ok(Value::Text(argument.extract()?));
+    }
+    if let Ok(path) = argument.call_method0("__fspath__") {
+        return Ok(Value::Text(path.extract()?));
+    }
+    // Arrays and numpy's own numbers.
+    let is_array = argument.cast::<PyUntypedArray>().is_ok_and(|array| array.ndim() > 0);
+    if !is_array && argument.hasattr("item")? {
+        return value(name, &argument.call_method0("item")?, resolve);
+    }
+    if is_array || argument.hasattr("__len__")? && !argument.is_instance_of::<PyDict>() {
+        let items: PyResult<Vec<Value>> =
+            argument.try_iter()?.map(|item| value(name, &item?, resolve)).collect();
+        return Ok(Value::List(items?));
+    }
+    Err(PyTypeError::new_err(format!(
+        "{name}: a {} is no value of a parameter: give a number, a text, True or False, a sequence of numbers, a \
+         Texture or a material",
+        argument.get_type().name()?
+    )))
+}
+
+/// A scene's parameters as a dictionary.
+pub(crate) fn dictionary<'py>(
+    py: Python<'py>,
+    parameters: &Parameters,
+    scene: &SceneBuilder,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dictionary = PyDict::new(py);
+    for (key, value, _) in &parameters.0 {
+        dictionary.set_item(key, object(py, value, scene)?)?;
+    }
+    Ok(dictionary)
+}
+
+fn object<'py>(py: Python<'py>, value: &Value, scene: &SceneBuilder) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Bool(yes) => PyBool::new(py, *yes).to_owned().into_any(),
+        Value::Integer(i) => i.into_pyobject(py)?.into_any(),
+        Value::Number(x) => x.into_pyobject(py)?.into_any(),
+        Value::Text(text) => PyString::new(py, text).into_any(),
+        Value::List(list) => {
+            let items: PyResult<Vec<_>> = list.iter().map(|value| object(py, value, scene)).collect();
+            PyList::new(py, items?)?.into_any()
+        }
+        Value::Texture(index) => match scene.textures.get(*index) {
+            Some(texture) => Bound::new(py, Texture::of(texture.clone()))?.into_any(),
+            None => py.None().into_bound(py),
+        },
+        Value::Material(index) => match scene.materials.get(*index) {
+            Some(spec) => Bound::new(py, crate::spec::Spec::of(py, "materials", spec, scene)?)?.into_any(),
+            None => py.None().into_bound(py),
+        },
+    })
+}

@@ -1,0 +1,38 @@
+"""What the tests share."""
+
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import bilux
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="session")
+def command_line():
+    """Runs the command line program; skips where it is not built."""
+    binary = os.environ.get("BILUX_BINARY", "")
+    candidates = [binary, ROOT / "target/debug/bilux", ROOT / "target/release/bilux"]
+    found = next((path for path in candidates if path and pathlib.Path(path).is_file()), None)
+    if found is None:
+        pytest.skip("the command line program is not built")
+    found = pathlib.Path(found).resolve()
+    return lambda *words: subprocess.run([found, *map(str, words)], check=True, capture_output=True, text=True)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty working directory with a model in it."""
+    monkeypatch.chdir(tmp_path)
+    bilux.generate("trio").save("model.glb")
+    return tmp_path
+
+
+@pytest.fixture
+def square():
+    """Vertices and triangles of the unit square at z = 0, which faces up."""
+    return np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32), np.array([[0, 1, 2], [0, 2, 3]])

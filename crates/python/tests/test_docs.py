@@ -1,0 +1,60 @@
+"""Every example of the documentation runs, and every public name has documentation."""
+
+import doctest
+import inspect
+import pathlib
+import re
+
+import numpy as np
+import pytest
+
+import bilux
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+
+
+def documented():
+    """Every public object and its public methods, by name."""
+    for name in bilux.__all__:
+        thing = getattr(bilux, name)
+        if name.startswith("__"):
+            continue
+        yield name, thing
+        if inspect.isclass(thing):
+            for member in vars(thing) | (vars(thing.__mro__[1]) if name == "Scene" else {}):
+                if not member.startswith("_") and member not in getattr(thing, "_fields", ()):
+                    yield f"{name}.{member}", getattr(thing, member)
+    yield from ((f"trimesh.{name}", thing) for name, thing in vars(bilux.trimesh).items() if name == "RayMeshIntersector")
+
+
+EVERYTHING = dict(documented()) | {"bilux": bilux}
+
+
+@pytest.mark.parametrize("name", EVERYTHING)
+def test_everything_is_documented_and_its_examples_run(name, folder):
+    text = inspect.getdoc(EVERYTHING[name])
+    assert text, f"{name} has no documentation"
+    assert all(f"{field}: " in text for field in getattr(EVERYTHING[name], "_fields", ()))
+    if name == "trimesh" or name.startswith("trimesh."):
+        pytest.importorskip("trimesh")
+    space = {"bilux": bilux, "np": np}
+    test = doctest.DocTestParser().get_doctest(text, space, name, None, None)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    runner.run(test)
+    assert runner.failures == 0
+
+
+@pytest.mark.parametrize(
+    "page", ["README.md", "crates/python/README.md", "docs/tutorials/python.md", "docs/tutorials/python-coming-from.md"]
+)
+def test_every_example_of_the_pages_runs(page, folder):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text("utf-8"), re.DOTALL)
+    assert blocks
+    if any("import trimesh" in block for block in blocks):
+        pytest.importorskip("trimesh")
+    space = {}
+    for number, block in enumerate(blocks):
+        try:
+            exec(compile(block, f"{page}, example {number + 1}", "exec"), space)
+        except ModuleNotFoundError as missing:
+            assert missing.name == "mitsuba"

@@ -1,0 +1,103 @@
+"""The adapter for trimesh, compared with trimesh's own queries."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import bilux
+
+trimesh = pytest.importorskip("trimesh")
+
+
+def own(mesh, **keywords):
+    return bilux.trimesh.RayMeshIntersector(mesh, **keywords)
+
+
+def reference(mesh):
+    pytest.importorskip("rtree")
+    from trimesh.ray.ray_triangle import RayMeshIntersector
+
+    return RayMeshIntersector(mesh)
+
+
+@pytest.fixture(params=["icosphere", "torus", "far"])
+def mesh(request):
+    if request.param == "icosphere":
+        return trimesh.creation.icosphere(subdivisions=2)
+    if request.param == "torus":
+        return trimesh.creation.torus(2, 0.5)
+    far = trimesh.creation.icosphere(subdivisions=2)
+    far.apply_scale(1e-3)
+    far.apply_translation([1e3, -1e3, 1e3])
+    return far
+
+
+@pytest.fixture
+def rays(mesh):
+    random = np.random.default_rng(3)
+    origins = mesh.centroid + random.normal(size=(200, 3)) * mesh.scale * 2
+    return origins, mesh.centroid + random.uniform(-0.3, 0.3, (200, 3)) * mesh.scale - origins
+
+
+def rows(*columns):
+    return sorted(zip(*(column.tolist() for column in columns)))
+
+
+def test_all_queries_agree_with_those_of_trimesh(mesh, rays):
+    ours, theirs = own(mesh), reference(mesh)
+    assert np.array_equal(ours.intersects_any(*rays), theirs.intersects_any(*rays))
+    assert np.array_equal(ours.intersects_first(*rays), theirs.intersects_first(*rays))
+    assert rows(*ours.intersects_id(*rays)) == rows(*theirs.intersects_id(*rays))
+    for multiple in [True, False]:
+        places, ray, triangle = ours.intersects_location(*rays, multiple_hits=multiple)
+        their_places, their_ray, their_triangle = theirs.intersects_location(*rays, multiple_hits=multiple)
+        assert rows(ray, triangle) == rows(their_ray, their_triangle)
+        order, their_order = np.lexsort((triangle, ray)), np.lexsort((their_triangle, their_ray))
+        assert np.allclose(places[order], their_places[their_order], atol=1e-9 * abs(mesh.bounds).max())
+
+
+def test_points_inside_are_found(mesh):
+    random = np.random.default_rng(4)
+    points = mesh.centroid + random.uniform(-0.6, 0.6, (500, 3)) * mesh.scale
+    inside = own(mesh).contains_points(points)
+    assert np.array_equal(inside, reference(mesh).contains_points(points))
+    assert 5 < inside.sum() < 495
+
+
+def test_a_ray_through_an_edge_or_a_vertex_crosses_once():
+    box = trimesh.creation.box()
+    box.ray = own(box)
+    along = [[0, 0, -1.0]]
+    for start in [[0, 0, 2], [0.25, 0.25, 2], [0.1, 0.3, 2], [0.25, -0.25, 2]]:
+        assert len(box.ray.intersects_id([start], along)[0]) == 2
+    round = trimesh.creation.icosphere(subdivisions=3)
+    outward = round.vertices * 0.5
+    assert own(round).contains_points(outward).all()
+    hits = own(round).intersects_id(outward, round.vertices.copy())
+    assert np.array_equal(hits[1], np.arange(len(outward)))
+
+
+def test_a_changed_mesh_is_built_again():
+    box = trimesh.creation.box()
+    box.ray = own(box)
+    ray = [[3, 0, 5.0]], [[0, 0, -1.0]]
+    assert not box.ray.intersects_any(*ray)[0]
+    box.apply_translation([3, 0, 0])
+    assert box.ray.intersects_any(*ray)[0]
+    assert pickle.loads(pickle.dumps(box.ray)).intersects_any(*ray)[0]
+    assert copy.copy(box.ray).mesh is box and copy.deepcopy(box.ray).mesh is not box
+
+
+def test_wrong_rays_are_refused_and_none_are_fine():
+    box = trimesh.creation.box()
+    with pytest.raises(ValueError, match="don't match"):
+        own(box).intersects_any(np.ones((2, 3)), np.ones((3, 3)))
+    with pytest.raises(ValueError, match="points"):
+        own(box).contains_points([1, 2, 3])
+    empty = np.zeros((0, 3))
+    assert own(box).intersects_id(empty, empty)[0].shape == (0,)
+    assert own(box).intersects_location(empty, empty)[0].shape == (0, 3)
+    assert own(box).contains_points(empty).shape == (0,)
+    assert own(trimesh.Trimesh()).intersects_any([[0, 0, 0.0]], [[0, 0, 1.0]]).tolist() == [False]
