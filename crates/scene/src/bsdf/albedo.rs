@@ -151,12 +151,12 @@ impl Albedo {
     }
 
     #[inline(always)]
-    pub(super) fn to_numbers(self) -> [f32; 3] {
+    pub(in crate::bsdf) fn to_numbers(self) -> [f32; 3] {
         [self.roughness, self.index, self.straight]
     }
 
     #[inline(always)]
-    pub(super) fn from_numbers([roughness, index, straight]: [f32; 3]) -> Albedo {
+    pub(in crate::bsdf) fn from_numbers([roughness, index, straight]: [f32; 3]) -> Albedo {
         Albedo { roughness, index, straight }
     }
 

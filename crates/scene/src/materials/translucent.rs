@@ -17,7 +17,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "translucent",
         summary: "paper, leaves, lampshades: diffuse reflection and diffuse transmission",
-        source: "pbrt 2023, 9.2",
+        source: "pbrt 2023",
         parameters: &[
             reflectance("reflectance", "fraction of the light that is reflected", "0.4"),
             reflectance(
@@ -41,19 +41,21 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     principled: Some(AsPrincipled {
         keeps: &["reflectance", "transmittance"],
-        differs: "with textures it reflects and transmits half of the light",
+        differs: "a textured side gets only the light that the other leaves",
         convert,
     }),
 };
 
-/// The diffuse part of `principled` is divided between the two sides: by the larger channels of the colours where these
-/// are known, otherwise evenly.
+/// The diffuse part of `principled` is divided between the two sides: by the largest channels of the two colours; where one
+/// is a texture, it gets what the other leaves; evenly between two textures.
 fn convert(material: &Spec, principled: Spec) -> Spec {
     let value = |key| material.value_or(key, 0.4f32);
     let (reflected, transmitted) = (channels(&value("reflectance")), channels(&value("transmittance")));
     let largest = |channels: &[f64]| channels.iter().copied().fold(0.0, f64::max);
-    let share = match (&reflected, &transmitted) {
-        (Some(r), Some(t)) if largest(r) + largest(t) > 0.0 => largest(t) / (largest(r) + largest(t)),
+    let share = match (reflected.as_deref().map(largest), transmitted.as_deref().map(largest)) {
+        (Some(r), Some(t)) if r + t > 0.0 => t / (r + t),
+        (Some(r), None) => (1.0 - r).clamp(0.0, 1.0),
+        (None, Some(t)) => t.clamp(0.0, 1.0),
         _ => 0.5,
     };
     let part = |key, channels: Option<Vec<f64>>, share: f64| match channels {

@@ -110,8 +110,7 @@ impl SceneParts {
             |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
         let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
-        let of_object = |o: &Placed| materials[o.material as usize].nested();
-        let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
+        let has_nested = geometry.objects().iter().any(|o| materials[o.material as usize].nested().is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let passes = MayPass::of_all(&geometry, &materials);

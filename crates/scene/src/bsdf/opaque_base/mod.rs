@@ -8,6 +8,8 @@
 //! No expression here has a branch, so that loops over many points can be vectorised: one lobe and many give the same
 //! bits.
 
+mod numbers;
+
 use super::albedo::{Albedo, AlbedoTable};
 use super::fresnel::{COS_82, dent, fresnel_on_denser, schlick_from};
 use super::ggx::MIN_ALPHA;
@@ -267,78 +269,6 @@ impl OpaqueBaseForWo {
     #[inline(always)]
     pub fn look_up(&self, cos_i: f32, table: &AlbedoTable) -> [f32; 2] {
         self.albedo.pair_at(table, cos_i.abs())
-    }
-
-    /// The number of numbers that it consists of.
-    pub const NUMBERS: usize = 28;
-
-    /// All of it, for keeping many in columns. There is no loop here that a compiler would have to unroll.
-    #[inline(always)]
-    pub fn to_numbers(self) -> [f32; OpaqueBaseForWo::NUMBERS] {
-        let OpaqueBaseForWo { wo, glass, straight, dip, again, base, .. } = self;
-        let [roughness, index, reflected] = self.albedo.to_numbers();
-        let [a, b, c] = [self.alpha, self.eta, self.metalness];
-        let [d, e, f, g] = [self.shadow, self.bound, self.gloss_share, self.strength];
-        let [h, i, j] = [glass.r, glass.g, glass.b];
-        let [k, l, m] = [straight.r, straight.g, straight.b];
-        let [n, o, p] = [dip.r, dip.g, dip.b];
-        let [q, r, s] = [again.r, again.g, again.b];
-        let [t, u, v] = [base.r, base.g, base.b];
-        [
-            a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, roughness, index, reflected,
-            wo.x, wo.y, wo.z,
-        ]
-    }
-
-    /// The inverse of [`OpaqueBaseForWo::to_numbers`].
-    #[inline(always)]
-    pub fn from_numbers(numbers: [f32; OpaqueBaseForWo::NUMBERS]) -> OpaqueBaseForWo {
-        let [
-            a,
-            b,
-            c,
-            d,
-            e,
-            f,
-            g,
-            h,
-            i,
-            j,
-            k,
-            l,
-            m,
-            n,
-            o,
-            p,
-            q,
-            r,
-            s,
-            t,
-            u,
-            v,
-            roughness,
-            index,
-            reflected,
-            x,
-            y,
-            z,
-        ] = numbers;
-        OpaqueBaseForWo {
-            wo: Vec3::new(x, y, z),
-            alpha: a,
-            eta: b,
-            metalness: c,
-            shadow: d,
-            bound: e,
-            gloss_share: f,
-            strength: g,
-            glass: Rgb::new(h, i, j),
-            straight: Rgb::new(k, l, m),
-            dip: Rgb::new(n, o, p),
-            again: Rgb::new(q, r, s),
-            base: Rgb::new(t, u, v),
-            albedo: Albedo::from_numbers([roughness, index, reflected]),
-        }
     }
 
     /// f·|cosθi|, and the density of [`OpaqueBaseForWo::sample`] over solid angle; both are zero where the directions are
