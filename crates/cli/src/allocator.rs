@@ -3,7 +3,7 @@
 //! By default, glibc keeps freed memory for later use, up to 64 MB at a time in each thread's arena, once blocks of some MB have come and gone.
 //! A large picture frees many such blocks between its stages, and none of the later ones fits into them. Blocks that have their own pages go back
 //! to the system at once.
-#![allow(unsafe_code)] // One call of a C function that takes two numbers.
+#![allow(unsafe_code)] // Two calls of a C function that takes two numbers.
 
 /// Gives each large block its own pages, so that the memory goes back to the system when the block is freed.
 pub fn return_large_blocks() {
