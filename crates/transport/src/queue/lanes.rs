@@ -43,8 +43,8 @@ pub(super) fn put(columns: &mut Columns3, i: usize, [x, y, z]: [f32; 3]) {
 /// A loop over columns. `run` has to be `#[inline(always)]`.
 ///
 /// It has one or two fields, each a reference or a number. Only then are they passed as arguments, of which the compiler
-/// knows that they do not overlap; a loop over columns behind three references was left in scalar instructions, which
-/// made it ten times as slow. Arrays are unpacked one element at a time, since `map` over an array hides them, too.
+/// knows that they do not overlap; otherwise it checks that at run time, and keeps a scalar loop beside the vector one.
+/// What else keeps a loop scalar is in docs/adr/0011-one-path-or-waves.md: look at its instructions after a change.
 pub(super) trait Stage {
     fn run(self);
 }

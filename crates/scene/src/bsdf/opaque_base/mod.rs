@@ -72,7 +72,7 @@ pub struct OpaqueBaseInputs {
     pub specular_weight: f32,
     /// The colour of specular reflection; of metal, near grazing angles. 0..=1.
     pub specular_color: Rgb,
-    /// The square root of GGX's alpha, 0..=1; which [`is_rough`].
+    /// The square root of GGX's alpha, 0..=1, of a surface that is not polished (see [`is_rough`]).
     pub roughness: f32,
     /// The refractive index of the dielectric, at least 1.
     pub ior: f32,
