@@ -1,6 +1,6 @@
 //! A smooth boundary between two media that do not absorb: Fresnel's equations and Snell's law.
 
-use super::{BsdfEntry, BsdfSample, Lobe, ThinFilm, TransportMode, fresnel_dielectric, refract};
+use super::{BsdfEntry, BsdfSample, Lobe, SmoothLobe, ThinFilm, TransportMode, refract};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -71,16 +71,10 @@ impl Dielectric {
         _u: Vec2,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
+        let Some(film) = &self.film else { return Some(self.without_film().bsdf_sample(wo, u_choice, mode)) };
         let eta = self.eta_from(wo);
-        let mut reflected = fresnel_dielectric(wo.z.abs(), if self.thin { self.eta } else { eta });
-        if self.thin && reflected < 1.0 {
-            // Light that bounces between the two faces adds up. [pbrt 2023, eq. 9.12]
-            reflected = 2.0 * reflected / (1.0 + reflected);
-        }
-        let mut colours = [Rgb::WHITE; 2];
-        if let Some(film) = &self.film {
-            (reflected, colours) = shares(film.over_clear(wo.z.abs(), self.eta, wo.z > 0.0, self.thin));
-        }
+        let (reflected, colours) =
+            shares(film.over_clear(wo.z.abs(), self.eta, wo.z > 0.0, self.thin));
         if u_choice < reflected {
             let sample = self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None);
             return Some(BsdfSample { weight: sample.weight * colours[0], ..sample });
@@ -93,6 +87,11 @@ impl Dielectric {
             sample.weight = sample.weight / (eta * eta);
         }
         Some(sample)
+    }
+
+    #[inline]
+    fn without_film(&self) -> SmoothLobe {
+        SmoothLobe { tint: self.tint, eta: self.eta, is_mirror: false, thin: self.thin }
     }
 
     /// The index of the far side over that of the side of `wo`.

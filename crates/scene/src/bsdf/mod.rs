@@ -32,6 +32,7 @@ mod phong_lobe;
 mod rough_dielectric;
 mod rough_diffuse;
 mod sample;
+mod smooth_lobe;
 mod thin_film;
 mod transport_mode;
 
@@ -55,6 +56,7 @@ pub use phong_lobe::PhongLobe;
 pub use rough_dielectric::RoughDielectric;
 pub use rough_diffuse::RoughDiffuse;
 pub use sample::BsdfSample;
+pub use smooth_lobe::{SmoothLobe, SmoothSample};
 pub use thin_film::ThinFilm;
 pub use transport_mode::TransportMode;
 

@@ -6,7 +6,7 @@ use super::{
     ABSORPTION, AsPrincipled, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN,
     colour_map, reflectance, spread,
 };
-use crate::bsdf::{Bsdf, RoughDielectric};
+use crate::bsdf::{Bsdf, RoughDielectric, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::{Spec, Value};
@@ -151,6 +151,13 @@ impl Material for Glass {
         let (tint, ggx) = (self.tint.at(surface.uvs()), self.roughness.at(surface));
         let glass = RoughDielectric { eta, dispersion, tint, thin, ggx, film: None }.of_index(eta);
         Bsdf::of(surface.n_shade, surface.n_geom, glass).along(surface.tangent)
+    }
+
+    fn smooth_lobe(&self) -> Option<SmoothLobe> {
+        let Glass { eta, thin, .. } = *self;
+        let ColourMap { colour: tint, texture: None } = self.tint else { return None };
+        let is_smooth = self.roughness.even().is_some_and(|ggx| !RoughDielectric::is_rough(eta, thin, &ggx));
+        (is_smooth && self.dispersion == 0.0).then_some(SmoothLobe { tint, eta, is_mirror: false, thin })
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

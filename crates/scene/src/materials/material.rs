@@ -1,6 +1,6 @@
 //! What a material answers.
 
-use crate::bsdf::{Bsdf, OpaqueBaseInputs};
+use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::sides::Sides;
 use crate::surface::Surface;
@@ -31,6 +31,10 @@ pub trait Material: Send + Sync {
     }
     /// The inputs of that lobe at a point; `None` where the surface is polished.
     fn opaque_base(&self, _surface: &Surface) -> Option<OpaqueBaseInputs> {
+        None
+    }
+    /// The lobe, if its [`Bsdf`] is the same [`SmoothLobe`] everywhere, about the shading normal.
+    fn smooth_lobe(&self) -> Option<SmoothLobe> {
         None
     }
     /// The same point under Equations 1 and 2.

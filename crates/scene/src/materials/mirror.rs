@@ -4,7 +4,7 @@ use super::{
     AsPrincipled, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
     OPACITY, VISIBLE_SIDES, colour_map, reflectance, spread,
 };
-use crate::bsdf::{Bsdf, Lobe, Mirror};
+use crate::bsdf::{Bsdf, Lobe, Mirror, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
@@ -55,6 +55,11 @@ impl Material for MirrorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let mirror = Lobe::Mirror(Mirror { reflectance: self.reflectance.at(surface.uvs()) });
         Bsdf::of(surface.n_shade, surface.n_geom, mirror)
+    }
+
+    fn smooth_lobe(&self) -> Option<SmoothLobe> {
+        let ColourMap { colour: tint, texture: None } = self.reflectance else { return None };
+        Some(SmoothLobe { tint, eta: 1.0, is_mirror: true, thin: false })
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

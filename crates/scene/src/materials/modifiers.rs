@@ -5,7 +5,7 @@ use super::emission::{self, SurfaceEmission};
 use super::normal_map::{self, NormalMap};
 use super::visible::VISIBLE_SIDES;
 use super::{Material, MaterialInputs, Nested, opacity};
-use crate::bsdf::{Bsdf, OpaqueBaseInputs};
+use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -73,6 +73,10 @@ impl Material for ModifiedMaterial {
 
     fn opaque_base(&self, surface: &Surface) -> Option<OpaqueBaseInputs> {
         self.material.opaque_base(surface)
+    }
+
+    fn smooth_lobe(&self) -> Option<SmoothLobe> {
+        self.material.smooth_lobe().filter(|_| self.normals.is_none())
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

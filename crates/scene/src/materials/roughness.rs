@@ -29,6 +29,11 @@ impl Roughness {
         Ok(Roughness { roughness, anisotropy, rotation, even })
     }
 
+    /// The microfacets, but for their rotation, if they are the same everywhere.
+    pub(super) fn even(&self) -> Option<Ggx> {
+        self.even
+    }
+
     /// The microfacets at a point.
     #[inline]
     pub(super) fn at(&self, surface: &Surface) -> Ggx {

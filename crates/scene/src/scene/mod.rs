@@ -1,10 +1,10 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
-mod lambertian_triangle;
 mod may_pass;
 mod parts;
 mod shading;
 mod sheets;
+mod still_triangles;
 mod tracer;
 
 use crate::accel_choice::AccelChoice;

@@ -1,5 +1,6 @@
 //! Which surfaces integrators shade many at a time.
 
+use crate::bsdf::SmoothLobe;
 use crate::materials::Material;
 use crate::placed::Placed;
 use bilux_math::Rgb;
@@ -12,6 +13,8 @@ pub enum Shading {
     Lambertian,
     /// By one [`OpaqueBase`](crate::bsdf::OpaqueBase) where [`Material::opaque_base`] gives its inputs.
     OpaqueBase,
+    /// By one [`SmoothLobe`], the same everywhere; they emit nothing.
+    Smooth,
     /// In any way.
     General,
 }
@@ -23,17 +26,23 @@ pub(super) struct ObjectShading {
     /// The reflectance, where it is Lambertian and the same everywhere; the triangles, if there are any, are in the
     /// common tree, and do not move.
     pub(super) constant: Option<Rgb>,
+    /// The lobe, where that is smooth.
+    pub(super) smooth: Option<SmoothLobe>,
 }
 
 impl ObjectShading {
     pub(super) fn of(object: &Placed, materials: &[Arc<dyn Material>]) -> ObjectShading {
         let material = &materials[object.material as usize];
-        if object.gives_light || !material.is_lambertian() || !material.emission().is_black() {
-            let kind = if material.is_opaque_base() { Shading::OpaqueBase } else { Shading::General };
-            return ObjectShading { kind, constant: None };
+        let of_kind = |kind| ObjectShading { kind, constant: None, smooth: None };
+        let is_dark = !object.gives_light && material.emission().is_black();
+        if let Some(lobe) = material.smooth_lobe().filter(|_| is_dark) {
+            return ObjectShading { smooth: Some(lobe), ..of_kind(Shading::Smooth) };
+        }
+        if !is_dark || !material.is_lambertian() {
+            return of_kind(if material.is_opaque_base() { Shading::OpaqueBase } else { Shading::General });
         }
         let is_plain = !object.in_own_tree() && object.mesh.vertex_kd.is_empty();
         let constant = material.constant_lambertian_reflectance().filter(|_| is_plain);
-        ObjectShading { kind: Shading::Lambertian, constant }
+        ObjectShading { constant, ..of_kind(Shading::Lambertian) }
     }
 }

@@ -275,8 +275,12 @@ impl Path {
 
     /// Leaves out the random numbers of light samples.
     pub(crate) fn skip_lights(&self, task: &mut Task) {
-        let count = if task.lights.takes_all() { task.lights.sample(0.0).len() as u32 } else { 1 };
-        task.sampler.skip(1 + count);
+        task.sampler.skip(self.light_draws(task));
+    }
+
+    /// How many random numbers and points light samples take.
+    pub(crate) fn light_draws(&self, task: &Task) -> u32 {
+        1 + if task.lights.takes_all() { task.lights.sample(0.0).len() as u32 } else { 1 }
     }
 
     /// Samples one light; `None` if it brings nothing.

@@ -40,6 +40,23 @@ pub(super) fn put(columns: &mut Columns3, i: usize, [x, y, z]: [f32; 3]) {
     (columns[0].0[i], columns[1].0[i], columns[2].0[i]) = (x, y, z);
 }
 
+/// A lane of many columns.
+#[inline(always)]
+pub(super) fn numbers_at<const N: usize>(columns: &[Column; N], i: usize) -> [f32; N] {
+    let mut numbers = [0.0; N];
+    for (number, column) in numbers.iter_mut().zip(columns) {
+        *number = column.0[i];
+    }
+    numbers
+}
+
+#[inline(always)]
+pub(super) fn put_numbers<const N: usize>(columns: &mut [Column; N], i: usize, numbers: [f32; N]) {
+    for (column, number) in columns.iter_mut().zip(numbers) {
+        column.0[i] = number;
+    }
+}
+
 /// A loop over columns. `run` has to be `#[inline(always)]`.
 ///
 /// It has one or two fields, each a reference or a number. Only then are they passed as arguments, of which the compiler

@@ -11,6 +11,7 @@ mod light_samples;
 mod next_rays;
 mod opaque;
 mod paths;
+mod smooth;
 mod triangles;
 mod vertices;
 
@@ -25,6 +26,7 @@ use diffuse::Diffuse;
 use general::General;
 use opaque::Opaque;
 use paths::{Paths, QueuedPath};
+use smooth::Smooth;
 use std::any::Any;
 use vertices::Vertices;
 
@@ -43,6 +45,7 @@ pub(crate) struct PathQueue {
     hits: Vec<Option<Hit>>,
     vertices: Box<Vertices>,
     diffuse: Box<Diffuse>,
+    smooth: Box<Smooth>,
     opaque: Box<Opaque>,
     general: General,
 }
@@ -141,6 +144,7 @@ impl PathQueue {
         self.hits.resize(self.rays.len(), None);
         task.tracer.hits(&self.rays, &mut self.hits);
         self.state.clear_lists();
+        let is_clear = task.scene().has_clear_media();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
             let one = &mut self.state.paths[index as usize];
             let Some(hit) = hit else {
@@ -151,10 +155,12 @@ impl PathQueue {
             match task.scene().shading(object) {
                 Shading::Lambertian => self.state.diffuse_hits.push((index, object, *hit)),
                 Shading::OpaqueBase => self.state.opaque_hits.push((index, *hit)),
-                Shading::General => self.state.general_hits.push((index, *hit)),
+                Shading::Smooth if is_clear => self.state.smooth_hits.push((index, object, *hit)),
+                Shading::Smooth | Shading::General => self.state.general_hits.push((index, *hit)),
             }
         }
         self.state.shade_diffuse((&mut self.vertices, &mut self.diffuse), path, task);
+        self.state.shade_smooth((&mut self.vertices, &mut self.smooth), path, task);
         self.state.shade_opaque((&mut self.vertices, &mut self.opaque), path, task);
         self.state.shade_general((&mut self.vertices, &mut self.general), path, task);
         self.state.add_direct_light(task);

@@ -6,7 +6,7 @@
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::paths::{Paths, QueuedPath};
 use super::vertices::{NO_PATH, Vertices};
-use crate::integrators::path::Path;
+use crate::integrators::path::{Path, Walk};
 use bilux_math::Vec3;
 use bilux_scene::CpuLevel;
 use bilux_scene::surface::offset_origin;
@@ -14,8 +14,8 @@ use bilux_scene::surface::offset_origin;
 /// The next ray of each path.
 pub(super) struct NextRays {
     /// Throughput: before the vertex, then after it.
-    beta: Columns3,
-    eta_scale: Column,
+    pub(super) beta: Columns3,
+    pub(super) eta_scale: Column,
     origin: Columns3,
     pub(super) direction: Columns3,
     pdf: Column,
@@ -46,6 +46,17 @@ impl NextRays {
         put(&mut self.beta, i, path.walk.beta.to_array());
         self.eta_scale.0[i] = path.walk.eta_scale;
     }
+
+    /// Where the rays start.
+    #[inline(always)]
+    pub(super) fn leave_surface(&mut self, v: &Vertices) {
+        let Vertices { p, p_error, n_geom, .. } = v;
+        let NextRays { origin, direction, .. } = self;
+        for i in 0..LANES {
+            let (from, n, wi) = (vec3(p, i), vec3(n_geom, i), vec3(direction, i));
+            put(origin, i, offset_origin(from, vec3(p_error, i), n, wi).to_array());
+        }
+    }
 }
 
 impl Paths {
@@ -54,6 +65,22 @@ impl Paths {
     /// `direction` and `goes_on` have the directions, and `scattered` and `pdf` of the vertices their BSDFs.
     pub(super) fn send_on(&mut self, v: &mut Vertices, next: &mut NextRays, path: &Path, level: CpuLevel) {
         run_at(level, Leave { v, next });
+        self.play_roulette(v, next, path, level);
+        let NextRays { pdf, .. } = &*next;
+        self.set_rays(v, next, |walk, i| {
+            walk.specular = false;
+            walk.last = Some((vec3(&v.p, i), pdf.0[i]));
+        });
+    }
+
+    /// Russian roulette for every path.
+    pub(super) fn play_roulette(
+        &self,
+        v: &mut Vertices,
+        next: &mut NextRays,
+        path: &Path,
+        level: CpuLevel,
+    ) {
         let mut plays = false;
         for i in (0..v.count).filter(|&i| v.paths[i] != NO_PATH) {
             let depth = self.paths[v.paths[i] as usize].walk.depth + 1;
@@ -64,13 +91,16 @@ impl Paths {
             v.draw_numbers(level, v.dimension + 1);
             run_at(level, Survive { v, next });
         }
+    }
+
+    /// Sets the rays of the paths that go on, and lists these; `set` does what else depends on the kind of surface.
+    pub(super) fn set_rays(&mut self, v: &Vertices, next: &NextRays, mut set: impl FnMut(&mut Walk, usize)) {
         for i in (0..v.count).filter(|&i| next.goes_on.0[i] != 0.0 && v.paths[i] != NO_PATH) {
             let walk = &mut self.paths[v.paths[i] as usize].walk;
             walk.ray = v.leaving(i, vec3(&next.origin, i), vec3(&next.direction, i));
             walk.beta = rgb(&next.beta, i);
             walk.depth += 1;
-            walk.specular = false;
-            walk.last = Some((vec3(&v.p, i), next.pdf.0[i]));
+            set(walk, i);
             self.next.push(v.paths[i]);
         }
     }
@@ -81,6 +111,14 @@ impl Paths {
 pub(super) fn density(strength: f32, pdf: f32) -> f32 {
     let weighted = strength * pdf;
     if strength > 0.0 { weighted / strength } else { 0.0 }
+}
+
+/// What is left of a random number after it has chosen the only lobe, which has this strength.
+#[inline(always)]
+pub(super) fn rest_of_number(u_choice: f32, strength: f32) -> f32 {
+    let rest = u_choice * strength;
+    let left = (rest / strength).clamp(0.0, 1.0 - f32::EPSILON);
+    if rest < strength { left } else { 1.0 - f32::EPSILON }
 }
 
 /// True when two directions are on the same sides of the triangle and of the interpolated surface.
@@ -98,7 +136,8 @@ struct Leave<'a> {
 impl Stage for Leave<'_> {
     #[inline(always)]
     fn run(self) {
-        let Leave { v: Vertices { p, p_error, n_geom, wo, scattered, pdf, .. }, next } = self;
+        let Leave { v, next } = self;
+        let Vertices { n_geom, wo, scattered, pdf, .. } = v;
         for i in 0..LANES {
             let (wo, wi, n_geom) = (vec3(wo, i), vec3(&next.direction, i), vec3(n_geom, i));
             let changes_side = wo.dot(n_geom) * wi.dot(n_geom) < 0.0;
@@ -109,10 +148,7 @@ impl Stage for Leave<'_> {
             next.pdf.0[i] = pdf.0[i];
             put(&mut next.beta, i, beta.to_array());
         }
-        for i in 0..LANES {
-            let (from, n, wi) = (vec3(p, i), vec3(n_geom, i), vec3(&next.direction, i));
-            put(&mut next.origin, i, offset_origin(from, vec3(p_error, i), n, wi).to_array());
-        }
+        next.leave_surface(v);
     }
 }
 

@@ -4,8 +4,10 @@
 //! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of that one
 //! lobe), in the same order, so that the bits are the same.
 
-use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
-use super::next_rays::{NextRays, density, sides_agree};
+use super::lanes::{
+    Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3,
+};
+use super::next_rays::{NextRays, density, rest_of_number, sides_agree};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
 use crate::integrators::path::Path;
@@ -183,23 +185,6 @@ impl Stage for Build<'_> {
     }
 }
 
-/// A lane of many columns.
-#[inline(always)]
-fn numbers_at<const N: usize>(columns: &[Column; N], i: usize) -> [f32; N] {
-    let mut numbers = [0.0; N];
-    for (number, column) in numbers.iter_mut().zip(columns) {
-        *number = column.0[i];
-    }
-    numbers
-}
-
-#[inline(always)]
-fn put_numbers<const N: usize>(columns: &mut [Column; N], i: usize, numbers: [f32; N]) {
-    for (column, number) in columns.iter_mut().zip(numbers) {
-        column.0[i] = number;
-    }
-}
-
 #[inline(always)]
 fn lobe_at(lobes: &[Column; OpaqueBaseForWo::NUMBERS], i: usize) -> OpaqueBaseForWo {
     OpaqueBaseForWo::from_numbers(numbers_at(lobes, i))
@@ -247,10 +232,8 @@ impl Stage for Sample<'_> {
         let Opaque { n_shade, lobes, u_choice, next, .. } = self.o;
         for i in 0..LANES {
             let (frame, lobe) = (Frame::from_normal(vec3(n_shade, i)), lobe_at(lobes, i));
-            // What is left of the number after the only lobe was chosen.
-            let (strength, rest) = (lobe.strength(), u_choice.0[i] * lobe.strength());
-            let left = (rest / strength).clamp(0.0, 1.0 - f32::EPSILON);
-            let left = if rest < strength { left } else { 1.0 - f32::EPSILON };
+            let strength = lobe.strength();
+            let left = rest_of_number(u_choice.0[i], strength);
             let local = lobe.sample(left, Vec2::new(u[0].0[i], u[1].0[i]));
             let is_sampled = (vec3(wo, i).dot(frame.n) * local.z > 0.0) & (strength > 0.0);
             let wi = frame.to_world(local);

@@ -72,6 +72,8 @@ pub(super) struct Paths {
     pub(super) connections: Connections,
     /// Path, object, hit.
     pub(super) diffuse_hits: Vec<(u32, u32, Hit)>,
+    /// Path, object, hit.
+    pub(super) smooth_hits: Vec<(u32, u32, Hit)>,
     pub(super) opaque_hits: Vec<(u32, Hit)>,
     pub(super) general_hits: Vec<(u32, Hit)>,
     /// Paths that go on after it.
@@ -86,6 +88,7 @@ impl Paths {
         self.next.clear();
         self.connections.clear();
         self.diffuse_hits.clear();
+        self.smooth_hits.clear();
         self.opaque_hits.clear();
         self.general_hits.clear();
         self.shaded.clear();
