@@ -10,6 +10,25 @@ pub(super) struct Cumulative {
     guide: Vec<u32>,
 }
 
+/// The numbers from 0 to 1 that pick one.
+#[derive(Clone, Copy, Debug)]
+pub struct CumulativePart {
+    /// The least of them.
+    pub begin: f32,
+    /// The same as its probability implies, but for rounding.
+    below: f32,
+    probability: f32,
+}
+
+impl CumulativePart {
+    /// The position of a number within the part, from 0 to 1.
+    #[inline(always)]
+    pub fn rest(&self, u: f32) -> f32 {
+        let rest = ((u - self.below) / self.probability).clamp(0.0, 1.0);
+        if self.probability > 0.0 { rest } else { 0.0 }
+    }
+}
+
 /// Up to this many, compare with all of them: that avoids unpredictable branches.
 const FEW: usize = 8;
 
@@ -39,9 +58,19 @@ impl Cumulative {
     #[inline]
     pub(super) fn sample(&self, u: f32) -> (usize, f32) {
         let index = self.find(u);
+        (index, self.part(index).rest(u))
+    }
+
+    /// The part of 0..1 of each, in their order, if they are few.
+    pub(super) fn few(&self) -> Option<impl Iterator<Item = CumulativePart>> {
+        self.guide.is_empty().then(|| (0..self.sums.len()).map(|index| self.part(index)))
+    }
+
+    #[inline]
+    fn part(&self, index: usize) -> CumulativePart {
+        let begin = if index == 0 { 0.0 } else { self.sums[index - 1] };
         let probability = self.probability(index);
-        let below = self.sums[index] - probability;
-        (index, if probability > 0.0 { ((u - below) / probability).clamp(0.0, 1.0) } else { 0.0 })
+        CumulativePart { begin, below: self.sums[index] - probability, probability }
     }
 
     /// The number of sums that are at most `u`, but never all of them.

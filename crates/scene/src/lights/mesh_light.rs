@@ -1,6 +1,6 @@
 //! Emissive triangle meshes. Not in the table: objects with an emissive material become mesh lights.
 
-use super::cumulative::Cumulative;
+use super::cumulative::{Cumulative, CumulativePart};
 use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
 use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, Sides};
 use crate::classic::ClassicLight;
@@ -118,6 +118,14 @@ impl MeshLight {
     #[inline]
     pub fn choose(&self, u: f32) -> (usize, f32) {
         self.choice.sample(u)
+    }
+
+    /// Its triangles with the random numbers that pick each, in their order, if they are few, do not move and emit
+    /// evenly.
+    pub fn few_even_triangles(&self) -> Option<impl Iterator<Item = (LightTriangle, CumulativePart)>> {
+        let is_even = self.picture.is_none() && !self.static_triangles.is_empty();
+        let parts = self.choice.few().filter(|_| is_even)?;
+        Some(self.static_triangles.iter().copied().zip(parts))
     }
 
     /// The sides that emit.

@@ -25,6 +25,7 @@ mod sun;
 
 pub use crate::light_sample::LightSample;
 pub use crate::sides::Sides;
+pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
 pub use light::{ClassicLighting, Light, LightTracing};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};

@@ -4,7 +4,7 @@ use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
 use crate::light_choice::LightChoice;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::CpuLevel;
-use bilux_scene::lights::{LightTriangle, MeshLight, Sides, TriangleSample, barycentric};
+use bilux_scene::lights::{CumulativePart, LightTriangle, MeshLight, Sides, TriangleSample, barycentric};
 use bilux_scene::scene::SceneLight;
 
 /// The samples.
@@ -33,6 +33,8 @@ struct Triangles {
     from: Columns3,
     /// The sampler's numbers; the first of each is what is left after a triangle was chosen.
     u: [Column; 2],
+    /// What is left of the first number after it has picked a triangle, for lights of few.
+    rest: Column,
     probability: f32,
     sides: Sides,
 }
@@ -54,6 +56,7 @@ impl Default for LightSamples {
                 pdf_area: Column::ZERO,
                 from: ZERO3,
                 u: [Column::ZERO; 2],
+                rest: Column::ZERO,
                 probability: 0.0,
                 sides: Sides::Both,
             },
@@ -106,8 +109,20 @@ impl LightSamples {
         probability: f32,
         level: CpuLevel,
     ) {
-        let mut indices = [0; LANES];
         let (samples, Points { count, times, p, u }) = (self, points);
+        (samples.is_infinite, samples.is_delta) = (Column::ZERO, Column::ZERO);
+        (samples.triangles.probability, samples.triangles.sides) = (probability, mesh.sides());
+        (samples.triangles.from, samples.triangles.u) = (*p, *u);
+        if let Some(few) = mesh.few_even_triangles() {
+            for triangle in few {
+                run_at(level, Pick { samples, triangle: &triangle });
+            }
+            samples.triangles.u[0] = samples.triangles.rest;
+            run_at(level, SampleTriangles { samples });
+            run_at(level, Emit { samples, radiance: &mesh.radiance(0, [0.0; 3]) });
+            return;
+        }
+        let mut indices = [0; LANES];
         for i in 0..count {
             (indices[i], u[0].0[i]) = mesh.choose(u[0].0[i]);
             let LightTriangle { corners, normal, pdf_area } = mesh.facet(indices[i], times[i]);
@@ -117,15 +132,59 @@ impl LightSamples {
             put(&mut samples.triangles.normal, i, normal.to_array());
             samples.triangles.pdf_area.0[i] = pdf_area;
         }
-        (samples.is_infinite, samples.is_delta) = (Column::ZERO, Column::ZERO);
-        (samples.triangles.from, samples.triangles.u) = (*p, *u);
-        (samples.triangles.probability, samples.triangles.sides) = (probability, mesh.sides());
+        samples.triangles.u[0] = u[0];
         run_at(level, SampleTriangles { samples });
         for (i, &triangle) in indices.iter().enumerate().take(count) {
             let is_there = samples.pdf.0[i] > 0.0;
             let weights = || barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
             let li = if is_there { mesh.radiance(triangle, weights()) } else { Rgb::BLACK };
             put(&mut samples.li, i, li.to_array());
+        }
+    }
+}
+
+/// Gives a triangle to the lanes whose number picks it or one after it.
+struct Pick<'a> {
+    samples: &'a mut LightSamples,
+    triangle: &'a (LightTriangle, CumulativePart),
+}
+
+impl Stage for Pick<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Triangles { corners, normal, pdf_area, u, rest, .. } = &mut self.samples.triangles;
+        let (triangle, part) = *self.triangle;
+        for i in 0..LANES {
+            let picks = part.begin <= u[0].0[i];
+            let of = |new: f32, old: f32| if picks { new } else { old };
+            for (columns, corner) in corners.iter_mut().zip(triangle.corners) {
+                for (column, c) in columns.iter_mut().zip(corner.to_array()) {
+                    column.0[i] = of(c, column.0[i]);
+                }
+            }
+            for (column, c) in normal.iter_mut().zip(triangle.normal.to_array()) {
+                column.0[i] = of(c, column.0[i]);
+            }
+            pdf_area.0[i] = of(triangle.pdf_area, pdf_area.0[i]);
+            rest.0[i] = of(part.rest(u[0].0[i]), rest.0[i]);
+        }
+    }
+}
+
+/// The light of the samples, where a light emits evenly.
+struct Emit<'a> {
+    samples: &'a mut LightSamples,
+    radiance: &'a Rgb,
+}
+
+impl Stage for Emit<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let LightSamples { li, pdf, .. } = self.samples;
+        let radiance = *self.radiance;
+        for i in 0..LANES {
+            let of = |c: f32| if pdf.0[i] > 0.0 { c } else { 0.0 };
+            put(li, i, [of(radiance.r), of(radiance.g), of(radiance.b)]);
         }
     }
 }
