@@ -2,6 +2,7 @@
 //! own, points and lines in separate trees, and spheres in a last one.
 
 mod corners_in_world;
+mod still_triangles;
 mod surface_point;
 
 use crate::accel_choice::AccelChoice;
@@ -314,23 +315,6 @@ impl Geometry {
             false => self.place(object, ray.time).0,
         };
         strokes.surface(ray, hit, &to_world, object)
-    }
-
-    /// A triangle of the common tree, which does not move; `None` for other shapes.
-    #[inline]
-    pub(crate) fn still_triangle(&self, hit: &Hit) -> Option<StillTriangle> {
-        let still = self.still.as_ref().filter(|_| hit.instance == 0)?;
-        let (object, triangle) = self.locate(hit.primitive());
-        let placed = &self.objects[object as usize];
-        let mesh = &*placed.mesh;
-        let normal = |i: u32| mesh.normals.get(i as usize).copied().unwrap_or(Vec3::ZERO);
-        let inverse = placed.motion.static_transform()?.inverse_matrix();
-        Some(StillTriangle {
-            corners: still.triangles()[hit.primitive as usize].map(Vec3::from),
-            normals: mesh.triangles[triangle as usize].map(normal),
-            inverse: [inverse.x_axis.truncate(), inverse.y_axis.truncate(), inverse.z_axis.truncate()],
-            turn: if self.mirrored[object as usize] { -1.0 } else { 1.0 },
-        })
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {

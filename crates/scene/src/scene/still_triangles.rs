@@ -1,27 +1,24 @@
 //! Triangles of surfaces that integrators shade many at a time.
 
-use super::Tracer;
+use super::Scene;
 use crate::bsdf::SmoothLobe;
-use crate::geometry::StillTriangle;
 use bilux_accel::Hit;
 use bilux_math::Rgb;
 
-impl Tracer<'_> {
-    /// The triangle of an object that was hit, and the object's reflectance if that is the same everywhere. Its
-    /// [`StillTriangle::point`] is that of [`Tracer::surface`], in less time. `None` for points and lines, and for all other
-    /// objects.
+impl Scene {
+    /// The reflectance of an object where it was hit, if that is a triangle of the common tree, and a Lambertian surface
+    /// that is the same everywhere. The point is that of a [`StillTriangle`](crate::geometry::StillTriangle), in less
+    /// time than it takes to find the whole surface.
     #[inline]
-    pub fn lambertian_triangle(&self, object: u32, hit: &Hit) -> Option<(StillTriangle, Rgb)> {
-        let parts = &self.scene.parts;
-        let reflectance = parts.shading.get(object as usize)?.constant?;
-        Some((parts.geometry.still_triangle(hit)?, reflectance))
+    pub fn lambertian_triangle(&self, object: u32, hit: &Hit) -> Option<Rgb> {
+        let reflectance = self.parts.shading.get(object as usize)?.constant?;
+        self.parts.geometry.is_still_triangle(hit).then_some(reflectance)
     }
 
-    /// The same for an object with a smooth lobe.
+    /// The same for the lobe of a mirror or of smooth glass.
     #[inline]
-    pub fn smooth_triangle(&self, object: u32, hit: &Hit) -> Option<(StillTriangle, SmoothLobe)> {
-        let parts = &self.scene.parts;
-        let lobe = parts.shading.get(object as usize)?.smooth?;
-        Some((parts.geometry.still_triangle(hit)?, lobe))
+    pub fn smooth_triangle(&self, object: u32, hit: &Hit) -> Option<SmoothLobe> {
+        let lobe = self.parts.shading.get(object as usize)?.smooth?;
+        self.parts.geometry.is_still_triangle(hit).then_some(lobe)
     }
 }

@@ -71,10 +71,10 @@ impl Paths {
                 continue;
             }
             let (i, wo) = (v.count, -Vec3::from(one.walk.ray.direction));
-            let plain = if is_clear { task.tracer.lambertian_triangle(*object, hit) } else { None };
+            let plain = if is_clear { task.scene().lambertian_triangle(*object, hit) } else { None };
             let reflectance = match plain {
-                Some((triangle, reflectance)) => {
-                    d.triangles.put(i, &triangle, hit);
+                Some(reflectance) => {
+                    d.triangles.put(i, *object, hit);
                     reflectance
                 }
                 None => {
@@ -96,7 +96,7 @@ impl Paths {
             d.next.put_path(i, one);
             hits[i] = number;
         }
-        let points = d.triangles.points(task.scene().cpu_level());
+        let points = d.triangles.points(task.scene());
         (v.p, v.p_error, v.n_geom, d.n_shade) = (points.p, points.p_error, points.n_geom, points.n_shade);
         for &(i, point, n_shade) in &d.others {
             v.put_point(i, point);

@@ -75,19 +75,19 @@ impl Paths {
             if one.walk.depth >= task.max_depth {
                 continue;
             }
-            let Some((triangle, lobe)) = task.tracer.smooth_triangle(*object, hit) else {
+            let Some(lobe) = task.scene().smooth_triangle(*object, hit) else {
                 self.general_hits.push((*index, *hit));
                 continue;
             };
             one.sampler.enter(u64::from(one.walk.depth) + 1);
             let wo = -Vec3::from(one.walk.ray.direction);
             let i = v.push_path(*index, (hit.primitive(), one.walk.ray.time), wo, &one.sampler);
-            s.triangles.put(i, &triangle, hit);
+            s.triangles.put(i, *object, hit);
             put_numbers(&mut s.lobes, i, lobe.to_numbers());
             s.next.put_path(i, one);
             s.hits[i] = number;
         }
-        let points = s.triangles.points(task.scene().cpu_level());
+        let points = s.triangles.points(task.scene());
         (v.p, v.p_error, v.n_geom, s.n_shade) = (points.p, points.p_error, points.n_geom, points.n_shade);
     }
 

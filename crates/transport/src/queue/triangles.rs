@@ -2,11 +2,14 @@
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
 use bilux_accel::Hit;
-use bilux_scene::CpuLevel;
-use bilux_scene::geometry::StillTriangle;
+use bilux_math::Vec3;
+use bilux_scene::Scene;
+use bilux_scene::geometry::{Geometry, StillTriangle};
 
 /// The triangles, and where they are hit.
 pub(super) struct Triangles {
+    /// The lanes in use, each with its object and primitive.
+    lanes: Vec<(usize, u32, u32)>,
     corners: [Columns3; 3],
     normals: [Columns3; 3],
     inverse: [Columns3; 3],
@@ -27,6 +30,7 @@ pub(super) struct Points {
 impl Default for Triangles {
     fn default() -> Triangles {
         Triangles {
+            lanes: Vec::with_capacity(LANES),
             corners: [ZERO3; 3],
             normals: [ZERO3; 3],
             inverse: [ZERO3; 3],
@@ -39,23 +43,43 @@ impl Default for Triangles {
 }
 
 impl Triangles {
-    /// Sets the triangle of a lane.
+    /// Sets where the triangle of a lane is hit.
     #[inline]
-    pub(super) fn put(&mut self, i: usize, triangle: &StillTriangle, hit: &Hit) {
-        let StillTriangle { corners, normals, inverse, turn } = *triangle;
-        for k in 0..3 {
-            put(&mut self.corners[k], i, corners[k].to_array());
-            put(&mut self.normals[k], i, normals[k].to_array());
-            put(&mut self.inverse[k], i, inverse[k].to_array());
-        }
-        self.turn.0[i] = turn;
+    pub(super) fn put(&mut self, i: usize, object: u32, hit: &Hit) {
+        self.lanes.push((i, object, hit.primitive));
         (self.u.0[i], self.v.0[i]) = (hit.u, hit.v);
     }
 
-    /// The points where they are hit.
-    pub(super) fn points(&mut self, level: CpuLevel) -> &Points {
-        run_at(level, FindPoints { triangles: self });
+    /// The points where they are hit. Afterwards no lane is in use.
+    pub(super) fn points(&mut self, scene: &Scene) -> &Points {
+        self.read(scene.geometry());
+        self.lanes.clear();
+        run_at(scene.cpu_level(), FindPoints { triangles: self });
         &self.points
+    }
+
+    fn read(&mut self, geometry: &Geometry) {
+        let Triangles { lanes, corners, normals, inverse, turn, .. } = self;
+        let put_all = |columns: &mut [Columns3; 3], i, vectors: [Vec3; 3]| {
+            for (columns, vector) in columns.iter_mut().zip(vectors) {
+                put(columns, i, vector.to_array());
+            }
+        };
+        for &(i, _, primitive) in &*lanes {
+            put_all(corners, i, geometry.still_corners(primitive));
+        }
+        let mut vertices = [[0; 3]; LANES];
+        for &(i, object, primitive) in &*lanes {
+            vertices[i] = geometry.still_vertices(object, primitive);
+        }
+        for &(i, object, _) in &*lanes {
+            put_all(normals, i, geometry.still_normals(object, vertices[i]));
+        }
+        for &(i, object, _) in &*lanes {
+            let (axes, orientation) = geometry.still_place(object);
+            put_all(inverse, i, axes);
+            turn.0[i] = orientation;
+        }
     }
 }
 
@@ -66,7 +90,7 @@ struct FindPoints<'a> {
 impl Stage for FindPoints<'_> {
     #[inline(always)]
     fn run(self) {
-        let Triangles { corners, normals, inverse, turn, u, v, points } = self.triangles;
+        let Triangles { corners, normals, inverse, turn, u, v, points, .. } = self.triangles;
         let Points { p, p_error, n_geom, n_shade } = points;
         for i in 0..LANES {
             let triangle = StillTriangle {
