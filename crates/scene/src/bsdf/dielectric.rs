@@ -73,8 +73,7 @@ impl Dielectric {
     ) -> Option<BsdfSample> {
         let Some(film) = &self.film else { return Some(self.without_film().bsdf_sample(wo, u_choice, mode)) };
         let eta = self.eta_from(wo);
-        let (reflected, colours) =
-            shares(film.over_clear(wo.z.abs(), self.eta, wo.z > 0.0, self.thin));
+        let (reflected, colours) = shares(film.over_clear(wo.z.abs(), self.eta, wo.z > 0.0, self.thin));
         if u_choice < reflected {
             let sample = self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None);
             return Some(BsdfSample { weight: sample.weight * colours[0], ..sample });

@@ -19,7 +19,11 @@ struct Sums {
     guide: Vec<u16>,
 }
 
+/// How many points are chosen at a time.
+pub(super) const MANY: usize = 64;
+
 /// A cell, and a position within it, 0..=1 from the left and from the top.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Cell {
     pub(super) row: usize,
     pub(super) column: usize,
@@ -75,6 +79,25 @@ impl Distribution2d {
         let (column, right) = choose(&self.cells.sums[of_row.clone()], &self.cells.guide[of_row], u.x);
         Cell { row, column, right, down }
     }
+
+    /// [`Distribution2d::choose`] for up to [`MANY`] points. What all of them read comes first, and then the searches, whose
+    /// branches nobody can predict: so reads that miss the caches overlap.
+    pub(super) fn choose_each(&self, points: &[Vec2], cells: &mut [Cell; MANY]) {
+        let mut begins = [0; MANY];
+        for (cell, u) in cells.iter_mut().zip(points) {
+            (cell.row, cell.down) = choose(&self.rows.sums, &self.rows.guide, u.y);
+        }
+        let of_row = |cell: &Cell| cell.row * self.columns..(cell.row + 1) * self.columns;
+        for ((begin, cell), u) in begins.iter_mut().zip(&*cells).zip(points) {
+            *begin = guide::begin(&self.cells.guide[of_row(cell)], u.x);
+        }
+        for ((begin, cell), _) in begins.iter().zip(&*cells).zip(points) {
+            std::hint::black_box(self.cells.sums[of_row(cell)].get(*begin).copied());
+        }
+        for ((begin, cell), u) in begins.iter().zip(cells).zip(points) {
+            (cell.column, cell.right) = choose_from(&self.cells.sums[of_row(cell)], *begin, u.x);
+        }
+    }
 }
 
 #[inline]
@@ -85,8 +108,14 @@ fn share(sums: &[f64], i: usize) -> f64 {
 /// The interval that a number picks, and the number's position within it.
 #[inline]
 fn choose(sums: &[f64], guide: &[u16], u: f32) -> (usize, f64) {
+    choose_from(sums, guide::begin(guide, u), u)
+}
+
+/// [`choose`] from where the search begins.
+#[inline]
+fn choose_from(sums: &[f64], begin: usize, u: f32) -> (usize, f64) {
     let u = f64::from(u);
-    let i = guide::find(sums, guide, u);
+    let i = guide::find_from(sums, begin, u);
     let (share, end) = (share(sums, i), sums[i]);
     (i, if share > 0.0 { (1.0 - (end - u) / share).clamp(0.0, 1.0) } else { 0.5 })
 }

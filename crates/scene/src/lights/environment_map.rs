@@ -7,8 +7,8 @@
 //! and the two strategies together do better than if each tried to find all of the light. [Karlík 2019]
 
 use super::distant::{Across, disc_pdf_area, ray};
-use super::distribution_2d::{Cell, Distribution2d};
-use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing};
+use super::distribution_2d::{Cell, Distribution2d, MANY};
+use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, Receiver};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use crate::texture::{Texels, Texture};
@@ -181,7 +181,12 @@ impl EnvironmentMap {
         if self.is_backdrop || cells.is_empty() {
             return None;
         }
-        let Cell { row, column, right, down } = cells.choose(u);
+        self.sample_in(cells, cells.choose(u))
+    }
+
+    /// [`EnvironmentMap::sample`] in a cell.
+    fn sample_in(&self, cells: &Distribution2d, cell: Cell) -> Option<(Vec3, Vec2, f32)> {
+        let Cell { row, column, right, down } = cell;
         let (top, bottom) = (self.heights[row], self.heights[row + 1]);
         let y = top + (bottom - top) * down;
         let turned = (column as f64 + right) / self.columns as f64;
@@ -199,6 +204,33 @@ impl Light for EnvironmentMap {
         let (wi, place, pdf_solid_angle) = self.sample(&self.asked, u)?;
         let (li, n_light) = (self.le_at(place), Vec3::ZERO);
         Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 })
+    }
+
+    fn sample_li_each(&self, receivers: &[Receiver], samples: &mut Vec<Option<LightSample>>) {
+        samples.clear();
+        if self.is_backdrop || self.asked.is_empty() {
+            return samples.resize(receivers.len(), None);
+        }
+        let (mut cells, mut points) = ([Cell::default(); MANY], [Vec2::ZERO; MANY]);
+        let mut places = [Vec2::ZERO; MANY];
+        for receivers in receivers.chunks(MANY) {
+            points.iter_mut().zip(receivers).for_each(|(point, receiver)| *point = receiver.u);
+            self.asked.choose_each(&points[..receivers.len()], &mut cells);
+            let begin = samples.len();
+            for (cell, place) in cells[..receivers.len()].iter().zip(&mut places) {
+                let sample = self.sample_in(&self.asked, *cell).map(|(wi, at, pdf_solid_angle)| {
+                    *place = at;
+                    let (li, n_light) = (Rgb::BLACK, Vec3::ZERO);
+                    LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 }
+                });
+                samples.push(sample);
+            }
+            for (sample, place) in samples[begin..].iter_mut().zip(&places) {
+                if let Some(sample) = sample {
+                    sample.li = self.le_at(*place);
+                }
+            }
+        }
     }
 
     fn li_pdf_solid_angle(&self, _from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
@@ -223,6 +255,25 @@ impl Light for EnvironmentMap {
         let place = self.place(direction);
         let is_sampled = !self.is_backdrop && !self.asked.is_empty();
         (self.le_at(place), if is_sampled { self.pdf_at(&self.asked, place) } else { 0.0 })
+    }
+
+    fn le_and_pdf_each(&self, rays: &[(Option<Vec3>, Vec3)], found: &mut Vec<(Rgb, f32)>) {
+        found.clear();
+        if self.rows == 0 {
+            return found.resize(rays.len(), (Rgb::BLACK, 0.0));
+        }
+        let is_sampled = !self.is_backdrop && !self.asked.is_empty();
+        let mut places = [Vec2::ZERO; MANY];
+        for rays in rays.chunks(MANY) {
+            places.iter_mut().zip(rays).for_each(|(place, ray)| *place = self.place(ray.1));
+            let begin = found.len();
+            found.extend(places[..rays.len()].iter().map(|place| (self.le_at(*place), 0.0)));
+            for ((found, place), ray) in found[begin..].iter_mut().zip(&places).zip(rays) {
+                if is_sampled && ray.0.is_some() {
+                    found.1 = self.pdf_at(&self.asked, *place);
+                }
+            }
+        }
     }
 
     fn is_backdrop(&self) -> bool {

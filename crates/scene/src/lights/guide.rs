@@ -20,10 +20,22 @@ where
     S: Copy + PartialOrd + Into<f64>,
     I: Copy + Into<u32>,
 {
-    let last = sums.len() - 1;
+    find_from(sums, begin(guide, u), u)
+}
+
+/// Where the search for a number begins.
+#[inline(always)]
+pub(super) fn begin<S: Into<f64>, I: Copy + Into<u32>>(guide: &[I], u: S) -> usize {
     let part = (u.into() * guide.len() as f64) as usize;
-    let begin: u32 = guide[part.min(last)].into();
-    let mut at = (begin as usize).min(last);
+    let begin: u32 = guide[part.min(guide.len() - 1)].into();
+    begin as usize
+}
+
+/// [`find`] from where the search begins.
+#[inline(always)]
+pub(super) fn find_from<S: Copy + PartialOrd>(sums: &[S], begin: usize, u: S) -> usize {
+    let last = sums.len() - 1;
+    let mut at = begin.min(last);
     // The part may have been rounded up.
     while at > 0 && sums[at - 1] > u {
         at -= 1;

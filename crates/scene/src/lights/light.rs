@@ -12,6 +12,13 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
     /// Samples a direction from which light arrives at `from`; `None` if none does.
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample>;
 
+    /// [`Light::sample_li`] for many points; `samples` is emptied first. A light that reads large tables reads them for
+    /// all points in turn, so that reads which miss the caches overlap.
+    fn sample_li_each(&self, receivers: &[Receiver], samples: &mut Vec<Option<LightSample>>) {
+        samples.clear();
+        samples.extend(receivers.iter().map(|r| self.sample_li(r.p, r.time, r.u)));
+    }
+
     /// The density of [`Light::sample_li`] for the direction `wi`; zero for delta lights.
     ///
     /// `hit` is what a ray along `wi` hits; `None` means that it hits nothing, and the light is infinite.
@@ -46,6 +53,16 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
         (self.le(direction), self.li_pdf_solid_angle(from, direction, None))
     }
 
+    /// [`Light::le_and_pdf`] for many rays, each with its direction; the density is 0 for a ray without an origin. `found`
+    /// is emptied first.
+    fn le_and_pdf_each(&self, rays: &[(Option<Vec3>, Vec3)], found: &mut Vec<(Rgb, f32)>) {
+        found.clear();
+        found.extend(rays.iter().map(|&(from, direction)| match from {
+            Some(from) => self.le_and_pdf(from, direction),
+            None => (self.le(direction), 0.0),
+        }));
+    }
+
     /// True when only the camera sees it, and it lights nothing ([`crate::Scene::shows`]).
     fn is_backdrop(&self) -> bool {
         false
@@ -56,6 +73,17 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
 
     /// Approximately the luminance of the power that it emits into the scene, in W, for choosing among lights.
     fn power(&self, bounds: &Aabb) -> f32;
+}
+
+/// A point that a light is sampled from.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The point.
+    pub p: Vec3,
+    /// The time in seconds.
+    pub time: f32,
+    /// The random point that picks the sample.
+    pub u: Vec2,
 }
 
 /// What light subpaths need of a light source: the rays that leave it.

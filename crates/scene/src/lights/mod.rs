@@ -27,7 +27,7 @@ pub use crate::light_sample::LightSample;
 pub use crate::sides::Sides;
 pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
-pub use light::{ClassicLighting, Light, LightTracing};
+pub use light::{ClassicLighting, Light, LightTracing, Receiver};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
 pub use mesh_light::{MeshLight, Picture};
 pub use sphere::SphereLight;

@@ -6,6 +6,7 @@ use crate::media::Media;
 use crate::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::lights::Light;
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -216,24 +217,33 @@ impl Path {
         task.note(walk.depth, || format!("leaves the scene towards {direction}"));
         let mut sum = Rgb::BLACK;
         for (index, light) in task.scene().infinite_lights() {
-            let (radiance, sampled) = match walk.last {
-                Some((from, pdf)) => {
-                    let (radiance, light_pdf) = light.le_and_pdf(from, direction);
-                    (radiance, Some((pdf, light_pdf)))
-                }
-                None => (light.le(direction), None),
+            let found = match walk.last {
+                Some((from, _)) => light.le_and_pdf(from, direction),
+                None => (light.le(direction), 0.0),
             };
-            if radiance.is_black() || !task.scene().shows(light, walk.depth, walk.specular) {
-                continue;
-            }
-            sum += match sampled {
-                Some((pdf, light_pdf)) if !light.is_backdrop() => {
-                    radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
-                }
-                _ => radiance,
-            };
+            sum += self.seen_of(task, walk, (index, light), found);
         }
         sum
+    }
+
+    /// What a ray that leaves the scene sees of an infinite light of this radiance and density.
+    #[inline]
+    pub(crate) fn seen_of(
+        &self,
+        task: &Task,
+        walk: &Walk,
+        (index, light): (usize, &dyn Light),
+        (radiance, light_pdf): (Rgb, f32),
+    ) -> Rgb {
+        if radiance.is_black() || !task.scene().shows(light, walk.depth, walk.specular) {
+            return Rgb::BLACK;
+        }
+        match walk.last {
+            Some((_, pdf)) if !light.is_backdrop() => {
+                radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
+            }
+            _ => radiance,
+        }
     }
 
     /// Light that the surface itself emits, weighted against light sampling.

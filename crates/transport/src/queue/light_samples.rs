@@ -4,7 +4,9 @@ use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
 use crate::light_choice::LightChoice;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::CpuLevel;
-use bilux_scene::lights::{CumulativePart, LightTriangle, MeshLight, Sides, TriangleSample, barycentric};
+use bilux_scene::lights::{
+    CumulativePart, LightSample, LightTriangle, MeshLight, Receiver, Sides, TriangleSample, barycentric,
+};
 use bilux_scene::scene::SceneLight;
 
 /// The samples.
@@ -22,6 +24,8 @@ pub(super) struct LightSamples {
     /// 1 for delta lights, otherwise 0.
     pub(super) is_delta: Column,
     triangles: Triangles,
+    receivers: Vec<Receiver>,
+    samples: Vec<Option<LightSample>>,
 }
 
 /// The triangles of a mesh light on which the samples are, and all else that [`SampleTriangles`] needs.
@@ -60,6 +64,8 @@ impl Default for LightSamples {
                 probability: 0.0,
                 sides: Sides::Both,
             },
+            receivers: Vec::with_capacity(LANES),
+            samples: Vec::with_capacity(LANES),
         }
     }
 }
@@ -81,24 +87,44 @@ impl LightSamples {
         choice: &LightChoice,
         lights: &[SceneLight],
     ) {
-        let (samples, Points { count, times, p, u }) = (self, points);
-        for i in 0..count {
-            let (light, probability) = (&lights[picked[i]].light, choice.probability(picked[i]));
+        let Points { count, times, p, u } = points;
+        self.receivers.clear();
+        self.receivers.extend((0..count).map(|i| {
             let u = Vec2::new(u[0].0[i], u[1].0[i]);
-            let sample = light.sample_li(vec3(p, i), times[i], u).filter(|_| probability > 0.0);
-            let Some(sample) = sample else {
-                samples.pdf.0[i] = 0.0;
-                continue;
-            };
-            put(&mut samples.wi, i, sample.wi.to_array());
-            put(&mut samples.li, i, sample.li.to_array());
-            put(&mut samples.towards, i, sample.point.unwrap_or(sample.wi).to_array());
-            put(&mut samples.n_light, i, sample.n_light.to_array());
-            samples.is_infinite.0[i] = if sample.point.is_none() { 1.0 } else { 0.0 };
-            samples.clearance.0[i] = sample.clearance;
-            samples.pdf.0[i] = sample.pdf_solid_angle * probability;
-            samples.is_delta.0[i] = if light.is_delta() { 1.0 } else { 0.0 };
+            Receiver { p: vec3(p, i), time: times[i], u }
+        }));
+        let mut begin = 0;
+        while begin < count {
+            // Vertices in a row that sample the same light.
+            let number = picked[begin];
+            let end = begin + picked[begin..count].iter().take_while(|&&other| other == number).count();
+            let (light, probability) = (&lights[number].light, choice.probability(number));
+            light.sample_li_each(&self.receivers[begin..end], &mut self.samples);
+            for i in begin..end {
+                self.put(
+                    i,
+                    self.samples[i - begin].filter(|_| probability > 0.0),
+                    probability,
+                    light.is_delta(),
+                );
+            }
+            begin = end;
         }
+    }
+
+    fn put(&mut self, i: usize, sample: Option<LightSample>, probability: f32, is_delta: bool) {
+        let Some(sample) = sample else {
+            self.pdf.0[i] = 0.0;
+            return;
+        };
+        put(&mut self.wi, i, sample.wi.to_array());
+        put(&mut self.li, i, sample.li.to_array());
+        put(&mut self.towards, i, sample.point.unwrap_or(sample.wi).to_array());
+        put(&mut self.n_light, i, sample.n_light.to_array());
+        self.is_infinite.0[i] = if sample.point.is_none() { 1.0 } else { 0.0 };
+        self.clearance.0[i] = sample.clearance;
+        self.pdf.0[i] = sample.pdf_solid_angle * probability;
+        self.is_delta.0[i] = if is_delta { 1.0 } else { 0.0 };
     }
 
     /// The same where every vertex samples the same mesh light.

@@ -5,6 +5,7 @@
 
 mod camera;
 mod diffuse;
+mod escapes;
 mod general;
 mod lanes;
 mod light_samples;
@@ -23,6 +24,7 @@ use bilux_accel::Hit;
 use bilux_math::Rgb;
 use bilux_scene::{Ray, Shading, Tracer, Wavelength};
 use diffuse::Diffuse;
+use escapes::Escapes;
 use general::General;
 use opaque::Opaque;
 use paths::{Paths, QueuedPath};
@@ -43,6 +45,7 @@ pub(crate) struct PathQueue {
     free: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
+    escapes: Escapes,
     vertices: Box<Vertices>,
     diffuse: Box<Diffuse>,
     smooth: Box<Smooth>,
@@ -146,9 +149,8 @@ impl PathQueue {
         self.state.clear_lists();
         let is_clear = task.scene().has_clear_media();
         for (&index, hit) in self.active.iter().zip(&self.hits) {
-            let one = &mut self.state.paths[index as usize];
             let Some(hit) = hit else {
-                one.escape(path, task);
+                self.state.escaped.push(index);
                 continue;
             };
             let object = task.scene().geometry().object_of(hit);
@@ -159,6 +161,7 @@ impl PathQueue {
                 Shading::Smooth | Shading::General => self.state.general_hits.push((index, *hit)),
             }
         }
+        self.state.end_escaped(&mut self.escapes, path, task);
         self.state.shade_diffuse((&mut self.vertices, &mut self.diffuse), path, task);
         self.state.shade_smooth((&mut self.vertices, &mut self.smooth), path, task);
         self.state.shade_opaque((&mut self.vertices, &mut self.opaque), path, task);

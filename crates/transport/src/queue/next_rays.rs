@@ -74,13 +74,7 @@ impl Paths {
     }
 
     /// Russian roulette for every path.
-    pub(super) fn play_roulette(
-        &self,
-        v: &mut Vertices,
-        next: &mut NextRays,
-        path: &Path,
-        level: CpuLevel,
-    ) {
+    pub(super) fn play_roulette(&self, v: &mut Vertices, next: &mut NextRays, path: &Path, level: CpuLevel) {
         let mut plays = false;
         for i in (0..v.count).filter(|&i| v.paths[i] != NO_PATH) {
             let depth = self.paths[v.paths[i] as usize].walk.depth + 1;

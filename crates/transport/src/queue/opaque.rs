@@ -4,9 +4,7 @@
 //! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of that one
 //! lobe), in the same order, so that the bits are the same.
 
-use super::lanes::{
-    Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3,
-};
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3};
 use super::next_rays::{NextRays, density, rest_of_number, sides_agree};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};

@@ -70,6 +70,8 @@ impl Connections {
 pub(super) struct Paths {
     pub(super) paths: Vec<QueuedPath>,
     pub(super) connections: Connections,
+    /// Paths that have left the scene.
+    pub(super) escaped: Vec<u32>,
     /// Path, object, hit.
     pub(super) diffuse_hits: Vec<(u32, u32, Hit)>,
     /// Path, object, hit.
@@ -87,6 +89,7 @@ impl Paths {
     pub(super) fn clear_lists(&mut self) {
         self.next.clear();
         self.connections.clear();
+        self.escaped.clear();
         self.diffuse_hits.clear();
         self.smooth_hits.clear();
         self.opaque_hits.clear();

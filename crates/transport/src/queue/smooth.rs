@@ -3,9 +3,7 @@
 //! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of one delta
 //! lobe), in the same order, so that the bits are the same.
 
-use super::lanes::{
-    Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3,
-};
+use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3};
 use super::next_rays::{NextRays, rest_of_number};
 use super::paths::Paths;
 use super::triangles::Triangles;
