@@ -188,27 +188,57 @@ impl Texture {
         if let Texels::Formula(formula) = &image.texels {
             return self.eval_procedural(&**formula, uv);
         }
+        let Some((indices, at)) = self.four_around(image, uv) else { return Rgb::WHITE };
+        self.finished(match self.filter {
+            Filter::Nearest => image.texel(indices[0], self.channel, self.is_data),
+            Filter::Linear => image.bilinear(indices, at, self.channel, self.is_data),
+        })
+    }
+
+    /// The indices of the texels around a point, the upper two first, and its place between them; if the filter takes the
+    /// nearest, that is the first. `None` where nothing can be looked up.
+    #[inline(always)]
+    fn four_around(&self, image: &Image, uv: Vec2) -> Option<([usize; 4], [f32; 2])> {
         if !image.is_whole() || !uv.is_finite() {
-            return Rgb::WHITE;
+            return None;
         }
         let uv = self.placed(uv);
         let (width, height) = (image.width, image.height);
         let [wrap_x, wrap_y] = self.wrap;
         let (x, y) = (uv.x * width as f32, uv.y * height as f32);
         if !(x.is_finite() && y.is_finite()) {
-            return Rgb::WHITE;
+            return None;
         }
-        if self.filter == Filter::Nearest {
-            let [x, _] = wrap_x.pair(x, width);
-            let [y, _] = wrap_y.pair(y, height);
-            return self.finished(self.raw(image, x, y));
-        }
-        let (x, y) = (x - 0.5, y - 0.5);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let ([x0, x1], [y0, y1]) = (wrap_x.pair(x, width), wrap_y.pair(y, height));
+        let half = if self.filter == Filter::Nearest { 0.0 } else { 0.5 };
+        let ([x0, x1], fx) = wrap_x.pair(x - half, width);
+        let ([y0, y1], fy) = wrap_y.pair(y - half, height);
         let (above, below) = (y0 * width, y1 * width);
-        let indices = [above + x0, above + x1, below + x0, below + x1];
-        self.finished(image.bilinear(indices, [fx, fy], self.channel, self.is_data))
+        Some(([above + x0, above + x1, below + x0, below + x1], [fx, fy]))
+    }
+
+    /// True when two textures take single channels of the same texels.
+    pub(crate) fn shares_texels_with(&self, other: &Texture) -> bool {
+        let place = |t: &Texture| (t.wrap, t.filter, t.transform, t.second_uv);
+        let is_stored = !matches!(self.image.texels, Texels::Formula(_));
+        Arc::ptr_eq(&self.image, &other.image)
+            && is_stored
+            && self.filter == Filter::Linear
+            && self.channel.is_some()
+            && other.channel.is_some()
+            && place(self) == place(other)
+    }
+
+    /// [`Texture::number`] of two textures that share their texels.
+    #[inline]
+    pub(crate) fn two_numbers(textures: [&Texture; 2], at: UvPair) -> [f32; 2] {
+        let [first, _] = textures;
+        let image = &*first.image;
+        match first.four_around(image, at.0[usize::from(first.second_uv)]) {
+            Some((indices, at)) => {
+                textures.map(|t| t.finished(image.bilinear(indices, at, t.channel, t.is_data)).r)
+            }
+            None => [1.0; 2],
+        }
     }
 
     /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
@@ -263,9 +293,26 @@ impl NumberMap {
         match &self.texture {
             // NaN becomes the minimum. Look up the point alone: few numbers of a material are proportional to the
             // light.
-            Some(texture) => texture.number(patch.into().at).max(self.range[0]).min(self.range[1]),
+            Some(texture) => self.within(texture.number(patch.into().at)),
             None => self.number,
         }
+    }
+
+    /// [`NumberMap::at`] for two maps; `share` tells whether their textures [share texels](Texture::shares_texels_with).
+    #[inline(always)]
+    pub(crate) fn two_at(maps: [&NumberMap; 2], share: bool, patch: &Patch) -> [f32; 2] {
+        match maps.map(|map| map.texture.as_deref()) {
+            [Some(a), Some(b)] if share => {
+                let [x, y] = Texture::two_numbers([a, b], patch.at);
+                [maps[0].within(x), maps[1].within(y)]
+            }
+            _ => maps.map(|map| map.at(*patch)),
+        }
+    }
+
+    #[inline(always)]
+    fn within(&self, number: f32) -> f32 {
+        number.max(self.range[0]).min(self.range[1])
     }
 }
 

@@ -26,15 +26,16 @@ pub enum Filter {
 }
 
 impl Wrap {
-    /// The indices, in a row of `n` texels, at a coordinate rounded down and at the next one.
+    /// The indices, in a row of `n` texels, at a coordinate rounded down and at the next one, and the fraction by which it
+    /// was rounded.
     #[inline]
-    pub(super) fn pair(self, x: f32, n: usize) -> [usize; 2] {
-        // Most look-ups are inside the image, where nothing wraps.
+    pub(super) fn pair(self, x: f32, n: usize) -> ([usize; 2], f32) {
+        // Most look-ups are inside the image, where nothing wraps. At old instruction-set levels `f32::floor` is a call.
         if x >= 0.0 && x < (n.min(1 << 23) as f32) - 1.0 {
             let first = x as usize;
-            return [first, first + 1];
+            return ([first, first + 1], x - first as f32);
         }
-        self.wrapped_pair(x, n)
+        (self.wrapped_pair(x, n), x - x.floor())
     }
 
     #[inline(never)]

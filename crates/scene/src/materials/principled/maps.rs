@@ -17,6 +17,8 @@ pub(super) struct Maps {
     pub(super) specular_weight: NumberMap,
     pub(super) specular_color: ColourMap,
     pub(super) specular_roughness: NumberMap,
+    /// True if metalness and roughness are channels of one picture, as in glTF files.
+    is_packed: bool,
     pub(super) specular_ior: NumberMap,
     pub(super) anisotropy: NumberMap,
     pub(super) rotation: NumberMap,
@@ -49,13 +51,19 @@ impl Maps {
         let transmission_weight = number("transmission_weight")?;
         let is_solid = is_there(&transmission_weight) && !reader.bool("thin_walled");
         let scale = if is_solid { reader.number("transmission_dispersion_scale") } else { 0.0 };
+        let (base_metalness, specular_roughness) = (number("base_metalness")?, number("specular_roughness")?);
+        let is_packed = match [&base_metalness, &specular_roughness].map(|map| map.texture.as_ref()) {
+            [Some(metalness), Some(roughness)] => metalness.shares_texels_with(roughness),
+            _ => false,
+        };
         Ok(Maps {
             base_color: colour("base_color")?,
             base_roughness: number("base_diffuse_roughness")?,
-            base_metalness: number("base_metalness")?,
+            base_metalness,
+            is_packed,
             specular_weight: number("specular_weight")?,
             specular_color: colour("specular_color")?,
-            specular_roughness: number("specular_roughness")?,
+            specular_roughness,
             specular_ior: number("specular_ior")?,
             anisotropy: number("specular_roughness_anisotropy")?,
             rotation: number("anisotropy_rotation")?,
@@ -141,25 +149,32 @@ impl Maps {
     /// What an opaque base is made of at a point; `vertex` is a factor on its colour.
     pub(super) fn opaque_base_at(&self, uv: impl Into<Patch>, vertex: Rgb) -> OpaqueBaseInputs {
         let uv = uv.into();
+        let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
         OpaqueBaseInputs {
             base_color: (self.base_color.at(uv) * vertex).clamp(0.0, 1.0),
-            metalness: self.base_metalness.at(uv),
+            metalness,
             specular_weight: self.specular_weight.at(uv),
             specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
-            roughness: self.specular_roughness.at(uv),
+            roughness,
             ior: self.specular_ior.at(uv),
         }
     }
 
+    #[inline(always)]
+    fn metalness_and_roughness_at(&self, uv: &Patch) -> [f32; 2] {
+        NumberMap::two_at([&self.base_metalness, &self.specular_roughness], self.is_packed, uv)
+    }
+
     pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {
         let uv = uv.into();
+        let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
         Point {
             base_color: self.base_color.at(uv).clamp(0.0, 1.0),
             base_roughness: self.base_roughness.at(uv),
-            metalness: self.base_metalness.at(uv),
+            metalness,
             specular_weight: self.specular_weight.at(uv),
             specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
-            roughness: self.specular_roughness.at(uv),
+            roughness,
             ior: self.specular_ior.at(uv),
             anisotropy: self.anisotropy.at(uv),
             rotation: self.rotation.at(uv),
