@@ -195,6 +195,49 @@ fn plastic_and_metal_are_the_same() {
     assert_same_with("opaque bases, few bounces", &built(&scene), &shallow);
 }
 
+/// Mirrors and smooth glass on meshes so coarse that many directions about interpolated normals end on the wrong side.
+fn smooth_lobes() -> SceneBuilder {
+    let mut scene = mixed();
+    let (mirror, glass) = (|| Spec::new("", "mirror"), || Spec::new("", "dielectric"));
+    let tint = Rgb::new(0.9, 0.6, 0.2);
+    let kinds = [
+        mirror().with("reflectance", tint),
+        mirror().with("reflectance", 0.0f32),
+        glass().with("tint", tint),
+        glass().with("eta", 1.0f32 / 1.5),
+        glass().with("eta", 1.0f32),
+        glass().with("thin", true).with("tint", tint),
+    ];
+    for (i, kind) in kinds.into_iter().enumerate() {
+        let centre = Vec3::new(0.9 * i as f32 - 2.2, 0.4, 1.3);
+        put(&mut scene, "coarse", ball(centre, 0.4, 3, true), kind.clone());
+        put(&mut scene, "flat", ball(centre + Vec3::new(0.4, 0.0, 0.7), 0.25, 4, false), kind);
+    }
+    scene
+}
+
+#[test]
+fn mirrors_and_smooth_glass_are_the_same() {
+    let scene = smooth_lobes();
+    assert_same("smooth", &built(&scene));
+    let shallow = RenderSettings { max_depth: 3, ..settings() };
+    assert_same_with("smooth, few bounces", &built(&scene), &shallow);
+    // Roulette begins within the glass.
+    let deep = RenderSettings { max_depth: 40, ..settings() };
+    assert_same_with("smooth, many bounces", &built(&scene), &deep);
+}
+
+#[test]
+fn environment_maps_are_the_same() {
+    let map = |map: usize| Spec::new("", "environment").with("radiance", Value::Texture(map));
+    let mut scene = opaque_bases();
+    scene.lights = vec![map(0)];
+    assert_same("a map", &built(&scene));
+    scene.lights.push(Spec::new("", "point").with("position", Vec3::Y * 3.0).with("intensity", 3.0f32));
+    scene.lights.push(map(3).with("backdrop", true));
+    assert_same("a map, a lamp and a backdrop", &built(&scene));
+}
+
 #[test]
 fn every_kind_of_medium_is_the_same() {
     let glass = |name: &str| Spec::new(name, "dielectric");
@@ -239,10 +282,11 @@ fn every_level_of_instructions_gives_the_same() {
         let at = |cpu_level: CpuLevel| {
             let mut accel = AccelChoice::default();
             accel.options.cpu_level = cpu_level;
-            let scene = opaque_bases().build(&accel, [0.0, 0.0], 1.0).unwrap();
-            shoot(&scene, &*integrator(queued), &settings()).film
+            let scene = |of: SceneBuilder| of.build(&accel, [0.0, 0.0], 1.0).unwrap();
+            [opaque_bases(), smooth_lobes()]
+                .map(|of| shoot(&scene(of), &*integrator(queued), &settings()).film)
         };
-        let truth = one_by_one(&built(&opaque_bases()), queued, &settings()).0;
+        let truth = [opaque_bases(), smooth_lobes()].map(|of| one_by_one(&built(&of), queued, &settings()).0);
         for level in CpuLevel::ALL {
             assert!(at(level) == truth, "{queued}, {}", level.name());
         }
