@@ -59,7 +59,8 @@ impl SmoothLobe {
         let of_glass = if self.thin { of_pane } else { of_face };
         let reflected = if self.is_mirror { 1.0 } else { of_glass };
         let refracted = refracted(wo, eta);
-        let transmits = !(u_choice < reflected);
+        let reflects = u_choice < reflected;
+        let transmits = !reflects;
         let pick = |through: f32, back: f32| if transmits { through } else { back };
         let through = |straight: f32, bent: f32| if self.thin { straight } else { bent };
         SmoothSample {
