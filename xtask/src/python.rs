@@ -19,6 +19,11 @@ const BUILDERS: &[&str] = &["maturin>=1.7,<2"];
 /// What the tests use.
 const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy", "tqdm"];
 
+/// What only some tests use, which skip aloud where it cannot be had: what runs jobs for farms, notebooks, their widgets,
+/// plots and videos.
+const EXTRAS: &[&str] =
+    &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg"];
+
 /// The largest wheel that is handed out, in bytes.
 const LARGEST: u64 = 15_000_000;
 
@@ -40,7 +45,8 @@ pub(crate) fn wheel(_: &[String]) -> Result<()> {
 /// all that, and says so, where Python or the packages for it cannot be had.
 pub(crate) fn test() -> Result<()> {
     let environments = python().and_then(|python| {
-        Ok((Environment::new(&python, "build", BUILDERS)?, Environment::new(&python, "test", TESTERS)?))
+        let testers = Environment::with(&python, "test", TESTERS, EXTRAS)?;
+        Ok((Environment::new(&python, "build", BUILDERS)?, testers))
     });
     let (builders, testers) = match environments {
         Ok(environments) => environments,
@@ -58,7 +64,7 @@ pub(crate) fn test() -> Result<()> {
     )?;
     let tests = root().join(PACKAGE).join("tests");
     let mut pytest = testers.python();
-    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).arg(&tests);
+    pytest.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]).arg(&tests);
     run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
     let settings = root().join(PACKAGE).join("pyproject.toml");
     let cache = target_folder().join("python/mypy");
@@ -116,11 +122,16 @@ struct Environment {
 impl Environment {
     /// The environment of this name in the target folder, made if it is not there or has other packages.
     fn new(python: &str, name: &str, packages: &[&str]) -> Result<Environment> {
+        Environment::with(python, name, packages, &[])
+    }
+
+    /// The same, with groups of packages, separated by spaces, that it also works without.
+    fn with(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
         let folder = target_folder().join("python").join(name);
         let scripts = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
         let environment = Environment { interpreter: folder.join(scripts) };
         let stamp = folder.join("packages.txt");
-        let wanted = packages.join("\n");
+        let wanted = [packages, extras].concat().join("\n");
         if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
             return Ok(environment);
         }
@@ -129,6 +140,14 @@ impl Environment {
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         let installed = output(environment.python().args(install).args(packages));
         installed.with_context(|| format!("pip cannot install {}", packages.join(", ")))?;
+        let lacks =
+            |group: &&&str| output(environment.python().args(install).args(group.split(' '))).is_err();
+        let lacking: Vec<&&str> = extras.iter().filter(lacks).collect();
+        if !lacking.is_empty() {
+            // Without the stamp, the next run tries again.
+            println!("SKIPPED: pip cannot install {lacking:?}: tests that use them are skipped");
+            return Ok(environment);
+        }
         fs::write(&stamp, wanted).with_context(|| format!("cannot write {}", stamp.display()))?;
         Ok(environment)
     }
