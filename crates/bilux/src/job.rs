@@ -321,8 +321,7 @@ impl Job {
         })
     }
 
-    /// The film with its exact sums, as a picture that an `.exr` can hold and `merge` can merge; with the coverage, if the
-    /// background is transparent, and how the whole is to be shown.
+    /// The film's exact sums, its coverage and its display, as a picture that an `.exr` can hold and `merge` can merge.
     ///
     /// # Errors
     /// If memory is short.
