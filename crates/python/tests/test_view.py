@@ -1,5 +1,7 @@
 """Views: what a notebook sends goes in, and pictures come out."""
 
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -169,3 +171,8 @@ def test_without_anywidget_it_is_html_and_a_comm(view, monkeypatch):
 def test_a_scene_shows_a_small_picture_of_itself():
     assert bilux.generate("cornell")._repr_png_().startswith(b"\x89PNG")
     assert bilux.Scene()._repr_png_() is None
+
+
+def test_a_program_may_end_while_a_view_renders():
+    script = "import bilux, time; bilux.generate('trio').view(spp=1_000_000); time.sleep(0.3)"
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=30)

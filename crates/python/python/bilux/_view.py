@@ -5,7 +5,9 @@ A `View` renders, and takes messages from whatever shows it: `_widget` by anywid
 
 from __future__ import annotations
 
+import atexit
 import threading
+import weakref
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,6 +16,8 @@ from ._orbit import Orbit
 from ._scene import Scene
 
 Show = Callable[[bytes, str], object]
+
+_open: weakref.WeakSet[View] = weakref.WeakSet()
 
 DEGREES = 180.0
 """By how much the camera turns while the mouse moves from one side of the picture to the other."""
@@ -44,6 +48,7 @@ class View:
         self._last: tuple[bytes, str] | None = None
         self._thread = threading.Thread(target=self._work, name="bilux view", daemon=True)
         self._thread.start()
+        _open.add(self)
 
     @property
     def picture(self) -> Picture | None:
@@ -169,3 +174,10 @@ class View:
     def __repr__(self) -> str:
         width, height = self.size
         return f"<bilux view of {width}x{height} pixels>"
+
+
+@atexit.register
+def _close_all() -> None:
+    """Threads that still render must not outlive the interpreter."""
+    for view in list(_open):
+        view.close()
