@@ -20,9 +20,9 @@ const BUILDERS: &[&str] = &["maturin>=1.7,<2"];
 const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy", "tqdm"];
 
 /// What only some tests use, which skip aloud where it cannot be had: what runs jobs for farms, notebooks, their widgets,
-/// plots and videos.
+/// plots, videos, and the renderer that one page compares with.
 const EXTRAS: &[&str] =
-    &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg"];
+    &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg", "pyrender"];
 
 /// The largest wheel that is handed out, in bytes.
 const LARGEST: u64 = 15_000_000;
