@@ -30,13 +30,14 @@ const LARGEST: u64 = 15_000_000;
 /// Builds the wheel into `target/wheels`, and prints its size.
 pub(crate) fn wheel(_: &[String]) -> Result<()> {
     let python = python()?;
-    let builders = Environment::new(&python, "build", BUILDERS)?;
+    let builders = builders(&python)?;
     let wheel = build(&builders, "dist", &target_folder().join("wheels"))?;
     let bytes = fs::metadata(&wheel)?.len();
     println!("{bytes} bytes  {}", wheel.display());
     if bytes > LARGEST {
         bail!("the wheel is larger than {LARGEST} bytes: find out what is in it");
     }
+    audit(&builders, &wheel)?;
     println!("install it: pip install {}", wheel.display());
     Ok(())
 }
@@ -45,8 +46,8 @@ pub(crate) fn wheel(_: &[String]) -> Result<()> {
 /// all that, and says so, where Python or the packages for it cannot be had.
 pub(crate) fn test() -> Result<()> {
     let environments = python().and_then(|python| {
-        let testers = Environment::with(&python, "test", TESTERS, EXTRAS)?;
-        Ok((Environment::new(&python, "build", BUILDERS)?, testers))
+        let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
+        Ok((builders(&python)?, testers))
     });
     let (builders, testers) = match environments {
         Ok(environments) => environments,
@@ -72,6 +73,39 @@ pub(crate) fn test() -> Result<()> {
     mypy.args(["-m", "mypy", "-p", "bilux", "--config-file"]).arg(&settings).arg("--cache-dir").arg(&cache);
     run_process(&mut mypy)?;
     run_process(testers.python().args(["-m", "mypy.stubtest", "bilux"]))
+}
+
+/// Checks with auditwheel, on Linux, that the wheel runs wherever its name says.
+fn audit(builders: &Environment, wheel: &Path) -> Result<()> {
+    if !cfg!(target_os = "linux") {
+        println!("SKIPPED: auditwheel checks wheels on Linux only");
+        return Ok(());
+    }
+    if output(builders.python().args(["-m", "auditwheel", "--version"])).is_err() {
+        println!("SKIPPED: auditwheel is not installed, so the wheel's tag is not checked");
+        return Ok(());
+    }
+    let report = output(builders.python().args(["-m", "auditwheel", "show"]).arg(wheel))?;
+    let tag = tag_of(&report).with_context(|| format!("auditwheel gives the wheel no tag:\n{report}"))?;
+    let name = wheel.file_name().unwrap_or_default().to_string_lossy();
+    if !name.ends_with(&format!("{tag}.whl")) {
+        bail!("{name}: auditwheel says that it runs where {tag} does:\n{report}");
+    }
+    println!("auditwheel: the wheel is {tag}, as its name says");
+    Ok(())
+}
+
+/// The platform tag in what `auditwheel show` prints, whose lines it breaks anywhere.
+fn tag_of(report: &str) -> Option<String> {
+    let words: Vec<&str> = report.split_whitespace().collect();
+    let text = words.join(" ");
+    let (_, rest) = text.split_once("following platform tag: \"")?;
+    Some(rest.split_once('"')?.0.to_owned())
+}
+
+/// The environment that builds wheels.
+fn builders(python: &str) -> Result<Environment> {
+    Environment::new(python, "build", BUILDERS, &["auditwheel"])
 }
 
 /// Builds a wheel into a folder that then holds no other, and returns its path.
@@ -121,12 +155,8 @@ struct Environment {
 
 impl Environment {
     /// The environment of this name in the target folder, made if it is not there or has other packages.
-    fn new(python: &str, name: &str, packages: &[&str]) -> Result<Environment> {
-        Environment::with(python, name, packages, &[])
-    }
-
-    /// The same, with groups of packages, separated by spaces, that it also works without.
-    fn with(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
+    /// `extras` are groups of packages, separated by spaces, that it also works without.
+    fn new(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
         let folder = target_folder().join("python").join(name);
         let scripts = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
         let environment = Environment { interpreter: folder.join(scripts) };
@@ -163,6 +193,14 @@ impl Environment {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_tag_of_a_wheel_is_found() {
+        let report =
+            "a.whl is consistent with\nthe following platform tag:\n\"manylinux_2_34_x86_64\".\n\nThe wheel";
+        assert_eq!(tag_of(report).as_deref(), Some("manylinux_2_34_x86_64"));
+        assert_eq!(tag_of("This does not look like a platform wheel"), None);
+    }
 
     #[test]
     fn versions_are_compared_as_numbers() {
