@@ -123,6 +123,10 @@ def test_the_camera_stays_upright_and_at_its_distance():
     orbit = Orbit(scene)
     [camera] = orbit.place(scene)[0].cameras
     eye, pivot = np.array(camera.parameters["position"]), None
+    right = Orbit(scene)
+    right.move(turn=90, lift=20)
+    [moved] = right.place(scene)[0].cameras
+    assert eye[2] > 6 and moved.parameters["position"][0] > 5 and moved.parameters["position"][1] > eye[1]
     for _ in range(30):
         orbit.move(turn=37, lift=50)
         [camera] = orbit.place(scene)[0].cameras
