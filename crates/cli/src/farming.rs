@@ -13,7 +13,8 @@ use std::path::PathBuf;
     bilux farm model.glb --chunks 16 -o job -- --spp 1024          64 samples a task, and a merge\n  \
     bilux farm model.glb --chunks 4 -o job -- --spp 256 --size 1920x1080 --env sunset.hdr\n  \
     openjd run job/template.yaml --step Merge --run-dependencies   Run all of it here\n\n\
-    What follows `--` are options of `bilux render`, which every task gets.\n\n\
+    What follows `--` are options of `bilux render`, which every task gets; those before it are for this\n\
+    command alone, such as --max-memory and --strict.\n\n\
     The folder then has the files of the scene, a job template in the form of Open Job Description (OpenJD), a job \
     array for Slurm, and a README that says how to run them, or the same with GNU parallel.")]
 pub struct Farm {
