@@ -19,19 +19,25 @@ const BUILDERS: &[&str] = &["maturin>=1.7,<2"];
 /// What the tests use.
 const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy", "tqdm"];
 
+/// What only some tests use, which skip aloud where it cannot be had: what runs jobs for farms, notebooks, their widgets,
+/// plots, videos, and the renderer that one page compares with.
+const EXTRAS: &[&str] =
+    &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg", "pyrender"];
+
 /// The largest wheel that is handed out, in bytes.
 const LARGEST: u64 = 15_000_000;
 
 /// Builds the wheel into `target/wheels`, and prints its size.
 pub(crate) fn wheel(_: &[String]) -> Result<()> {
     let python = python()?;
-    let builders = Environment::new(&python, "build", BUILDERS)?;
+    let builders = builders(&python)?;
     let wheel = build(&builders, "dist", &target_folder().join("wheels"))?;
     let bytes = fs::metadata(&wheel)?.len();
     println!("{bytes} bytes  {}", wheel.display());
     if bytes > LARGEST {
         bail!("the wheel is larger than {LARGEST} bytes: find out what is in it");
     }
+    audit(&builders, &wheel)?;
     println!("install it: pip install {}", wheel.display());
     Ok(())
 }
@@ -40,7 +46,8 @@ pub(crate) fn wheel(_: &[String]) -> Result<()> {
 /// all that, and says so, where Python or the packages for it cannot be had.
 pub(crate) fn test() -> Result<()> {
     let environments = python().and_then(|python| {
-        Ok((Environment::new(&python, "build", BUILDERS)?, Environment::new(&python, "test", TESTERS)?))
+        let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
+        Ok((builders(&python)?, testers))
     });
     let (builders, testers) = match environments {
         Ok(environments) => environments,
@@ -58,7 +65,7 @@ pub(crate) fn test() -> Result<()> {
     )?;
     let tests = root().join(PACKAGE).join("tests");
     let mut pytest = testers.python();
-    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).arg(&tests);
+    pytest.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]).arg(&tests);
     run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
     let settings = root().join(PACKAGE).join("pyproject.toml");
     let cache = target_folder().join("python/mypy");
@@ -66,6 +73,39 @@ pub(crate) fn test() -> Result<()> {
     mypy.args(["-m", "mypy", "-p", "bilux", "--config-file"]).arg(&settings).arg("--cache-dir").arg(&cache);
     run_process(&mut mypy)?;
     run_process(testers.python().args(["-m", "mypy.stubtest", "bilux"]))
+}
+
+/// Checks with auditwheel, on Linux, that the wheel runs wherever its name says.
+fn audit(builders: &Environment, wheel: &Path) -> Result<()> {
+    if !cfg!(target_os = "linux") {
+        println!("SKIPPED: auditwheel checks wheels on Linux only");
+        return Ok(());
+    }
+    if output(builders.python().args(["-m", "auditwheel", "--version"])).is_err() {
+        println!("SKIPPED: auditwheel is not installed, so the wheel's tag is not checked");
+        return Ok(());
+    }
+    let report = output(builders.python().args(["-m", "auditwheel", "show"]).arg(wheel))?;
+    let tag = tag_of(&report).with_context(|| format!("auditwheel gives the wheel no tag:\n{report}"))?;
+    let name = wheel.file_name().unwrap_or_default().to_string_lossy();
+    if !name.ends_with(&format!("{tag}.whl")) {
+        bail!("{name}: auditwheel says that it runs where {tag} does:\n{report}");
+    }
+    println!("auditwheel: the wheel is {tag}, as its name says");
+    Ok(())
+}
+
+/// The platform tag in what `auditwheel show` prints, whose lines it breaks anywhere.
+fn tag_of(report: &str) -> Option<String> {
+    let words: Vec<&str> = report.split_whitespace().collect();
+    let text = words.join(" ");
+    let (_, rest) = text.split_once("following platform tag: \"")?;
+    Some(rest.split_once('"')?.0.to_owned())
+}
+
+/// The environment that builds wheels.
+fn builders(python: &str) -> Result<Environment> {
+    Environment::new(python, "build", BUILDERS, &["auditwheel"])
 }
 
 /// Builds a wheel into a folder that then holds no other, and returns its path.
@@ -115,12 +155,13 @@ struct Environment {
 
 impl Environment {
     /// The environment of this name in the target folder, made if it is not there or has other packages.
-    fn new(python: &str, name: &str, packages: &[&str]) -> Result<Environment> {
+    /// `extras` are groups of packages, separated by spaces, that it also works without.
+    fn new(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
         let folder = target_folder().join("python").join(name);
         let scripts = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
         let environment = Environment { interpreter: folder.join(scripts) };
         let stamp = folder.join("packages.txt");
-        let wanted = packages.join("\n");
+        let wanted = [packages, extras].concat().join("\n");
         if fs::read_to_string(&stamp).is_ok_and(|installed| installed == wanted) {
             return Ok(environment);
         }
@@ -129,6 +170,14 @@ impl Environment {
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         let installed = output(environment.python().args(install).args(packages));
         installed.with_context(|| format!("pip cannot install {}", packages.join(", ")))?;
+        let lacks =
+            |group: &&&str| output(environment.python().args(install).args(group.split(' '))).is_err();
+        let lacking: Vec<&&str> = extras.iter().filter(lacks).collect();
+        if !lacking.is_empty() {
+            // Without the stamp, the next run tries again.
+            println!("SKIPPED: pip cannot install {lacking:?}: tests that use them are skipped");
+            return Ok(environment);
+        }
         fs::write(&stamp, wanted).with_context(|| format!("cannot write {}", stamp.display()))?;
         Ok(environment)
     }
@@ -144,6 +193,14 @@ impl Environment {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_tag_of_a_wheel_is_found() {
+        let report =
+            "a.whl is consistent with\nthe following platform tag:\n\"manylinux_2_34_x86_64\".\n\nThe wheel";
+        assert_eq!(tag_of(report).as_deref(), Some("manylinux_2_34_x86_64"));
+        assert_eq!(tag_of("This does not look like a platform wheel"), None);
+    }
 
     #[test]
     fn versions_are_compared_as_numbers() {

@@ -321,12 +321,16 @@ impl Job {
         })
     }
 
-    /// The film with its exact sums, as a picture that an `.exr` can hold and `merge` can merge.
+    /// The film's exact sums, its coverage and its display, as a picture that an `.exr` can hold and `merge` can merge.
     ///
     /// # Errors
     /// If memory is short.
     pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
         let mut picture = outcome.film.to_partial()?;
+        if let Some(coverage) = &outcome.coverage {
+            picture.push_channel("A", coverage.clone())?;
+        }
+        self.display()?.record(&mut picture);
         picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
         Ok(picture)
     }

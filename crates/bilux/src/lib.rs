@@ -17,6 +17,7 @@
 
 pub mod budget;
 mod camera_choice;
+mod display;
 pub mod error;
 pub mod fingerprint;
 pub mod job;
@@ -40,6 +41,7 @@ pub use bilux_scene as scene;
 pub use bilux_transport as transport;
 
 pub use bilux_transport::Silent as Quiet;
+pub use display::Display;
 pub use error::Error;
 pub use job::{Job, Outcome};
 pub use series::Series;

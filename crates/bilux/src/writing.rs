@@ -1,5 +1,6 @@
 //! How a job's pictures are written.
 
+use crate::display::Display;
 use crate::settings::{Background, Settings};
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
@@ -74,6 +75,16 @@ impl Job {
             Background::Surroundings | Background::Transparent => None,
         };
         Ok(WriteOptions { exposure: self.settings.exposure, tone_map, behind, ..WriteOptions::default() })
+    }
+
+    /// How its pictures are to be shown.
+    ///
+    /// # Errors
+    /// If no tone curve has the name.
+    pub(crate) fn display(&self) -> Result<Display, Error> {
+        let WriteOptions { exposure, tone_map, behind, .. } = self.write_options()?;
+        let Settings { auto_exposure, linear_transfer: encoded, .. } = self.settings;
+        Ok(Display { exposure, auto_exposure, tone_map, behind, encoded })
     }
 
     /// Writes the picture.

@@ -68,6 +68,7 @@ impl Line {
         Some(match (picture, &*self.command) {
             (Some([_, picture]), "render") => format!("name the file to write after -o: `-o {picture}`"),
             (_, "generate") => "name the file to write, such as `-o scene.toml`".to_owned(),
+            (_, "farm") => "name the folder to make, such as `-o job`".to_owned(),
             (_, "convert") => "name the file to write, such as `-o model.glb`".to_owned(),
             _ => "name the file to write, such as `-o picture.png`".to_owned(),
         })
@@ -91,6 +92,9 @@ impl Line {
             "" => Some("name a command first, such as `bilux render model.glb -o picture.png`".to_owned()),
             "convert" | "denoise" | "generate" if is_file => {
                 Some(format!("name the file to write after -o: `-o {name}`"))
+            }
+            "farm" if name.starts_with('-') => {
+                Some("options of `bilux render` come last, after `--`: `… -- --spp 64`".to_owned())
             }
             "list" if !name.starts_with('-') => Some("name only the list: all of it is printed".to_owned()),
             // An option is not meant as the name of a file.
@@ -120,6 +124,12 @@ const EXAMPLES: &[(&str, &str, &str)] = &[
         "<PART>",
         "name the partial renders and the picture, such as `bilux merge a.exr b.exr -o scene.png`",
     ),
+    (
+        "farm",
+        "<SCENE>",
+        "name the scene and a folder, such as `bilux farm walk.toml --frames 0-47 --chunks 8 -o job`",
+    ),
+    ("farm", "--chunks", "say how many tasks there are, such as `--chunks 8`"),
     ("bench", "<KIND>", "name a benchmark, such as `bilux bench rays`; `bilux bench --help` lists them"),
     ("list", "<WHAT>", "name a list, such as `bilux list integrators`; `bilux list --help` lists them"),
     ("completions", "<SHELL>", "name a shell: bash, elvish, fish, powershell or zsh"),

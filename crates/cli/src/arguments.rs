@@ -3,6 +3,7 @@
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
 pub use crate::denoising::Denoise;
+pub use crate::farming::Farm;
 use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
 use crate::studio::StudioArguments;
@@ -91,6 +92,8 @@ pub enum Command {
     Generate(Generate),
     /// Merge partial renders into one picture
     Merge(Merge),
+    /// Split a picture or an animation into tasks for a farm
+    Farm(Farm),
     /// Run a benchmark
     Bench(Box<Bench>),
     /// List integrators, accelerators, materials, formats and more

@@ -11,6 +11,7 @@ mod choices;
 mod commands;
 mod comparison;
 mod denoising;
+mod farming;
 mod help;
 mod interrupt;
 mod measuring;
@@ -63,6 +64,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<u8> {
         Command::Compare(compare) => commands::compare::run(compare, common),
         Command::Generate(generate) => commands::generate::run(generate, common),
         Command::Merge(merge) => commands::merge::run(merge, common),
+        Command::Farm(farm) => commands::farm::run(farm, common),
         Command::Bench(bench) => commands::bench::run(bench, common),
         Command::List(list) => commands::list::run(list),
         Command::Completions { shell } => commands::manual::completions(*shell),

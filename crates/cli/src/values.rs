@@ -43,6 +43,12 @@ pub fn parse_turntable(text: &str) -> Result<u32, String> {
     at_least_one(text, "write a whole number of at least 1, such as 36")
 }
 
+/// Parses a number of tasks. OpenJD allows a parameter to have no more values.
+pub fn parse_chunks(text: &str) -> Result<u32, String> {
+    let chunks = text.parse().ok().filter(|chunks| (1..=1024).contains(chunks));
+    chunks.ok_or_else(|| "write a whole number from 1 to 1024, such as 8".to_owned())
+}
+
 fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
     text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| advice.to_owned())
 }

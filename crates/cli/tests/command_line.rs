@@ -103,6 +103,25 @@ fn merged_layers_equal_those_of_the_whole() {
 }
 
 #[test]
+fn merged_parts_are_shown_as_the_whole_is() {
+    let folder = folder();
+    let path = folder.path();
+    for look in ["--exposure auto", "--exposure=-1 --tonemap agx", "--background transparent --ground shadow"]
+    {
+        let look: Vec<&str> = look.split(' ').chain(["--spp", "3"]).collect();
+        let with = |output: &str, more: &[&str]| render(path, output, &[&look, more].concat());
+        let whole = with("whole.png", &[]);
+        with("a.exr", &["--samples", "0..1"]);
+        with("b.exr", &["--samples", "1..3"]);
+        // What was merged once can be merged again.
+        bilux(path).args(["merge", "b.exr", "a.exr", "-o", "sums.exr"]).assert().success();
+        bilux(path).args(["merge", "sums.exr", "-o", "joined.png"]).assert().success();
+        assert!(std::fs::read(path.join("joined.png")).unwrap() == whole, "{look:?}");
+        assert!(render(path, "plain.png", &["--spp", "3"]) != whole, "{look:?} is not seen");
+    }
+}
+
+#[test]
 fn each_strategy_has_its_pictures_and_its_place_on_a_sheet() {
     let folder = folder();
     let path = folder.path();

@@ -21,7 +21,12 @@ def command_line():
     if found is None:
         pytest.skip("the command line program is not built")
     found = pathlib.Path(found).resolve()
-    return lambda *words: subprocess.run([found, *map(str, words)], check=True, capture_output=True, text=True)
+
+    def run(*words):
+        return subprocess.run([found, *map(str, words)], check=True, capture_output=True, text=True)
+
+    run.program = found
+    return run
 
 
 @pytest.fixture

@@ -1,11 +1,15 @@
-"""The example scripts run, and what they write is right."""
+"""The examples run, as scripts and as notebooks, and what they write is right."""
 
+import importlib.util
 import json
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 import bilux
 
@@ -31,3 +35,33 @@ def test_labelled_pictures(tmp_path):
         assert np.array_equal(objects == number, mask == 1)
     picture = bilux.read_picture(tmp_path / "data/00000.png").pixels
     assert 0.05 < picture.mean() < 0.8
+
+
+CELLS = [path for path in sorted(EXAMPLES.glob("*.py")) if path.read_text("utf-8").startswith("# %%")]
+
+
+@pytest.mark.parametrize("script", CELLS, ids=lambda path: path.stem)
+def test_the_notebook_is_that_of_the_script_and_runs(script, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(EXAMPLES)
+    text = importlib.import_module("notebooks").notebook_of(script.read_text("utf-8"))
+    notebook = script.with_suffix(".ipynb")
+    assert notebook.read_text("utf-8") == text, f"{notebook.name} is old: run {EXAMPLES / 'notebooks.py'}"
+    if importlib.util.find_spec("nbclient") and importlib.util.find_spec("ipykernel"):
+        shutil.copy(EXAMPLES / "labelled_pictures.py", tmp_path)
+        shown = run_notebook(text, tmp_path)
+        assert "image/png" in shown, "the last cell shows no picture"
+    else:
+        print("SKIPPED: nbclient is not installed, so this runs as a script")
+        subprocess.run([sys.executable, script], check=True, timeout=120)
+    for name in re.findall(r'save(?:fig)?\("([\w.]+)"', text.replace('\\"', '"')):
+        if importlib.util.find_spec("matplotlib") or name != "integrators.png":
+            assert bilux.read_picture(tmp_path / name).to_uint8()[..., :3].std() > 8, f"{name} shows nothing"
+
+
+def run_notebook(text, folder):
+    """Runs a notebook in a folder, and returns what its last cell shows."""
+    nbformat, nbclient = importlib.import_module("nbformat"), importlib.import_module("nbclient")
+    notebook = nbformat.reads(text, as_version=4)
+    nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(folder)}}).execute()
+    return notebook.cells[-1].outputs[-1].data

@@ -6,7 +6,9 @@ use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
 /// Layers whose values are the same in every part that has the pixel.
-const EVEN: [&str; 3] = ["albedo.", "normal.", "depth."];
+const EVEN: [&str; 4] = [COVERAGE, "albedo.", "normal.", "depth."];
+/// How much of a pixel is not background.
+const COVERAGE: &str = "A";
 /// The same for integer layers.
 const IDS: &str = "id.";
 /// The variance of a pixel's mean, which falls as samples are merged.
@@ -37,7 +39,7 @@ impl JoinedLayers {
         self.samples.resize(size, 0);
         for channel in part.channels() {
             let name = channel.name.as_str();
-            let is_even = EVEN.iter().any(|layer| name.starts_with(layer));
+            let is_even = is_even(name);
             if !is_even && (has_light || !name.starts_with(VARIANCE)) {
                 continue;
             }
@@ -76,19 +78,36 @@ impl JoinedLayers {
     /// # Errors
     /// When the picture has a different size, or already has such layers.
     pub fn push(&self, picture: &mut Picture, film: &Film) -> Result<(), FilmError> {
-        let window = film.window();
-        let places = || {
-            (0..window.pixels()).map(|i| {
-                let (x, y) = window.position(i);
-                y as usize * film.width() as usize + x as usize
-            })
-        };
         for (name, kept) in &self.floats {
-            picture.push_channel(name.as_str(), places().map(|at| kept[at]).collect())?;
+            picture.push_channel(name.as_str(), places(film).map(|at| kept[at]).collect())?;
         }
         for (name, kept) in &self.integers {
-            picture.push_integer_plane(name.as_str(), places().map(|at| kept[at]).collect())?;
+            picture.push_integer_plane(name.as_str(), places(film).map(|at| kept[at]).collect())?;
         }
         Ok(())
     }
+
+    /// Adds only the coverage, if the parts have one: all that a format for a display can hold.
+    ///
+    /// # Errors
+    /// As for [`JoinedLayers::push`], of a picture of the whole film.
+    pub fn push_coverage(&self, picture: &mut Picture) -> Result<(), FilmError> {
+        if let Some(kept) = self.floats.get(COVERAGE) {
+            picture.push_channel(COVERAGE, kept.clone())?;
+        }
+        Ok(())
+    }
+}
+
+fn is_even(name: &str) -> bool {
+    EVEN.iter().any(|layer| if layer.ends_with('.') { name.starts_with(layer) } else { name == *layer })
+}
+
+/// Where the pixels of a film's window lie in the rows of the whole film.
+fn places(film: &Film) -> impl Iterator<Item = usize> {
+    let (window, width) = (film.window(), film.width() as usize);
+    (0..window.pixels()).map(move |i| {
+        let (x, y) = window.position(i);
+        y as usize * width + x as usize
+    })
 }

@@ -13,6 +13,7 @@ mod ignored_tests;
 mod links;
 mod manifests;
 mod modules;
+mod portable;
 mod reading_order;
 mod registries;
 mod repository;
@@ -36,6 +37,7 @@ const RULES: &[Rule] = &[
     Rule { name: "forbidden", check: forbidden::check },
     Rule { name: "ignored-tests", check: ignored_tests::check },
     Rule { name: "unsafe-code", check: unsafe_code::check },
+    Rule { name: "portable", check: portable::check },
     Rule { name: "citations", check: citations::check },
     Rule { name: "links", check: links::check },
     Rule { name: "registries", check: registries::check },

@@ -1,12 +1,13 @@
 //! `bilux merge`: merges partial renders into one picture.
 
-use super::{DONE, check_folder, check_not_input};
+use super::{DONE, check_folder, check_not_input, warn_lost_alpha};
 use crate::arguments::{Common, Merge};
 use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use anyhow::Context;
-use bilux::pictures::Limits;
+use bilux::Display;
 use bilux::pictures::formats::format_of_path;
+use bilux::pictures::{Limits, Picture};
 use bilux::transport::{Film, JoinedLayers};
 
 pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
@@ -22,31 +23,47 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     confines.enter(common)?;
     let is_exr = format.entry.name == "exr";
     let mut layers = JoinedLayers::default();
-    let mut joined: Option<Film> = None;
+    let mut joined: Option<(Film, Display)> = None;
     for part in &arguments.parts {
         let picture = bilux::pictures::read_with(part, &Limits::new(common.max_memory))?;
         let next = Film::from_partial(&picture).with_context(|| part.display().to_string())?;
-        if is_exr {
-            layers.add(&picture, &next);
-        }
+        layers.add(&picture, &next);
         match &mut joined {
-            Some(film) => film.merge(&next).with_context(|| part.display().to_string())?,
-            None => joined = Some(next),
+            Some((film, _)) => film.merge(&next).with_context(|| part.display().to_string())?,
+            None => {
+                let display = Display::recorded(&picture).with_context(|| part.display().to_string())?;
+                joined = Some((next, display));
+            }
         }
     }
-    let film = joined.context("there is nothing to merge: name partial renders")?;
-    if layers.left_out() {
+    let (film, display) = joined.context("there is nothing to merge: name partial renders")?;
+    if is_exr && layers.left_out() {
         output::warning(format_args!(
             "the variance of light-traced samples cannot be merged, so it is left out"
         ));
     }
-    // If a part is still missing, an .exr keeps the sums, so that it can be added later.
-    let mut picture = if is_exr { film.to_partial()? } else { film.to_picture()? };
-    layers.push(&mut picture, &film)?;
-    bilux::pictures::write(&arguments.output, &picture, &Default::default())?;
+    let picture = if is_exr {
+        // If a part is still missing, its sums allow adding it later.
+        let mut picture = film.to_partial()?;
+        display.record(&mut picture);
+        layers.push(&mut picture, &film)?;
+        picture
+    } else {
+        let mut picture = film.to_picture()?;
+        layers.push_coverage(&mut picture)?;
+        picture
+    };
+    write(picture, display, arguments, common)?;
     if !common.quiet {
         let parts = output::counted(arguments.parts.len(), "part", "parts");
         output::eprint(format_args!("{}: {parts} merged", arguments.output.display()));
     }
     Ok(DONE)
+}
+
+/// Writes the picture as its parts say that it is to be shown.
+fn write(mut picture: Picture, display: Display, arguments: &Merge, common: &Common) -> anyhow::Result<()> {
+    let options = display.options(&mut picture);
+    warn_lost_alpha(&picture, &arguments.output, options.behind, common)?;
+    Ok(bilux::pictures::write(&arguments.output, &picture, &options)?)
 }

@@ -34,6 +34,7 @@ from ._tables import (
     tonemaps,
 )
 from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress
+from ._view import View
 
 __all__ = [
     "Accel",
@@ -57,6 +58,7 @@ __all__ = [
     "Spec",
     "Table",
     "Texture",
+    "View",
     "__version__",
     "accels",
     "aovs",

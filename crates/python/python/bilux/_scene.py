@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -13,6 +13,9 @@ from . import _bilux
 from ._bilux import Picture, Spec
 from ._progress import following
 from ._types import Mesh, Object, Progress
+
+if TYPE_CHECKING:
+    from ._view import View
 
 Path = str | os.PathLike[str]
 
@@ -257,6 +260,40 @@ class Scene(_bilux.Scene):
         with following(progress) as callback:
             yield from self._progressive(given, _bytes(max_memory), callback)
 
+    def view(
+        self,
+        size: tuple[int, int] | int = (480, 360),
+        spp: int = 256,
+        *,
+        camera: int = 0,
+        integrator: str = "path",
+        **settings: Any,
+    ) -> View:
+        """Shows the scene in a notebook: a picture that gets better and better, which the mouse turns.
+
+        Drag it to move the camera around; the wheel comes nearer. This needs the package anywidget; without it, only
+        notebooks that let a page reach the kernel turn the picture, and others show it as it is.
+
+        Args:
+            size: width and height in pixels; one number for a square.
+            spp: samples per pixel of the last picture.
+            camera: the number of the scene's camera to begin with.
+            integrator: the algorithm; the default shows something soonest.
+            **settings: as for `progressive`.
+
+        Returns:
+            the view. It renders in a thread of its own, until its picture is done or `close` is called.
+
+        Example:
+            >>> view = bilux.generate("trio").view(size=(64, 48), spp=4)
+            >>> view.move(turn=90)
+            >>> view.wait().width
+            64
+        """
+        from ._view import View
+
+        return View(self, _sides(size), spp, operator.index(camera), settings | {"integrator": integrator})
+
     def _settings(
         self,
         *,
@@ -301,9 +338,15 @@ def _size(size: tuple[int, int] | int | str | None) -> str | None:
     """The size as settings have it."""
     if size is None or isinstance(size, str):
         return size
+    width, height = _sides(size)
+    return f"{width}x{height}"
+
+
+def _sides(size: tuple[int, int] | int) -> tuple[int, int]:
+    """The width and the height."""
     try:
         width, height = (size, size) if isinstance(size, int) else size
-        return f"{int(width)}x{int(height)}"
+        return int(width), int(height)
     except (TypeError, ValueError):
         raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
 
