@@ -28,7 +28,7 @@ use std::time::Instant;
 pub(crate) struct Scene {
     builder: Mutex<SceneBuilder>,
     /// What renders have built. Locked only without the GIL, and while a render builds.
-    built: Mutex<Built>,
+    pub(crate) built: Mutex<Built>,
 }
 
 #[pymethods]
@@ -369,7 +369,7 @@ impl Scene {
 
 impl Scene {
     /// The scene under construction. Other threads run while this one waits for it.
-    fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
+    pub(crate) fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
         self.builder.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -296,9 +296,21 @@ impl Job {
     /// # Errors
     /// As [`Job::render`].
     pub fn strategies(&self, of: &Outcome, progress: &dyn Progress) -> Result<Option<Strategies>, Error> {
+        self.strategies_of(of.reached.map(|reached| reached.spp), progress)
+    }
+
+    /// The same for the first samples of each pixel; by default for all.
+    ///
+    /// # Errors
+    /// As [`Job::render`].
+    pub fn strategies_of(
+        &self,
+        samples: Option<u32>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Strategies>, Error> {
         let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
-        if let Some(reached) = of.reached {
-            (settings.spp, settings.samples) = (reached.spp, 0..reached.spp);
+        if let Some(samples) = samples {
+            (settings.spp, settings.samples) = (samples, 0..samples);
         }
         let (scene, camera) = (&self.scene, &*self.camera);
         Ok(bilux_transport::strategies(scene, camera, &*self.integrator, &settings, progress)?)

@@ -42,12 +42,13 @@ mod tests {
             let mut all = Parameters::default();
             all.set("size", "32x32");
             all.set("integrator", "path");
-            let number = value.parse::<f64>().ok().map(|x| match key {
-                "spp" | "threads" | "seed" => Value::Integer(x as i64),
-                _ => Value::Number(x),
-            });
+            let value = match key {
+                "spp" | "threads" | "seed" | "roulette_depth" => Value::Integer(value.parse().unwrap()),
+                "exposure" | "time" => Value::Number(value.parse().unwrap()),
+                _ => Value::from(value),
+            };
             if !key.is_empty() {
-                all.set(key, number.unwrap_or_else(|| value.into()));
+                all.set(key, value);
             }
             Settings::resolve(&all).unwrap()
         };

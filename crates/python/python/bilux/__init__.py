@@ -33,7 +33,7 @@ from ._tables import (
     settings,
     tonemaps,
 )
-from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress
+from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy
 
 __all__ = [
     "Accel",
@@ -51,10 +51,12 @@ __all__ = [
     "PictureError",
     "Progress",
     "RenderError",
+    "Replay",
     "Scene",
     "SceneError",
     "SceneWarning",
     "Spec",
+    "Strategy",
     "Table",
     "Texture",
     "__version__",
