@@ -46,7 +46,9 @@ impl Progressive {
             let taken = self.done - first;
             let wanted = match budget {
                 Budget::Samples(samples) => samples.saturating_sub(taken),
-                Budget::Time(time) => self.that_fit(time.saturating_sub(begun.elapsed())).max(u32::from(taken == 0)),
+                Budget::Time(time) => {
+                    self.that_fit(time.saturating_sub(begun.elapsed())).max(u32::from(taken == 0))
+                }
             };
             let end = self.done.saturating_add(wanted).min(self.total());
             if end == self.done || progress.is_cancelled() {

@@ -1,11 +1,11 @@
 //! After any edit, a session's picture is that of a fresh job, byte for byte; only what changed is built; and an edit that
 //! changes no sample keeps those that were taken.
 
+use bilux::math::Motion;
 use bilux::prelude::*;
 use bilux::scene::TreeWork;
 use bilux::transport::Progress;
 use bilux::{Budget, Edit, Session};
-use bilux::math::Motion;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;

@@ -327,7 +327,12 @@ impl Scene {
         let aovs = aovs(&aov).map_err(of_scene)?;
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
-        render(py, (&scene, &self.built), Request { user, aovs, crop, fast, max_memory, loaded_at, begun }, callback)
+        render(
+            py,
+            (&scene, &self.built),
+            Request { user, aovs, crop, fast, max_memory, loaded_at, begun },
+            callback,
+        )
     }
 
     fn _progressive(

@@ -194,7 +194,8 @@ impl SceneBuilder {
         for (i, object) in self.objects.iter().enumerate() {
             check_material(object, materials)?;
             // Instances mostly come one after the other.
-            let before = i.checked_sub(1).filter(|&before| Arc::ptr_eq(&self.objects[before].mesh, &object.mesh));
+            let before =
+                i.checked_sub(1).filter(|&before| Arc::ptr_eq(&self.objects[before].mesh, &object.mesh));
             meshes.push(match before {
                 Some(before) => meshes[before].clone(),
                 None => pool.of(&object.mesh, || check_mesh(object))?,
@@ -210,12 +211,13 @@ impl SceneBuilder {
         parts: &mut BuiltParts,
     ) -> Result<BuiltLights, SceneError> {
         let mut built = BuiltLights::default();
-        let mut glowing = |parts: &mut BuiltParts, emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
-            let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
-            let black = black.with("emission_sides", sides.name());
-            materials.push(parts.material(&black, &MaterialInputs::default())?);
-            Ok(materials.len() - 1)
-        };
+        let mut glowing =
+            |parts: &mut BuiltParts, emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
+                let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
+                let black = black.with("emission_sides", sides.name());
+                materials.push(parts.material(&black, &MaterialInputs::default())?);
+                Ok(materials.len() - 1)
+            };
         for spec in &self.lights {
             match parts.light(spec, &self.textures)? {
                 BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),

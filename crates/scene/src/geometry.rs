@@ -2,6 +2,7 @@
 //! own, points and lines in separate trees, and spheres in a last one.
 
 mod corners_in_world;
+mod object_trees;
 mod still;
 mod surface_point;
 mod trees;
@@ -20,12 +21,12 @@ use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
+pub use object_trees::TreeWork;
 use std::borrow::Cow;
 use std::sync::Arc;
 use still::Still;
 pub use surface_point::{PointAndNormals, StillTriangle};
 use surface_point::{normal_at, normals_of, point_with_error};
-pub use trees::TreeWork;
 pub(crate) use trees::Trees;
 
 /// All surfaces, and the trees over them.
@@ -73,7 +74,7 @@ impl Geometry {
             first = first.wrapping_add(object.mesh.triangles.len() as u32);
             keys.extend(Place::of(&object.motion).map(|place| (Same(object.mesh.clone()), place)));
         }
-        let still = Still::build(keys, trees, accel)?;
+        let still = Still::build(keys, trees.still.take(), &mut trees.of_objects, accel)?;
         trees.still.clone_from(&still);
         let (mut instances, mut instance_objects) = (Vec::new(), Vec::new());
         if let Some(still) = &still {

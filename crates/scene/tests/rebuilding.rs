@@ -5,7 +5,8 @@ use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{Rgb, Transform, Vec2, Vec3, glam::Quat, hash};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{
-    AccelChoice, BuiltParts, Mesh, Object, Ray, Scene, SceneBuilder, Spec, StrokeWidths, Texture, Tracer, TreeWork, Value,
+    AccelChoice, BuiltParts, Mesh, Object, Ray, Scene, SceneBuilder, Spec, StrokeWidths, Texture, Tracer,
+    TreeWork, Value,
 };
 use std::sync::Arc;
 
@@ -151,9 +152,14 @@ fn answers(scene: &Scene) -> Vec<String> {
         answers.push(format!("{} {:?}", tracer.occluded(ray), scene.background(ray.direction.into(), 0)));
         let (from, u) = (Vec3::from(ray.origin), Vec2::new(ray.time, 0.5));
         let sample = |light: &bilux_scene::scene::SceneLight| {
-            light.light.sample_li(from, ray.time, u).map(|s| format!("{:?} {} {:?}", s.wi, s.pdf_solid_angle, s.li))
+            light
+                .light
+                .sample_li(from, ray.time, u)
+                .map(|s| format!("{:?} {} {:?}", s.wi, s.pdf_solid_angle, s.li))
         };
-        answers.extend(scene.lights().iter().map(|light| format!("{:?} {}", sample(light), light.classic_colour.r)));
+        answers.extend(
+            scene.lights().iter().map(|light| format!("{:?} {}", sample(light), light.classic_colour.r)),
+        );
     }
     answers
 }
@@ -248,4 +254,24 @@ fn memory_stays_flat_and_a_failed_build_changes_nothing() {
     builder.objects.remove(1);
     work(&builder, &mut parts);
     assert_eq!(weak.strong_count(), 0, "a mesh that is not used is let go");
+}
+
+#[test]
+fn shells_that_become_a_sheet_are_found() {
+    let mut builder = SceneBuilder::default();
+    builder.add_material(Spec::new("both", "diffuse"));
+    builder.add_material(Spec::new("front", "diffuse").with("visible_sides", "front"));
+    let back = Mesh::quad(Vec3::splat(-0.5), Vec3::new(0.0, 1.0, 0.3), Vec3::X);
+    for (shell, material) in
+        [(rough_quad(), 0), (back, 0), (Mesh::quad(Vec3::NEG_Y * 2.0, Vec3::Z, Vec3::X), 1)]
+    {
+        builder.objects.push(Object::new("", Arc::new(shell), material));
+    }
+    let (accel, mut parts) = (AccelChoice::default(), BuiltParts::default());
+    for material in [0, 1, 0, 1] {
+        builder.objects[0].material = material;
+        builder.objects[1].material = material;
+        let reused = answers(&built(&builder, &mut parts, &accel));
+        assert!(reused == answers(&builder.build(&accel, SHUTTER, 1.0).unwrap()), "material {material}");
+    }
 }

@@ -13,13 +13,11 @@ use crate::settings::Settings;
 use crate::{Error, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
-use bilux_scene::{
-    AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
-};
+use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop,
-    Strategies, Window, coverage, shadow_alpha,
+    Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Replay, SamplePlace, ShadowCatcher,
+    Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};

@@ -15,8 +15,7 @@ impl Job {
     /// As for [`Job::render`].
     pub fn plan(&mut self) -> Result<(), Error> {
         if self.plan.is_none() {
-            self.plan =
-                bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
+            self.plan = bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
         }
         Ok(())
     }
@@ -71,7 +70,8 @@ impl Job {
 
     /// Takes over settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
     pub(crate) fn show(&mut self, settings: &Settings) {
-        let Settings { spp, threads, fps, exposure, auto_exposure, background, linear_transfer, .. } = *settings;
+        let Settings { spp, threads, fps, exposure, auto_exposure, background, linear_transfer, .. } =
+            *settings;
         let (tonemap, denoise) = (settings.tonemap.clone(), settings.denoise.clone());
         let own = self.settings.clone();
         self.settings = Settings {

@@ -17,6 +17,7 @@ use bilux_transport::aovs::Aov;
 /// the picture starts again, unless the edit changes no sample.
 ///
 /// ```
+/// use bilux::math::Motion;
 /// use bilux::prelude::*;
 /// use bilux::{Budget, Edit, Session};
 ///
@@ -96,8 +97,8 @@ impl Session {
         let user = without_limits(user);
         let before = Settings::of(&self.scene, &self.user)?;
         let settings = Settings::of(&scene, &user)?;
-        let has_room = settings.spp == before.spp
-            || settings.spp >= self.samples() && self.picture.job.may_take_more();
+        let has_room =
+            settings.spp == before.spp || settings.spp >= self.samples() && self.picture.job.may_take_more();
         if changes_scene || !has_room || !settings.takes_samples_of(&before) {
             self.restart(scene, user)?;
             return Ok(true);

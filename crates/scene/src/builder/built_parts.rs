@@ -29,7 +29,7 @@ pub struct BuiltParts {
 impl BuiltParts {
     /// The trees that were built so far, all builds together.
     pub fn tree_work(&self) -> TreeWork {
-        self.trees.work
+        self.trees.work()
     }
 
     /// The number of parts that are kept: meshes, trees, materials and lights.
@@ -48,9 +48,9 @@ impl BuiltParts {
 
     /// Forgets all parts.
     pub fn clear(&mut self) {
-        let work = self.trees.work;
-        *self = BuiltParts::default();
-        self.trees.work = work;
+        let mut trees = std::mem::take(&mut self.trees);
+        trees.clear();
+        *self = BuiltParts { trees, ..BuiltParts::default() };
     }
 
     pub(super) fn begin(&mut self) {

@@ -3,7 +3,7 @@
 //! All are in one tree at first. Objects that are placed anew, or added, get trees of their own, so that the others
 //! keep theirs: the answers are those of one tree (see [`Forest`]).
 
-use super::trees::{StillKey, TreeWork, Trees, failed, tree};
+use super::object_trees::{ObjectTrees, StillKey, TreeWork, failed, tree};
 use crate::accel_choice::AccelChoice;
 use crate::corners::world_corners;
 use crate::error::SceneError;
@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// With more trees of single objects than this, all triangles are joined again: rays visit the trees one by one.
-const MOST_TREES: usize = 64;
+const MAX_TREES: usize = 64;
 
 /// The triangles that do not move.
 #[derive(Clone)]
@@ -34,13 +34,13 @@ pub(super) struct Still {
 type Ranges = [Range<u32>];
 
 impl Still {
-    /// The triangles of these objects, with what the last build knows of them; `None` if there are none.
+    /// The triangles of these objects, with those of the last build; `None` if there are none.
     pub(super) fn build(
         keys: Vec<StillKey>,
-        trees: &mut Trees,
+        last: Option<Still>,
+        trees: &mut ObjectTrees,
         accel: &AccelChoice,
     ) -> Result<Option<Still>, SceneError> {
-        let last = trees.still.take();
         if let Some(same) = last.as_ref().filter(|last| last.keys == keys) {
             // Trees of single objects are in use as long as the forest is.
             same.mark_used(trees);
@@ -90,7 +90,8 @@ impl Still {
             let mut left: HashMap<&StillKey, usize> = HashMap::new();
             members.iter().for_each(|key| *left.entry(key).or_default() += 1);
             for (key, is_joined) in keys.iter().zip(&mut is_joined) {
-                *is_joined = left.get_mut(key).is_some_and(|left| std::mem::replace(left, left.saturating_sub(1)) > 0);
+                *is_joined =
+                    left.get_mut(key).is_some_and(|left| std::mem::replace(left, left.saturating_sub(1)) > 0);
             }
             None
         };
@@ -98,17 +99,18 @@ impl Still {
             let of = is_joined.iter().zip(ranges).filter(|(is_joined, _)| **is_joined == joined);
             of.map(|(_, range)| range.len()).sum()
         };
-        let alone = is_joined.iter().zip(ranges).filter(|(joined, range)| !**joined && !range.is_empty()).count();
-        let is_worthwhile = alone <= MOST_TREES && triangles(true) >= triangles(false);
+        let alone =
+            is_joined.iter().zip(ranges).filter(|(joined, range)| !**joined && !range.is_empty()).count();
+        let is_worthwhile = alone <= MAX_TREES && triangles(true) >= triangles(false);
         is_worthwhile.then_some(Apart { is_joined, tree })
     }
 
     /// Marks the trees of single objects as used by this build.
-    fn mark_used(&self, trees: &mut Trees) {
+    fn mark_used(&self, trees: &mut ObjectTrees) {
         let mut joined = self.joined.0.iter().peekable();
         for key in &self.keys {
             if joined.next_if(|next| *next == key).is_none() {
-                trees.of_objects.touch(key);
+                trees.kept.touch(key);
             }
         }
     }
@@ -130,7 +132,7 @@ impl Apart {
         keys: &[StillKey],
         ranges: &Ranges,
         mesh: &TriangleMesh,
-        (trees, accel): (&mut Trees, &AccelChoice),
+        (trees, accel): (&mut ObjectTrees, &AccelChoice),
     ) -> Result<Built, SceneError> {
         let part = |chosen: &[Range<u32>], work: &mut TreeWork| {
             let corners = |range: &Range<u32>| &mesh.triangles()[range.start as usize..range.end as usize];
@@ -156,9 +158,9 @@ impl Apart {
         };
         let mut all = vec![(joined.clone(), joined_ranges)];
         for (key, range) in of(false).filter(|(_, range)| !range.is_empty()) {
-            let Trees { of_objects, work, .. } = &mut *trees;
+            let ObjectTrees { kept, work } = &mut *trees;
             let own = std::slice::from_ref(range);
-            all.push((of_objects.or_make(key.clone(), || part(own, work))?, own.to_vec()));
+            all.push((kept.or_make(key.clone(), || part(own, work))?, own.to_vec()));
         }
         let whole: Arc<dyn Accelerator> =
             if all.len() == 1 { joined.clone() } else { Arc::new(Forest::new(all)) };

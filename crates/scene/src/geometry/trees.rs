@@ -1,11 +1,11 @@
 //! The trees of a scene, kept from one build to the next.
 
+use super::object_trees::{ObjectTrees, TreeWork, failed, tree};
 use super::still::Still;
 use crate::accel_choice::AccelChoice;
 use crate::error::SceneError;
 use crate::kept::{Kept, Place, Same};
 use crate::mesh::Mesh;
-use crate::parameters::Span;
 use crate::placed::Placed;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::strokes::{StrokeWidths, Strokes, mean_scale};
@@ -24,34 +24,21 @@ pub(crate) struct Trees {
     /// Meshes in their own space, for instances.
     pub(super) of_meshes: Kept<Same<Mesh>, Arc<dyn Accelerator>>,
     /// Single objects in world space.
-    pub(super) of_objects: Kept<StillKey, Arc<dyn Accelerator>>,
+    pub(super) of_objects: ObjectTrees,
     /// Points and lines: with the object's place if they are in world space, and with their radii.
     pub(super) of_strokes: Kept<(Same<Mesh>, Option<Place>, [u32; 2]), Arc<PrimitiveTree<Strokes>>>,
     /// All spheres, each with the bits of its centre and radius.
     spheres: Option<(Vec<[u32; 4]>, Arc<PrimitiveTree<Vec<Shape>>>)>,
-    pub(crate) work: TreeWork,
 }
 
 /// An object, its tree of points and lines, the tree's motion, and whether the tree is in world space.
 type StrokesPlacement = (u32, Arc<PrimitiveTree<Strokes>>, Motion, bool);
 
-/// A mesh, and where it stands.
-pub(super) type StillKey = (Same<Mesh>, Place);
-
-/// How many trees were built, and over how much.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TreeWork {
-    /// Trees, whatever they hold.
-    pub trees: u64,
-    /// The triangles in them.
-    pub triangles: u64,
-}
-
 impl Trees {
     /// A build begins.
     pub(crate) fn begin(&mut self) {
         self.of_meshes.begin();
-        self.of_objects.begin();
+        self.of_objects.kept.begin();
         self.of_strokes.begin();
     }
 
@@ -68,7 +55,7 @@ impl Trees {
             None => {
                 self.still = None;
                 self.of_meshes.clear();
-                self.of_objects.clear();
+                self.of_objects.kept.clear();
                 accel.options.clone()
             }
         };
@@ -76,16 +63,27 @@ impl Trees {
         AccelChoice { options, ..accel.clone() }
     }
 
+    /// The trees that were built so far.
+    pub(crate) fn work(&self) -> TreeWork {
+        self.of_objects.work
+    }
+
+    /// Forgets all trees.
+    pub(crate) fn clear(&mut self) {
+        let of_objects = ObjectTrees { work: self.work(), ..ObjectTrees::default() };
+        *self = Trees { of_objects, ..Trees::default() };
+    }
+
     /// The number of trees.
     pub(crate) fn len(&self) -> usize {
-        let still = usize::from(self.still.is_some()) + self.of_objects.len();
+        let still = usize::from(self.still.is_some()) + self.of_objects.kept.len();
         still + self.of_meshes.len() + self.of_strokes.len() + usize::from(self.spheres.is_some())
     }
 
     /// The build ends.
     pub(crate) fn end(&mut self, succeeded: bool) {
         self.of_meshes.end(succeeded);
-        self.of_objects.end(succeeded);
+        self.of_objects.kept.end(succeeded);
         self.of_strokes.end(succeeded);
     }
 
@@ -95,7 +93,7 @@ impl Trees {
         mesh: &Arc<Mesh>,
         accel: &AccelChoice,
     ) -> Result<Arc<dyn Accelerator>, SceneError> {
-        let work = &mut self.work;
+        let work = &mut self.of_objects.work;
         self.of_meshes.or_make(Same(mesh.clone()), || {
             let corners = crate::corners::world_corners(mesh, &bilux_math::Transform::IDENTITY).collect();
             let mesh = TriangleMesh::from_corners(corners).map_err(|e| failed(&e))?;
@@ -104,7 +102,11 @@ impl Trees {
     }
 
     /// The trees of all objects with points or lines: object, tree, its motion, and whether it is in world space.
-    pub(super) fn of_all_strokes(&mut self, objects: &[Placed], widths: StrokeWidths) -> Vec<StrokesPlacement> {
+    pub(super) fn of_all_strokes(
+        &mut self,
+        objects: &[Placed],
+        widths: StrokeWidths,
+    ) -> Vec<StrokesPlacement> {
         let mut all = Vec::new();
         for (i, object) in objects.iter().enumerate().filter(|(_, o)| o.mesh.stroke_count() > 0) {
             let place = Place::of(&object.motion).filter(|_| !object.in_own_tree());
@@ -113,8 +115,9 @@ impl Trees {
                 None => (false, mean_scale(&object.motion.at(0.0))),
             };
             let radii = Strokes::radii(widths, scale);
-            let key = (Same(object.mesh.clone()), place.clone(), [radii.points, radii.lines].map(f32::to_bits));
-            let work = &mut self.work;
+            let key =
+                (Same(object.mesh.clone()), place.clone(), [radii.points, radii.lines].map(f32::to_bits));
+            let work = &mut self.of_objects.work;
             let tree = self.of_strokes.or_make_surely(key, || {
                 work.trees += 1;
                 Arc::new(Strokes::tree(&object.mesh, place.as_ref().map(Place::transform), radii))
@@ -126,35 +129,13 @@ impl Trees {
     }
 
     /// The spheres with their tree.
-    pub(super) fn of_spheres(
-        &mut self,
-        all: Vec<PlacedSphere>,
-        first_object: u32,
-        instance: u32,
-    ) -> Spheres {
-        let bits = |s: &PlacedSphere| {
-            [s.centre.x, s.centre.y, s.centre.z, s.radius].map(f32::to_bits)
-        };
+    pub(super) fn of_spheres(&mut self, all: Vec<PlacedSphere>, first_object: u32, instance: u32) -> Spheres {
+        let bits = |s: &PlacedSphere| [s.centre.x, s.centre.y, s.centre.z, s.radius].map(f32::to_bits);
         let key: Vec<[u32; 4]> = all.iter().map(bits).collect();
         let known = self.spheres.take().filter(|(known, _)| *known == key).map(|(_, tree)| tree);
-        self.work.trees += u64::from(known.is_none() && !all.is_empty());
+        self.of_objects.work.trees += u64::from(known.is_none() && !all.is_empty());
         let spheres = Spheres::new(all, known, first_object, instance);
         self.spheres = Some((key, spheres.shared_tree()));
         spheres
     }
-}
-
-/// Builds a tree of triangles.
-pub(super) fn tree(
-    mesh: Arc<TriangleMesh>,
-    accel: &AccelChoice,
-    work: &mut TreeWork,
-) -> Result<Arc<dyn Accelerator>, SceneError> {
-    work.trees += 1;
-    work.triangles += mesh.len() as u64;
-    Ok(Arc::from(bilux_accel::build(&accel.name, mesh, &accel.options).map_err(|e| failed(&e))?))
-}
-
-pub(super) fn failed(error: &dyn std::fmt::Display) -> SceneError {
-    SceneError::invalid(error.to_string(), &Span::default())
 }

@@ -73,7 +73,19 @@ fn by_size(meshes: &HashSet<Same<Mesh>>) -> HashMap<[usize; 3], Vec<Same<Mesh>>>
 /// True when two meshes agree in every bit.
 fn is_same_mesh(a: &Mesh, b: &Mesh) -> bool {
     // Whoever adds a field is told to compare it here.
-    let Mesh { name, positions, normals, uvs, uvs2, tangents, vertex_kd, vertex_ks, triangles, points, lines } = a;
+    let Mesh {
+        name,
+        positions,
+        normals,
+        uvs,
+        uvs2,
+        tangents,
+        vertex_kd,
+        vertex_ks,
+        triangles,
+        points,
+        lines,
+    } = a;
     name == &b.name
         && (triangles, points, lines) == (&b.triangles, &b.points, &b.lines)
         && alike(positions, &b.positions, |v| v.to_array())

@@ -66,12 +66,14 @@ fn has_same_sides(a: &SceneParts, b: &SceneParts) -> bool {
         return true;
     }
     let (ours, theirs) = (a.geometry.objects(), b.geometry.objects());
-    let sides = |parts: &SceneParts| parts.passes.iter().map(|passes| passes.is_one_sided).collect::<Vec<_>>();
+    let sides =
+        |parts: &SceneParts| parts.passes.iter().map(|passes| passes.is_one_sided).collect::<Vec<_>>();
     ours.len() == theirs.len()
         && sides(a) == sides(b)
-        && ours.iter().zip(theirs).all(|(a, b)| {
-            Arc::ptr_eq(&a.mesh, &b.mesh) && is_same_place(&a.motion, &b.motion)
-        })
+        && ours
+            .iter()
+            .zip(theirs)
+            .all(|(a, b)| Arc::ptr_eq(&a.mesh, &b.mesh) && is_same_place(&a.motion, &b.motion))
 }
 
 fn is_same_place(a: &Motion, b: &Motion) -> bool {
