@@ -22,6 +22,10 @@ pub struct Forest {
     order: Vec<u32>,
 }
 
+/// A tree, and the ranges of the mesh's triangles that it was built over: in ascending order, and numbered in the tree
+/// one after the other.
+pub type PartialTree = (Arc<dyn Accelerator>, Vec<Range<u32>>);
+
 /// A tree, and which triangles of the mesh it has.
 struct Part {
     tree: Arc<dyn Accelerator>,
@@ -38,9 +42,8 @@ struct Run {
 }
 
 impl Forest {
-    /// Joins trees. Each comes with the ranges of the mesh's triangles that it was built over: in ascending order, and
-    /// numbered in the tree one after the other.
-    pub fn new(trees: Vec<(Arc<dyn Accelerator>, Vec<Range<u32>>)>) -> Forest {
+    /// Joins trees.
+    pub fn new(trees: Vec<PartialTree>) -> Forest {
         let parts: Vec<Part> = trees.into_iter().map(|(tree, ranges)| Part::new(tree, &ranges)).collect();
         let (top, order) = Tree::over(parts.len(), |part| parts[part as usize].tree.bounds());
         Forest { parts, top, order }

@@ -42,7 +42,7 @@ pub use bvh::Bvh;
 pub use bvh8::{Bvh8, CompactBvh8, RefitError};
 pub use counters::Counters;
 pub use cpu_level::CpuLevel;
-pub use forest::Forest;
+pub use forest::{Forest, PartialTree};
 pub use instancing::{Instance, TopLevel, TwoLevel};
 pub use kd_tree::KdTree;
 pub use mesh::{MeshError, TriangleMesh};

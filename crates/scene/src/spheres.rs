@@ -35,10 +35,13 @@ impl PlacedSphere {
     }
 }
 
+/// The tree of all spheres.
+pub(crate) type SphereTree = Arc<PrimitiveTree<Vec<Shape>>>;
+
 /// All spheres of a scene.
 pub(crate) struct Spheres {
     all: Vec<PlacedSphere>,
-    tree: Arc<PrimitiveTree<Vec<Shape>>>,
+    tree: SphereTree,
     /// The object index of the first sphere.
     first_object: u32,
     /// The instance of the spheres; `u32::MAX` if there are none.
@@ -52,7 +55,7 @@ impl Spheres {
     /// Spheres with their tree, if it is known already.
     pub(crate) fn new(
         all: Vec<PlacedSphere>,
-        tree: Option<Arc<PrimitiveTree<Vec<Shape>>>>,
+        tree: Option<SphereTree>,
         first_object: u32,
         instance: u32,
     ) -> Spheres {
@@ -63,7 +66,7 @@ impl Spheres {
     }
 
     /// The tree, to be kept.
-    pub(crate) fn shared_tree(&self) -> Arc<PrimitiveTree<Vec<Shape>>> {
+    pub(crate) fn shared_tree(&self) -> SphereTree {
         self.tree.clone()
     }
 

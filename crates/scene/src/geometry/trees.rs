@@ -7,9 +7,9 @@ use crate::error::SceneError;
 use crate::kept::{Kept, Place, Same};
 use crate::mesh::Mesh;
 use crate::placed::Placed;
-use crate::spheres::{PlacedSphere, Spheres};
+use crate::spheres::{PlacedSphere, SphereTree, Spheres};
 use crate::strokes::{StrokeWidths, Strokes, mean_scale};
-use bilux_accel::primitives::{PrimitiveTree, Shape};
+use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, BuildOptions, TriangleMesh};
 use bilux_math::motion::Motion;
 use std::sync::Arc;
@@ -25,11 +25,14 @@ pub(crate) struct Trees {
     pub(super) of_meshes: Kept<Same<Mesh>, Arc<dyn Accelerator>>,
     /// Single objects in world space.
     pub(super) of_objects: ObjectTrees,
-    /// Points and lines: with the object's place if they are in world space, and with their radii.
-    pub(super) of_strokes: Kept<(Same<Mesh>, Option<Place>, [u32; 2]), Arc<PrimitiveTree<Strokes>>>,
+    /// Points and lines.
+    of_strokes: Kept<StrokesKey, Arc<PrimitiveTree<Strokes>>>,
     /// All spheres, each with the bits of its centre and radius.
-    spheres: Option<(Vec<[u32; 4]>, Arc<PrimitiveTree<Vec<Shape>>>)>,
+    spheres: Option<(Vec<[u32; 4]>, SphereTree)>,
 }
+
+/// The mesh of points and lines, the place of the object if they are in world space, and the bits of their radii.
+type StrokesKey = (Same<Mesh>, Option<Place>, [u32; 2]);
 
 /// An object, its tree of points and lines, the tree's motion, and whether the tree is in world space.
 type StrokesPlacement = (u32, Arc<PrimitiveTree<Strokes>>, Motion, bool);

@@ -56,12 +56,18 @@ pub(crate) struct SceneParts {
     pub(super) shading: Vec<ObjectShading>,
 }
 
+/// An object that came from a light, and the light's classic colour.
+type Panel = (usize, Rgb);
+
+/// The name of a sphere that came from a light, and its classic colour if that was given.
+type SphereName = (String, Option<Rgb>);
+
 impl SceneParts {
     pub(crate) fn new(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
         mut lights: Vec<SceneLight>,
-        (panels, sphere_lights): (&[(usize, Rgb)], &[(String, Option<Rgb>)]),
+        (panels, sphere_lights): (&[Panel], &[SphereName]),
         cameras: Vec<(String, Arc<dyn Camera>)>,
         textures: Vec<Vec<Arc<Texture>>>,
         mesh_lights: &mut MeshLights,
