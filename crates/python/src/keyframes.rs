@@ -21,6 +21,9 @@ pub(crate) fn set_keyframes(
 ) -> PyResult<()> {
     let times: Vec<f32> = times.call_method0("tolist")?.extract()?;
     let transforms = arrays::transforms("transforms", transforms)?;
+    if times.is_empty() {
+        return Err(PyValueError::new_err("times: there is none: give at least one keyframe"));
+    }
     if times.len() != transforms.len() {
         let (times, matrices) = (times.len(), transforms.len());
         let message = format!("transforms: there are {matrices} for {times} times: give one for each time");
