@@ -257,7 +257,10 @@ impl Traverse for TwoLevel {
 }
 
 /// Lets the structure below count, without counting the ray again.
-fn uncounted_ray<R>(counters: &mut crate::Counters, ask: impl FnOnce(&mut crate::Counters) -> R) -> R {
+pub(crate) fn uncounted_ray<R>(
+    counters: &mut crate::Counters,
+    ask: impl FnOnce(&mut crate::Counters) -> R,
+) -> R {
     let rays = counters.rays;
     let answer = ask(counters);
     counters.rays = rays;

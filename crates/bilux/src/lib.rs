@@ -16,6 +16,7 @@
 //! the user asks for; and a [`Job`] renders it.
 
 pub mod budget;
+mod built;
 mod camera_choice;
 mod display;
 pub mod error;
@@ -23,10 +24,13 @@ pub mod fingerprint;
 pub mod job;
 mod layers;
 pub mod memory;
+mod outcome;
 mod own_light;
 pub mod presets;
+pub mod progressive;
 mod scene_warnings;
 pub mod series;
+pub mod session;
 pub mod settings;
 mod shadow;
 pub mod strategies;
@@ -41,10 +45,14 @@ pub use bilux_scene as scene;
 pub use bilux_transport as transport;
 
 pub use bilux_transport::Silent as Quiet;
+pub use built::Built;
 pub use display::Display;
 pub use error::Error;
-pub use job::{Job, Outcome};
+pub use job::Job;
+pub use outcome::Outcome;
+pub use progressive::{Budget, Progressive};
 pub use series::Series;
+pub use session::{Edit, Session};
 pub use settings::Settings;
 pub use writing::lost_alpha;
 

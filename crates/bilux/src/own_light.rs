@@ -6,7 +6,7 @@ use crate::camera_choice::choose_camera;
 use crate::job::shutter_at;
 use crate::presets::{self, Studio};
 use crate::settings::Settings;
-use bilux_scene::{AccelChoice, Scene, SceneBuilder};
+use bilux_scene::{AccelChoice, BuiltParts, Scene, SceneBuilder};
 use bilux_transport::{Illumination, illumination};
 
 /// The fraction of the visible surfaces that a file's own light must reach for the studio to stay off.
@@ -32,6 +32,7 @@ pub(crate) fn measure(
     views: &[Studio],
     settings: &Settings,
     accel: &AccelChoice,
+    known: &mut BuiltParts,
 ) -> Result<Option<OwnLight>, Error> {
     if !bilux_scene::presets::may_be_lit(scene) {
         return Ok(None);
@@ -42,7 +43,7 @@ pub(crate) fn measure(
     let size = [settings.width, settings.height];
     bilux_scene::presets::set_stroke_widths(&mut framed, &settings.camera, size, settings.time);
     let aspect = settings.width as f32 / settings.height as f32;
-    let built = framed.build(accel, shutter_at(settings, settings.time), aspect)?;
+    let built = framed.build_with(known, accel, shutter_at(settings, settings.time), aspect)?;
     let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
     let others = built.cameras().iter().skip(1).take(views.len() - 1).map(|(_, camera)| camera);
     // If a file has lights, and no surfaces that emit, the studio's surroundings are there for metal to reflect.

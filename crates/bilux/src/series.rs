@@ -1,11 +1,12 @@
 //! What the pictures of a turntable or of an animation have in common. If it changed from one to the next, they would
 //! flicker.
 
+use crate::built::Built;
 use crate::memory::Memory;
 use crate::presets::{Studio, set_upright};
 use crate::settings::Settings;
 use crate::{Error, Job, own_light};
-use bilux_scene::{Parameters, SceneBuilder};
+use bilux_scene::{BuiltParts, Parameters, SceneBuilder};
 
 /// The maximum number of views in which a turntable's own light is measured.
 const MAX_VIEWS: u32 = 8;
@@ -45,7 +46,7 @@ impl Series {
         let mut upright = scene.clone();
         set_upright(&mut upright, &views[0]);
         let accel = settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum());
-        let own = own_light::measure(&upright, &views, &settings, &accel)?;
+        let own = own_light::measure(&upright, &views, &settings, &accel, &mut BuiltParts::default())?;
         Ok(Series {
             turn: Some(0.0),
             lit: own.as_ref().map(|own| own.is_enough),
@@ -85,9 +86,23 @@ impl Job {
         most: u64,
         series: &Series,
     ) -> Result<Job, Error> {
+        Job::with_built(scene, user, most, series, &mut Built::default())
+    }
+
+    /// The same picture, made with what earlier jobs have built of this scene or another; what is new is kept there.
+    ///
+    /// # Errors
+    /// As for [`Job::within`].
+    pub fn with_built(
+        scene: &SceneBuilder,
+        user: &Parameters,
+        most: u64,
+        series: &Series,
+        built: &mut Built,
+    ) -> Result<Job, Error> {
         let mut settings = checked(scene, user, most)?;
         (settings.studio.turn, settings.studio.lit) = (series.turn, series.lit);
-        let mut job = Job::with_settings(scene, settings)?;
+        let mut job = Job::reusing(scene, settings, built)?;
         job.warnings.extend(job.settings.unused_settings(user));
         if series.lit.is_some() {
             job.notes.clone_from(&series.notes);

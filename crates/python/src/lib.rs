@@ -8,6 +8,8 @@ mod adding;
 mod arrays;
 mod errors;
 mod forks;
+mod inspect;
+mod keyframes;
 mod layer;
 mod pickling;
 mod picture;
@@ -29,6 +31,10 @@ mod _bilux {
     use super::*;
     #[pymodule_export]
     use crate::accel::Accel;
+    #[pymodule_export]
+    use crate::inspect::{replay, strategies};
+    #[pymodule_export]
+    use crate::keyframes::set_keyframes;
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
     #[pymodule_export]

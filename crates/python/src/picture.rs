@@ -104,8 +104,8 @@ impl Picture {
     }
 
     /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the
-    /// light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "complete" (false if it was
-    /// stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
+    /// light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "trees_built" (how many
+    /// there were not yet), "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
     /// Empty for other pictures.
     #[getter]
     fn info(&self, py: Python<'_>) -> Py<PyDict> {

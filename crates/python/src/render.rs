@@ -10,9 +10,10 @@ use bilux::pictures::denoise::preload;
 use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
 use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
-use bilux::{Job, Outcome};
+use bilux::{Built, Job, Outcome, Series};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// What a call asks for.
@@ -45,6 +46,8 @@ struct Rendered {
     denoiser: Option<String>,
     /// Seconds spent on building the scene with its trees.
     build_seconds: f64,
+    /// How many trees that were.
+    trees_built: u64,
 }
 
 /// The AOVs of these names.
@@ -68,7 +71,7 @@ pub(crate) fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
 /// If anything is wrong with the scene or its settings; with what the callback raised; `Interrupted` after Ctrl-C.
 pub(crate) fn render(
     py: Python<'_>,
-    scene: &SceneBuilder,
+    scene: (&SceneBuilder, &Mutex<Built>),
     request: Request,
     callback: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Picture> {
@@ -111,7 +114,11 @@ pub(crate) fn interrupted(py: Python<'_>, picture: Option<Picture>) -> PyResult<
 }
 
 /// Does the work; `None` if it was stopped before the first sample.
-fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Option<Rendered>, bilux::Error> {
+fn rendered(
+    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    request: Request,
+    watch: &Watch,
+) -> Result<Option<Rendered>, bilux::Error> {
     use bilux::transport::Progress;
     let Request { mut user, aovs, crop, fast, max_memory, loaded_at, begun } = request;
     let_limits_decide(&mut user);
@@ -122,7 +129,7 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         with_default_budget(&scene.settings, &mut user);
     }
     let building = Instant::now();
-    let mut job = Job::within(scene, &user, max_memory)?;
+    let (mut job, trees_built) = build((scene, built), &user, max_memory)?;
     let build_seconds = building.elapsed().as_secs_f64();
     if watch.is_cancelled() {
         return Ok(None);
@@ -174,8 +181,21 @@ fn rendered(scene: &SceneBuilder, request: Request, watch: &Watch) -> Result<Opt
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
         build_seconds,
+        trees_built,
         outcome,
     }))
+}
+
+/// The job, with what earlier renders of the scene have built, and the number of trees that were missing.
+pub(crate) fn build(
+    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    user: &Parameters,
+    max_memory: u64,
+) -> Result<(Job, u64), bilux::Error> {
+    let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = built.tree_work().trees;
+    let job = Job::with_built(scene, user, max_memory, &Series::default(), &mut built)?;
+    Ok((job, built.tree_work().trees - before))
 }
 
 /// How the job's pictures are shown.
@@ -218,6 +238,7 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
     info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
     info.set_item("build_seconds", rendered.build_seconds)?;
+    info.set_item("trees_built", rendered.trees_built)?;
     info.set_item("complete", !outcome.cancelled)?;
     info.set_item("integrator", rendered.integrator)?;
     info.set_item("choice", outcome.choice.as_ref().map(ToString::to_string))?;

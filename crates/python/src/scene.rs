@@ -8,6 +8,7 @@ use crate::progressive::Progressive;
 use crate::render::{Request, aovs, render};
 use crate::spec::Spec;
 use crate::values::{self, Resolve, Unresolved};
+use bilux::Built;
 use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Transform;
 use bilux::scene::cameras::CameraSpec;
@@ -24,7 +25,11 @@ use std::time::Instant;
 /// The native part of `bilux.Scene`.
 #[pyclass(frozen, subclass, module = "bilux._bilux", name = "Scene")]
 #[derive(Default)]
-pub(crate) struct Scene(Mutex<SceneBuilder>);
+pub(crate) struct Scene {
+    builder: Mutex<SceneBuilder>,
+    /// What renders have built. Locked only without the GIL, and while a render builds.
+    pub(crate) built: Mutex<Built>,
+}
 
 #[pymethods]
 impl Scene {
@@ -322,7 +327,12 @@ impl Scene {
         let aovs = aovs(&aov).map_err(of_scene)?;
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
-        render(py, &scene, Request { user, aovs, crop, fast, max_memory, loaded_at, begun }, callback)
+        render(
+            py,
+            (&scene, &self.built),
+            Request { user, aovs, crop, fast, max_memory, loaded_at, begun },
+            callback,
+        )
     }
 
     fn _progressive(
@@ -334,12 +344,18 @@ impl Scene {
     ) -> PyResult<Progressive> {
         let user = values::parameters(settings, &mut Unresolved)?;
         let scene = self.builder(py).clone();
-        Progressive::new(py, &scene, &user, max_memory, callback)
+        Progressive::new(py, (&scene, &self.built), &user, max_memory, callback)
     }
 
     fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {
         let copy = self.builder(py).clone();
         *other.get().builder(other.py()) = copy;
+        // Meshes are shared, and so are the trees over them.
+        let (own, other) = (&self.built, &other.get().built);
+        py.detach(|| {
+            let copy = own.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            *other.lock().unwrap_or_else(PoisonError::into_inner) = copy;
+        });
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
@@ -358,8 +374,8 @@ impl Scene {
 
 impl Scene {
     /// The scene under construction. Other threads run while this one waits for it.
-    fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
-        self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
+        self.builder.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 }
 

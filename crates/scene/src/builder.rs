@@ -1,5 +1,7 @@
 //! A scene under construction: plain data, as files describe it.
 
+mod built_parts;
+
 use crate::accel_choice::AccelChoice;
 use crate::axis::UpHint;
 use crate::cameras::{self, CameraSpec};
@@ -7,8 +9,9 @@ use crate::error::{SceneError, Warning};
 use crate::footprint;
 use crate::geometry::{Geometry, Placed};
 use crate::inventory::Inventory;
-use crate::lights::{self, BuiltLight};
-use crate::materials::{self, Material, MaterialInputs};
+use crate::kept::MeshPool;
+use crate::lights::BuiltLight;
+use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec};
 use crate::scene::{Scene, SceneLight, SceneParts};
@@ -18,6 +21,7 @@ use crate::strokes::StrokeWidths;
 use crate::texture::Texture;
 use bilux_math::motion::Motion;
 use bilux_math::{DVec3, Rgb, Transform};
+pub use built_parts::BuiltParts;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -118,16 +122,45 @@ impl SceneBuilder {
     /// # Errors
     /// The first problem found, with its location.
     pub fn build(&self, accel: &AccelChoice, shutter: [f32; 2], aspect: f32) -> Result<Scene, SceneError> {
+        self.build_with(&mut BuiltParts::default(), accel, shutter, aspect)
+    }
+
+    /// The same scene, made with what is known from earlier builds, and what is new is kept for later ones: trees of
+    /// what did not move, materials, lights and their tables. It does not matter which scene was built before.
+    ///
+    /// # Errors
+    /// As for [`SceneBuilder::build`]; then `parts` stays as it was.
+    pub fn build_with(
+        &self,
+        parts: &mut BuiltParts,
+        accel: &AccelChoice,
+        shutter: [f32; 2],
+        aspect: f32,
+    ) -> Result<Scene, SceneError> {
+        parts.begin();
+        let built = self.build_parts(parts, accel, shutter, aspect);
+        parts.end(built.is_ok());
+        built
+    }
+
+    fn build_parts(
+        &self,
+        parts: &mut BuiltParts,
+        accel: &AccelChoice,
+        shutter: [f32; 2],
+        aspect: f32,
+    ) -> Result<Scene, SceneError> {
         let mut materials: Vec<Arc<dyn Material>> = self
             .materials
             .iter()
-            .map(|spec| materials::build(spec, &MaterialInputs::new(&self.textures, &self.materials)))
+            .map(|spec| parts.material(spec, &MaterialInputs::new(&self.textures, &self.materials)))
             .collect::<Result<_, _>>()?;
-        for object in &self.objects {
-            check_mesh(object, materials.len())?;
-        }
+        let mut meshes = self.known_meshes(materials.len(), &mut parts.meshes)?;
         let BuiltLights { lights, surfaces, panels, spheres, sphere_lights } =
-            self.build_lights(&mut materials)?;
+            self.build_lights(&mut materials, parts)?;
+        for panel in &surfaces {
+            meshes.push(parts.meshes.of(&panel.mesh, || Ok::<(), SceneError>(()))?);
+        }
         let cameras = self
             .cameras
             .iter()
@@ -135,47 +168,71 @@ impl SceneBuilder {
             .collect::<Result<Vec<_>, SceneError>>()?;
         let filtered_of = |material| footprint::filtered(material, &self.materials, &self.textures);
         let filtered: Vec<Vec<Arc<Texture>>> = self.materials.iter().map(filtered_of).collect();
-        let placed = self.objects.iter().chain(&surfaces).map(|object| Placed {
-            mesh: object.mesh.clone(),
+        let place = |object: &Object, mesh: Arc<Mesh>| Placed {
+            mesh,
             material: object.material as u32,
             motion: object.motion.clone(),
             instanced: object.instanced,
             gives_light: !materials[object.material].emission().is_black(),
             has_tangents: materials[object.material].needs_tangents(),
             is_filtered: filtered.get(object.material).is_some_and(|textures| !textures.is_empty()),
-        });
+        };
+        let objects = self.objects.iter().chain(&surfaces).zip(meshes);
+        let placed = objects.map(|(object, mesh)| place(object, mesh)).collect();
         let has_strokes = self.objects.iter().any(|object| object.mesh.stroke_count() > 0);
         let size = if has_strokes { self.bounds(shutter[0]).extent().length() } else { 1.0 };
         let widths = self.stroke_widths.for_size(size);
-        let geometry = Geometry::build(placed.collect(), spheres, widths, accel)?;
-        let parts = SceneParts::new(geometry, materials, lights, &panels, &sphere_lights, cameras, filtered);
-        Ok(Scene::new(Arc::new(parts), accel, shutter))
+        let geometry = Geometry::build(placed, spheres, widths, accel, &mut parts.trees)?;
+        let (panels, known) = ((&panels[..], &sphere_lights[..]), &mut parts.mesh_lights);
+        let all = SceneParts::new(geometry, materials, lights, panels, cameras, filtered, known);
+        Ok(Scene::new(Arc::new(all), accel, shutter, &mut parts.top))
+    }
+
+    /// The mesh of each object, once it has been checked.
+    fn known_meshes(&self, materials: usize, pool: &mut MeshPool) -> Result<Vec<Arc<Mesh>>, SceneError> {
+        let mut meshes: Vec<Arc<Mesh>> = Vec::with_capacity(self.objects.len());
+        for (i, object) in self.objects.iter().enumerate() {
+            check_material(object, materials)?;
+            // Instances mostly come one after the other.
+            let before =
+                i.checked_sub(1).filter(|&before| Arc::ptr_eq(&self.objects[before].mesh, &object.mesh));
+            meshes.push(match before {
+                Some(before) => meshes[before].clone(),
+                None => pool.of(&object.mesh, || check_mesh(object))?,
+            });
+        }
+        Ok(meshes)
     }
 
     /// Builds lights without a surface; lights with one become objects or spheres.
-    fn build_lights(&self, materials: &mut Vec<Arc<dyn Material>>) -> Result<BuiltLights, SceneError> {
+    fn build_lights(
+        &self,
+        materials: &mut Vec<Arc<dyn Material>>,
+        parts: &mut BuiltParts,
+    ) -> Result<BuiltLights, SceneError> {
         let mut built = BuiltLights::default();
-        let mut glowing = |emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
-            let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
-            let black = black.with("emission_sides", sides.name());
-            materials.push(materials::build(&black, &MaterialInputs::default())?);
-            Ok(materials.len() - 1)
-        };
+        let mut glowing =
+            |parts: &mut BuiltParts, emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
+                let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
+                let black = black.with("emission_sides", sides.name());
+                materials.push(parts.material(&black, &MaterialInputs::default())?);
+                Ok(materials.len() - 1)
+            };
         for spec in &self.lights {
-            match lights::build(spec, &self.textures)? {
+            match parts.light(spec, &self.textures)? {
                 BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),
                 BuiltLight::Several(lights) => {
                     built.lights.extend(lights.into_iter().map(|light| SceneLight::new(&spec.name, light)));
                 }
                 BuiltLight::Surface { mesh, emission, sides, classic } => {
-                    let material = glowing(emission, sides)?;
+                    let material = glowing(parts, emission, sides)?;
                     if let Some(colour) = classic {
                         built.panels.push((self.objects.len() + built.surfaces.len(), colour));
                     }
                     built.surfaces.push(Object::new(&spec.name, mesh, material));
                 }
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
-                    let material = glowing(emission, Sides::Both)? as u32;
+                    let material = glowing(parts, emission, Sides::Both)? as u32;
                     built.spheres.push(PlacedSphere { centre, radius, material });
                     built.sphere_lights.push((spec.name.clone(), classic));
                 }
@@ -199,17 +256,27 @@ struct BuiltLights {
     sphere_lights: Vec<(String, Option<Rgb>)>,
 }
 
-/// Checks that a mesh has as many attributes as positions, and that its indices are in range.
-fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
-    let mesh = &*object.mesh;
-    let name = if object.name.is_empty() { &mesh.name } else { &object.name };
-    let fail = |message: String| Err(SceneError::invalid(message, &Span::default()));
-    if object.material >= materials {
-        return fail(format!(
-            "object '{name}' has material {}, but there are only {materials}",
-            object.material
-        ));
+fn fail(message: String) -> Result<(), SceneError> {
+    Err(SceneError::invalid(message, &Span::default()))
+}
+
+/// What messages call an object.
+fn name_of(object: &Object) -> &str {
+    if object.name.is_empty() { &object.mesh.name } else { &object.name }
+}
+
+/// Checks that there is the object's material.
+fn check_material(object: &Object, materials: usize) -> Result<(), SceneError> {
+    if object.material < materials {
+        return Ok(());
     }
+    let (name, material) = (name_of(object), object.material);
+    fail(format!("object '{name}' has material {material}, but there are only {materials}"))
+}
+
+/// Checks that a mesh has as many attributes as positions, and that its indices are in range.
+fn check_mesh(object: &Object) -> Result<(), SceneError> {
+    let (mesh, name) = (&*object.mesh, name_of(object));
     let count = mesh.positions.len();
     let attributes = [
         ("normals", mesh.normals.len()),

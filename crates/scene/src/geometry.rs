@@ -2,14 +2,16 @@
 //! own, points and lines in separate trees, and spheres in a last one.
 
 mod corners_in_world;
+mod object_trees;
+mod still;
 mod still_triangles;
 mod surface_point;
+mod trees;
 
 use crate::accel_choice::AccelChoice;
 use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
-use crate::mesh::Mesh;
-use crate::parameters::Span;
+use crate::kept::{Place, Same};
 pub use crate::placed::Placed;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::strokes::{StrokeWidths, Strokes};
@@ -20,11 +22,13 @@ use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
+pub use object_trees::TreeWork;
 use std::borrow::Cow;
-use std::collections::HashMap;
 use std::sync::Arc;
+use still::Still;
 pub use surface_point::{PointAndNormals, StillTriangle};
 use surface_point::{normal_at, normals_of, point_with_error};
+pub(crate) use trees::Trees;
 
 /// All surfaces, and the trees over them.
 pub struct Geometry {
@@ -34,7 +38,7 @@ pub struct Geometry {
     /// The index in `still` of each static object's first triangle, with the object; ascending.
     still_objects: Vec<(u32, u32)>,
     /// For each triangle of `still`, the index of its object in `still_objects`.
-    still_owners: Vec<u32>,
+    still_owners: Arc<[u32]>,
     /// The object of each instance; the entry of `still` is unused.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
@@ -48,70 +52,54 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Builds every tree.
+    /// Builds the trees that `trees` does not have yet.
     ///
-    /// Static objects are transformed to world space and share one tree. Moving or instanced objects keep trees of
-    /// their own, one per mesh. All spheres share one tree. The points and lines of each object have one, with the
-    /// given widths in world space.
+    /// Static objects are transformed to world space and share one tree, or a few where some were edited since. Moving
+    /// or instanced objects keep trees of their own, one per mesh. All spheres share one tree. The points and lines of
+    /// each object have one, with the given widths in world space.
     ///
     /// # Errors
     /// When there are too many triangles, or no accelerator has the name.
-    pub fn build(
+    pub(crate) fn build(
         objects: Vec<Placed>,
         spheres: Vec<PlacedSphere>,
         widths: StrokeWidths,
         accel: &AccelChoice,
+        trees: &mut Trees,
     ) -> Result<Geometry, SceneError> {
-        let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
+        let accel = &trees.only(accel);
         let in_own_tree = |o: &Placed| o.in_own_tree() && !o.mesh.triangles.is_empty();
-        let (mut corners, mut groups) = (Vec::new(), Vec::new());
-        let (mut still_objects, mut still_owners) = (Vec::new(), Vec::new());
+        let (mut still_objects, mut keys, mut first) = (Vec::new(), Vec::new(), 0u32);
         for (i, object) in objects.iter().enumerate().filter(|(_, o)| !o.in_own_tree()) {
-            let first = corners.len() as u32;
             still_objects.push((first, i as u32));
-            corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
-            groups.push(first..corners.len() as u32);
-            still_owners.resize(corners.len(), still_objects.len() as u32 - 1);
+            first = first.wrapping_add(object.mesh.triangles.len() as u32);
+            keys.extend(Place::of(&object.motion).map(|place| (Same(object.mesh.clone()), place)));
         }
-        let make = |mesh: Arc<TriangleMesh>| -> Result<Arc<dyn Accelerator>, SceneError> {
-            Ok(Arc::from(bilux_accel::build(&accel.name, mesh, &accel.options).map_err(|e| failed(&e))?))
-        };
+        let still = Still::build(keys, trees.still.take(), &mut trees.of_objects, accel)?;
+        trees.still.clone_from(&still);
         let (mut instances, mut instance_objects) = (Vec::new(), Vec::new());
-        let still = if corners.is_empty() {
-            None
-        } else {
-            let mesh = TriangleMesh::from_corners(corners).and_then(|m| m.with_groups(groups));
-            let mesh = Arc::new(mesh.map_err(|e| failed(&e))?);
-            instances.push(Instance::new(make(mesh.clone())?, Motion::REST));
+        if let Some(still) = &still {
+            instances.push(Instance::new(still.tree.clone(), Motion::REST));
             instance_objects.push(u32::MAX);
-            Some(mesh)
-        };
-        let mut trees: HashMap<*const Mesh, Arc<dyn Accelerator>> = HashMap::new();
+        }
         for (i, object) in objects.iter().enumerate().filter(|(_, o)| in_own_tree(o)) {
-            let key = Arc::as_ptr(&object.mesh);
-            let tree = match trees.get(&key) {
-                Some(tree) => tree.clone(),
-                None => {
-                    let corners = world_corners(&object.mesh, &Transform::IDENTITY).collect();
-                    let mesh = TriangleMesh::from_corners(corners).map_err(|e| failed(&e))?;
-                    let tree = make(Arc::new(mesh))?;
-                    trees.insert(key, tree.clone());
-                    tree
-                }
-            };
-            instances.push(Instance::new(tree, object.motion.clone()));
+            instances.push(Instance::new(trees.of_mesh(&object.mesh, accel)?, object.motion.clone()));
             instance_objects.push(i as u32);
         }
         let mut strokes = Vec::new();
-        for (object, tree, motion, is_baked) in Strokes::trees(&objects, widths) {
+        for (object, tree, motion, is_baked) in trees.of_all_strokes(&objects, widths) {
             instances.push(Instance::new(tree.clone(), motion));
             instance_objects.push(object);
             strokes.push((tree, is_baked));
         }
         let mirrored =
             objects.iter().map(|o| o.motion.static_transform().is_some_and(Transform::mirrors)).collect();
-        let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
+        let spheres = trees.of_spheres(spheres, objects.len() as u32, instances.len() as u32);
         instances.extend(spheres.tree());
+        let (still, still_owners) = match still {
+            Some(still) => (Some(still.mesh), still.owners),
+            None => (None, Arc::from([])),
+        };
         Ok(Geometry {
             objects,
             still,

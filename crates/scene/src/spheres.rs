@@ -35,10 +35,13 @@ impl PlacedSphere {
     }
 }
 
+/// The tree of all spheres.
+pub(crate) type SphereTree = Arc<PrimitiveTree<Vec<Shape>>>;
+
 /// All spheres of a scene.
 pub(crate) struct Spheres {
     all: Vec<PlacedSphere>,
-    tree: Arc<PrimitiveTree<Vec<Shape>>>,
+    tree: SphereTree,
     /// The object index of the first sphere.
     first_object: u32,
     /// The instance of the spheres; `u32::MAX` if there are none.
@@ -49,10 +52,22 @@ pub(crate) struct Spheres {
 const WIDE: f32 = 1.0 / (1u32 << 26) as f32;
 
 impl Spheres {
-    pub(crate) fn new(all: Vec<PlacedSphere>, first_object: u32, instance: u32) -> Spheres {
+    /// Spheres with their tree, if it is known already.
+    pub(crate) fn new(
+        all: Vec<PlacedSphere>,
+        tree: Option<SphereTree>,
+        first_object: u32,
+        instance: u32,
+    ) -> Spheres {
         let instance = if all.is_empty() { u32::MAX } else { instance };
-        let shapes = all.iter().map(|sphere| Shape::Sphere(sphere.shape())).collect();
-        Spheres { all, tree: Arc::new(PrimitiveTree::new(shapes)), first_object, instance }
+        let shapes = || all.iter().map(|sphere| Shape::Sphere(sphere.shape())).collect();
+        let tree = tree.unwrap_or_else(|| Arc::new(PrimitiveTree::new(shapes())));
+        Spheres { all, tree, first_object, instance }
+    }
+
+    /// The tree, to be kept.
+    pub(crate) fn shared_tree(&self) -> SphereTree {
+        self.tree.clone()
     }
 
     /// The tree of all spheres, in world space.

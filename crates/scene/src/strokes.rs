@@ -3,13 +3,11 @@
 
 use crate::corners::transform_with_error;
 use crate::mesh::Mesh;
-use crate::placed::Placed;
 use crate::surface::{Surface, gamma, unit_or};
 use bilux_accel::primitives::{Capsule, Crossing, PrimitiveTree, Primitives, Shape, Sphere};
 use bilux_accel::{Hit, Primitive, Ray};
 use bilux_math::glam::DVec3;
-use bilux_math::{Motion, Rgb, Transform, Vec2, Vec3};
-use std::collections::HashMap;
+use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::sync::Arc;
 
 /// The widths of points and lines, in metres in world space. A width of 0 becomes a small fraction of the scene's size.
@@ -30,9 +28,6 @@ impl StrokeWidths {
     }
 }
 
-/// An object, its tree, the tree's motion, and whether the tree is in world space.
-type Placement = (u32, Arc<PrimitiveTree<Strokes>>, Motion, bool);
-
 /// The points of a mesh, then its lines, with their shapes.
 pub(crate) struct Strokes {
     mesh: Arc<Mesh>,
@@ -42,40 +37,22 @@ pub(crate) struct Strokes {
 }
 
 impl Strokes {
-    /// The tree over the points and lines of a mesh: in world space if `to_world` is given, otherwise in object space,
-    /// in which widths are divided by `scale`.
+    /// The radii of points and lines in a space whose lengths are `scale` times as long in the world.
+    pub(crate) fn radii(widths: StrokeWidths, scale: f32) -> StrokeWidths {
+        let radius = |width: f32| width * 0.5 / scale;
+        StrokeWidths { points: radius(widths.points), lines: radius(widths.lines) }
+    }
+
+    /// The tree over the points and lines of a mesh: in world space if `to_world` is given, otherwise in object space.
     pub(crate) fn tree(
         mesh: &Arc<Mesh>,
         to_world: Option<&Transform>,
-        widths: StrokeWidths,
-        scale: f32,
+        radii: StrokeWidths,
     ) -> PrimitiveTree<Strokes> {
-        let radius = |width: f32| width * 0.5 / scale;
-        let radii = StrokeWidths { points: radius(widths.points), lines: radius(widths.lines) };
         let moved = to_world
             .filter(|to_world| !to_world.is_identity())
             .map(|to_world| mesh.positions.iter().map(|p| to_world.point(*p)).collect());
         PrimitiveTree::new(Strokes { mesh: mesh.clone(), moved, radii })
-    }
-
-    /// The trees of all objects with points or lines: object, tree, its motion, and whether it is in world space.
-    pub(crate) fn trees(objects: &[Placed], widths: StrokeWidths) -> Vec<Placement> {
-        let mut shared: HashMap<(*const Mesh, u32), Arc<PrimitiveTree<Strokes>>> = HashMap::new();
-        let mut all = Vec::new();
-        for (i, object) in objects.iter().enumerate().filter(|(_, o)| o.mesh.stroke_count() > 0) {
-            let place = object.motion.at(0.0);
-            if !object.in_own_tree() {
-                let tree = Arc::new(Strokes::tree(&object.mesh, Some(&place), widths, 1.0));
-                all.push((i as u32, tree, Motion::REST, true));
-                continue;
-            }
-            let scale = mean_scale(&place);
-            let tree = || Arc::new(Strokes::tree(&object.mesh, None, widths, scale));
-            let key = (Arc::as_ptr(&object.mesh), scale.to_bits());
-            let tree = shared.entry(key).or_insert_with(tree).clone();
-            all.push((i as u32, tree, object.motion.clone(), false));
-        }
-        all
     }
 
     fn position(&self, vertex: u32) -> [f32; 3] {
@@ -174,7 +151,7 @@ impl Strokes {
 }
 
 /// The mean factor on lengths.
-fn mean_scale(to_world: &Transform) -> f32 {
+pub(crate) fn mean_scale(to_world: &Transform) -> f32 {
     let volume = f64::from(to_world.matrix().determinant()).abs();
     let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
     if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }

@@ -68,7 +68,7 @@ pub use photons::{Merging, Photons};
 pub use pixel_integrator::{CameraSpread, PixelIntegrator, Plan};
 pub use plan::{Candidate, Choice};
 pub use progress::{Progress, Silent};
-pub use render::render;
+pub use render::{plan, render};
 pub use rendered::Rendered;
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;

@@ -48,6 +48,23 @@ impl RenderSettings {
     }
 }
 
+/// What an integrator that chooses its strategies chooses for a picture; `None` for the others. The plan's integrator
+/// renders as the one that chose it, without choosing again: for pictures that are rendered in several ranges of
+/// samples.
+///
+/// # Errors
+/// As for [`render`].
+pub fn plan(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+) -> Result<Option<Plan>, RenderError> {
+    settings.check()?;
+    let pool = threads(settings)?;
+    Ok(pool.install(|| integrator.plan(scene, camera, &settings.for_planning())))
+}
+
 /// Renders the requested samples.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 
 mod accel;
 mod background;
+mod same_samples;
 mod size;
 mod studio;
 

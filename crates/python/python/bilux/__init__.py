@@ -33,7 +33,7 @@ from ._tables import (
     settings,
     tonemaps,
 )
-from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress
+from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy
 from ._view import View
 
 __all__ = [
@@ -52,10 +52,12 @@ __all__ = [
     "PictureError",
     "Progress",
     "RenderError",
+    "Replay",
     "Scene",
     "SceneError",
     "SceneWarning",
     "Spec",
+    "Strategy",
     "Table",
     "Texture",
     "View",

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "rows"]
+__all__ = ["Accel", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
 
 __version__: str
 
@@ -17,6 +17,25 @@ _Exposure = float | Literal["auto"]
 
 def rows(table: str) -> list[dict[str, Any]]: ...
 def licenses() -> str: ...
+def set_keyframes(scene: Scene, object: int, times: NDArray[np.float64], transforms: ArrayLike) -> None: ...
+def replay(
+    scene: Scene, place: tuple[int, int, int], settings: dict[str, Any], max_memory: int
+) -> tuple[
+    str,
+    list[tuple[int, str]],
+    tuple[float, float, float],
+    tuple[float, float, float],
+    tuple[float, float, float],
+    float,
+    int,
+    int,
+]: ...
+def strategies(
+    scene: Scene,
+    settings: dict[str, Any],
+    max_memory: int,
+    callback: Callable[[int, int, int, float], object] | None,
+) -> list[tuple[str, int, int, bool, Picture, Picture]] | None: ...
 def read_picture(path: _Path) -> Picture: ...
 def compare(picture: Picture | ArrayLike, reference: Picture | ArrayLike) -> dict[str, float]: ...
 

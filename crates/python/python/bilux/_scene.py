@@ -7,12 +7,13 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _bilux
 from ._bilux import Picture, Spec
 from ._progress import following
-from ._types import Mesh, Object, Progress
+from ._types import Mesh, Object, Progress, Replay, Strategy
 
 if TYPE_CHECKING:
     from ._view import View
@@ -125,6 +126,32 @@ class Scene(_bilux.Scene):
     def set_transform(self, object: int, transform: ArrayLike) -> None:
         """Places an object anew: a (4, 4) matrix from its mesh to the scene."""
         self._set_transform(self._number(object), transform)
+
+    def set_keyframes(self, object: int, times: ArrayLike, transforms: ArrayLike) -> None:
+        """Moves an object through transforms at given times, instead of placing it once.
+
+        Between keyframes, translation and scale change evenly, and so does the rotation; before the first and after the
+        last the object stands still. `render(time=…)` shows a moment, and `render(shutter=…)` blurs what moves while
+        the shutter is open.
+
+        Args:
+            object: its number.
+            times: (k,) increasing times in seconds.
+            transforms: (k, 4, 4) matrices from its mesh to the scene: each a scale along the mesh's axes, then a
+                rotation, then a translation.
+
+        Raises:
+            ValueError: if the arrays do not fit, or a matrix shears.
+
+        Example:
+            >>> scene = bilux.generate("cornell")
+            >>> places = np.tile(np.eye(4), (2, 1, 1))
+            >>> places[1, :3, 3] = (0, 0.2, 0)
+            >>> scene.set_keyframes(0, [0, 1], places)
+            >>> scene.render(size=32, spp=1, time=0.5, shutter=0.1).width
+            32
+        """
+        _bilux.set_keyframes(self, self._number(object), np.asarray(times, np.float64), transforms)
 
     def set_material(self, object: int, material: Spec) -> None:
         """Makes an object of another material."""
@@ -293,6 +320,53 @@ class Scene(_bilux.Scene):
         from ._view import View
 
         return View(self, _sides(size), spp, operator.index(camera), settings | {"integrator": integrator})
+
+    def replay(self, x: int, y: int, sample: int = 0, **settings: Any) -> Replay:
+        """Takes one sample of a picture again, and says what happens along its path.
+
+        Args:
+            x, y: the pixel, from the upper left corner.
+            sample: the number of the sample, from 0.
+            **settings: those of the picture, as for `render`, apart from `noise` and `time_limit`.
+
+        Example:
+            >>> replay = bilux.generate("cornell").replay(8, 8, size=16, integrator="path")
+            >>> replay.rays > 0, len(replay.events) > 0
+            (True, True)
+        """
+        given, most = self._whole(settings)
+        return Replay(*_bilux.replay(self, (operator.index(x), operator.index(y), operator.index(sample)), given, most))
+
+    def strategies(self, *, progress: bool | Callable[[Progress], object] = False, **settings: Any) -> list[Strategy]:
+        """Renders a picture for each strategy of an integrator that has several, such as "bdpt" and "vcm".
+
+        Args:
+            progress: as for `render`. Without a picture if it stops the render.
+            **settings: as for `render`, apart from `noise` and `time_limit`.
+
+        Returns:
+            the strategies, the shortest paths first. Their weighted pictures add up to that of `render`.
+
+        Raises:
+            SceneError: also if the integrator has no strategies.
+
+        Example:
+            >>> found = bilux.generate("cornell").strategies(size=16, spp=1, integrator="bdpt")
+            >>> found[0].name, found[0].weighted.width
+            ('s0-t2', 16)
+        """
+        given, most = self._whole(settings)
+        with following(progress) as callback:
+            found = _bilux.strategies(self, given, most, callback)
+        return [Strategy(*one) for one in found or []]
+
+    def _whole(self, settings: dict[str, Any]) -> tuple[dict[str, Any], int]:
+        """The settings of a picture with all of its samples, and the bytes that it may take."""
+        if settings.keys() & {"noise", "time_limit"}:
+            raise TypeError("noise and time_limit have no effect here: give spp, the number of samples")
+        most = settings.pop("max_memory", MAX_MEMORY)
+        plain = dict.fromkeys(("size", "camera", "time", "exposure"))
+        return self._settings(**plain | settings) | {"noise": 0, "time_limit": 0}, _bytes(most)
 
     def _settings(
         self,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._bilux import Spec
+from ._bilux import Picture, Spec
 
 Floats = NDArray[np.float32]
 Integers = NDArray[np.int64]
@@ -131,3 +131,50 @@ class Progress(NamedTuple):
 
 
 __all__: list[str] = ["AllHits", "Hits", "Mesh", "NearestPoints", "Object", "Progress"]
+
+
+class Replay(NamedTuple):
+    """One sample of a picture, taken again (`Scene.replay`). Its text, `str(replay)`, is for people.
+
+    Attributes:
+        text: all of it in words.
+        events: what happens along the path: pairs of the number of scattering events before, and a description.
+        radiance: red, green and blue of the light in the sample's own pixel.
+        origin: where the camera ray begins.
+        direction: its direction.
+        time: its time in seconds.
+        splats: the number of pixels to which its light path contributes.
+        rays: the number of rays that it takes.
+    """
+
+    text: str
+    events: list[tuple[int, str]]
+    radiance: tuple[float, float, float]
+    origin: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    time: float
+    splats: int
+    rays: int
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Strategy(NamedTuple):
+    """What one strategy of an integrator finds (`Scene.strategies`).
+
+    Attributes:
+        name: such as "s2-t1".
+        s: the number of vertices from the light, including the one on the light.
+        t: the number of vertices from the camera, including the one at the camera.
+        merges: whether the last vertices of both subpaths are merged, not connected.
+        weighted: its share of the picture: all of these add up to it.
+        unweighted: all light of paths of this length, as far as this strategy finds it.
+    """
+
+    name: str
+    s: int
+    t: int
+    merges: bool
+    weighted: Picture
+    unweighted: Picture

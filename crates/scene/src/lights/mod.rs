@@ -41,6 +41,7 @@ use bilux_math::{Aabb, Rgb, Vec3};
 use std::sync::Arc;
 
 /// The result of building a row.
+#[derive(Clone)]
 pub enum BuiltLight {
     /// A light without a surface.
     Light(Arc<dyn Light>),

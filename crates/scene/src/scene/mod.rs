@@ -1,10 +1,12 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
 mod may_pass;
+mod mesh_lights;
 mod parts;
 mod shading;
 mod sheets;
 mod still_triangles;
+mod top;
 mod tracer;
 
 use crate::accel_choice::AccelChoice;
@@ -20,17 +22,19 @@ use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
 use may_pass::MayPass;
+pub(crate) use mesh_lights::MeshLights;
 pub use parts::SceneLight;
 pub(crate) use parts::SceneParts;
 pub use shading::Shading;
 use sheets::Sheets;
 use std::sync::Arc;
+pub(crate) use top::Top;
 pub use tracer::Tracer;
 
 /// A scene at a time, ready for ray queries.
 pub struct Scene {
     parts: Arc<SceneParts>,
-    accelerator: TwoLevel,
+    accelerator: Arc<TwoLevel>,
     /// The only tree of triangles, if there is just one and it is in world space: rays bypass the top level, and query
     /// it and then the spheres.
     alone: Option<Arc<dyn Accelerator>>,
@@ -46,15 +50,19 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub(crate) fn new(parts: Arc<SceneParts>, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
-        let accelerator = parts.geometry.top_level(accel, shutter);
+    pub(crate) fn new(
+        parts: Arc<SceneParts>,
+        accel: &AccelChoice,
+        shutter: [f32; 2],
+        top: &mut Top,
+    ) -> Scene {
+        let (accelerator, sheets) = top.of(&parts, accel, shutter);
         let alone = match parts.geometry.triangle_instances() {
             [only] if only.mask == u32::MAX && only.motion.is_still() && !parts.geometry.has_strokes() => {
                 only.motion.at(0.0).is_identity().then(|| only.accelerator.clone())
             }
             _ => None,
         };
-        let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
         let absorbs = |o: &&Placed| {
             let material = &parts.materials[o.material as usize];
             !material.sigma_a().is_black() && material.nested().is_none()
@@ -81,7 +89,7 @@ impl Scene {
 
     /// The same scene at another time: rebuilds only the top level.
     pub fn at(&self, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
-        let scene = Scene::new(self.parts.clone(), accel, shutter);
+        let scene = Scene::new(self.parts.clone(), accel, shutter, &mut Top::default());
         match &self.view {
             Some(view) => scene.seen_by(view.clone()),
             None => scene,
@@ -112,12 +120,12 @@ impl Scene {
 
     /// The bounding box of everything.
     pub fn bounds(&self) -> Aabb {
-        Accelerator::bounds(&self.accelerator)
+        Accelerator::bounds(&*self.accelerator)
     }
 
     /// The acceleration structure.
     pub fn accelerator(&self) -> &dyn Accelerator {
-        &self.accelerator
+        &*self.accelerator
     }
 
     /// All surfaces and their trees.

@@ -1,15 +1,15 @@
 //! What a scene consists of at all times.
 
 use super::may_pass::MayPass;
+use super::mesh_lights::MeshLights;
 use super::shading::ObjectShading;
 use crate::cameras::Camera;
-use crate::corners::corner_uvs;
 use crate::geometry::Geometry;
-use crate::lights::{Light, MeshLight, Picture, SphereLight};
+use crate::lights::{Light, SphereLight};
 use crate::materials::Material;
 use crate::placed::Placed;
 use crate::sides::Sides;
-use crate::texture::{ColourMap, Texture};
+use crate::texture::Texture;
 use bilux_math::{Aabb, Rgb};
 use std::sync::Arc;
 
@@ -56,34 +56,29 @@ pub(crate) struct SceneParts {
     pub(super) shading: Vec<ObjectShading>,
 }
 
+/// An object that came from a light, and the light's classic colour.
+type Panel = (usize, Rgb);
+
+/// The name of a sphere that came from a light, and its classic colour if that was given.
+type SphereName = (String, Option<Rgb>);
+
 impl SceneParts {
     pub(crate) fn new(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
         mut lights: Vec<SceneLight>,
-        panels: &[(usize, Rgb)],
-        sphere_lights: &[(String, Option<Rgb>)],
+        (panels, sphere_lights): (&[Panel], &[SphereName]),
         cameras: Vec<(String, Arc<dyn Camera>)>,
         textures: Vec<Vec<Arc<Texture>>>,
+        mesh_lights: &mut MeshLights,
     ) -> SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
-            let (triangles, motion) = geometry.object_triangles(i as u32);
-            let material = &materials[object.material as usize];
-            let even = || ColourMap { colour: material.emission(), texture: None };
-            let varies = material.emission_map().is_some() || material.opacity().is_some();
-            let picture = varies.then(|| Picture {
-                map: material.emission_map().cloned().unwrap_or_else(even),
-                opacity: material.opacity().cloned(),
-                uvs: corner_uvs(&object.mesh),
-            });
-            let given = (material.emission(), picture, material.emission_sides());
-            let mirrored = object.motion.at(0.0).mirrors();
             let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
-            let first = geometry.first_primitive(i as u32);
-            if let Some(light) = MeshLight::new(triangles, mirrored, first, motion, given, classic) {
+            let material = &materials[object.material as usize];
+            if let Some(light) = mesh_lights.of_object(&geometry, i as u32, material, classic) {
                 object_lights[i] = Some(lights.len() as u32);
-                lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
+                lights.push(SceneLight::new(&object.mesh.name, light));
             }
         }
         for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(sphere_lights).enumerate() {

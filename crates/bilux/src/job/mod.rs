@@ -1,22 +1,23 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
 
-use crate::Error;
+mod ranges;
+
 use crate::budget::time_for_rendering;
+use crate::built::Built;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::own_light;
 use crate::scene_warnings::{self, oddities};
 use crate::series::Series;
 use crate::settings::Settings;
+use crate::{Error, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
-use bilux_scene::{
-    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
-};
+use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    BatchMeans, Choice, Features, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError,
-    RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Replay, SamplePlace, ShadowCatcher,
+    Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -32,6 +33,8 @@ pub struct Job {
     accel: AccelChoice,
     camera: Arc<dyn Camera>,
     integrator: Box<dyn PixelIntegrator>,
+    /// What the integrator chose, if it was asked before rendering ([`Job::plan`]).
+    plan: Option<Plan>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
     /// The tone curve that `auto` means here.
@@ -56,29 +59,6 @@ pub struct Job {
     pub(crate) catcher: Option<ShadowCatcher>,
 }
 
-/// The result of a render.
-pub struct Outcome {
-    /// The film.
-    pub film: Film,
-    /// Counts of the work that its rays took.
-    pub counters: Counters,
-    /// Whether it was stopped early; the film holds what had been rendered by then.
-    pub cancelled: bool,
-    /// What an integrator that chooses its strategies has chosen, and why.
-    pub choice: Option<Choice>,
-    /// How far it got, if noise or time could end it.
-    pub reached: Option<Reached>,
-    /// The confidence interval of each pixel, if it was asked for ([`Job::with_interval`]).
-    pub interval: Option<Interval>,
-    /// Features of the visible surfaces, if they were asked for ([`Job::with_layers`]).
-    pub features: Option<Features>,
-    /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
-    pub coverage: Option<Vec<f32>>,
-    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`Job::with_layers`]).
-    pub batch_means: Option<BatchMeans>,
-    linear_transfer: bool,
-}
-
 impl Job {
     /// Merges the scene file's settings with the user's, which take precedence, and builds the scene.
     ///
@@ -100,7 +80,16 @@ impl Job {
     ///
     /// # Errors
     /// If anything in the scene is wrong.
-    pub fn with_settings(scene: &SceneBuilder, mut settings: Settings) -> Result<Job, Error> {
+    pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
+        Job::reusing(scene, settings, &mut Built::default())
+    }
+
+    /// The same, with what earlier jobs have built.
+    pub(crate) fn reusing(
+        scene: &SceneBuilder,
+        mut settings: Settings,
+        known: &mut Built,
+    ) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
         scene_warnings::check_not_empty(scene)?;
         let mut studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
@@ -110,9 +99,10 @@ impl Job {
         let mut completed = scene.clone();
         let orientation = crate::presets::set_upright(&mut completed, &studio);
         let own = match studio.lit {
-            None => own_light::measure(&completed, &[studio], &settings, &accel_of(scene))?,
+            None => own_light::measure(&completed, &[studio], &settings, &accel_of(scene), &mut known.alone)?,
             Some(_) => None,
         };
+        known.keep_alone(own.is_some());
         studio.lit = studio.lit.or(own.as_ref().map(|own| own.is_enough));
         crate::presets::add_missing(&mut completed, &studio);
         let objects = completed.objects.len() as u32;
@@ -132,8 +122,14 @@ impl Job {
         let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
         let notes = own.iter().filter_map(|own| own.decision.clone()).chain(of_curve).collect();
         let built = match own.map(|own| own.alone) {
-            Some((alone, built)) if own_light::is_as_large(&alone, &completed) => built,
-            _ => completed.build(&accel, shutter_at(&settings, settings.time), aspect)?,
+            Some((alone, built)) if own_light::is_as_large(&alone, &completed) => {
+                known.completed.clear();
+                built
+            }
+            _ => {
+                let shutter = shutter_at(&settings, settings.time);
+                completed.build_with(&mut known.completed, &accel, shutter, aspect)?
+            }
         };
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
@@ -157,6 +153,7 @@ impl Job {
             accel,
             scene: built,
             integrator,
+            plan: None,
             settings,
         })
     }
@@ -164,7 +161,7 @@ impl Job {
     /// Moves the picture to another time, in seconds. Static objects are not rebuilt.
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
-        self.fingerprint = OnceLock::new();
+        (self.fingerprint, self.plan) = (OnceLock::new(), None);
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
     }
 
@@ -251,16 +248,9 @@ impl Job {
             features = bilux_transport::features(scene, camera, integrator, &render, part, progress)?;
         }
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
-        let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
+        let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
-        let coverage = match (self.settings.background.is_cut_out(), self.catcher) {
-            (false, _) => None,
-            (true, None) => Some(coverage(scene, camera, integrator, &render, samples)?),
-            (true, Some(catcher)) => {
-                let denoiser = self.shadow_denoiser()?;
-                Some(shadow_alpha(scene, camera, integrator, &render, samples, catcher, denoiser.as_deref())?)
-            }
-        };
+        let coverage = self.coverage(&render, samples)?;
         let mut film = rendered.film;
         if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
             self.fingerprint().clone_into(&mut film.fingerprint);
@@ -269,13 +259,27 @@ impl Job {
             film,
             counters: rendered.counters,
             cancelled: rendered.cancelled,
-            choice: rendered.choice,
+            choice: rendered.choice.or_else(|| self.plan.as_ref().map(|plan| plan.choice.clone())),
             reached: rendered.reached,
             interval: rendered.interval,
             features,
             coverage,
             batch_means: rendered.batch_means.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
+        })
+    }
+
+    /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel.
+    fn coverage(&self, render: &RenderSettings, samples: u32) -> Result<Option<Vec<f32>>, Error> {
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        Ok(match (self.settings.background.is_cut_out(), self.catcher) {
+            (false, _) => None,
+            (true, None) => Some(coverage(scene, camera, integrator, render, samples)?),
+            (true, Some(catcher)) => {
+                let denoiser = self.shadow_denoiser()?;
+                let denoiser = denoiser.as_deref();
+                Some(shadow_alpha(scene, camera, integrator, render, samples, catcher, denoiser)?)
+            }
         })
     }
 
@@ -290,9 +294,21 @@ impl Job {
     /// # Errors
     /// As [`Job::render`].
     pub fn strategies(&self, of: &Outcome, progress: &dyn Progress) -> Result<Option<Strategies>, Error> {
+        self.strategies_of(of.reached.map(|reached| reached.spp), progress)
+    }
+
+    /// The same for the first samples of each pixel; by default for all.
+    ///
+    /// # Errors
+    /// As [`Job::render`].
+    pub fn strategies_of(
+        &self,
+        samples: Option<u32>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Strategies>, Error> {
         let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
-        if let Some(reached) = of.reached {
-            (settings.spp, settings.samples) = (reached.spp, 0..reached.spp);
+        if let Some(samples) = samples {
+            (settings.spp, settings.samples) = (samples, 0..samples);
         }
         let (scene, camera) = (&self.scene, &*self.camera);
         Ok(bilux_transport::strategies(scene, camera, &*self.integrator, &settings, progress)?)
@@ -333,45 +349,6 @@ impl Job {
         self.display()?.record(&mut picture);
         picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
         Ok(picture)
-    }
-}
-
-impl Outcome {
-    /// The picture so far; for a crop, only its window.
-    ///
-    /// # Errors
-    /// If memory is short.
-    pub fn picture(&self) -> Result<Picture, Error> {
-        Ok(self.encoded(self.light()?))
-    }
-
-    /// The light in the film's window.
-    pub(crate) fn light(&self) -> Result<Picture, Error> {
-        let mut picture = self.film.window_to_picture(self.film.window())?;
-        if let Some(coverage) = &self.coverage {
-            picture.push_channel("A", coverage.clone())?;
-        }
-        self.record_stop(&mut picture);
-        Ok(picture)
-    }
-
-    /// The picture in the colour space in which it is written.
-    pub(crate) fn encoded(&self, mut picture: Picture) -> Picture {
-        if self.linear_transfer {
-            // Marked as already encoded, its samples become bytes unchanged.
-            picture.colour_space = bilux_pictures::ColourSpace::Srgb;
-        }
-        picture
-    }
-
-    /// Records in the picture's metadata how the stopping rule affected it.
-    fn record_stop(&self, picture: &mut Picture) {
-        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
-        let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
-        note("", noise.to_string());
-        note(".samples", spp.to_string());
-        note(".noise_samples", "in the mean".to_owned());
-        note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
     }
 }
 

@@ -1,0 +1,96 @@
+//! A job in several ranges of samples, whose sum is the picture of all of them.
+
+use super::Job;
+use crate::settings::Settings;
+use crate::{Error, Outcome};
+use bilux_transport::integrators::PixelIntegrator;
+use bilux_transport::{Progress, RenderSettings, Stop};
+use std::ops::Range;
+
+impl Job {
+    /// Lets an integrator that chooses its strategies choose now, once for all samples that are rendered from now on
+    /// in several ranges. The picture is the same without it, but every range would begin with a choice.
+    ///
+    /// # Errors
+    /// As for [`Job::render`].
+    pub fn plan(&mut self) -> Result<(), Error> {
+        if self.plan.is_none() {
+            self.plan = bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a range of samples to a picture that has all those before it; the first range also makes its features and
+    /// its alpha. `None` if it was stopped: the picture is then as it was.
+    pub(crate) fn add(
+        &self,
+        samples: Range<u32>,
+        so_far: &mut Option<Outcome>,
+        progress: &dyn Progress,
+    ) -> Result<Option<()>, Error> {
+        let mut render = RenderSettings { samples, ..self.render.clone() };
+        (render.stop, render.batch_means) = (Stop::default(), false);
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
+        if rendered.cancelled {
+            return Ok(None);
+        }
+        if let Some(before) = so_far {
+            before.film.merge(&rendered.film)?;
+            before.counters += rendered.counters;
+            return Ok(Some(()));
+        }
+        let mut features = None;
+        if self.features {
+            features = bilux_transport::features(scene, camera, integrator, &render, None, progress)?;
+            if features.is_none() {
+                return Ok(None);
+            }
+        }
+        let coverage = self.coverage(&render, self.render.spp)?;
+        *so_far = Some(Outcome {
+            film: rendered.film,
+            counters: rendered.counters,
+            cancelled: false,
+            choice: self.plan.as_ref().map(|plan| plan.choice.clone()),
+            reached: None,
+            interval: None,
+            features,
+            coverage,
+            batch_means: None,
+            linear_transfer: self.settings.linear_transfer,
+        });
+        Ok(Some(()))
+    }
+
+    /// The integrator that takes the samples.
+    pub(super) fn renders(&self) -> &dyn PixelIntegrator {
+        self.plan.as_ref().map_or(&*self.integrator, |plan| &*plan.integrator)
+    }
+
+    /// Takes over settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
+    pub(crate) fn show(&mut self, settings: &Settings) {
+        let Settings { spp, threads, fps, exposure, auto_exposure, background, linear_transfer, .. } =
+            *settings;
+        let (tonemap, denoise) = (settings.tonemap.clone(), settings.denoise.clone());
+        let own = self.settings.clone();
+        self.settings = Settings {
+            spp,
+            threads,
+            fps,
+            exposure,
+            auto_exposure,
+            background,
+            linear_transfer,
+            tonemap,
+            denoise,
+            ..own
+        };
+        (self.render.threads, self.render.spp, self.render.samples) = (threads, spp, 0..spp);
+    }
+
+    /// True if the number of samples changes nothing but the number of samples.
+    pub(crate) fn may_take_more(&self) -> bool {
+        self.integrator.is_random() && !self.settings.background.is_cut_out()
+    }
+}

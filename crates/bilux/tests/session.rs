@@ -1,0 +1,201 @@
+//! After any edit, a session's picture is that of a fresh job, byte for byte; only what changed is built; and an edit that
+//! changes no sample keeps those that were taken.
+
+use bilux::math::Motion;
+use bilux::prelude::*;
+use bilux::scene::TreeWork;
+use bilux::transport::Progress;
+use bilux::{Budget, Edit, Session};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+fn settings(pairs: &[(&str, Value)]) -> Parameters {
+    let mut all = Parameters::default();
+    all.set("size", "24x20");
+    all.set("spp", Value::Integer(5));
+    pairs.iter().for_each(|(key, value)| all.set(key, value.clone()));
+    all
+}
+
+fn at(x: f32, y: f32, z: f32) -> Motion {
+    Motion::still(Transform::translate(Vec3::new(x, y, z)).unwrap())
+}
+
+fn cornell() -> SceneBuilder {
+    bilux::generate(&Spec::new("", "cornell")).unwrap()
+}
+
+fn bytes(picture: &Picture) -> Vec<u8> {
+    let pixels = |i: usize| picture.channels()[i].samples.iter().flat_map(|x| x.to_le_bytes());
+    (0..picture.channels().len()).flat_map(pixels).collect()
+}
+
+fn finished(session: &mut Session) -> Vec<u8> {
+    while !session.is_done() {
+        session.step(Budget::Samples(2), &Quiet).unwrap();
+    }
+    bytes(&session.picture().unwrap().unwrap())
+}
+
+fn fresh(scene: &SceneBuilder, user: &Parameters) -> Vec<u8> {
+    bytes(&Job::new(scene, user).unwrap().render(&Quiet).unwrap().picture().unwrap())
+}
+
+#[test]
+fn after_every_edit_the_picture_is_that_of_a_fresh_job() {
+    for integrator in ["auto", "path", "vcm", "whitted"] {
+        let user = settings(&[("integrator", integrator.into())]);
+        let mut session = Session::new(cornell(), &user).unwrap();
+        let ball = Arc::new(Mesh::sphere(Vec3::new(0.0, 0.3, 0.0), 0.2, 12));
+        let sky = Spec::new("", "environment").with("radiance", Rgb::new(0.2, 0.3, 0.5));
+        let camera = CameraSpec::new(Spec::new("", "perspective").with("position", Vec3::new(0.1, 0.9, 3.0)));
+        let edits = [
+            Edit::Add(Object::new("ball", ball.clone(), 0)),
+            Edit::Place(0, at(0.0, 0.05, 0.0)),
+            Edit::Place(0, at(0.0, 0.07, 0.0)),
+            Edit::Material(0, Spec::new("", "conductor")),
+            Edit::MadeOf(1, 2),
+            Edit::Camera(0, camera),
+            Edit::Environment(Some(sky)),
+            Edit::Environment(None),
+            Edit::Mesh(1, ball),
+            Edit::Remove(1),
+            Edit::Set("max_depth".to_owned(), Value::Integer(2)),
+        ];
+        let mut user = user.clone();
+        for edit in edits {
+            if let Edit::Set(key, value) = &edit {
+                user.set(key, value.clone());
+            }
+            // Some samples before the edit: none of them may be left in the picture.
+            session.step(Budget::Samples(1), &Quiet).unwrap();
+            let name = format!("{integrator}: {edit:?}");
+            assert!(session.apply(edit).unwrap() && session.samples() == 0, "{name}");
+            let fresh = fresh(session.scene(), &user);
+            assert!(finished(&mut session) == fresh, "{name}");
+        }
+    }
+}
+
+#[test]
+fn models_in_the_studio_are_edited_too() {
+    // Neither a camera nor a light: the studio completes it, with a ground that is made anew each time.
+    let mut scene = SceneBuilder::default();
+    let clay = scene.add_material(Spec::new("", "diffuse"));
+    for x in 0..3 {
+        let ball = Arc::new(Mesh::sphere(Vec3::X * x as f32, 0.4, 24));
+        scene.objects.push(Object::new("", ball, clay));
+    }
+    for background in ["surroundings", "transparent"] {
+        let user = settings(&[("background", background.into()), ("ground", "shadow".into())]);
+        let mut session = Session::new(scene.clone(), &user).unwrap();
+        let mut user = user.clone();
+        // At first the ground is in one tree with the model.
+        session.apply(Edit::Set("orbit".to_owned(), "5,5".into())).unwrap();
+        for orbit in ["10,20", "30,40"] {
+            user.set("orbit", orbit);
+            let before = session.tree_work();
+            assert!(session.apply(Edit::Settings(user.clone())).unwrap());
+            let TreeWork { triangles, .. } = session.tree_work();
+            // The ground and the lights turn with the camera.
+            assert!(triangles - before.triangles < 1000, "{triangles} {before:?}");
+            assert!(finished(&mut session) == fresh(&scene, &user), "{background} {orbit}");
+        }
+    }
+}
+
+#[test]
+fn only_what_changed_is_built() {
+    let mut session = Session::new(cornell(), &settings(&[])).unwrap();
+    let all = session.tree_work();
+    assert_eq!(all.trees, 1);
+    let camera = CameraSpec::new(Spec::new("", "perspective").with("position", Vec3::new(0.0, 1.0, 2.5)));
+    let edits = [
+        Edit::Camera(0, camera),
+        Edit::Material(0, Spec::new("", "mirror")),
+        Edit::Set("size".to_owned(), "30x20".into()),
+        Edit::Set("exposure".to_owned(), Value::Number(1.0)),
+    ];
+    for edit in edits {
+        session.apply(edit).unwrap();
+        assert_eq!(session.tree_work(), all);
+    }
+    session.apply(Edit::Place(0, at(0.0, 0.1, 0.0))).unwrap();
+    assert_eq!(session.tree_work().trees, 3, "the rest once, and what moved");
+    session.apply(Edit::Place(0, at(0.0, 0.2, 0.0))).unwrap();
+    assert_eq!(session.tree_work().trees, 4, "what moved");
+}
+
+#[test]
+fn an_edit_that_changes_no_sample_keeps_them() {
+    let mut session = Session::new(cornell(), &settings(&[("threads", Value::Integer(1))])).unwrap();
+    session.step(Budget::Samples(3), &Quiet).unwrap();
+    let same = session.scene().objects[0].motion.clone();
+    let edits = [
+        Edit::Set("exposure".to_owned(), Value::Number(-2.0)),
+        Edit::Set("tonemap".to_owned(), "neutral".into()),
+        Edit::Set("threads".to_owned(), Value::Integer(2)),
+        Edit::Set("transfer".to_owned(), "linear".into()),
+        Edit::Set("spp".to_owned(), Value::Integer(7)),
+        Edit::Place(0, same),
+    ];
+    for edit in edits {
+        assert!(!session.apply(edit).unwrap() && session.samples() == 3);
+    }
+    assert_eq!(session.job().write_options().unwrap().exposure, -2.0);
+    let user = settings(&[("spp", Value::Integer(7)), ("transfer", "linear".into())]);
+    assert!(finished(&mut session) == fresh(session.scene(), &user));
+    assert_eq!(session.samples(), 7);
+    assert!(session.apply(Edit::Set("spp".to_owned(), Value::Integer(4))).unwrap(), "fewer than there are");
+}
+
+#[test]
+fn an_error_leaves_the_session_as_it_was() {
+    let mut session = Session::new(cornell(), &settings(&[])).unwrap();
+    session.step(Budget::Samples(2), &Quiet).unwrap();
+    let wrong = [
+        (vec![Edit::Place(99, Motion::REST)], "there is no object 99: the scene has"),
+        (vec![Edit::Place(0, at(1.0, 0.0, 0.0)), Edit::MadeOf(0, 77)], "has material 77"),
+        (vec![Edit::Material(0, Spec::new("", "difuse"))], "did you mean 'diffuse'"),
+        (vec![Edit::Set("tonemap".to_owned(), "nutral".into())], "nutral"),
+        (vec![Edit::Set("camera".to_owned(), "none".into())], "there is no camera 'none'"),
+        (vec![Edit::Set("size".to_owned(), "0x0".into())], "is not a size"),
+    ];
+    for (edits, message) in wrong {
+        let error = session.apply_all(edits).unwrap_err().to_string();
+        assert!(error.contains(message), "{error}");
+        assert_eq!(session.samples(), 2);
+    }
+    assert!(finished(&mut session) == fresh(&cornell(), &settings(&[])));
+}
+
+/// Stops what is stepped.
+struct Stopped(AtomicBool);
+
+impl Progress for Stopped {
+    fn begin(&self, _: u64) {}
+    fn advance(&self, _: u64, _: u64) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+    fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+#[test]
+fn steps_end_by_time_or_when_they_are_stopped() {
+    let user = settings(&[("spp", Value::Integer(1000))]);
+    let mut session = Session::new(cornell(), &user).unwrap();
+    assert!(session.picture().unwrap().is_none() && session.outcome().is_none());
+    assert!(session.step(Budget::Time(Duration::ZERO), &Quiet).unwrap() == 1, "one sample at least");
+    let many = session.step(Budget::Time(Duration::from_millis(200)), &Quiet).unwrap();
+    assert!(many > 1, "{many}");
+    let before = bytes(&session.picture().unwrap().unwrap());
+    let stopped = session.step(Budget::Samples(900), &Stopped(AtomicBool::new(false))).unwrap();
+    assert_eq!(stopped, many, "a pass that was stopped is left out");
+    assert!(bytes(&session.picture().unwrap().unwrap()) == before);
+    assert_eq!(session.step(Budget::Samples(u32::MAX), &Quiet).unwrap(), 1000);
+    assert_eq!(session.step(Budget::Samples(1), &Quiet).unwrap(), 1000, "there are no more");
+    assert!(finished(&mut session) == fresh(&cornell(), &user));
+}

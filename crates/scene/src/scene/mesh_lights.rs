@@ -1,0 +1,61 @@
+//! The lights of emissive objects, kept from one build to the next.
+
+use crate::corners::corner_uvs;
+use crate::geometry::Geometry;
+use crate::kept::{Kept, Place, Same};
+use crate::lights::{MeshLight, Picture};
+use crate::materials::Material;
+use crate::mesh::Mesh;
+use crate::texture::ColourMap;
+use bilux_accel::Primitive;
+use bilux_math::Rgb;
+use std::sync::Arc;
+
+/// What a light was made from: mesh, place, material, whether the object has a tree of its own, its first triangle,
+/// and the bits of its classic colour.
+type Key = (Same<Mesh>, Place, Same<dyn Material>, bool, Primitive, Option<[u32; 3]>);
+
+/// The lights of objects that do not move; `None` for one without area.
+#[derive(Clone, Default)]
+pub(crate) struct MeshLights(pub(crate) Kept<Key, Option<Arc<MeshLight>>>);
+
+impl MeshLights {
+    /// The light of an object of this material; `None` if it has no area.
+    pub(crate) fn of_object(
+        &mut self,
+        geometry: &Geometry,
+        index: u32,
+        material: &Arc<dyn Material>,
+        classic: Option<Rgb>,
+    ) -> Option<Arc<MeshLight>> {
+        let object = &geometry.objects()[index as usize];
+        let make = || of_object(geometry, index, &**material, classic).map(Arc::new);
+        // Keyframes are not compared.
+        let place = object.motion.static_transform().and_then(|_| Place::of(&object.motion));
+        let Some(place) = place else { return make() };
+        let (mesh, material) = (Same(object.mesh.clone()), Same(material.clone()));
+        let bits = classic.map(|colour| colour.to_array().map(f32::to_bits));
+        let first = geometry.first_primitive(index);
+        self.0.or_make_surely((mesh, place, material, object.in_own_tree(), first, bits), make)
+    }
+}
+
+fn of_object(
+    geometry: &Geometry,
+    index: u32,
+    material: &dyn Material,
+    classic: Option<Rgb>,
+) -> Option<MeshLight> {
+    let object = &geometry.objects()[index as usize];
+    let (triangles, motion) = geometry.object_triangles(index);
+    let even = || ColourMap { colour: material.emission(), texture: None };
+    let varies = material.emission_map().is_some() || material.opacity().is_some();
+    let picture = varies.then(|| Picture {
+        map: material.emission_map().cloned().unwrap_or_else(even),
+        opacity: material.opacity().cloned(),
+        uvs: corner_uvs(&object.mesh),
+    });
+    let given = (material.emission(), picture, material.emission_sides());
+    let mirrored = object.motion.at(0.0).mirrors();
+    MeshLight::new(triangles, mirrored, geometry.first_primitive(index), motion, given, classic)
+}
