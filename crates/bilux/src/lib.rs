@@ -17,6 +17,7 @@
 
 pub mod budget;
 mod camera_choice;
+pub mod encoding;
 pub mod error;
 pub mod fingerprint;
 pub mod job;
