@@ -8,15 +8,16 @@ use crate::own_light;
 use crate::scene_warnings::{self, oddities};
 use crate::series::Series;
 use crate::settings::Settings;
+use crate::outcome::Outcome;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
+    AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    BatchMeans, Choice, Features, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError,
-    RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay, SamplePlace,
+    ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -28,10 +29,12 @@ const FEATURES_PART: u32 = 12;
 
 /// A picture to be rendered.
 pub struct Job {
-    scene: Scene,
+    pub(crate) scene: Scene,
     accel: AccelChoice,
-    camera: Arc<dyn Camera>,
-    integrator: Box<dyn PixelIntegrator>,
+    pub(crate) camera: Arc<dyn Camera>,
+    pub(crate) integrator: Box<dyn PixelIntegrator>,
+    /// What the integrator has chosen, for parts of a picture.
+    pub(crate) plan: OnceLock<Option<Plan>>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
     /// The tone curve that `auto` means here.
@@ -54,29 +57,6 @@ pub struct Job {
     pub(crate) notes: Vec<String>,
     /// The ground of which only the shadow is in the picture.
     pub(crate) catcher: Option<ShadowCatcher>,
-}
-
-/// The result of a render.
-pub struct Outcome {
-    /// The film.
-    pub film: Film,
-    /// Counts of the work that its rays took.
-    pub counters: Counters,
-    /// Whether it was stopped early; the film holds what had been rendered by then.
-    pub cancelled: bool,
-    /// What an integrator that chooses its strategies has chosen, and why.
-    pub choice: Option<Choice>,
-    /// How far it got, if noise or time could end it.
-    pub reached: Option<Reached>,
-    /// The confidence interval of each pixel, if it was asked for ([`Job::with_interval`]).
-    pub interval: Option<Interval>,
-    /// Features of the visible surfaces, if they were asked for ([`Job::with_layers`]).
-    pub features: Option<Features>,
-    /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
-    pub coverage: Option<Vec<f32>>,
-    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`Job::with_layers`]).
-    pub batch_means: Option<BatchMeans>,
-    linear_transfer: bool,
 }
 
 impl Job {
@@ -154,6 +134,7 @@ impl Job {
             notes,
             catcher,
             fingerprint: OnceLock::new(),
+            plan: OnceLock::new(),
             accel,
             scene: built,
             integrator,
@@ -164,7 +145,7 @@ impl Job {
     /// Moves the picture to another time, in seconds. Static objects are not rebuilt.
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
-        self.fingerprint = OnceLock::new();
+        (self.fingerprint, self.plan) = (OnceLock::new(), OnceLock::new());
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
     }
 
@@ -241,24 +222,43 @@ impl Job {
         let now = Instant::now();
         let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
         let mut render = self.render.clone();
-        let end = render.stop.time_limit.map(|limit| {
-            let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time();
-            now + time_for_rendering(limit, aside)
-        });
-        let mut features = None;
-        if self.features {
-            let part = end.map(|end| (end - now) / FEATURES_PART);
-            features = bilux_transport::features(scene, camera, integrator, &render, part, progress)?;
-        }
+        let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, self.time_aside(now)));
+        let features = self.features_within(end.map(|end| end - now), progress)?;
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
         let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
+        self.completed(rendered, features)
+    }
+
+    /// The time that a limit leaves to other work than rendering, as far as it is spent by now or known.
+    pub(crate) fn time_aside(&self, now: Instant) -> Duration {
+        now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time()
+    }
+
+    /// The features of surfaces, if they are wanted, in a part of the time that the picture may take.
+    pub(crate) fn features_within(
+        &self,
+        time: Option<Duration>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Features>, Error> {
+        if !self.features {
+            return Ok(None);
+        }
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let part = time.map(|time| time / FEATURES_PART);
+        Ok(bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?)
+    }
+
+    /// Adds to what was rendered whatever else the picture needs.
+    pub(crate) fn completed(&self, rendered: Rendered, features: Option<Features>) -> Result<Outcome, Error> {
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let render = &self.render;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
         let coverage = match (self.settings.background.is_cut_out(), self.catcher) {
             (false, _) => None,
-            (true, None) => Some(coverage(scene, camera, integrator, &render, samples)?),
+            (true, None) => Some(coverage(scene, camera, integrator, render, samples)?),
             (true, Some(catcher)) => {
                 let denoiser = self.shadow_denoiser()?;
-                Some(shadow_alpha(scene, camera, integrator, &render, samples, catcher, denoiser.as_deref())?)
+                Some(shadow_alpha(scene, camera, integrator, render, samples, catcher, denoiser.as_deref())?)
             }
         };
         let mut film = rendered.film;
@@ -329,45 +329,6 @@ impl Job {
         let mut picture = outcome.film.to_partial()?;
         picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
         Ok(picture)
-    }
-}
-
-impl Outcome {
-    /// The picture so far; for a crop, only its window.
-    ///
-    /// # Errors
-    /// If memory is short.
-    pub fn picture(&self) -> Result<Picture, Error> {
-        Ok(self.encoded(self.light()?))
-    }
-
-    /// The light in the film's window.
-    pub(crate) fn light(&self) -> Result<Picture, Error> {
-        let mut picture = self.film.window_to_picture(self.film.window())?;
-        if let Some(coverage) = &self.coverage {
-            picture.push_channel("A", coverage.clone())?;
-        }
-        self.record_stop(&mut picture);
-        Ok(picture)
-    }
-
-    /// The picture in the colour space in which it is written.
-    pub(crate) fn encoded(&self, mut picture: Picture) -> Picture {
-        if self.linear_transfer {
-            // Marked as already encoded, its samples become bytes unchanged.
-            picture.colour_space = bilux_pictures::ColourSpace::Srgb;
-        }
-        picture
-    }
-
-    /// Records in the picture's metadata how the stopping rule affected it.
-    fn record_stop(&self, picture: &mut Picture) {
-        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
-        let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
-        note("", noise.to_string());
-        note(".samples", spp.to_string());
-        note(".noise_samples", "in the mean".to_owned());
-        note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
     }
 }
 

@@ -27,7 +27,8 @@ pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
         bilux::Error::Format(FormatError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
             PyFileNotFoundError::new_err(text)
         }
-        bilux::Error::Format(FormatError::Scene(_)) | bilux::Error::Scene(_) | bilux::Error::Settings(_) => {
+        bilux::Error::Format(FormatError::Scene(_)) | bilux::Error::Scene(_)
+        | bilux::Error::Settings(_) | bilux::Error::Encoding(_) => {
             classes::SceneError::new_err(text)
         }
         bilux::Error::Format(_) => classes::FormatError::new_err(text),

@@ -6,9 +6,11 @@
 mod accel;
 mod adding;
 mod arrays;
+mod encoded;
 mod errors;
 mod forks;
 mod layer;
+mod parts;
 mod pickling;
 mod picture;
 mod progressive;
@@ -29,6 +31,10 @@ mod _bilux {
     use super::*;
     #[pymodule_export]
     use crate::accel::Accel;
+    #[pymodule_export]
+    use crate::encoded::Encoded;
+    #[pymodule_export]
+    use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 use crate::adding::{Adding, mesh, of_table};
 use crate::arrays;
+use crate::encoded::{Encoded, decoded};
 use crate::errors::{exception, of_scene, warn};
 use crate::picture::Picture;
 use crate::progressive::Progressive;
@@ -337,6 +338,21 @@ impl Scene {
         Progressive::new(py, &scene, &user, max_memory, callback)
     }
 
+    /// The scene as bytes.
+    fn _encoded(&self, py: Python<'_>) -> PyResult<Encoded> {
+        let scene = self.builder(py).clone();
+        Encoded::of(py, &scene)
+    }
+
+    #[classmethod]
+    fn _decoded<'py>(
+        class: &Bound<'py, PyType>,
+        document: &Bound<'_, PyAny>,
+        blobs: &Bound<'_, PyDict>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        with_builder(class, decoded(document, blobs)?)
+    }
+
     fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {
         let copy = self.builder(py).clone();
         *other.get().builder(other.py()) = copy;
@@ -358,7 +374,7 @@ impl Scene {
 
 impl Scene {
     /// The scene under construction. Other threads run while this one waits for it.
-    fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
+    pub(crate) fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
         self.0.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 }

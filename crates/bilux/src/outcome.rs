@@ -1,0 +1,68 @@
+//! The result of a render, and its picture.
+
+use crate::Error;
+use bilux_pictures::Picture;
+use bilux_scene::Counters;
+use bilux_transport::{BatchMeans, Choice, Features, Film, Interval, Reached};
+
+/// The result of a render.
+pub struct Outcome {
+    /// The film.
+    pub film: Film,
+    /// Counts of the work that its rays took.
+    pub counters: Counters,
+    /// Whether it was stopped early; the film holds what had been rendered by then.
+    pub cancelled: bool,
+    /// What an integrator that chooses its strategies has chosen, and why.
+    pub choice: Option<Choice>,
+    /// How far it got, if noise or time could end it.
+    pub reached: Option<Reached>,
+    /// The confidence interval of each pixel, if it was asked for ([`Job::with_interval`]).
+    pub interval: Option<Interval>,
+    /// Features of the visible surfaces, if they were asked for ([`Job::with_layers`]).
+    pub features: Option<Features>,
+    /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
+    pub coverage: Option<Vec<f32>>,
+    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`Job::with_layers`]).
+    pub batch_means: Option<BatchMeans>,
+    pub(crate) linear_transfer: bool,
+}
+
+impl Outcome {
+    /// The picture so far; for a crop, only its window.
+    ///
+    /// # Errors
+    /// If memory is short.
+    pub fn picture(&self) -> Result<Picture, Error> {
+        Ok(self.encoded(self.light()?))
+    }
+
+    /// The light in the film's window.
+    pub(crate) fn light(&self) -> Result<Picture, Error> {
+        let mut picture = self.film.window_to_picture(self.film.window())?;
+        if let Some(coverage) = &self.coverage {
+            picture.push_channel("A", coverage.clone())?;
+        }
+        self.record_stop(&mut picture);
+        Ok(picture)
+    }
+
+    /// The picture in the colour space in which it is written.
+    pub(crate) fn encoded(&self, mut picture: Picture) -> Picture {
+        if self.linear_transfer {
+            // Marked as already encoded, its samples become bytes unchanged.
+            picture.colour_space = bilux_pictures::ColourSpace::Srgb;
+        }
+        picture
+    }
+
+    /// Records in the picture's metadata how the stopping rule affected it.
+    fn record_stop(&self, picture: &mut Picture) {
+        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
+        let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
+        note("", noise.to_string());
+        note(".samples", spp.to_string());
+        note(".noise_samples", "in the mean".to_owned());
+        note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
+    }
+}
