@@ -5,13 +5,15 @@
 //!
 //! ```
 //! use bilux::prelude::*;
+//! use bilux::transport::Division;
 //!
 //! let scene = bilux::generate(&Spec::new("", "cornell"))?;
 //! let mut settings = Parameters::default();
 //! settings.set("size", "16x16");
 //! settings.set("spp", Value::Integer(8));
 //! let job = Job::new(&scene, &settings)?;
-//! let mut gathering = job.gathering(2, job.may_crop_parts()?)?;
+//! let division = Division { workers: 2, threads: 1, may_crop: job.may_crop_parts()? };
+//! let mut gathering = job.gathering(division)?;
 //! while let Some(part) = gathering.next_part() {
 //!     let done = job.part(&part, &Quiet)?;
 //!     gathering.add(&part, done.film, done.rays)?;
@@ -90,12 +92,11 @@ impl Job {
         Ok(PartOutcome { film, rays: rendered.counters.rays, cancelled: rendered.cancelled })
     }
 
-    /// Begins to gather the picture from parts that this many workers render at a time.
+    /// Begins to gather the picture from its parts.
     ///
     /// # Errors
     /// If the job is a crop or has an interval.
-    pub fn gathering(&self, workers: u32, may_crop: bool) -> Result<Gathering, Error> {
-        let division = Division { workers, may_crop };
+    pub fn gathering(&self, division: Division) -> Result<Gathering, Error> {
         let scale = scale_exponent(&self.scene);
         let aside = self.time_aside(Instant::now());
         Ok(Gathering::new(&self.render, scale, self.fingerprint(), division, aside)?)

@@ -6,7 +6,7 @@ use bilux::prelude::*;
 use bilux::scene::texture::Texture;
 use bilux::transport::aovs::Aov;
 use bilux::transport::integrators::INTEGRATORS;
-use bilux::transport::{Film, Gathering, Part};
+use bilux::transport::{Division, Film, Gathering, Part};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -32,6 +32,10 @@ fn job(settings: &Parameters) -> Job {
     job
 }
 
+fn division(workers: u32, may_crop: bool) -> Division {
+    Division { workers, threads: 1, may_crop }
+}
+
 /// Renders what a gathering gives out by other jobs, and adds some of it late, twice, or never.
 fn gathered(settings: &Parameters, workers: u32) -> Outcome {
     let driver = job(settings);
@@ -41,7 +45,7 @@ fn gathered(settings: &Parameters, workers: u32) -> Outcome {
     let find = |hash| blobs.iter().find(|(known, _)| *known == hash).map(|(_, bytes)| &**bytes);
     let sent = bilux::encoding::decode(&encoded.document, &find).unwrap();
     let worker = Job::new(&sent, settings).unwrap();
-    let mut gathering = driver.gathering(workers, worker.may_crop_parts().unwrap()).unwrap();
+    let mut gathering = driver.gathering(division(workers, worker.may_crop_parts().unwrap())).unwrap();
     let mut flying: Vec<Part> = Vec::new();
     let mut round = 0u64;
     while !gathering.is_done() {
@@ -110,7 +114,7 @@ fn time_ends_the_picture_after_a_whole_pass() {
 #[test]
 fn a_picture_that_is_stopped_keeps_what_came_back() {
     let job = job(&settings(&[("spp", Value::Integer(40)), ("integrator", "path".into())]));
-    let mut gathering = job.gathering(4, false).unwrap();
+    let mut gathering = job.gathering(division(4, false)).unwrap();
     let parts: Vec<Part> = (0..3).filter_map(|_| gathering.next_part()).collect();
     let done = job.part(&parts[1], &Quiet).unwrap();
     gathering.add(&parts[1], done.film, done.rays).unwrap();
@@ -124,20 +128,20 @@ fn a_picture_that_is_stopped_keeps_what_came_back() {
 fn wrong_parts_are_refused() {
     let job_of = |seed| job(&settings(&[("spp", Value::Integer(8)), ("seed", Value::Integer(seed))]));
     let (job, other) = (job_of(0), job_of(1));
-    let mut gathering: Gathering = job.gathering(2, false).unwrap();
+    let mut gathering: Gathering = job.gathering(division(2, false)).unwrap();
     let (first, second) = (gathering.next_part().unwrap(), gathering.next_part().unwrap());
     let message = |gathering: &mut Gathering, part: &Part, film: Film| {
         gathering.add(part, film, 0).unwrap_err().to_string()
     };
     let film = job.part(&second, &Quiet).unwrap().film;
-    assert!(message(&mut gathering, &first, film).contains("it should hold the samples 0..2"));
+    assert!(message(&mut gathering, &first, film).contains("it should hold the samples 0..1"));
     let film = other.part(&first, &Quiet).unwrap().film;
     assert!(message(&mut gathering, &first, film).contains("different scenes or settings"));
     gathering.add(&first, job.part(&first, &Quiet).unwrap().film, 0).unwrap();
     let mut interval = job_of(0);
     interval.with_layers(&[Aov::Interval]);
     interval.with_interval().unwrap();
-    assert!(interval.gathering(2, false).is_err_and(|error| error.to_string().contains("'interval'")));
+    assert!(interval.gathering(division(2, false)).is_err_and(|error| error.to_string().contains("'interval'")));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, follow};
 use bilux::Job;
 use bilux::transport::aovs::Aov;
-use bilux::transport::{Film, Gathering as Parts, Part, Window};
+use bilux::transport::{Division, Film, Gathering as Parts, Part, Window};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -137,9 +137,9 @@ impl Gathering {
     }
 
     /// Begins to give out parts.
-    fn begin(&self, workers: u32, may_crop: bool) -> PyResult<()> {
+    fn begin(&self, workers: u32, threads: u32, may_crop: bool) -> PyResult<()> {
         let State { job, parts } = &mut *self.lock();
-        *parts = Some(job.gathering(workers, may_crop).map_err(exception)?);
+        *parts = Some(job.gathering(Division { workers, threads, may_crop }).map_err(exception)?);
         Ok(())
     }
 

@@ -48,7 +48,7 @@ def test_the_picture_is_that_of_one_machine(cluster, scene, tmp_path, monkeypatc
     settings = {"size": (48, 64), "spp": 5, "integrator": integrator, "aov": ["depth", "ids"]}
     here, there = scene.render(**settings), bilux.cluster.render(scene, **settings)
     assert saved(here, "here.exr") == saved(there, "there.exr")
-    assert there.info["workers"] == 2 and there.info["parts"] > 1 and there.info["scene_bytes"] > 1000
+    assert there.info["workers"] in (1, 2) and there.info["parts"] > 1 and there.info["scene_bytes"] > 1000
     assert (here.info["spp"], here.info["choice"]) == (there.info["spp"], there.info["choice"])
 
 

@@ -30,6 +30,8 @@ pub struct Part {
 pub struct Division {
     /// How many parts are rendered at a time.
     pub workers: u32,
+    /// How many threads each worker has.
+    pub threads: u32,
     /// Whether parts may be windows: not if light subpaths are traced, which takes all samples of the whole film for each
     /// window.
     pub may_crop: bool,
@@ -68,6 +70,9 @@ pub struct Gathering {
     counters: Counters,
 }
 
+/// The maximum number of samples of all pixels in a part, for each thread of a worker: some seconds. Only then is
+/// there progress, and no more than that is lost with a worker.
+const MOST: usize = 1 << 21;
 /// The minimum number of rows of a window.
 const MIN_ROWS: u32 = 16;
 /// How many parts for each worker are given out before it is known that they are needed.
@@ -246,11 +251,17 @@ impl Gathering {
         let windows: Vec<Window> = (0..whole.height.div_ceil(rows))
             .map(|band| Window { y: band * rows, height: rows.min(whole.height - band * rows), ..whole })
             .collect();
+        let most = MOST.saturating_mul(self.division.threads.max(1) as usize) / windows[0].pixels().max(1);
+        let most = u32::try_from(most).unwrap_or(u32::MAX).max(1);
         let mut parts = VecDeque::new();
         let mut start = samples.start;
         while start < samples.end {
-            let share = if is_single { (samples.end - start).div_ceil(2 * workers) } else { count.div_ceil(workers) };
-            let samples = start..(start + share).min(samples.end);
+            let share = match is_single {
+                // The first parts are small, so that there is soon a picture to look at.
+                true => (samples.end - start).div_ceil(2 * workers).min((start - samples.start).max(1)),
+                false => count.div_ceil(workers),
+            };
+            let samples = start..(start + share.min(most)).min(samples.end);
             start = samples.end;
             parts.extend(windows.iter().map(|&window| Part { samples: samples.clone(), window }));
         }

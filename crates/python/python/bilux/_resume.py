@@ -59,7 +59,7 @@ class Parts:
         try:
             plan: dict[str, Any] = json.loads(self._plan.read_text("utf-8"))
             same = plan["fingerprint"] == self._fingerprint
-            plan["workers"], plan["may_crop"], plan["choice"]
+            plan["workers"], plan["threads"], plan["may_crop"], plan["choice"]
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise Error(f"resume: {self._plan} is damaged: delete the folder, or name another one ({error})") from error
         if not same:

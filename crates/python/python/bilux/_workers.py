@@ -84,10 +84,11 @@ class Worker:
     def version(self) -> str:
         return __version__
 
-    def plan(self, work: Work) -> tuple[bool, str | None]:
-        """Builds the scene; says whether parts may be windows, and what an integrator that chooses has chosen."""
+    def plan(self, work: Work) -> tuple[int, bool, str | None]:
+        """Builds the scene; says how many threads render, whether parts may be windows, and what an integrator that chooses
+        has chosen."""
         renderer = self._renderer(work)
-        return renderer.may_crop(), renderer.choice()
+        return self._threads, renderer.may_crop(), renderer.choice()
 
     def part(self, work: Work, part: tuple[int, ...]) -> tuple[Any, int]:
         """Renders a part of a picture: its film, and the rays that it took."""
@@ -203,6 +204,11 @@ class Workers:
 
     def __len__(self) -> int:
         return len(self._members)
+
+    @property
+    def ready(self) -> int:
+        """The number of workers that have begun."""
+        return sum(member.is_ready for member in self._members)
 
     def ship(self, scene: Scene) -> Shipped:
         """Puts a scene into the object store; what is there from other scenes is not put there again."""

@@ -79,7 +79,7 @@ def render(
         gathering = _bilux.Gathering(scene, given, layers, fast, memory, scene._time)
         store = None if resume is None else Parts(resume, gathering.fingerprint)
         plan = _plan(workers, store)
-        gathering.begin(plan["workers"], plan["may_crop"])
+        gathering.begin(plan["workers"], plan["threads"], plan["may_crop"])
         done = {"parts": 0, "parts_here": 0}
         samples = rays = 0
 
@@ -119,7 +119,7 @@ def render(
             so_far = gathering.preview()
             raise Interrupted("the render was interrupted; `picture` is the picture so far", so_far) from None
         picture = gathering.picture()
-        counts = {"workers": len(workers), "given_again": workers.given_again, "scene_bytes": workers.shipped_bytes}
+        counts = {"workers": workers.ready, "given_again": workers.given_again, "scene_bytes": workers.shipped_bytes}
         picture.info.update(done | counts | {"choice": plan["choice"]})
         return picture
 
@@ -133,8 +133,8 @@ def _plan(workers: Workers, store: Parts | None) -> dict[str, Any]:
         return before
     for _ in workers.results(lambda: None, lambda: workers.first_answer is not None):
         pass
-    may_crop, choice = workers.first_answer
-    plan = {"workers": max(len(workers), 1), "may_crop": may_crop, "choice": choice}
+    threads, may_crop, choice = workers.first_answer
+    plan = {"workers": max(len(workers), 1), "threads": threads, "may_crop": may_crop, "choice": choice}
     if store is not None:
         store.begin(plan)
     return plan
