@@ -4,20 +4,18 @@ use crate::Error;
 use crate::budget::time_for_rendering;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
+use crate::outcome::Outcome;
 use crate::own_light;
 use crate::scene_warnings::{self, oddities};
 use crate::series::Series;
 use crate::settings::Settings;
-use crate::outcome::Outcome;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
-use bilux_scene::{
-    AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
-};
+use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay, SamplePlace,
-    ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay,
+    SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};

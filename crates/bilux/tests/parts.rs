@@ -141,7 +141,9 @@ fn wrong_parts_are_refused() {
     let mut interval = job_of(0);
     interval.with_layers(&[Aov::Interval]);
     interval.with_interval().unwrap();
-    assert!(interval.gathering(division(2, false)).is_err_and(|error| error.to_string().contains("'interval'")));
+    assert!(
+        interval.gathering(division(2, false)).is_err_and(|error| error.to_string().contains("'interval'"))
+    );
 }
 
 #[test]

@@ -475,7 +475,8 @@ mod tests {
 
     #[test]
     fn its_numbers_give_the_same_motion() {
-        let place = Transform::rotate(Vec3::Y, 0.7).unwrap().then(&Transform::translate(Vec3::X * 3.0).unwrap());
+        let place =
+            Transform::rotate(Vec3::Y, 0.7).unwrap().then(&Transform::translate(Vec3::X * 3.0).unwrap());
         let moved = spin().then(&Transform::rotate(Vec3::X, 0.3).unwrap()).unwrap();
         for motion in [Motion::REST, Motion::still(place), spin(), moved] {
             assert_eq!(Motion::from_numbers(&motion.numbers()), Some(motion));

@@ -3,7 +3,9 @@
 use crate::encoded::Bytes;
 use crate::errors::{Error, exception, of_scene};
 use crate::picture::Picture;
-use crate::render::{Prepared, Request, aovs, interrupted, prepared, shown, to_python, with_everything, with_layers};
+use crate::render::{
+    Prepared, Request, aovs, interrupted, prepared, shown, to_python, with_everything, with_layers,
+};
 use crate::scene::Scene;
 use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, follow};

@@ -66,7 +66,9 @@ impl Film {
         film.fingerprint = fingerprint;
         film.coverage = coverage_of(&coverage, &window)?;
         if coverage_text(film.coverage()) != coverage {
-            return Err(not_a_film(format!("its coverage '{coverage:.80}' is not in the form that a film writes")));
+            return Err(not_a_film(format!(
+                "its coverage '{coverage:.80}' is not in the form that a film writes"
+            )));
         }
         rest.sums(&mut film.sums)?;
         rest.counts(&mut film.counts)?;

@@ -181,7 +181,9 @@ impl PixelFailures {
         [self.non_finite, self.first_non_finite, self.overflowed, self.first_overflowed]
     }
 
-    pub(crate) fn from_array([non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4]) -> PixelFailures {
+    pub(crate) fn from_array(
+        [non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4],
+    ) -> PixelFailures {
         PixelFailures { non_finite, first_non_finite, overflowed, first_overflowed }
     }
 }

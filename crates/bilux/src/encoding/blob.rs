@@ -177,7 +177,9 @@ fn read_image(from: &mut Decoder, kind: u8) -> Result<Image, EncodingError> {
     let (width, height) = (usize::read(from)?, usize::read(from)?);
     let count = width.checked_mul(height).filter(|count| *count <= from.left());
     let Some(count) = count else {
-        return Err(from.wrong(format!("an image of {width} x {height} texels has only {} bytes", from.left())));
+        return Err(
+            from.wrong(format!("an image of {width} x {height} texels has only {} bytes", from.left()))
+        );
     };
     let texels = if kind == BYTES {
         let bytes = from.take(count.saturating_mul(4))?;

@@ -170,7 +170,8 @@ impl Coded for String {
     }
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
         let count = from.count(1)?;
-        let text = std::str::from_utf8(from.take(count)?).map_err(|_| from.wrong("text that is not UTF-8"))?;
+        let text =
+            std::str::from_utf8(from.take(count)?).map_err(|_| from.wrong("text that is not UTF-8"))?;
         Ok(text.to_owned())
     }
 }

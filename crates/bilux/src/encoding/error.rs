@@ -34,6 +34,8 @@ pub enum EncodingError {
     #[error("the blob {0} is damaged: its content has another hash; send it again")]
     OtherContent(ContentHash),
     /// A texture that no file can describe.
-    #[error("the texture '{0}' is computed by code of this program, which cannot be sent: make an image of it")]
+    #[error(
+        "the texture '{0}' is computed by code of this program, which cannot be sent: make an image of it"
+    )]
     ComputedByCode(String),
 }

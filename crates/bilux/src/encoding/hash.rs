@@ -26,7 +26,8 @@ impl ContentHash {
     pub fn from_hex(text: &str) -> Option<ContentHash> {
         let digits: Vec<u8> =
             text.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect::<Option<_>>()?;
-        let bytes: Vec<u8> = digits.chunks(2).map(|pair| pair.iter().fold(0, |sum, d| sum << 4 | d)).collect();
+        let bytes: Vec<u8> =
+            digits.chunks(2).map(|pair| pair.iter().fold(0, |sum, d| sum << 4 | d)).collect();
         (digits.len() == 64).then_some(ContentHash(bytes.try_into().ok()?))
     }
 }

@@ -5,9 +5,7 @@ use super::error::EncodingError;
 use super::values::check_references;
 use bilux_math::Motion;
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{
-    Animation, Axis, Inventory, Mesh, Object, SceneBuilder, StrokeWidths, UpHint, Warning,
-};
+use bilux_scene::{Animation, Axis, Inventory, Mesh, Object, SceneBuilder, StrokeWidths, UpHint, Warning};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -120,7 +118,10 @@ impl Coded for SceneBuilder {
 fn check(scene: &SceneBuilder) -> Result<(), String> {
     let (textures, materials) = (scene.textures.len(), scene.materials.len());
     if let Some(object) = scene.objects.iter().find(|object| object.material >= materials) {
-        return Err(format!("an object has the material {}, but there are only {materials}", object.material));
+        return Err(format!(
+            "an object has the material {}, but there are only {materials}",
+            object.material
+        ));
     }
     let cameras = scene.cameras.iter().map(|camera| &camera.spec);
     let mut specs = scene.materials.iter().chain(&scene.lights).chain(cameras);

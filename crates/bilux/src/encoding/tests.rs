@@ -60,7 +60,8 @@ fn rich() -> SceneBuilder {
     let mut scene = SceneBuilder { textures: textures(), ..SceneBuilder::default() };
     let at = Span { file: "made.toml".into(), line: 3, column: 7 };
     let paint = scene.add_material(Spec::new("paint", "diffuse").with("reflectance", Value::Texture(0)));
-    let mut mixed = Spec::new("mixed", "mix").with("a", Value::Material(paint)).with("b", Value::Material(paint));
+    let mut mixed =
+        Spec::new("mixed", "mix").with("a", Value::Material(paint)).with("b", Value::Material(paint));
     mixed.span = at.clone();
     let mixed = scene.add_material(mixed);
     let mesh = Arc::new(Mesh {
@@ -79,7 +80,8 @@ fn rich() -> SceneBuilder {
         rotation: Quat::from_xyzw(0.1, 0.2, 0.3, 0.4),
         scale: Vec3::new(1.0, 2.0, 0.5),
     };
-    let place = Transform::rotate(Vec3::ONE, 0.4).unwrap().then(&Transform::translate(Vec3::Z * -1.0).unwrap());
+    let place =
+        Transform::rotate(Vec3::ONE, 0.4).unwrap().then(&Transform::translate(Vec3::Z * -1.0).unwrap());
     scene.objects.push(Object::new("a", mesh.clone(), paint).placed(place));
     scene.objects.push(Object { instanced: true, ..Object::new("b", mesh, mixed) });
     scene.objects[1].motion = Motion::from_keys(vec![key(0.0, 0.1), key(2.0, 1.7)]).unwrap();
@@ -109,7 +111,8 @@ fn rich() -> SceneBuilder {
 fn everything_comes_back() {
     let scene = rich();
     let back = there_and_back(&scene);
-    let shown = |scene: &SceneBuilder| format!("{:?}", SceneBuilder { files: Default::default(), ..scene.clone() });
+    let shown =
+        |scene: &SceneBuilder| format!("{:?}", SceneBuilder { files: Default::default(), ..scene.clone() });
     assert_eq!(shown(&back), shown(&scene));
     assert!(Arc::ptr_eq(&back.objects[0].mesh, &back.objects[1].mesh), "meshes stay shared");
     assert!(Arc::ptr_eq(&back.textures[1].image, &back.textures[3].image), "images stay shared");
@@ -152,7 +155,10 @@ fn the_bytes_are_the_same_on_every_machine() {
     let encoded = encode(&rich()).unwrap();
     let all = encoded.blobs.keys().fold(encoded.document, |all, hash| [all, hash.0.to_vec()].concat());
     // If this changes, so does the form: raise VERSION.
-    assert_eq!(ContentHash::of(&all).to_string(), "21753a2ff511805e261e1a168124d598cbd19f64bcc1a0a7a187fb655d797247");
+    assert_eq!(
+        ContentHash::of(&all).to_string(),
+        "21753a2ff511805e261e1a168124d598cbd19f64bcc1a0a7a187fb655d797247"
+    );
 }
 
 #[test]
@@ -193,9 +199,8 @@ fn damaged_documents_give_errors() {
     let encoded = encode(&rich()).unwrap();
     let blobs = bytes_of(&encoded);
     let content = &encoded.document[MAGIC.len() + 4..encoded.document.len() - HASH];
-    let decoded = |content: &[u8]| {
-        decode_content(Decoder::new(content), &|hash| blobs.get(&hash).map(Vec::as_slice))
-    };
+    let decoded =
+        |content: &[u8]| decode_content(Decoder::new(content), &|hash| blobs.get(&hash).map(Vec::as_slice));
     assert!(decoded(content).is_ok());
     assert!((0..content.len()).all(|end| decoded(&content[..end]).is_err()));
     for round in 0..4000u64 {
