@@ -1,8 +1,6 @@
 //! Transforms that change with time: keyframes of translation, rotation and scale.
 
-mod numbers;
-
-pub use numbers::MotionNumbers;
+pub mod numbers;
 
 use crate::transcendental::{atan2_f64, sin_f64};
 use crate::{Aabb, Transform};
@@ -363,6 +361,7 @@ fn expanded_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
 
 #[cfg(test)]
 mod tests {
+    use super::numbers::MotionNumbers;
     use super::*;
     use crate::hash::{hash_words, unit_f32};
 

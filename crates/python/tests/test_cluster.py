@@ -5,6 +5,7 @@ Nodes are killed, and so is a driver; whatever happens, pictures have the bytes 
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -63,7 +64,7 @@ def test_noise_ends_the_picture_at_the_same_sample(cluster, scene, tmp_path, mon
 
 def test_a_node_that_is_killed_costs_only_its_parts(cluster, scene, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    settings = {"size": (320, 240), "spp": 160, "integrator": "path"}
+    settings = {"size": (320, 240), "spp": 96, "integrator": "path"}
     doomed = cluster.add_node(num_cpus=1)
     killed = []
 
@@ -81,7 +82,7 @@ DRIVER = """
 import sys, ray, bilux
 ray.init(address=sys.argv[1], log_to_driver=False)
 scene = bilux.generate("cornell")
-bilux.cluster.render(scene, size=(320, 240), spp=160, integrator="path", resume="job", preview=lambda _: print("seen", flush=True))
+bilux.cluster.render(scene, size=(320, 240), spp=96, integrator="path", resume="job", preview=lambda _: print("seen", flush=True))
 """
 
 
@@ -94,7 +95,7 @@ def test_a_driver_that_is_killed_goes_on(cluster, scene, tmp_path, monkeypatch):
     films = list(pathlib.Path("job").glob("*.film"))
     assert films
     films[0].write_bytes(films[0].read_bytes()[:-1])
-    settings = {"size": (320, 240), "spp": 160, "integrator": "path"}
+    settings = {"size": (320, 240), "spp": 96, "integrator": "path"}
     there = bilux.cluster.render(scene, resume="job", **settings)
     assert there.info["parts_here"] == len(films) - 1 and there.info["parts"] > 0
     assert saved(scene.render(**settings), "here.exr") == saved(there, "there.exr")
@@ -166,3 +167,12 @@ def test_errors_say_what_is_wrong(cluster, scene, monkeypatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(bilux.Error, match="needs Ray: pip install bilux.ray."):
         list(bilux.cluster.dataset([scene]))
+
+
+def test_every_example_of_the_page_runs(cluster, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = pathlib.Path(__file__).resolve().parents[3] / "docs/tutorials/cluster.md"
+    space = {}
+    for block in re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
+        exec(block, space)
+    assert pathlib.Path("objects-3.npy").exists() and pathlib.Path("frame-0002.png").exists()

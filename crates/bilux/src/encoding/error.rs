@@ -11,13 +11,14 @@ pub enum EncodingError {
     NotAScene,
     /// It has another version.
     #[error(
-        "this scene was encoded by another version of Bilux (form {found}; this one reads {}): use the same version on \
-         both sides, or save the scene to a file",
-        super::VERSION
+        "this scene was encoded by another version of Bilux (form {found}; this one reads {reads}): use the same version on \
+         both sides, or save the scene to a file"
     )]
     OtherVersion {
         /// The version found.
         found: u32,
+        /// The version that this program reads.
+        reads: u32,
     },
     /// Something in it is impossible.
     #[error("the encoded scene is damaged at byte {at}: {what}; send it again")]

@@ -43,7 +43,9 @@ impl fmt::Display for ContentHash {
 ///
 /// A [`Weak`] keeps the address of a value from being used again, and `Arc::make_mut` moves a value away from it. So a
 /// value at a known address is the one whose hash is known.
-pub(super) struct KnownHashes<T>(LazyLock<Mutex<HashMap<usize, (Weak<T>, ContentHash)>>>);
+pub(super) struct KnownHashes<T>(LazyLock<Mutex<ByAddress<T>>>);
+
+type ByAddress<T> = HashMap<usize, (Weak<T>, ContentHash)>;
 
 /// When this many are known, those of values that are gone are forgotten.
 const FORGET_FROM: usize = 256;

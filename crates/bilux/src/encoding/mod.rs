@@ -89,7 +89,7 @@ pub fn decode<'b>(
     from.take(MAGIC.len())?;
     let found = u32::read(&mut from)?;
     if found != VERSION {
-        return Err(EncodingError::OtherVersion { found });
+        return Err(EncodingError::OtherVersion { found, reads: VERSION });
     }
     if ContentHash::of(content).0 != hash {
         return Err(from.wrong("it has another hash than it says"));

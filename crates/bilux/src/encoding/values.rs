@@ -2,7 +2,8 @@
 
 use super::code::{Coded, Decoder, Encoder, fields, words};
 use super::error::EncodingError;
-use bilux_math::motion::{Motion, MotionNumbers};
+use bilux_math::motion::Motion;
+use bilux_math::motion::numbers::MotionNumbers;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::texture::{Channel, Filter, Formula, Image, Texels, UvTransform, Wrap};
 use bilux_scene::{Parameters, Span, Spec, Texture, Value};
