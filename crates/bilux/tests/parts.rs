@@ -65,9 +65,9 @@ fn gathered(settings: &Parameters, workers: u32) -> Outcome {
     driver.gathered(gathering, &Quiet).unwrap()
 }
 
-fn assert_same(settings: &Parameters, what: &str) {
+fn assert_same(settings: &Parameters, what: &str, numbers: &[u32]) {
     let local = job(settings).render(&Quiet).unwrap();
-    for workers in [1, 3, 9] {
+    for &workers in numbers {
         let other = gathered(settings, workers);
         assert!(other.film == local.film, "{what}: the films of {workers} workers differ");
         assert_eq!(other.reached, local.reached, "{what}, {workers} workers");
@@ -82,28 +82,28 @@ fn every_integrator_gives_the_same_picture_in_parts() {
     for row in INTEGRATORS {
         for spp in [1, 13] {
             let settings = settings(&[("integrator", row.entry.name.into()), ("spp", Value::Integer(spp))]);
-            assert_same(&settings, row.entry.name);
+            assert_same(&settings, row.entry.name, &[1, 3, 9]);
         }
     }
 }
 
 #[test]
 fn noise_ends_the_picture_at_the_same_sample() {
-    for integrator in ["auto", "path", "bdpt", "sppm", "vcm"] {
+    for integrator in ["auto", "path", "vcm"] {
         let settings = settings(&[("integrator", integrator.into()), ("noise", Value::Number(0.5))]);
-        assert_same(&settings, integrator);
+        assert_same(&settings, integrator, &[4]);
     }
 }
 
 #[test]
 fn denoised_and_transparent_pictures_are_the_same() {
     let spp = ("spp", Value::Integer(11));
-    assert_same(&settings(&[("denoise", "builtin".into()), spp.clone()]), "denoised");
-    assert_same(&settings(&[("background", "transparent".into()), spp]), "transparent");
+    assert_same(&settings(&[("denoise", "builtin".into()), spp.clone()]), "denoised", &[2, 7]);
+    assert_same(&settings(&[("background", "transparent".into()), spp]), "transparent", &[2]);
 }
 
 #[test]
-fn time_ends_the_picture_after_a_whole_pass() {
+fn time_ends_the_picture_with_all_that_came_back() {
     let settings = settings(&[("time_limit", Value::Number(0.3)), ("denoise", "off".into())]);
     let outcome = gathered(&settings, 2);
     let spp = outcome.reached.unwrap().spp;

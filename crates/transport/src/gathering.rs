@@ -64,8 +64,8 @@ pub struct Gathering {
     passes: VecDeque<Pass>,
     /// Plans passes that it may then turn out not to need.
     ahead: Schedule,
-    /// Whether a pass is complete.
-    has_pass: bool,
+    /// The samples per pixel in complete passes.
+    done: u32,
     is_done: bool,
     counters: Counters,
 }
@@ -108,7 +108,7 @@ impl Gathering {
             ahead: Schedule::without_clock(settings, false),
             deadline: limit.map(|limit| Instant::now() + limit.saturating_sub(spent)),
             passes: VecDeque::new(),
-            has_pass: false,
+            done: 0,
             is_done: false,
             counters: Counters::default(),
             settings: settings.clone(),
@@ -172,7 +172,7 @@ impl Gathering {
 
     /// True when there is nothing to wait for.
     pub fn is_done(&self) -> bool {
-        self.is_done || self.has_pass && self.is_late()
+        self.is_done || self.done > 0 && self.is_late()
     }
 
     /// The probable number of samples per pixel.
@@ -194,11 +194,18 @@ impl Gathering {
     ///
     /// # Errors
     /// When memory is short.
-    pub fn finish(self) -> Result<Rendered, FilmError> {
+    pub fn finish(mut self) -> Result<Rendered, FilmError> {
         let cancelled = !self.is_done();
-        let mut film = if cancelled { self.so_far()? } else { self.film };
+        let mut film = self.so_far()?;
         if !cancelled {
             film.fingerprint.clear();
+        }
+        if !cancelled && !self.is_done {
+            // Late, with parts of further passes. Each is a range of samples of the whole film.
+            let all: u32 = film.coverage().pieces().iter().map(|(_, samples)| samples.len() as u32).sum();
+            if all > self.done {
+                self.schedule.look(&film, &(self.done..all));
+            }
         }
         let (reached, batch_means) = self.schedule.end(Some(&film).filter(|_| !cancelled));
         let counters = self.counters;
@@ -226,7 +233,7 @@ impl Gathering {
             if let Some(film) = pass.film {
                 self.film.merge(&film)?;
             }
-            self.has_pass = true;
+            self.done = pass.samples.end;
             self.schedule.look(&self.film, &pass.samples);
             if self.schedule.next().is_none() {
                 self.is_done = true;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import pathlib
@@ -18,7 +19,7 @@ HEADER = struct.Struct("<IQ")
 """The checksum of a part's film, and the rays that it took."""
 
 
-def _write(path: pathlib.Path, *pieces: bytes) -> None:
+def _write(path: pathlib.Path, *pieces: bytes | memoryview) -> None:
     """Writes a file, whole or not at all."""
     partial = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -116,9 +117,8 @@ class Pictures:
 
     def write(self, name: str, picture: Picture) -> None:
         """Keeps a picture."""
-        import io
-
-        (form, layers, shown, space, metadata, info) = picture.__reduce__()[1][0]  # type: ignore[index]
+        reduced: Any = picture.__reduce__()
+        form, layers, shown, space, metadata, info = reduced[1][0]
         values = {
             "form": form,
             "layers": [(name, components) for name, components, _ in layers],

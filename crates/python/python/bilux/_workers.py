@@ -5,8 +5,8 @@ from __future__ import annotations
 import importlib
 import time
 from collections import OrderedDict, deque
-from collections.abc import Callable, Hashable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from . import _bilux
 from ._bilux import Picture, __version__
 from ._errors import Error
 from ._scene import Scene, _restored
+
+Kept = TypeVar("Kept")
 
 OLDEST_RAY = (2, 9)
 """The oldest version of Ray that has all that is used here."""
@@ -124,7 +126,7 @@ class Worker:
         return _kept(self._scenes, shipped.key)
 
 
-def _kept(values: OrderedDict[str, Any], key: str) -> Any:
+def _kept(values: OrderedDict[str, Kept], key: str) -> Kept:
     """A value that is now the last one to be forgotten."""
     values.move_to_end(key)
     while len(values) > SCENES_KEPT:
@@ -135,7 +137,7 @@ def _kept(values: OrderedDict[str, Any], key: str) -> Any:
 class Task(NamedTuple):
     """A call of a worker's method."""
 
-    key: Hashable
+    key: Any
     method: str
     arguments: tuple[Any, ...]
 
@@ -234,13 +236,13 @@ class Workers:
 
     def results(
         self, next_task: Callable[[], Task | None], until: Callable[[], bool] = lambda: True
-    ) -> Iterator[tuple[Hashable, Any] | None]:
+    ) -> Iterator[tuple[Any, Any] | None]:
         """Keeps all workers busy, and gives the key and the result of each task as it comes; and None now and then.
 
         Ends when there are no tasks and `until` is true. The tasks of workers that are lost are given to others, and so are those that take
         much longer than the rest: then the first result counts.
         """
-        given: dict[Hashable, _Given] = {}
+        given: dict[Any, _Given] = {}
         again: deque[_Given] = deque()
         while True:
             self._refresh()
@@ -278,7 +280,7 @@ class Workers:
                     yield task.task.key, value
 
     def _give(
-        self, next_task: Callable[[], Task | None], given: dict[Hashable, _Given], again: deque[_Given]
+        self, next_task: Callable[[], Task | None], given: dict[Any, _Given], again: deque[_Given]
     ) -> bool:
         """Gives tasks to workers that hold few, and says whether there are no more."""
         ended = False
@@ -331,7 +333,7 @@ class Workers:
         member.head_since = time.monotonic()
 
     def _lose(
-        self, member: _Member, error: Exception, given: dict[Hashable, _Given], again: deque[_Given]
+        self, member: _Member, error: Exception, given: dict[Any, _Given], again: deque[_Given]
     ) -> None:
         """Forgets a worker, and gives its tasks to others."""
         self._members.remove(member)

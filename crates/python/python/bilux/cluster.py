@@ -105,7 +105,7 @@ def render(
                     part, (film, traced) = answer
                     if store is not None:
                         store.write(part, film, traced)
-                    add(part, film, traced)  # type: ignore[arg-type]
+                    add(part, film, traced)
                     done["parts"] += 1
                 now = clock.monotonic()
                 stop = report is not None and report(samples, gathering.expected, rays, now - begun) is False
@@ -260,8 +260,8 @@ def _pictures(
             if answer is not None:
                 number, picture = answer
                 if store is not None:
-                    store.write(names[number], picture)  # type: ignore[index]
-                ready[number] = picture  # type: ignore[index]
+                    store.write(names[number], picture)
+                ready[number] = picture
             while first in ready:
                 del names[first]
                 yield ready.pop(first)
