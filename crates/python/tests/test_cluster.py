@@ -78,6 +78,39 @@ def test_a_node_that_is_killed_costs_only_its_parts(cluster, scene, tmp_path, mo
     assert saved(scene.render(**settings), "here.exr") == saved(there, "there.exr")
 
 
+def workers():
+    """The processes that render, on nodes that this process has started."""
+
+    def stat(path):
+        name, parent = path.read_text().rsplit(") ", 1)
+        return int(path.parent.name), name.split("(", 1)[1], int(parent.split()[1])
+
+    processes = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            processes.append(stat(path))
+        except OSError:
+            pass
+    raylets = {process for process, _, parent in processes if parent == os.getpid()}
+    return [process for process, name, parent in processes if parent in raylets and name.startswith("ray::Worker")]
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="processes are found in /proc")
+def test_what_a_slow_worker_has_is_given_to_another(cluster, scene, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    settings = {"size": (160, 120), "spp": 60, "integrator": "path"}
+    stopped = []
+
+    def stop(picture):
+        if not stopped:
+            stopped.append(workers()[0])
+            os.kill(stopped[0], signal.SIGSTOP)
+
+    there = bilux.cluster.render(scene, preview=stop, **settings)
+    assert stopped and there.info["given_again"] > 0
+    assert saved(scene.render(**settings), "here.exr") == saved(there, "there.exr")
+
+
 DRIVER = """
 import sys, ray, bilux
 ray.init(address=sys.argv[1], log_to_driver=False)
@@ -161,6 +194,11 @@ def test_errors_say_what_is_wrong(cluster, scene, monkeypatch):
         bilux.cluster.render(scene, size=8, spp=4, aov=["interval"])
     with pytest.raises(bilux.Error, match="resume: cannot make the folder"):
         bilux.cluster.render(scene, size=8, spp=4, resume="/dev/null/folder")
+    with pytest.raises(ValueError, match="is connected to the cluster"):
+        bilux.cluster.render(scene, address="192.0.2.1:6379")
+    with monkeypatch.context() as newer, pytest.raises(bilux.Error, match="has bilux .*, but this process has 99"):
+        newer.setattr("bilux._workers.__version__", "99")
+        bilux.cluster.render(scene, size=8, spp=1)
     monkeypatch.setattr(ray, "__version__", "2.1.0")
     with pytest.raises(bilux.Error, match="Ray 2.1.0 is too old"):
         bilux.cluster.render(scene)

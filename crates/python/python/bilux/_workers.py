@@ -178,6 +178,8 @@ class Workers:
         self._began_ray = not self.ray.is_initialized()
         if self._began_ray:
             self.ray.init(address=address, log_to_driver=False)
+        elif address not in (None, "auto", here := self.ray.get_runtime_context().gcs_address):
+            raise ValueError(f"address: this process is connected to the cluster {here}: leave it out, or ray.shutdown()")
         self._cpus = cpus
         self._first: Callable[[], Task] | None = None
         self._actor = self.ray.remote(Worker)
