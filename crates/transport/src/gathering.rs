@@ -73,6 +73,9 @@ pub struct Gathering {
 /// The maximum number of samples of all pixels in a part, for each thread of a worker: some seconds. Only then is
 /// there progress, and no more than that is lost with a worker.
 const MOST: usize = 1 << 21;
+/// How many parts for each worker there should at least be, if parts may be windows: else some work while others have
+/// nothing left to do.
+const PARTS: u32 = 16;
 /// The minimum number of rows of a window.
 const MIN_ROWS: u32 = 16;
 /// How many parts for each worker are given out before it is known that they are needed.
@@ -252,8 +255,8 @@ impl Gathering {
         let is_single = self.schedule.is_single_pass();
         let count = samples.len() as u32;
         let whole = Window::whole(self.settings.width, self.settings.height);
-        let is_short = is_single && count < 2 * workers && self.division.may_crop;
-        let bands = if is_short { (2 * workers).div_ceil(count) } else { 1 };
+        let may_crop = is_single && self.division.may_crop;
+        let bands = if may_crop { (PARTS * workers).div_ceil(count) } else { 1 };
         let rows = whole.height.div_ceil(bands.clamp(1, (whole.height / MIN_ROWS).max(1)));
         let windows: Vec<Window> = (0..whole.height.div_ceil(rows))
             .map(|band| Window { y: band * rows, height: rows.min(whole.height - band * rows), ..whole })

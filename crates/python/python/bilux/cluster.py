@@ -58,7 +58,8 @@ def render(
 
     Returns:
         the picture. Its `info` also has "workers", "parts", "parts_here" (those that were in `resume`), "given_again"
-        (parts that were lost or late) and "scene_bytes" (sent to each node).
+        (parts that were lost or late), "cpu_seconds" (of CPUs, for the parts that were used) and "scene_bytes" (sent to
+        each node).
 
     Raises:
         Error: if Ray is missing or too old, nodes have another version of bilux, or all workers are lost.
@@ -82,6 +83,7 @@ def render(
         gathering.begin(plan["workers"], plan["threads"], plan["may_crop"])
         done = {"parts": 0, "parts_here": 0}
         samples = rays = 0
+        cpu_seconds = 0.0
 
         def add(part: _Part, film: Any, traced: int) -> None:
             nonlocal samples, rays
@@ -102,11 +104,12 @@ def render(
         try:
             for answer in workers.results(next_task, lambda: gathering.done):
                 if answer is not None:
-                    part, (film, traced) = answer
+                    part, (film, traced, seconds) = answer
                     if store is not None:
                         store.write(part, film, traced)
                     add(part, film, traced)
                     done["parts"] += 1
+                    cpu_seconds += seconds
                 now = clock.monotonic()
                 stop = report is not None and report(samples, gathering.expected, rays, now - begun) is False
                 if preview is not None and now - shown > 1 and samples and not gathering.done:
@@ -120,7 +123,7 @@ def render(
             raise Interrupted("the render was interrupted; `picture` is the picture so far", so_far) from None
         picture = gathering.picture()
         counts = {"workers": workers.ready, "given_again": workers.given_again, "scene_bytes": workers.shipped_bytes}
-        picture.info.update(done | counts | {"choice": plan["choice"]})
+        picture.info.update(done | counts | {"cpu_seconds": cpu_seconds, "choice": plan["choice"]})
         return picture
 
 
