@@ -47,6 +47,11 @@ const CHORES: &[Chore] = &[
         run: package::run,
     },
     Chore { name: "wheel", summary: "build the wheel of the Python package", run: python::wheel },
+    Chore {
+        name: "python-cluster",
+        summary: "test bilux.cluster on a Ray cluster of two nodes (downloads Ray; minutes)",
+        run: python::cluster,
+    },
     Chore { name: "instructions", summary: "count the instructions per ray", run: instructions::run },
     Chore {
         name: "cpu-levels",

@@ -24,6 +24,12 @@ const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy
 const EXTRAS: &[&str] =
     &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg", "pyrender"];
 
+/// What the tests of clusters use.
+const CLUSTER_TESTERS: &[&str] = &["numpy", "pytest", "ray>=2.9"];
+
+/// The tests of clusters.
+const CLUSTER_TESTS: &str = "test_cluster.py";
+
 /// The largest wheel that is handed out, in bytes.
 const LARGEST: u64 = 15_000_000;
 
@@ -56,16 +62,11 @@ pub(crate) fn test() -> Result<()> {
             return Ok(());
         }
     };
+    println!("SKIPPED: {CLUSTER_TESTS} needs Ray, which is large: `cargo xtask python-cluster` runs it");
     // The tests compare with what the command line writes. Of the whole workspace, since the step `test` has built that.
     run_process(&mut cargo(&["build", "--quiet", "--locked", "--workspace", "--bin", "bilux"]))?;
-    let wheel = build(&builders, "dev", &target_folder().join("python/wheels"))?;
-    let mut install = testers.python();
-    run_process(
-        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"]).arg(&wheel),
-    )?;
-    let tests = root().join(PACKAGE).join("tests");
-    let mut pytest = testers.python();
-    pytest.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]).arg(&tests);
+    install(&builders, &testers)?;
+    let mut pytest = pytest(&testers, "");
     run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
     let settings = root().join(PACKAGE).join("pyproject.toml");
     let cache = target_folder().join("python/mypy");
@@ -106,6 +107,32 @@ fn tag_of(report: &str) -> Option<String> {
 /// The environment that builds wheels.
 fn builders(python: &str) -> Result<Environment> {
     Environment::new(python, "build", BUILDERS, &["auditwheel"])
+}
+
+/// Tests `bilux.cluster`: two nodes in processes of this machine, of which some are killed.
+pub(crate) fn cluster(_: &[String]) -> Result<()> {
+    let python = python()?;
+    let builders = builders(&python)?;
+    let testers = Environment::new(&python, "cluster", CLUSTER_TESTERS, &[])?;
+    install(&builders, &testers)?;
+    run_process(&mut pytest(&testers, CLUSTER_TESTS))
+}
+
+/// Builds the package with the development profile, and installs it.
+fn install(builders: &Environment, testers: &Environment) -> Result<()> {
+    let wheel = build(builders, "dev", &target_folder().join("python/wheels"))?;
+    let mut install = testers.python();
+    run_process(
+        install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"]).arg(&wheel),
+    )
+}
+
+/// Runs the tests, or one file of them.
+fn pytest(testers: &Environment, file: &str) -> Command {
+    let mut pytest = testers.python();
+    let tests = root().join(PACKAGE).join("tests").join(file);
+    pytest.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]).arg(tests);
+    pytest
 }
 
 /// Builds a wheel into a folder that then holds no other, and returns its path.

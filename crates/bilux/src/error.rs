@@ -1,5 +1,6 @@
 //! What can go wrong in any part of Bilux.
 
+use crate::encoding::EncodingError;
 use crate::memory::Memory;
 use bilux_formats::FormatError;
 use bilux_pictures::PictureError;
@@ -38,6 +39,9 @@ pub enum Error {
         /// The number of bytes allowed.
         most: u64,
     },
+    /// A scene cannot be encoded or decoded.
+    #[error(transparent)]
+    Encoding(#[from] EncodingError),
     /// Settings that contradict each other.
     #[error("{0}")]
     Settings(String),

@@ -1,9 +1,10 @@
 //! Transforms that change with time: keyframes of translation, rotation and scale.
 
+pub mod numbers;
+
 use crate::transcendental::{atan2_f64, sin_f64};
 use crate::{Aabb, Transform};
 use glam::{DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
-use std::fmt;
 use std::sync::Arc;
 
 /// A transform as a function of time. Between keys, translation and scale are interpolated linearly, and rotation
@@ -28,24 +29,13 @@ pub struct MotionKey {
 }
 
 /// Shared between copies: a scene of a million instances holds each one several times.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Course {
     /// The identity, to the bit.
     Rest,
     Still(Arc<Transform>),
     /// At least two poses, in order of time.
     Keys(Arc<Vec<Pose>>),
-}
-
-/// Formats the identity like any other transform: film fingerprints are computed from this text.
-impl fmt::Debug for Course {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Course::Rest => f.debug_tuple("Still").field(&Transform::IDENTITY).finish(),
-            Course::Still(transform) => f.debug_tuple("Still").field(transform).finish(),
-            Course::Keys(poses) => f.debug_tuple("Keys").field(poses).finish(),
-        }
-    }
 }
 
 /// A key in f64, its rotation normalised.
@@ -371,6 +361,7 @@ fn expanded_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
 
 #[cfg(test)]
 mod tests {
+    use super::numbers::MotionNumbers;
     use super::*;
     use crate::hash::{hash_words, unit_f32};
 
@@ -479,6 +470,22 @@ mod tests {
             }
         }
         escaped
+    }
+
+    #[test]
+    fn its_numbers_give_the_same_motion() {
+        let place =
+            Transform::rotate(Vec3::Y, 0.7).unwrap().then(&Transform::translate(Vec3::X * 3.0).unwrap());
+        let moved = spin().then(&Transform::rotate(Vec3::X, 0.3).unwrap()).unwrap();
+        for motion in [Motion::REST, Motion::still(place), spin(), moved] {
+            assert_eq!(Motion::from_numbers(&motion.numbers()), Some(motion));
+        }
+        let mut wrong = spin().numbers();
+        if let MotionNumbers::Keys(keys) = &mut wrong {
+            keys.swap(0, 1);
+        }
+        assert_eq!(Motion::from_numbers(&wrong), None);
+        assert_eq!(Motion::from_numbers(&MotionNumbers::Still([f32::NAN; 32])), None);
     }
 
     #[test]

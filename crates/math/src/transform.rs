@@ -33,6 +33,13 @@ impl Transform {
         (affine && sound).then_some(Transform { forward, inverse })
     }
 
+    /// The transform of a matrix of column vectors and its inverse, as they came from one; `None` when one of them is not
+    /// affine or not finite.
+    pub fn from_inverses(forward: Mat4, inverse: Mat4) -> Option<Transform> {
+        let is_sound = |m: &Mat4| m.row(3) == glam::Vec4::W && m.is_finite();
+        (is_sound(&forward) && is_sound(&inverse)).then_some(Transform { forward, inverse })
+    }
+
     /// Translates by `offset`; `None` when that is not finite.
     pub fn translate(offset: Vec3) -> Option<Transform> {
         Transform::from_matrix(DMat4::from_translation(offset.as_dvec3()))

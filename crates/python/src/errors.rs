@@ -27,9 +27,10 @@ pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
         bilux::Error::Format(FormatError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
             PyFileNotFoundError::new_err(text)
         }
-        bilux::Error::Format(FormatError::Scene(_)) | bilux::Error::Scene(_) | bilux::Error::Settings(_) => {
-            classes::SceneError::new_err(text)
-        }
+        bilux::Error::Format(FormatError::Scene(_))
+        | bilux::Error::Scene(_)
+        | bilux::Error::Settings(_)
+        | bilux::Error::Encoding(_) => classes::SceneError::new_err(text),
         bilux::Error::Format(_) => classes::FormatError::new_err(text),
         bilux::Error::Picture(_) => classes::PictureError::new_err(text),
         bilux::Error::Render(_) | bilux::Error::Film(_) | bilux::Error::TooLarge { .. } => {

@@ -6,11 +6,13 @@
 mod accel;
 mod adding;
 mod arrays;
+mod encoded;
 mod errors;
 mod forks;
 mod inspect;
 mod keyframes;
 mod layer;
+mod parts;
 mod pickling;
 mod picture;
 mod progressive;
@@ -32,9 +34,13 @@ mod _bilux {
     #[pymodule_export]
     use crate::accel::Accel;
     #[pymodule_export]
+    use crate::encoded::Encoded;
+    #[pymodule_export]
     use crate::inspect::{replay, strategies};
     #[pymodule_export]
     use crate::keyframes::set_keyframes;
+    #[pymodule_export]
+    use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
     #[pymodule_export]

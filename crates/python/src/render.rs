@@ -6,7 +6,7 @@ use crate::shown::Shown;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
 use bilux::pictures::WriteOptions;
-use bilux::pictures::denoise::preload;
+use bilux::pictures::denoise::{DenoiserChoice, preload};
 use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
 use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
@@ -35,7 +35,7 @@ pub(crate) struct Request {
 }
 
 /// A picture that was rendered, before it becomes Python's.
-struct Rendered {
+pub(crate) struct Rendered {
     picture: bilux::pictures::Picture,
     shown: Shown,
     outcome: Outcome,
@@ -44,10 +44,7 @@ struct Rendered {
     seed: u64,
     integrator: &'static str,
     denoiser: Option<String>,
-    /// Seconds spent on building the scene with its trees.
-    build_seconds: f64,
-    /// How many trees that were.
-    trees_built: u64,
+    build: BuildWork,
 }
 
 /// The AOVs of these names.
@@ -85,11 +82,7 @@ pub(crate) fn render(
         Error::new_err("rendering failed inside Bilux: please report this, with the scene and the call")
     })?;
     let picture = match rendered {
-        Ok(Some(rendered)) => {
-            warn(py, &rendered.warnings)?;
-            let info = info(py, &rendered, begun)?.unbind();
-            Some(Picture::of(py, &rendered.picture, rendered.shown, Some(info))?)
-        }
+        Ok(Some(rendered)) => Some(to_python(py, &rendered, begun)?),
         Ok(None) => None,
         Err(error) => return Err(exception(error)),
     };
@@ -101,6 +94,13 @@ pub(crate) fn render(
         }
         (_, picture) => Err(interrupted(py, picture)?),
     }
+}
+
+/// The picture as Python's, with what is known of the render.
+pub(crate) fn to_python(py: Python<'_>, rendered: &Rendered, begun: Instant) -> PyResult<Picture> {
+    warn(py, &rendered.warnings)?;
+    let info = info(py, rendered, begun)?.unbind();
+    Picture::of(py, &rendered.picture, rendered.shown, Some(info))
 }
 
 /// The exception after Ctrl-C, with the picture so far.
@@ -120,47 +120,89 @@ fn rendered(
     watch: &Watch,
 ) -> Result<Option<Rendered>, bilux::Error> {
     use bilux::transport::Progress;
-    let Request { mut user, aovs, crop, fast, max_memory, loaded_at, begun } = request;
-    let_limits_decide(&mut user);
-    if fast {
-        with_fast_budget(&scene.settings, &mut user);
-    }
-    if crop.is_none() {
-        with_default_budget(&scene.settings, &mut user);
-    }
-    let building = Instant::now();
-    let (mut job, trees_built) = build((scene, built), &user, max_memory)?;
-    let build_seconds = building.elapsed().as_secs_f64();
+    let Prepared { mut job, build } = prepared((scene, built), &request)?;
     if watch.is_cancelled() {
         return Ok(None);
     }
+    let denoiser = with_everything(&mut job, &request)?;
+    let outcome = job.render(watch)?;
+    Ok(Some(with_layers(&job, outcome, denoiser, &request.aovs, build)?))
+}
+
+/// A job, and what it took to build it.
+pub(crate) struct Prepared {
+    pub(crate) job: Job,
+    pub(crate) build: BuildWork,
+}
+
+/// The seconds and the trees that a job took to build.
+#[derive(Clone, Copy)]
+pub(crate) struct BuildWork {
+    pub(crate) seconds: f64,
+    pub(crate) trees: u64,
+}
+
+/// Builds the scene, with the limits that apply by default.
+pub(crate) fn prepared(
+    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    request: &Request,
+) -> Result<Prepared, bilux::Error> {
+    let mut user = request.user.clone();
+    let_limits_decide(&mut user);
+    if request.fast {
+        with_fast_budget(&scene.settings, &mut user);
+    }
+    if request.crop.is_none() {
+        with_default_budget(&scene.settings, &mut user);
+    }
+    let building = Instant::now();
+    let (job, trees) = build((scene, built), &user, request.max_memory)?;
+    let seconds = building.elapsed().as_secs_f64();
     let time = job.settings().time;
-    if scene.inventory.moves() && time != loaded_at {
+    if scene.inventory.moves() && time != request.loaded_at {
         return Err(bilux::Error::Settings(format!(
-            "time: the meshes of this file move, and it was read for {loaded_at} s: read it again with \
-             bilux.load(…, time={time})"
+            "time: the meshes of this file move, and it was read for {} s: read it again with bilux.load(…, \
+             time={time})",
+            request.loaded_at
         )));
     }
-    job.begun_at(begun);
-    job.with_layers(&aovs);
+    Ok(Prepared { job, build: BuildWork { seconds, trees } })
+}
+
+/// Asks the job for all that the picture is to hold, and chooses its denoiser.
+pub(crate) fn with_everything(
+    job: &mut Job,
+    request: &Request,
+) -> Result<Option<DenoiserChoice>, bilux::Error> {
+    let Request { aovs, crop, begun, .. } = request;
+    job.begun_at(*begun);
+    job.with_layers(aovs);
     if aovs.contains(&Aov::Interval) {
         job.with_interval()?;
     }
     if let Some(crop) = crop {
-        job.crop(window(&job, crop)?);
+        job.crop(window(job, *crop)?);
     }
-    let ends_early = job.settings().stop.is_any();
-    if ends_early && crop.is_none() && job.settings().denoise != "off" {
+    if job.settings().stop.is_any() && crop.is_none() && job.settings().denoise != "off" {
         preload(job.settings().threads);
     }
-    let denoiser = job.denoiser(crop.is_none())?;
-    let outcome = job.render(watch)?;
+    job.denoiser(crop.is_none())
+}
+
+/// The picture with its layers.
+pub(crate) fn with_layers(
+    job: &Job,
+    outcome: Outcome,
+    denoiser: Option<DenoiserChoice>,
+    aovs: &[Aov],
+    build: BuildWork,
+) -> Result<Rendered, bilux::Error> {
     let denoiser = denoiser.filter(|_| !outcome.cancelled);
     let mut picture = match &denoiser {
         Some(chosen) => outcome.denoised(chosen)?,
         None => outcome.picture()?,
     };
-    outcome.push_layers(&mut picture, &aovs)?;
+    outcome.push_layers(&mut picture, aovs)?;
     if denoiser.is_some() {
         picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
     }
@@ -168,9 +210,9 @@ fn rendered(
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
     let settings = job.settings();
-    Ok(Some(Rendered {
+    Ok(Rendered {
         picture,
-        shown: shown(&job)?,
+        shown: shown(job)?,
         warnings: job.warnings().to_vec(),
         spp: match (outcome.cancelled, outcome.reached) {
             (true, _) => mean_samples(&outcome),
@@ -180,10 +222,9 @@ fn rendered(
         seed: settings.seed,
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
-        build_seconds,
-        trees_built,
+        build,
         outcome,
-    }))
+    })
 }
 
 /// The job, with what earlier renders of the scene have built, and the number of trees that were missing.
@@ -237,8 +278,8 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
     }
     info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
-    info.set_item("build_seconds", rendered.build_seconds)?;
-    info.set_item("trees_built", rendered.trees_built)?;
+    info.set_item("build_seconds", rendered.build.seconds)?;
+    info.set_item("trees_built", rendered.build.trees)?;
     info.set_item("complete", !outcome.cancelled)?;
     info.set_item("integrator", rendered.integrator)?;
     info.set_item("choice", outcome.choice.as_ref().map(ToString::to_string))?;

@@ -2,6 +2,7 @@
 
 use crate::adding::{Adding, mesh, of_table};
 use crate::arrays;
+use crate::encoded::{Encoded, decoded};
 use crate::errors::{exception, of_scene, warn};
 use crate::picture::Picture;
 use crate::progressive::Progressive;
@@ -345,6 +346,21 @@ impl Scene {
         let user = values::parameters(settings, &mut Unresolved)?;
         let scene = self.builder(py).clone();
         Progressive::new(py, (&scene, &self.built), &user, max_memory, callback)
+    }
+
+    /// The scene as bytes.
+    fn _encoded(&self, py: Python<'_>) -> PyResult<Encoded> {
+        let scene = self.builder(py).clone();
+        Encoded::of(py, &scene)
+    }
+
+    #[classmethod]
+    fn _decoded<'py>(
+        class: &Bound<'py, PyType>,
+        document: &Bound<'_, PyAny>,
+        blobs: &Bound<'_, PyDict>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        with_builder(class, decoded(document, blobs)?)
     }
 
     fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {

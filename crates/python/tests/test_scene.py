@@ -105,8 +105,25 @@ def test_anything_changes_between_renders(square):
     for number in [5, -1, 10**30]:
         with pytest.raises(IndexError, match=f"no object {number}"):
             scene.set_material(number, bilux.materials.mirror())
-    with pytest.raises(TypeError, match="cannot be pickled"):
-        pickle.dumps(scene)
+
+
+def test_scenes_are_pickled_with_all_that_they_hold(folder, square):
+    scene = bilux.load("model.glb")
+    scene.add_mesh(*square, material=bilux.materials.diffuse(reflectance=bilux.Texture(np.eye(4))))
+    back = pickle.loads(pickle.dumps(scene))
+    assert type(back) is bilux.Scene and repr(back) == repr(scene) and back.materials[:-1] == scene.materials[:-1]
+    sizes = [len(pickle.dumps(scene))]
+    for index in range(3):
+        scene.add_instances(*scene.mesh(0)[:2], np.tile(np.eye(4), (50, 1, 1)))
+        sizes.append(len(pickle.dumps(scene)))
+    assert sizes[2] - sizes[1] == sizes[3] - sizes[2] and np.array_equal(render(back), render(pickle.loads(pickle.dumps(back))))
+    restore, (kind, document, blobs, time) = back.__reduce__()
+    with pytest.raises(bilux.SceneError, match="another version of Bilux .form 9"):
+        restore(kind, document[:12] + b"\x09" + document[13:], blobs, time)
+    with pytest.raises(bilux.SceneError, match="damaged"):
+        restore(kind, document[:-40] + bytes(40), blobs, time)
+    with pytest.raises(bilux.SceneError, match="missing: send it too"):
+        restore(kind, document, {}, time)
 
 
 def test_what_is_in_a_scene_can_be_read(folder, square):

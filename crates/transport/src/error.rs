@@ -90,6 +90,9 @@ pub enum RenderError {
         "a noise level or time limit needs the whole picture: leave out the crop and the range of samples"
     )]
     StopOfPart,
+    /// A picture that is gathered from parts is whole.
+    #[error("a picture from many parts has no crop and no layer 'interval': leave them out")]
+    GatheringOfPart,
     /// An integrator without random numbers has no interval.
     #[error(
         "this integrator samples pixels in a fixed pattern, so there is no confidence interval: choose another \

@@ -125,19 +125,9 @@ impl Film {
             self.make_room_for_splats()?;
             read_sums(SPLATS, &mut self.splats)?;
             self.iterations.copy_from_slice(plane(ITERATIONS)?);
-            if let Some(i) = self.iterations.iter().position(|&count| count > MAX_SAMPLES) {
-                let (x, y) = self.window().position(i);
-                return Err(not_a_film(format!("its iterations at pixel {x},{y} are invalid")));
-            }
         }
         self.counts.copy_from_slice(plane(SAMPLES)?);
-        for (i, (&count, sums)) in self.counts.iter().zip(&self.sums).enumerate() {
-            let most = u64::from(count) << SAMPLE_BITS;
-            if count > MAX_SAMPLES || sums.iter().any(|sum| sum.unsigned_abs() > most) {
-                let (x, y) = self.window().position(i);
-                return Err(not_a_film(format!("its sums at pixel {x},{y} are invalid")));
-            }
-        }
+        self.check_sums()?;
         if picture.integer_plane(FAILURE_PLANES[0]).is_some() {
             let planes = [
                 plane(FAILURE_PLANES[0])?,
@@ -154,6 +144,27 @@ impl Film {
     }
 }
 
+impl Film {
+    /// Refuses sums that no samples can have.
+    pub(crate) fn check_sums(&self) -> Result<(), FilmError> {
+        let wrong = |what: &str, i: usize| {
+            let (x, y) = self.window().position(i);
+            Err(not_a_film(format!("its {what} at pixel {x},{y} are invalid")))
+        };
+        if let Some(i) = self.iterations.iter().position(|&count| count > MAX_SAMPLES) {
+            return wrong("iterations", i);
+        }
+        let is_wrong = |(&count, sums): (&u32, &[i64; 3])| {
+            let most = u64::from(count) << SAMPLE_BITS;
+            count > MAX_SAMPLES || sums.iter().any(|sum| sum.unsigned_abs() > most)
+        };
+        match self.counts.iter().zip(&self.sums).position(is_wrong) {
+            Some(i) => wrong("sums", i),
+            None => Ok(()),
+        }
+    }
+}
+
 fn push_sums(picture: &mut Picture, names: [[&str; 2]; 3], sums: &[[i64; 3]]) -> Result<(), FilmError> {
     let half = |channel: usize, shift: u32| {
         sums.iter().map(|sum| (sum[channel] >> shift) as u32).collect::<Vec<u32>>()
@@ -166,23 +177,25 @@ fn push_sums(picture: &mut Picture, names: [[&str; 2]; 3], sums: &[[i64; 3]]) ->
 }
 
 impl PixelFailures {
-    fn to_array(self) -> [u32; 4] {
+    pub(crate) fn to_array(self) -> [u32; 4] {
         [self.non_finite, self.first_non_finite, self.overflowed, self.first_overflowed]
     }
 
-    fn from_array([non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4]) -> PixelFailures {
+    pub(crate) fn from_array(
+        [non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4],
+    ) -> PixelFailures {
         PixelFailures { non_finite, first_non_finite, overflowed, first_overflowed }
     }
 }
 
 /// Formats a coverage, such as `0,0,64,64:0..16;64,0,64,64:0..8`.
-fn coverage_text(coverage: &Coverage) -> String {
+pub(crate) fn coverage_text(coverage: &Coverage) -> String {
     let piece =
         |(window, samples): &(Window, Range<u32>)| format!("{window}:{}..{}", samples.start, samples.end);
     coverage.pieces().iter().map(piece).collect::<Vec<_>>().join(";")
 }
 
-fn coverage_of(text: &str, within: &Window) -> Result<Coverage, FilmError> {
+pub(crate) fn coverage_of(text: &str, within: &Window) -> Result<Coverage, FilmError> {
     let wrong = || not_a_film(format!("its coverage is not in the form that a film writes: '{:.80}'", text));
     let mut coverage = Coverage::default();
     for (i, piece) in text.split(';').filter(|piece| !piece.is_empty()).enumerate() {
@@ -216,7 +229,7 @@ fn parse<T: FromStr>(text: &str) -> Result<T, FilmError> {
     text.parse().map_err(|_| not_a_film(format!("'{text:.40}' should be a number")))
 }
 
-fn not_a_film(what: String) -> FilmError {
+pub(crate) fn not_a_film(what: String) -> FilmError {
     FilmError::NotAFilm { what }
 }
 

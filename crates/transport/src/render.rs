@@ -1,6 +1,5 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
-use crate::batch_means::BatchMeans;
 use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
 use crate::film::{Film, scale_exponent};
@@ -11,9 +10,9 @@ use crate::photons::{Merging, Photons};
 use crate::pixel_integrator::{PixelIntegrator, Plan};
 use crate::progress::Progress;
 use crate::rendered::Rendered;
+use crate::schedule::Schedule;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::IterationSplats;
-use crate::stop::StopMonitor;
 use crate::window::{TILE, Window};
 use bilux_accel::Counters;
 use bilux_scene::{Camera, Scene};
@@ -35,16 +34,6 @@ impl RenderSettings {
     /// The pixels whose samples are taken.
     fn sampled_window(&self, integrator: &dyn PixelIntegrator) -> Window {
         if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
-    }
-
-    /// The samples to be taken, cut into batches where their variance is to be estimated.
-    fn batches(&self) -> Vec<Range<u32>> {
-        let Range { start, end } = self.samples;
-        if !self.batch_means {
-            return std::iter::once(start..end).collect();
-        }
-        let ends = (start + 1..end).filter(|&sample| BatchMeans::ends_at(sample - start)).chain([end]);
-        ends.scan(start, |first, end| Some(std::mem::replace(first, end)..end)).collect()
     }
 }
 
@@ -106,41 +95,20 @@ pub fn render(
         interval: None,
         batch_means: None,
     };
-    let mut batches = settings.batch_means.then(BatchMeans::default);
-    if settings.stop.is_any() {
-        let mut watch = StopMonitor::new(settings, begun.elapsed());
-        while !rendered.cancelled
-            && let Some(samples) = watch.next()
-        {
-            rendered = take(&samples, rendered)?;
-            if !rendered.cancelled {
-                watch.look(&rendered.film, &samples);
-                if let Some(batches) = batches.as_mut().filter(|_| BatchMeans::ends_at(watch.done)) {
-                    batches.close(&rendered.film, watch.done);
-                }
-                progress
-                    .begin(settings.sampled_window(integrator).pixels() as u64 * u64::from(watch.expected()));
-            }
-        }
-        rendered.reached = watch.reached;
-        if let Some(batches) = batches.as_mut().filter(|_| !rendered.cancelled) {
-            batches.close(&rendered.film, watch.done);
-        }
-    } else {
-        for samples in settings.batches() {
-            rendered = take(&samples, rendered)?;
-            if rendered.cancelled {
-                break;
-            }
-            if let Some(batches) = &mut batches {
-                batches.close(&rendered.film, samples.end - settings.samples.start);
+    let mut schedule = Schedule::new(settings, begun.elapsed());
+    while !rendered.cancelled
+        && let Some(samples) = schedule.next()
+    {
+        rendered = take(&samples, rendered)?;
+        if !rendered.cancelled {
+            schedule.look(&rendered.film, &samples);
+            if let Some(expected) = schedule.expected() {
+                progress.begin(settings.sampled_window(integrator).pixels() as u64 * u64::from(expected));
             }
         }
     }
-    if let Some(batches) = &mut batches {
-        batches.finish();
-    }
-    Ok(Rendered { interval, batch_means: batches, ..rendered })
+    let (reached, batch_means) = schedule.end(Some(&rendered.film).filter(|_| !rendered.cancelled));
+    Ok(Rendered { interval, reached, batch_means, ..rendered })
 }
 
 /// Everything that stays the same while a picture is rendered.

@@ -2,22 +2,23 @@
 
 mod ranges;
 
+use crate::Error;
 use crate::budget::time_for_rendering;
 use crate::built::Built;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
+use crate::outcome::Outcome;
 use crate::own_light;
 use crate::scene_warnings::{self, oddities};
 use crate::series::Series;
 use crate::settings::Settings;
-use crate::{Error, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Replay, SamplePlace, ShadowCatcher,
-    Stop, Strategies, Window, coverage, shadow_alpha,
+    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay,
+    SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -29,12 +30,12 @@ const FEATURES_PART: u32 = 12;
 
 /// A picture to be rendered.
 pub struct Job {
-    scene: Scene,
+    pub(crate) scene: Scene,
     accel: AccelChoice,
-    camera: Arc<dyn Camera>,
-    integrator: Box<dyn PixelIntegrator>,
-    /// What the integrator chose, if it was asked before rendering ([`Job::plan`]).
-    plan: Option<Plan>,
+    pub(crate) camera: Arc<dyn Camera>,
+    pub(crate) integrator: Box<dyn PixelIntegrator>,
+    /// What the integrator has chosen, if it was asked before rendering ([`Job::plan`]).
+    pub(crate) plan: OnceLock<Option<Plan>>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
     /// The tone curve that `auto` means here.
@@ -150,10 +151,10 @@ impl Job {
             notes,
             catcher,
             fingerprint: OnceLock::new(),
+            plan: OnceLock::new(),
             accel,
             scene: built,
             integrator,
-            plan: None,
             settings,
         })
     }
@@ -161,7 +162,7 @@ impl Job {
     /// Moves the picture to another time, in seconds. Static objects are not rebuilt.
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
-        (self.fingerprint, self.plan) = (OnceLock::new(), None);
+        (self.fingerprint, self.plan) = (OnceLock::new(), OnceLock::new());
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
     }
 
@@ -236,21 +237,39 @@ impl Job {
     /// If the size or the crop makes no sense, or memory is short.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
         let now = Instant::now();
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let (scene, camera) = (&self.scene, &*self.camera);
         let mut render = self.render.clone();
-        let end = render.stop.time_limit.map(|limit| {
-            let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time();
-            now + time_for_rendering(limit, aside)
-        });
-        let mut features = None;
-        if self.features {
-            let part = end.map(|end| (end - now) / FEATURES_PART);
-            features = bilux_transport::features(scene, camera, integrator, &render, part, progress)?;
-        }
+        let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, self.time_aside(now)));
+        let features = self.features_within(end.map(|end| end - now), progress)?;
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
         let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
+        self.completed(rendered, features)
+    }
+
+    /// The time that a limit leaves to other work than rendering, as far as it is spent by now or known.
+    pub(crate) fn time_aside(&self, now: Instant) -> Duration {
+        now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time()
+    }
+
+    /// The features of surfaces, if they are wanted, in a part of the time that the picture may take.
+    pub(crate) fn features_within(
+        &self,
+        time: Option<Duration>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Features>, Error> {
+        if !self.features {
+            return Ok(None);
+        }
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let part = time.map(|time| time / FEATURES_PART);
+        Ok(bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?)
+    }
+
+    /// Adds to what was rendered whatever else the picture needs.
+    pub(crate) fn completed(&self, rendered: Rendered, features: Option<Features>) -> Result<Outcome, Error> {
+        let render = &self.render;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
-        let coverage = self.coverage(&render, samples)?;
+        let coverage = self.coverage(render, samples)?;
         let mut film = rendered.film;
         if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
             self.fingerprint().clone_into(&mut film.fingerprint);
@@ -259,7 +278,7 @@ impl Job {
             film,
             counters: rendered.counters,
             cancelled: rendered.cancelled,
-            choice: rendered.choice.or_else(|| self.plan.as_ref().map(|plan| plan.choice.clone())),
+            choice: rendered.choice.or_else(|| self.chosen().map(|plan| plan.choice.clone())),
             reached: rendered.reached,
             interval: rendered.interval,
             features,

@@ -4,20 +4,27 @@ use super::Job;
 use crate::settings::Settings;
 use crate::{Error, Outcome};
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{Progress, RenderSettings, Stop};
+use bilux_transport::{Plan, Progress, RenderSettings, Stop};
 use std::ops::Range;
 
 impl Job {
-    /// Lets an integrator that chooses its strategies choose now, once for all samples that are rendered from now on
-    /// in several ranges. The picture is the same without it, but every range would begin with a choice.
+    /// What an integrator that chooses its strategies has chosen, once for all samples that are rendered from now on in
+    /// several ranges or parts. The picture is the same without it, but every range would begin with a choice.
     ///
     /// # Errors
     /// As for [`Job::render`].
-    pub fn plan(&mut self) -> Result<(), Error> {
-        if self.plan.is_none() {
-            self.plan = bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
+    pub fn plan(&self) -> Result<Option<&Plan>, Error> {
+        if self.plan.get().is_none() {
+            let plan = bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
+            // Another thread may have been faster, with the same result.
+            let _ = self.plan.set(plan);
         }
-        Ok(())
+        Ok(self.chosen())
+    }
+
+    /// What it has chosen so far.
+    pub(super) fn chosen(&self) -> Option<&Plan> {
+        self.plan.get().and_then(Option::as_ref)
     }
 
     /// Adds a range of samples to a picture that has all those before it; the first range also makes its features and
@@ -52,7 +59,7 @@ impl Job {
             film: rendered.film,
             counters: rendered.counters,
             cancelled: false,
-            choice: self.plan.as_ref().map(|plan| plan.choice.clone()),
+            choice: self.chosen().map(|plan| plan.choice.clone()),
             reached: None,
             interval: None,
             features,
@@ -65,7 +72,7 @@ impl Job {
 
     /// The integrator that takes the samples.
     pub(super) fn renders(&self) -> &dyn PixelIntegrator {
-        self.plan.as_ref().map_or(&*self.integrator, |plan| &*plan.integrator)
+        self.chosen().map_or(&*self.integrator, |plan| &*plan.integrator)
     }
 
     /// Takes over settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).

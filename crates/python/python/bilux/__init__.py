@@ -10,7 +10,7 @@ layers are numpy arrays; `Accel` answers ray queries. What has variants is liste
 `materials()`, `lights()`, `cameras()`, `settings()` and more.
 """
 
-from . import trimesh
+from . import cluster, trimesh
 from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
@@ -65,6 +65,7 @@ __all__ = [
     "accels",
     "aovs",
     "cameras",
+    "cluster",
     "compare",
     "denoisers",
     "filters",

@@ -399,13 +399,22 @@ class Scene(_bilux.Scene):
         return self.copy()
 
     def __reduce__(self) -> Any:
-        raise TypeError("a Scene cannot be pickled: save it with scene.save(…), and load the file where it is needed")
+        encoded = self._encoded()
+        blobs = {hash: encoded.blob(hash) for hash in encoded.hashes}
+        return _restored, (type(self), encoded.document, blobs, self._time)
 
     def _repr_png_(self) -> bytes | None:
         """A small picture, for notebooks."""
         if len(self) == 0:
             return None
         return self.render(size=(320, 240), fast=True)._repr_png_()
+
+
+def _restored(kind: type[Scene], document: ArrayLike | bytes, blobs: dict[str, Any], time: float) -> Scene:
+    """The scene of a pickle."""
+    scene: Scene = kind._decoded(document, blobs)
+    scene._time = time
+    return scene
 
 
 def _size(size: tuple[int, int] | int | str | None) -> str | None:

@@ -78,6 +78,16 @@ impl UvTransform {
         (self.offset.to_array(), turn, [self.u.length(), self.v.length() * sign])
     }
 
+    /// Its numbers, to the bit: the factors of u, those of v, and the translation.
+    pub fn to_array(&self) -> [f32; 6] {
+        [self.u.x, self.u.y, self.v.x, self.v.y, self.offset.x, self.offset.y]
+    }
+
+    /// The placement of these numbers.
+    pub fn from_array([a, b, c, d, x, y]: [f32; 6]) -> UvTransform {
+        UvTransform { u: Vec2::new(a, b), v: Vec2::new(c, d), offset: Vec2::new(x, y) }
+    }
+
     /// Transforms coordinates.
     #[inline]
     pub fn apply(&self, uv: Vec2) -> Vec2 {
