@@ -62,6 +62,16 @@ def test_the_mouse_turns_the_picture_and_turns_it_back(view):
     assert np.abs(view.wait(30).pixels - straight).mean() < 1e-3 * straight.mean()
 
 
+def test_what_is_dragged_follows_the_mouse():
+    moves = []
+    view = bilux.generate("cornell").view(size=(40, 20), spp=1)
+    view.move = lambda *move: moves.append(move)
+    view.receive({"drag": [0.5, 0.1], "zoom": 2})
+    view.close()
+    # To the right and down: the camera goes to the left and up, by as much for a pixel either way.
+    assert moves == [(-90.0, pytest.approx(9.0), 2.0)]
+
+
 def test_a_model_in_the_studio_turns_too(folder):
     scene = bilux.Scene()
     scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 2, 0]], [[0, 1, 2]])
