@@ -73,3 +73,12 @@ pub(crate) fn mesh(
     }
     Ok(Mesh { name: name.to_owned(), positions, normals, uvs, triangles, ..Mesh::default() })
 }
+
+/// Specs of a table, for the scene.
+pub(crate) fn resolved(
+    specs: &[Bound<'_, Spec>],
+    table: &'static str,
+    builder: &mut SceneBuilder,
+) -> PyResult<Vec<bilux::scene::Spec>> {
+    specs.iter().map(|spec| of_table(spec, table)?.resolved(spec.py(), &mut Adding(builder))).collect()
+}

@@ -1,6 +1,6 @@
 //! Scenes: read from files, generated, or built from arrays.
 
-use crate::adding::{Adding, mesh, of_table};
+use crate::adding::{self, Adding, mesh, of_table};
 use crate::arrays;
 use crate::encoded::{Encoded, decoded};
 use crate::errors::{exception, of_scene, warn};
@@ -229,10 +229,7 @@ impl Scene {
                 builder.materials.len()
             )));
         }
-        let resolved: PyResult<Vec<_>> = materials
-            .iter()
-            .map(|spec| of_table(spec, "materials")?.resolved(spec.py(), &mut Adding(&mut builder)))
-            .collect();
+        let resolved = adding::resolved(&materials, "materials", &mut builder);
         for (slot, spec) in builder.materials.iter_mut().zip(resolved?) {
             *slot = spec;
         }
@@ -249,11 +246,7 @@ impl Scene {
     #[setter]
     fn set_lights(&self, py: Python<'_>, lights: Vec<Bound<'_, Spec>>) -> PyResult<()> {
         let mut builder = self.builder(py);
-        let resolved: PyResult<Vec<_>> = lights
-            .iter()
-            .map(|spec| of_table(spec, "lights")?.resolved(spec.py(), &mut Adding(&mut builder)))
-            .collect();
-        builder.lights = resolved?;
+        builder.lights = adding::resolved(&lights, "lights", &mut builder)?;
         Ok(())
     }
 
@@ -267,11 +260,8 @@ impl Scene {
     #[setter]
     fn set_cameras(&self, py: Python<'_>, cameras: Vec<Bound<'_, Spec>>) -> PyResult<()> {
         let mut builder = self.builder(py);
-        let resolved: PyResult<Vec<_>> = cameras
-            .iter()
-            .map(|spec| of_table(spec, "cameras")?.resolved(spec.py(), &mut Adding(&mut builder)))
-            .collect();
-        builder.cameras = resolved?.into_iter().map(CameraSpec::new).collect();
+        let cameras = adding::resolved(&cameras, "cameras", &mut builder)?;
+        builder.cameras = cameras.into_iter().map(CameraSpec::new).collect();
         Ok(())
     }
 
