@@ -141,6 +141,11 @@ fn answers(scene: &Scene) -> Vec<String> {
         let emission = surface.as_ref().map(|s| scene.emission(s, -Vec3::from(ray.direction)));
         let excluded = hit.map(|hit| tracer.hit(&Ray { exclude: hit.primitive(), ..*ray }));
         answers.push(format!("{hit:?} {surface:?} {material:?} {emission:?} {excluded:?}"));
+        if let Some(surface) = &surface {
+            // Leaves the surface, past the other shell if it is one of a sheet.
+            let back = surface.spawn_to(Vec3::from(ray.origin));
+            answers.push(format!("{} {:?}", tracer.occluded(&back), tracer.hit(&back)));
+        }
         if let Some(surface) = &surface
             && let Some(light) = scene.light_of(surface.object)
         {
@@ -261,7 +266,9 @@ fn shells_that_become_a_sheet_are_found() {
     let mut builder = SceneBuilder::default();
     builder.add_material(Spec::new("both", "diffuse"));
     builder.add_material(Spec::new("front", "diffuse").with("visible_sides", "front"));
-    let back = Mesh::quad(Vec3::splat(-0.5), Vec3::new(0.0, 1.0, 0.3), Vec3::X);
+    // In front of the other by less than the gap of a sheet.
+    let corner = Vec3::splat(-0.5) + Vec3::new(0.0, -0.3, 1.0) * 0.0005;
+    let back = Mesh::quad(corner, Vec3::new(0.0, 1.0, 0.3), Vec3::X);
     for (shell, material) in
         [(rough_quad(), 0), (back, 0), (Mesh::quad(Vec3::NEG_Y * 2.0, Vec3::Z, Vec3::X), 1)]
     {
