@@ -17,13 +17,13 @@ pub struct Outcome {
     pub choice: Option<Choice>,
     /// How far it got, if noise or time could end it.
     pub reached: Option<Reached>,
-    /// The confidence interval of each pixel, if it was asked for ([`Job::with_interval`]).
+    /// The confidence interval of each pixel, if it was asked for ([`with_interval`](crate::Job::with_interval)).
     pub interval: Option<Interval>,
-    /// Features of the visible surfaces, if they were asked for ([`Job::with_layers`]).
+    /// Features of the visible surfaces, if they were asked for ([`with_layers`](crate::Job::with_layers)).
     pub features: Option<Features>,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,
-    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`Job::with_layers`]).
+    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`with_layers`](crate::Job::with_layers)).
     pub batch_means: Option<BatchMeans>,
     pub(crate) linear_transfer: bool,
 }
