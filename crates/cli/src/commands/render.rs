@@ -17,7 +17,7 @@ use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
-use bilux::{Job, Outcome, Series};
+use bilux::{Built, Job, Outcome, Series};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -99,6 +99,8 @@ struct Input<'a> {
     interrupt: &'a Interrupt,
     /// When the picture that is rendered next was started.
     begun: Cell<Instant>,
+    /// What the pictures of a turntable share.
+    built: RefCell<Built>,
     /// Every warning so far, for `--json`.
     warnings: RefCell<Vec<String>>,
     /// Every file that was read.
@@ -124,8 +126,8 @@ impl Input<'_> {
             piped = Some(bytes);
         }
         let begun = Cell::new(Instant::now());
-        let (warnings, files) = (RefCell::default(), RefCell::default());
-        Ok(Input { path, piped, arguments, common, interrupt, begun, warnings, files })
+        let (built, warnings, files) = (RefCell::default(), RefCell::default(), RefCell::default());
+        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, files })
     }
 
     /// Prints warnings, and keeps them for `--json`.
@@ -163,7 +165,12 @@ impl Input<'_> {
     /// Makes the job for a scene, with everything that the command line says about it.
     fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
         let arguments = self.arguments;
-        let mut job = Job::in_series(scene, user, self.common.max_memory, series)?;
+        let most = self.common.max_memory;
+        let mut job = match arguments.studio.turntable {
+            // Of one picture to the next only the camera moves.
+            Some(_) => Job::with_built(scene, user, most, series, &mut self.built.borrow_mut())?,
+            None => Job::in_series(scene, user, most, series)?,
+        };
         if self.common.sandbox {
             job.sandbox();
         }
