@@ -98,7 +98,8 @@ def workers():
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="processes are found in /proc")
 def test_what_a_slow_worker_has_is_given_to_another(cluster, scene, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    settings = {"size": (160, 120), "spp": 60, "integrator": "path"}
+    # Long enough for a preview before it is done.
+    settings = {"size": (320, 240), "spp": 96, "integrator": "path"}
     stopped = []
 
     def stop(picture):

@@ -165,12 +165,10 @@ impl Input<'_> {
     /// Makes the job for a scene, with everything that the command line says about it.
     fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
         let arguments = self.arguments;
-        let most = self.common.max_memory;
-        let mut job = match arguments.studio.turntable {
-            // Of one picture to the next only the camera moves.
-            Some(_) => Job::with_built(scene, user, most, series, &mut self.built.borrow_mut())?,
-            None => Job::in_series(scene, user, most, series)?,
-        };
+        // From one picture of a turntable to the next only the camera moves.
+        let (mut own, mut shared) = (Built::default(), self.built.borrow_mut());
+        let built = if arguments.studio.turntable.is_some() { &mut *shared } else { &mut own };
+        let mut job = Job::with_built(scene, user, self.common.max_memory, series, built)?;
         if self.common.sandbox {
             job.sandbox();
         }
@@ -185,12 +183,10 @@ impl Input<'_> {
                 side > 0 && at.checked_add(side).is_some_and(|end| end <= most)
             };
             if !fits(x, width, s.width) || !fits(y, height, s.height) {
-                let size = (s.width, s.height);
+                let size = format!("{}x{}", s.width, s.height);
                 return Err(usage::wrong(anyhow!(
                     "--crop {x},{y},{width},{height}: the window must contain pixels and lie within the picture, \
-                     which is {}x{}",
-                    size.0,
-                    size.1
+                     which is {size}"
                 )));
             }
             job.crop(Window { x, y, width, height });
