@@ -55,7 +55,7 @@ fn after_every_edit_the_picture_is_that_of_a_fresh_job() {
             Edit::Place(0, at(0.0, 0.05, 0.0)),
             Edit::Place(0, at(0.0, 0.07, 0.0)),
             Edit::Material(0, Spec::new("", "conductor")),
-            Edit::MadeOf(1, 2),
+            Edit::AssignMaterial(1, 2),
             Edit::Camera(0, camera),
             Edit::Environment(Some(sky)),
             Edit::Environment(None),
@@ -156,7 +156,7 @@ fn an_error_leaves_the_session_as_it_was() {
     session.step(Budget::Samples(2), &Quiet).unwrap();
     let wrong = [
         (vec![Edit::Place(99, Motion::REST)], "there is no object 99: the scene has"),
-        (vec![Edit::Place(0, at(1.0, 0.0, 0.0)), Edit::MadeOf(0, 77)], "has material 77"),
+        (vec![Edit::Place(0, at(1.0, 0.0, 0.0)), Edit::AssignMaterial(0, 77)], "has material 77"),
         (vec![Edit::Material(0, Spec::new("", "difuse"))], "did you mean 'diffuse'"),
         (vec![Edit::Set("tonemap".to_owned(), "nutral".into())], "nutral"),
         (vec![Edit::Set("camera".to_owned(), "none".into())], "there is no camera 'none'"),

@@ -110,8 +110,7 @@ fn decode_content<'b>(
     Ok(scene)
 }
 
-/// The hash of what pictures of a scene show, without names, places in files and the like; and of more, which `and`
-/// writes as text or as specs.
+/// The hash of what pictures of a scene show, without names, places in files and the like; and of more specs and a text.
 pub(crate) fn hash_what_is_seen(scene: &SceneBuilder, more: &[&Spec], text: &str) -> ContentHash {
     let mut body = Encoder::default();
     scene::write_what_is_seen(scene, &mut body);

@@ -14,8 +14,8 @@ pub enum Edit {
     Place(usize, Motion),
     /// Gives an object another mesh.
     Mesh(usize, Arc<Mesh>),
-    /// Makes an object of another material.
-    MadeOf(usize, usize),
+    /// Gives an object another material of the scene.
+    AssignMaterial(usize, usize),
     /// Puts another object in the place of one.
     Replace(usize, Object),
     /// Adds an object as the last one.
@@ -58,7 +58,7 @@ impl Edit {
                 *own = mesh;
                 changes
             }
-            Edit::MadeOf(index, material) => put(&mut object(scene, index)?.material, material),
+            Edit::AssignMaterial(index, material) => put(&mut object(scene, index)?.material, material),
             Edit::Replace(index, by) => {
                 *object(scene, index)? = by;
                 true

@@ -8,6 +8,8 @@ import uuid
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from ._mouse import FOLLOW_MOUSE
+
 if TYPE_CHECKING:
     from ._view import View
 
@@ -19,6 +21,7 @@ PAGE = """
 <div style="font: 12px sans-serif; opacity: 0.7">CAPTION</div></div>
 <script>
 (() => {
+FOLLOW
   const kernel = window.Jupyter && Jupyter.notebook && Jupyter.notebook.kernel;
   if (!kernel) return;
   const [image, caption] = document.getElementById("ID").children;
@@ -28,21 +31,7 @@ PAGE = """
     if (png) image.src = "data:image/png;base64," + png;
     caption.textContent = text;
   });
-  let moved = { drag: [0, 0], zoom: 1 }, waits = false;
-  const send = () => { waits = false; comm.send(moved); moved = { drag: [0, 0], zoom: 1 }; };
-  const soon = () => { if (!waits) requestAnimationFrame(send); waits = true; };
-  image.addEventListener("pointerdown", (event) => image.setPointerCapture(event.pointerId));
-  image.addEventListener("pointermove", (event) => {
-    if (!event.buttons) return;
-    moved.drag[0] += event.movementX / image.width;
-    moved.drag[1] += event.movementY / image.height;
-    soon();
-  });
-  image.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    moved.zoom *= Math.exp(-event.deltaY / 500);
-    soon();
-  }, { passive: false });
+  followMouse(image, (moved) => comm.send(moved));
 })();
 </script>
 """
@@ -58,7 +47,7 @@ def shown(view: View) -> dict[str, Any]:
     png = base64.b64encode(picture._repr_png_()).decode()
     width, height = view.size
     caption = f"{picture.info['spp']} samples per pixel (with the package anywidget, the mouse turns it)"
-    texts = {"ID": target, "WIDTH": str(width), "HEIGHT": str(height), "CAPTION": caption, "PNG": png}
+    texts = {"FOLLOW": FOLLOW_MOUSE, "ID": target, "WIDTH": str(width), "HEIGHT": str(height), "CAPTION": caption, "PNG": png}
     page = PAGE
     for name, text in texts.items():
         page = page.replace(name, text)

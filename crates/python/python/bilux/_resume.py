@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import struct
+import zipfile
 import zlib
 from typing import Any
 
@@ -104,12 +105,8 @@ class Pictures:
             with np.load(self._file(name), allow_pickle=False) as file:
                 values = json.loads(bytes(file["values"]))
                 pixels = [file[f"layer{number}"] for number in range(len(values["layers"]))]
-        except (OSError, ValueError, KeyError, zlib.error, EOFError):
+        except (OSError, ValueError, KeyError, zlib.error, zipfile.BadZipFile, EOFError):
             return None
-        except Exception as error:  # zipfile has exceptions of its own
-            if type(error).__name__ == "BadZipFile":
-                return None
-            raise
         layers = [(name, components, array) for (name, components), array in zip(values["layers"], pixels)]
         exposure, automatic, curve, behind = values["shown"]
         form, space, metadata, info = values["form"], values["space"], values["metadata"], values["info"]

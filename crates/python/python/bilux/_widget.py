@@ -5,11 +5,12 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from ._mouse import FOLLOW_MOUSE
+
 if TYPE_CHECKING:
     from ._view import View
 
-# The mouse's moves are summed up, and sent once for each frame of the browser.
-SCRIPT = """
+SCRIPT = FOLLOW_MOUSE + """
 export default {
   render({ model, el }) {
     const [image, caption] = [document.createElement("img"), document.createElement("div")];
@@ -30,28 +31,7 @@ export default {
     model.on("change:png", show);
     model.on("change:caption", show);
     show();
-    let moved = { drag: [0, 0], zoom: 1 }, waits = false;
-    const send = () => {
-      waits = false;
-      model.send(moved);
-      moved = { drag: [0, 0], zoom: 1 };
-    };
-    const soon = () => {
-      if (!waits) requestAnimationFrame(send);
-      waits = true;
-    };
-    image.addEventListener("pointerdown", (event) => image.setPointerCapture(event.pointerId));
-    image.addEventListener("pointermove", (event) => {
-      if (!event.buttons) return;
-      moved.drag[0] += event.movementX / image.width;
-      moved.drag[1] += event.movementY / image.height;
-      soon();
-    });
-    image.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      moved.zoom *= Math.exp(-event.deltaY / 500);
-      soon();
-    }, { passive: false });
+    followMouse(image, (moved) => model.send(moved));
   },
 };
 """

@@ -360,7 +360,7 @@ class Workers:
 
     def _cause(self, error: Any) -> Exception:
         """The exception that was raised in a worker."""
-        cause = error.cause if isinstance(getattr(error, "cause", None), Exception) else error
+        cause = getattr(error, "cause", None)
         return cause if isinstance(cause, Exception) else Error(str(error))
 
     def _refresh(self, force: bool = False) -> None:

@@ -92,40 +92,43 @@ pub fn fresnel_conductor(cos_theta: f32, eta: f32, k: f32) -> f32 {
 /// The reflectance of a smooth boundary for unpolarised light.
 ///
 /// `cos_theta`, 0..=1, belongs to the incident direction, and `eta` is the index of the far side over the near side.
-/// The result is 1 under total internal reflection. [pbrt 2023, 9.3.5]
+/// The result is 1 under total internal reflection. It has no branch, so that loops over many can be vectorised.
+/// [pbrt 2023, 9.3.5]
+#[inline(always)]
 pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
     let cos_i = cos_theta.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return 1.0;
-    }
     let cos_t = (1.0 - sin2_t).sqrt();
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    (parallel * parallel + perpendicular * perpendicular) * 0.5
+    let reflected = (parallel * parallel + perpendicular * perpendicular) * 0.5;
+    if sin2_t >= 1.0 { 1.0 } else { reflected }
 }
 
-/// [`fresnel_dielectric`] without a branch, for an index of at least 1: light from the less dense side is never reflected
-/// totally. 0 for an index of 1.
+/// The same for an index of at least 1; 0 for an index of 1, where there is no boundary.
 #[inline(always)]
-pub(super) fn fresnel_on_denser(cos_i: f32, eta: f32) -> f32 {
-    let cos_t = (1.0 - (1.0 - cos_i * cos_i) / (eta * eta)).max(0.0).sqrt();
-    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    let reflected = (parallel * parallel + perpendicular * perpendicular) * 0.5;
+pub(super) fn fresnel_on_denser(cos_theta: f32, eta: f32) -> f32 {
+    let reflected = fresnel_dielectric(cos_theta, eta);
     if eta > 1.0 { reflected } else { 0.0 }
 }
 
 /// The refracted direction, away from the surface; `n` is on the side of `wo`, and `eta` is the index of the far side
 /// over the near side. `None` under total internal reflection.
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let (wi, is_total) = refract_or_not(wo, n, eta);
+    (!is_total).then_some(wi)
+}
+
+/// [`refract`] without a branch: the direction, which has no meaning under total internal reflection, and whether there is
+/// that.
+#[inline(always)]
+pub(super) fn refract_or_not(wo: Vec3, n: Vec3, eta: f32) -> (Vec3, bool) {
     let cos_i = wo.dot(n);
-    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
-    if sin2_t >= 1.0 {
-        return None;
-    }
+    let sin2_i = 1.0 - cos_i * cos_i;
+    let sin2_t = (if sin2_i > 0.0 { sin2_i } else { 0.0 }) / (eta * eta);
     let cos_t = (1.0 - sin2_t).sqrt();
-    Some((n * (cos_i / eta - cos_t) - wo / eta).normalize())
+    let wi = n * (cos_i / eta - cos_t) - wo / eta;
+    (wi * (1.0 / wi.length_squared().sqrt()), sin2_t >= 1.0)
 }
 
 /// Schlick's approximation to [`fresnel_dielectric`], including total internal reflection: from the denser side it uses

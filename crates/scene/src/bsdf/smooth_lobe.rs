@@ -1,6 +1,7 @@
 //! A mirror or a smooth boundary between two media, sampled without branches: loops over many compile to vector
 //! instructions.
 
+use super::fresnel::{fresnel_dielectric, refract_or_not};
 use super::{BsdfSample, TransportMode};
 use bilux_math::{Rgb, Vec3};
 
@@ -53,12 +54,12 @@ impl SmoothLobe {
     pub fn sample(&self, wo: Vec3, u_choice: f32) -> SmoothSample {
         let inverse = 1.0 / self.eta;
         let eta = if wo.z > 0.0 { self.eta } else { inverse };
-        let of_face = reflectance(wo.z.abs(), if self.thin { self.eta } else { eta });
+        let of_face = fresnel_dielectric(wo.z.abs(), if self.thin { self.eta } else { eta });
         // Light that bounces between the two faces adds up. [pbrt 2023, eq. 9.12]
         let of_pane = if of_face < 1.0 { 2.0 * of_face / (1.0 + of_face) } else { of_face };
         let of_glass = if self.thin { of_pane } else { of_face };
         let reflected = if self.is_mirror { 1.0 } else { of_glass };
-        let refracted = refracted(wo, eta);
+        let (refracted, _) = refract_or_not(wo, Vec3::new(0.0, 0.0, 1f32.copysign(wo.z)), eta);
         let reflects = u_choice < reflected;
         let transmits = !reflects;
         let pick = |through: f32, back: f32| if transmits { through } else { back };
@@ -92,52 +93,6 @@ impl SmoothLobe {
             is_delta: true,
             transmits: sample.transmits,
             eta: sample.eta,
-        }
-    }
-}
-
-/// [`super::fresnel_dielectric`], bit for bit.
-#[inline(always)]
-fn reflectance(cos_theta: f32, eta: f32) -> f32 {
-    let cos_i = if cos_theta > 1.0 { 1.0 } else { cos_theta };
-    let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    let partly = (parallel * parallel + perpendicular * perpendicular) * 0.5;
-    if sin2_t >= 1.0 { 1.0 } else { partly }
-}
-
-/// [`super::refract`] at a normal on the side of `wo`, bit for bit; has no meaning under total internal reflection.
-#[inline(always)]
-fn refracted(wo: Vec3, eta: f32) -> Vec3 {
-    let n = Vec3::new(0.0, 0.0, 1f32.copysign(wo.z));
-    let cos_i = wo.dot(n);
-    let sin2 = 1.0 - cos_i * cos_i;
-    let sin2_t = (if sin2 > 0.0 { sin2 } else { 0.0 }) / (eta * eta);
-    let cos_t = (1.0 - sin2_t).sqrt();
-    let wi = n * (cos_i / eta - cos_t) - wo / eta;
-    wi * (1.0 / wi.length_squared().sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::{fresnel_dielectric, refract};
-    use super::*;
-    use bilux_math::hash::{hash_words, unit_f32};
-
-    #[test]
-    fn without_branches_it_is_the_same() {
-        for i in 0..100_000u64 {
-            let number = |k: u64| unit_f32(hash_words([i, k]) as u32);
-            let wo = Vec3::new(number(0) - 0.5, number(1) - 0.5, number(2) - 0.5).normalize();
-            let eta = 0.4 + 2.0 * number(3);
-            assert_eq!(reflectance(wo.z.abs(), eta), fresnel_dielectric(wo.z.abs(), eta), "{wo}, {eta}");
-            let n = Vec3::new(0.0, 0.0, 1f32.copysign(wo.z));
-            match refract(wo, n, eta) {
-                Some(wi) => assert_eq!(refracted(wo, eta), wi, "{wo}, {eta}"),
-                None => assert_eq!(reflectance(wo.z.abs(), eta), 1.0, "{wo}, {eta}"),
-            }
         }
     }
 }
