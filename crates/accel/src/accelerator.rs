@@ -1,7 +1,7 @@
 //! The queries that every acceleration structure answers.
 
 use crate::counters::{Count, Counters, NoCounters};
-use crate::ray::{Hit, Query, Ray};
+use crate::ray::{Hit, Primitive, Query, Ray};
 use bilux_math::Aabb;
 use std::cmp::Ordering;
 use std::sync::{Mutex, PoisonError};
@@ -20,6 +20,9 @@ pub trait Accelerator: Send + Sync {
     fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]);
     /// As [`Accelerator::any_hit`] for a batch, likewise.
     fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]);
+    /// As [`Accelerator::any_hits`], and says what was hit: a triangle that counts, which need not be the nearest, nor
+    /// the same one in every structure.
+    fn blockers(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]);
     /// As [`Accelerator::closest_hit`], and counts the work.
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit>;
     /// Every hit along the ray that the query keeps, nearest first, ties by lowest instance and then lowest
@@ -71,6 +74,12 @@ pub trait Traverse: Send + Sync {
             *hit = self.any(ray, query, &mut NoCounters);
         }
     }
+    /// See [`Accelerator::blockers`]; traces the rays one by one unless a structure overrides it.
+    fn blocker_each(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]) {
+        for (ray, blocker) in rays.iter().zip(blockers) {
+            *blocker = self.closest(ray, query, &mut NoCounters).map(|hit| hit.primitive());
+        }
+    }
     /// See [`Accelerator::bounds`].
     fn bounds(&self) -> Aabb;
     /// See [`Accelerator::memory_bytes`].
@@ -94,6 +103,9 @@ impl<T: Traverse> Accelerator for T {
     }
     fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
         self.any_each(rays, query, hits);
+    }
+    fn blockers(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]) {
+        self.blocker_each(rays, query, blockers);
     }
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit> {
         self.closest(ray, query, counters).map(Hit::with_positive_zeros)

@@ -94,10 +94,15 @@ impl Part {
         Part { tree, runs }
     }
 
+    /// A triangle of the tree as one of the mesh.
+    fn index_in_whole(&self, index: u32) -> u32 {
+        let run = &self.runs[self.runs.partition_point(|run| run.own <= index).saturating_sub(1)];
+        index - run.own + run.whole
+    }
+
     /// A hit in the tree as one in the mesh.
     fn in_whole(&self, hit: &Hit) -> Hit {
-        let run = &self.runs[self.runs.partition_point(|run| run.own <= hit.primitive).saturating_sub(1)];
-        Hit { primitive: hit.primitive - run.own + run.whole, ..*hit }
+        Hit { primitive: self.index_in_whole(hit.primitive), ..*hit }
     }
 
     /// A primitive of the mesh as one of the tree; none if it is in another tree.
@@ -189,15 +194,24 @@ impl Traverse for Forest {
     }
 
     fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
-        let rays = &rays[..rays.len().min(hits.len())];
-        hits[..rays.len()].fill(false);
+        let mut blockers = vec![None; rays.len().min(hits.len())];
+        self.blocker_each(rays, query, &mut blockers);
+        hits.iter_mut().zip(blockers).for_each(|(hit, blocker)| *hit = blocker.is_some());
+    }
+
+    fn blocker_each(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]) {
+        let rays = &rays[..rays.len().min(blockers.len())];
+        blockers[..rays.len()].fill(None);
         for (part, mut share) in self.parts.iter().zip(self.share_out(rays)) {
-            share.retain(|&i| !hits[i as usize]);
+            share.retain(|&i| blockers[i as usize].is_none());
             let own: Vec<Ray> =
                 share.iter().map(|&i| part.ray(&rays[i as usize], rays[i as usize].t_max)).collect();
-            let mut found = vec![false; own.len()];
-            part.query(query, |query| part.tree.any_hits(&own, query, &mut found));
-            share.iter().zip(found).for_each(|(i, found)| hits[*i as usize] = found);
+            let mut found = vec![None; own.len()];
+            part.query(query, |query| part.tree.blockers(&own, query, &mut found));
+            for (i, found) in share.iter().zip(found) {
+                let in_whole = |own: Primitive| Primitive { index: part.index_in_whole(own.index), ..own };
+                blockers[*i as usize] = found.map(in_whole);
+            }
         }
     }
 

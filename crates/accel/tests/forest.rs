@@ -10,7 +10,7 @@ use bilux_math::Aabb;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use support::{Numbers, Truth, bits, build_variant, meshes, queries, rays, variants};
+use support::{Numbers, Truth, bits, build_variant, is_blocker, meshes, queries, rays, variants};
 
 const RAYS: usize = 300;
 
@@ -68,9 +68,13 @@ fn in_batches_each_ray_gets_its_own_hit() {
             let (mut hits, mut any) = (vec![None; rays.len() + 1], vec![true; rays.len() + 1]);
             forest.closest_hits(&rays, &query, &mut hits);
             forest.any_hits(&rays, &query, &mut any);
+            let mut blockers = vec![None; rays.len()];
+            forest.blockers(&rays, &query, &mut blockers);
             for (i, alone) in alone.enumerate() {
                 assert_eq!(bits(hits[i]), alone, "{mesh_name}, ray {i}, {query:?}");
                 assert_eq!(any[i], alone.is_some(), "{mesh_name}, ray {i}, {query:?}");
+                let of_ray = (blockers[i], hits[i]);
+                assert!(is_blocker(&forest, &rays[i], &query, of_ray), "{mesh_name}, ray {i}, {query:?}");
             }
             assert!(any[rays.len()], "one more than there are rays");
         }

@@ -5,7 +5,7 @@ mod support;
 
 use bilux_accel::{Accelerator, BuildOptions, CpuLevel, Culling, Hit, Primitive, Query, Ray, TriangleMesh};
 use std::sync::Arc;
-use support::{Numbers, SIEVE, bits, build_variant, variants};
+use support::{Numbers, SIEVE, bits, build_variant, is_blocker, variants};
 
 type Triangle = [[f32; 3]; 3];
 
@@ -46,10 +46,13 @@ fn check(name: &str, tree: &dyn Accelerator, rays: &[Ray], lengths: impl Iterato
             let (mut hits, mut any) = (vec![None; length], vec![false; length]);
             tree.closest_hits(batch, query, &mut hits);
             tree.any_hits(batch, query, &mut any);
+            let mut blockers = vec![None; length];
+            tree.blockers(batch, query, &mut blockers);
             for (i, ray) in batch.iter().enumerate() {
                 let what = || format!("{name}, {query:?}: ray {i} of {length}, {ray:?}");
                 assert_eq!(bits(hits[i]), bits(alone[begin + i]), "{}", what());
                 assert_eq!(any[i], alone[begin + i].is_some(), "{}", what());
+                assert!(is_blocker(tree, ray, query, (blockers[i], alone[begin + i])), "{}", what());
                 count += usize::from(any[i]);
             }
             begin += length;

@@ -20,13 +20,16 @@ use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
 use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
-use crate::ray::{Hit, Query, Ray};
+use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, registry::Entry};
 use kernel::{NodeFormat, TreeView, Wide};
 use layout::Ref;
 use mapped::Units;
 use summary::TreeSummary;
+
+/// Rays whose answers are collected before they are handed on.
+const RAYS_AT_A_TIME: usize = 64;
 
 pub use compact::{CompactBvh8, ENTRY as COMPACT};
 pub use near::NearestPoint;
@@ -79,7 +82,7 @@ impl Traverse for Bvh8 {
     #[inline(always)]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        self.view().is_some_and(|view| kernel::any::<Wide, C>(self.level, view, ray, query, count))
+        self.view().is_some_and(|view| kernel::any::<Wide, C>(self.level, view, ray, query, count).is_some())
     }
 
     fn closest_each(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
@@ -89,10 +92,18 @@ impl Traverse for Bvh8 {
         }
     }
 
-    fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+    fn blocker_each(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]) {
         match self.view() {
-            Some(view) => kernel::any_each(self.level, view, rays, query, hits),
-            None => hits.iter_mut().zip(rays).for_each(|(hit, _)| *hit = false),
+            Some(view) => kernel::any_each(self.level, view, rays, query, blockers),
+            None => blockers.iter_mut().zip(rays).for_each(|(blocker, _)| *blocker = None),
+        }
+    }
+
+    fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+        let mut blockers = [None; RAYS_AT_A_TIME];
+        for (rays, hits) in rays.chunks(RAYS_AT_A_TIME).zip(hits.chunks_mut(RAYS_AT_A_TIME)) {
+            self.blocker_each(rays, query, &mut blockers[..hits.len()]);
+            rays.iter().zip(hits).zip(&blockers).for_each(|((_, hit), blocker)| *hit = blocker.is_some());
         }
     }
 

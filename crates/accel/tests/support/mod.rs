@@ -38,6 +38,20 @@ impl Numbers {
     }
 }
 
+/// True when a ray hits the blocker that a structure names, and it names one exactly where there is a hit.
+pub fn is_blocker(
+    tree: &dyn Accelerator,
+    ray: &Ray,
+    query: &Query,
+    (blocker, truth): (Option<Primitive>, Option<Hit>),
+) -> bool {
+    let is_hit = |blocker: Primitive| {
+        let only: Filter = &|hit: &Hit| hit.primitive() == blocker && query.filter.is_none_or(|keeps| keeps(hit));
+        tree.closest_hit(ray, &Query { filter: Some(only), ..*query }).is_some()
+    };
+    blocker.is_some() == truth.is_some() && blocker.is_none_or(is_hit)
+}
+
 /// Every structure in every configuration that it can be built in, with a name for messages. A structure that is
 /// added to the table is tested without a line here; one with options gets a line of its own.
 pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
@@ -158,8 +172,12 @@ impl Truth {
             other.closest_hits(&rays[few..], &query, &mut hits[few..]);
             other.closest_hits(&[], &query, &mut hits);
             other.any_hits(&rays, &query, &mut any);
-            for ((&&(ray, _, truth), answer), any) in cases.iter().zip(hits).zip(any) {
-                if bits(answer) != bits(truth) || any != truth.is_some() {
+            let mut blockers = vec![None; rays.len()];
+            other.blockers(&rays, &query, &mut blockers);
+            for (i, &&(ray, _, truth)) in cases.iter().enumerate() {
+                let answer = hits[i];
+                let is_same = bits(answer) == bits(truth) && any[i] == truth.is_some();
+                if !is_same || !is_blocker(other, &ray, &query, (blockers[i], truth)) {
                     found.push(Difference { ray, query, truth, answer });
                 }
             }

@@ -193,6 +193,17 @@ impl SceneParts {
         back(Vec3::from(ray.origin) + direction * hit.t).is_shell_of(end.p, end.n)
     }
 
+    /// True unless a ray is certainly not [between shells](SceneParts::is_between_shells) wherever it hits a one-sided
+    /// surface: at neither end is there a surface parallel to it. `n` is the normal at the ray's end, or zero.
+    pub(super) fn may_be_between_shells(&self, ray: &Ray, front: Vec3, n: Vec3) -> bool {
+        let faces = |n: Vec3| front.dot(n) <= -PARALLEL * front.length();
+        if front.dot(ray.direction.into()) > 0.0 {
+            return n != Vec3::ZERO && faces(n);
+        }
+        let begins = self.geometry.front(ray.exclude, ray.time).and_then(Vec3::try_normalize);
+        begins.is_some_and(|n| faces(n) || faces(-n))
+    }
+
     /// The hit on the other shell behind the backs of sheets; `None` if `hit` is on no such back. `next` finds the closest hit
     /// of a ray.
     pub(super) fn behind(

@@ -4,7 +4,7 @@ use super::sheets::{End, Sheets};
 use super::{MayPass, Scene, SceneParts};
 use crate::sides::Sides;
 use crate::surface::Surface;
-use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
+use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
 
@@ -85,6 +85,21 @@ impl SceneParts {
     }
 }
 
+impl SceneParts {
+    /// True if a surface stops a ray wherever the ray hits it, which [`SceneParts::stops`] then need not decide.
+    ///
+    /// `n` is the normal at the ray's end, or zero.
+    fn surely_stops(&self, ray: &Ray, blocker: Primitive, (sheets, n): (&Option<Sheets>, Vec3)) -> bool {
+        let object = self.geometry.object_of_primitive(blocker);
+        let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
+        if has_holes || !is_one_sided || (ray.mask == u32::MAX && sheets.is_none()) {
+            return !has_holes;
+        }
+        let front = self.geometry.front_of(object, blocker, ray.time).filter(|_| ray.mask == u32::MAX);
+        front.is_some_and(|front| !self.may_be_between_shells(ray, front, n))
+    }
+}
+
 /// Traces rays on behalf of one thread, and counts.
 pub struct Tracer<'s> {
     /// The scene.
@@ -94,12 +109,14 @@ pub struct Tracer<'s> {
     counting: bool,
     /// The surface point on which the current rays end.
     end: Option<End>,
+    /// What the rays of a batch hit.
+    blockers: Vec<Option<Primitive>>,
 }
 
 impl<'s> Tracer<'s> {
     /// A tracer; with `counting`, every node and triangle test is counted.
     pub fn new(scene: &'s Scene, counting: bool) -> Tracer<'s> {
-        Tracer { scene, counters: Counters::default(), counting, end: None }
+        Tracer { scene, counters: Counters::default(), counting, end: None, blockers: Vec::new() }
     }
 
     /// Traces rays between the origin of `ray` and its point at parameter 1, which is on a surface with the normal `n`.
@@ -224,20 +241,27 @@ impl<'s> Tracer<'s> {
     ///
     /// `n` gives the normal at the end of each, see [`Tracer::ending_on`].
     pub fn all_occluded(&mut self, rays: &[Ray], n: impl Fn(usize) -> Vec3, occluded: &mut [bool]) {
-        occluded.fill(true);
-        let (scene, mut is_asked) = (self.scene, false);
-        if let Some(tree) = self.batch_tree(rays) {
-            tree.any_hits(rays, &scene.query, occluded);
-            is_asked = true;
-        }
-        // A ray that hits nothing is free. One that hits something may pass it, if any surface lets any ray pass.
-        let is_known = |ray: &Ray, hits: bool| {
-            is_asked && (!hits || (scene.sheets.is_none() && !scene.parts.may_pass(ray)))
+        let scene = self.scene;
+        let Some(tree) = self.batch_tree(rays) else {
+            for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
+                *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
+            }
+            return;
         };
+        self.counters.rays += rays.len() as u64;
+        if !scene.may_pass_surfaces() {
+            tree.any_hits(rays, &scene.query, occluded);
+            return;
+        }
+        self.blockers.clear();
+        self.blockers.resize(rays.len(), None);
+        tree.blockers(rays, &scene.query, &mut self.blockers);
         for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-            if is_known(ray, *occluded) {
-                self.counters.rays += 1;
-            } else {
+            let blocker = self.blockers[i];
+            *occluded = blocker.is_some();
+            if blocker.is_some_and(|blocker| !scene.parts.surely_stops(ray, blocker, (&scene.sheets, n(i)))) {
+                // It may pass what it hits. Asked again, and counted once.
+                self.counters.rays -= 1;
                 *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));
             }
         }

@@ -75,7 +75,7 @@ impl Traverse for CompactBvh8 {
     #[inline(always)]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        self.view().is_some_and(|view| kernel::any::<Compact, C>(self.level, view, ray, query, count))
+        self.view().is_some_and(|view| kernel::any::<Compact, C>(self.level, view, ray, query, count).is_some())
     }
 
     fn bounds(&self) -> Aabb {

@@ -11,10 +11,14 @@ use crate::ray::{Hit, Query, Ray};
 /// Batches of fewer rays than this are traced one by one, which is faster.
 const FEW: usize = 8;
 
-/// The placeholder that stands for any hit.
-pub(super) const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
+/// A hit somewhere on a primitive.
+#[inline(always)]
+pub(super) fn on(primitive: u32) -> Hit {
+    Hit { t: 0.0, u: 0.0, v: 0.0, primitive, instance: 0 }
+}
 
-/// Answers each ray by its index: with its nearest hit or, where `ANY`, with whichever hit is found first.
+/// Answers each ray by its index: with its nearest hit or, where `ANY`, with a primitive
+/// that it hits.
 ///
 /// # Safety
 /// The machine must have the level, and the view must be sound.
@@ -59,7 +63,7 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: TreeView<'_>, ray: &Ray, que
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {
-            body::any::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters).then_some(SOMETHING)
+            body::any::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters).map(on)
         } else {
             body::closest::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters)
         }
@@ -80,7 +84,7 @@ fn irregular<const ANY: bool>(
         left &= left - 1;
         if ANY {
             let found = plain::any::<Wide, _>(view, &rays[index], query, &mut NoCounters);
-            answer(index, found.then_some(SOMETHING));
+            answer(index, found.map(on));
         } else {
             answer(index, plain::closest::<Wide, _>(view, &rays[index], query, &mut NoCounters));
         }

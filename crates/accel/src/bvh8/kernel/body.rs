@@ -171,7 +171,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> bool {
+) -> Option<u32> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::prepare(ray, &view) {
@@ -185,7 +185,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     }
 }
 
-/// Whether a ray that is prepared for boxes hits anything.
+/// A primitive that a ray hits which is prepared for boxes, if there is one.
 ///
 /// # Safety
 /// As for [`search`].
@@ -196,7 +196,7 @@ pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: 
     start: Start,
     query: &Query,
     count: &mut C,
-) -> bool {
+) -> Option<u32> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();
@@ -214,12 +214,13 @@ pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: 
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
-                if leaf::any::<L, F, PLAIN>(ray, (place, current.blocks()), query) {
-                    return true;
+                let found = leaf::any::<L, F, PLAIN>(ray, (place, current.blocks()), query);
+                if found.is_some() {
+                    return found;
                 }
             }
             if stack.is_empty() {
-                return false;
+                return None;
             }
             current = stack.take_reference();
         }

@@ -86,7 +86,7 @@ unsafe fn update_nearest<F: NodeFormat, const PLAIN: bool>(
     }
 }
 
-/// Whether there is any hit.
+/// A primitive that the ray hits, if there is one.
 ///
 /// # Safety
 /// As for [`closest`].
@@ -95,7 +95,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
-) -> bool {
+) -> Option<u32> {
     // SAFETY: as the caller promises.
     unsafe {
         let block_ray = BlockRay::new::<L>(black_box(ray));
@@ -107,26 +107,34 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
             let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, ray.t_max), culling);
-            if crossings.mask() != 0 && (PLAIN || accepts_any::<F>(block, &crossings, query)) {
-                return true;
+            if crossings.mask() == 0 {
+                continue;
+            }
+            if PLAIN {
+                let lane = crossings.mask().trailing_zeros() as usize & (LANES - 1);
+                return Some(primitive::<F>(block, lane));
+            }
+            if let Some(primitive) = accepted::<F>(block, &crossings, query) {
+                return Some(primitive);
             }
         }
     }
-    false
+    None
 }
 
-/// True when the filter lets one of the crossings count.
+/// The primitive of a crossing that the filter lets count.
 ///
 /// # Safety
 /// As for [`closest`].
 #[inline(never)]
-unsafe fn accepts_any<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+unsafe fn accepted<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> Option<u32> {
     // SAFETY: as the caller promises.
     let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
-    (0..LANES).filter(|lane| mask >> lane & 1 == 1).any(|lane| {
+    (0..LANES).filter(|lane| mask >> lane & 1 == 1).find_map(|lane| {
         // SAFETY: as above.
         let primitive = unsafe { primitive::<F>(block, lane) };
-        query.accepts(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
+        let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
+        query.accepts(&hit).then_some(primitive)
     })
 }
 

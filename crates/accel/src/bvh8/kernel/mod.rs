@@ -45,7 +45,7 @@ macro_rules! entries {
             outline: &super::TreeSummary,
             ray: &$crate::Ray,
             count: &mut C,
-        ) -> bool {
+        ) -> Option<u32> {
             let view = super::TreeView { units, outline };
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
@@ -59,7 +59,7 @@ macro_rules! entries {
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
-        ) -> bool {
+        ) -> Option<u32> {
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, F, C, false>(view, ray, query, count) }
         }
@@ -93,10 +93,10 @@ macro_rules! batch_entries {
             view: super::TreeView<'_>,
             rays: &[$crate::Ray],
             query: &$crate::Query,
-            hits: &mut [bool],
+            blockers: &mut [Option<$crate::Primitive>],
         ) {
-            let rays = &rays[..rays.len().min(hits.len())];
-            let note = |index: usize, hit: Option<$crate::Hit>| hits[index] = hit.is_some();
+            let rays = &rays[..rays.len().min(blockers.len())];
+            let note = |index: usize, hit: Option<$crate::Hit>| blockers[index] = hit.map(|hit| hit.primitive());
             // SAFETY: as the caller promises.
             unsafe { super::batch::each::<$level, true>(view, rays, query, note) }
         }
@@ -139,7 +139,7 @@ use super::layout::Unit;
 use super::summary::TreeSummary;
 use crate::counters::{Count, NoCounters};
 use crate::cpu_level::CpuLevel;
-use crate::ray::{Hit, Query, Ray};
+use crate::ray::{Hit, Primitive, Query, Ray};
 
 pub(super) use compact::Compact;
 pub(super) use node_format::{NodeFormat, Wide};
@@ -208,7 +208,7 @@ fn closest_at_lower_levels<F: NodeFormat, C: Count>(
     }
 }
 
-/// Whether there is any hit.
+/// A primitive that the ray hits, if there is one.
 #[inline(always)]
 pub(super) fn any<F: NodeFormat, C: Count>(
     level: CpuLevel,
@@ -216,7 +216,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> bool {
+) -> Option<u32> {
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx512 => ask!(avx512, any, any_by, view, ray, query, count),
@@ -234,7 +234,7 @@ fn any_at_lower_levels<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> bool {
+) -> Option<u32> {
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Sse42 => ask!(sse42, any, any_by, view, ray, query, count),
@@ -265,18 +265,25 @@ pub(super) fn closest_each(
     }
 }
 
-/// Whether there is any hit, for each ray.
-pub(super) fn any_each(level: CpuLevel, view: TreeView<'_>, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+/// For each ray a primitive that it hits, if there is one.
+pub(super) fn any_each(
+    level: CpuLevel,
+    view: TreeView<'_>,
+    rays: &[Ray],
+    query: &Query,
+    blockers: &mut [Option<Primitive>],
+) {
     match level {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx512 => unsafe { avx512::any_each(view, rays, query, hits) },
+        CpuLevel::Avx512 => unsafe { avx512::any_each(view, rays, query, blockers) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, hits) },
+        CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, blockers) },
         _ => {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = any::<Wide, _>(level, view, ray, query, &mut NoCounters);
+            for (ray, blocker) in rays.iter().zip(blockers) {
+                let index = any::<Wide, _>(level, view, ray, query, &mut NoCounters);
+                *blocker = index.map(|index| Primitive { instance: 0, index });
             }
         }
     }

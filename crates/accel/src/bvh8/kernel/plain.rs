@@ -45,10 +45,10 @@ pub(super) fn any<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> bool {
-    let Some((prepared, slabs)) = prepare(&view, ray) else { return false };
+) -> Option<u32> {
+    let (prepared, slabs) = prepare(&view, ray)?;
     let limit = slabs.limit(ray.t_max);
-    let mut found = false;
+    let mut found = None;
     walk::<F, C>(view, &slabs, limit, count, |leaf, count| {
         for (block, lane) in places::<F>(leaf) {
             let (corners, primitive) = F::triangle(view.units, block, lane);
@@ -57,7 +57,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
             }
             count.triangles(1);
             if hits(&prepared, query, &corners, primitive) {
-                found = true;
+                found = Some(primitive);
                 return ControlFlow::Break(());
             }
         }

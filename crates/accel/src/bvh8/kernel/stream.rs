@@ -4,7 +4,7 @@
 //! node or leaf, prefetches what comes next, and hands over to the next ray, which proceeds while the first would
 //! wait.
 
-use super::batch::SOMETHING;
+use super::batch;
 use super::body::{self, Start, choose, prefetch};
 use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
@@ -55,7 +55,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
                         query,
                         &mut NoCounters,
                     );
-                    found.then_some(SOMETHING)
+                    found.map(batch::on)
                 } else {
                     body::search::<L, Wide, NoCounters, PLAIN>(view, ray, start, query, &mut NoCounters)
                 },
@@ -90,7 +90,8 @@ impl<'p> Rest<'p> {
             let index = self.left.trailing_zeros() as usize;
             self.left &= self.left - 1;
             if ANY && self.tails.found >> index & 1 == 1 {
-                answer(index, Some(SOMETHING));
+                // SAFETY: as the caller promises.
+                answer(index, Some(unsafe { self.packet.found(index).0 }));
                 continue;
             }
             // SAFETY: as the caller promises.
@@ -233,8 +234,8 @@ impl<'r> Walk<'r> {
         unsafe {
             if ANY {
                 let found = leaf::any::<L, Wide, PLAIN>(self.ray, leaf, query);
-                self.nearest.primitive = if found { 0 } else { u32::MAX };
-                return found;
+                self.nearest.primitive = found.unwrap_or(u32::MAX);
+                return found.is_some();
             }
             leaf::closest::<L, Wide, PLAIN>(self.ray, leaf, query, &mut self.nearest);
         }

@@ -26,7 +26,7 @@ pub(super) use ready::{Lane, Ready};
 pub(super) use wide::{Wide, declare, define};
 
 use super::TreeView;
-use super::batch::SOMETHING;
+use super::batch;
 use super::body::{prefetch, reference};
 use super::level::BatchLevel;
 use super::node_format;
@@ -72,7 +72,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
         for lane in 0..rays.len() {
             let primitive = *packet.primitive.at(lane);
             if ANY {
-                answer(lane, (done >> lane & 1 == 1).then_some(SOMETHING));
+                answer(lane, (done >> lane & 1 == 1).then_some(batch::on(primitive)));
             } else if primitive == u32::MAX {
                 answer(lane, None);
             } else {

@@ -125,6 +125,9 @@ impl<'p, O> Group<'p, O> {
                 nearest.select(mask, high).store(self.packet.t.at_mut(from));
                 self.name::<W>(block, lane, hits);
             }
+            if ANY && hits != 0 {
+                self.name::<W>(block, lane, hits);
+            }
             let doubtful = mask & !hits;
             if doubtful == 0 { hits } else { hits | self.decide::<W, ANY>(corners, block, lane, doubtful) }
         }
@@ -265,18 +268,20 @@ impl<'p, O> Group<'p, O> {
                 let (u, v) = (v.div(det).narrow(), w.div(det).narrow());
                 mask = self.apply_filter::<W>(primitive, t, u, v, mask);
             }
-            if ANY || mask == 0 {
+            if mask == 0 {
                 return mask;
             }
-            let mut ties = mask & t.eq(nearest);
-            while ties != 0 {
-                let ray = ties.trailing_zeros() as usize;
-                ties &= ties - 1;
-                if *self.packet.primitive.at(from + ray) <= primitive {
-                    mask &= !(1 << ray);
+            if !ANY {
+                let mut ties = mask & t.eq(nearest);
+                while ties != 0 {
+                    let ray = ties.trailing_zeros() as usize;
+                    ties &= ties - 1;
+                    if *self.packet.primitive.at(from + ray) <= primitive {
+                        mask &= !(1 << ray);
+                    }
                 }
+                self.keep::<W>(from, mask, t, [v.div(det).narrow(), w.div(det).narrow()]);
             }
-            self.keep::<W>(from, mask, t, [v.div(det).narrow(), w.div(det).narrow()]);
             self.name::<W>(block, lane, mask << (HALF * W::LANES / 2));
             mask
         }
