@@ -161,15 +161,15 @@ impl Albedo {
     }
 
     /// One number of the four entries around a position, interpolated bilinearly.
-    #[inline]
+    #[inline(always)]
     fn entry(&self, cos: f32, of: impl Fn(&Entry) -> f32) -> f32 {
         let (column, share) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
         let (row, between) = place(self.roughness, ROUGHNESSES);
-        let at = |row: usize| {
-            let row = &TABLE.at[row];
-            lerp(of(&row[column]), of(&row[column + 1]), share)
-        };
-        lerp(at(row), at(row + 1), between)
+        let rows: &[[Entry; COSINES]] = &TABLE.at;
+        let [a, b] = [&rows[row], &rows[row + 1]];
+        let upper = lerp(of(&a[column]), of(&a[column + 1]), share);
+        let lower = lerp(of(&b[column]), of(&b[column + 1]), share);
+        lerp(upper, lower, between)
     }
 
     fn between(&self, of: impl Fn(&Entry) -> f32) -> f32 {
@@ -177,7 +177,7 @@ impl Albedo {
         lerp(of(&TABLE.mean[row]), of(&TABLE.mean[row + 1]), between)
     }
 
-    #[inline]
+    #[inline(always)]
     fn shared(&self) -> impl Fn(&Entry) -> f32 {
         let (index, share) = place(self.index, INDICES);
         let straight = self.straight;

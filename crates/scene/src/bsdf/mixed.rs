@@ -11,7 +11,7 @@ impl Bsdf {
         let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
         let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
         for (i, (weight, lobe)) in parts.enumerate().take(MAX_LOBES) {
-            sum.set(i, *lobe, weight);
+            sum.set(i, lobe, weight);
         }
         sum
     }

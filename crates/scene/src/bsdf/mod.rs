@@ -114,7 +114,7 @@ impl Bsdf {
     /// A sum of at most [`MAX_LOBES`] lobes around a shading normal.
     pub fn new<const N: usize>(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; N]) -> Bsdf {
         let mut sum = Bsdf::empty(Frame::from_normal(n_shade), n_geom);
-        for (i, lobe) in lobes.into_iter().flatten().take(MAX_LOBES).enumerate() {
+        for (i, lobe) in lobes.iter().flatten().take(MAX_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
         }
         sum
@@ -144,9 +144,12 @@ impl Bsdf {
         Bsdf { frame: Frame::from_normal(n_shade), n_geom, bends: false, apart: None, ..*self }
     }
 
-    fn set(&mut self, i: usize, lobe: Lobe, weight: f32) {
+    /// Sets a lobe, which is copied once: it is large.
+    #[inline]
+    fn set(&mut self, i: usize, lobe: &Lobe, weight: f32) {
         let strength = weight * lobe.strength();
-        (self.lobes[i], self.weights[i], self.strengths[i]) = (Some(lobe), weight, strength);
+        self.lobes[i] = Some(*lobe);
+        (self.weights[i], self.strengths[i]) = (weight, strength);
         self.total_strength += strength;
         self.rises[i] = weight * lobe.rise();
         self.total_rise += self.rises[i];

@@ -2,7 +2,7 @@
 //! about a single normal. Their sum keeps every guarantee of a [`Bsdf`].
 
 use super::lobe_frame::LobeFrame;
-use super::{Bsdf, BsdfSample, TransportMode};
+use super::{Bsdf, BsdfSample, MAX_LOBES, TransportMode};
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// The lobes about the shared normal, and the lobe about its own.
@@ -29,15 +29,24 @@ impl Bsdf {
         let mut shared = about(self.frame, self.bends);
         let mut own = about(Frame::from_normal(apart.n), apart.bends);
         let mut place = 0;
-        for (i, (weight, lobe)) in self.weighted().enumerate() {
+        for i in (0..MAX_LOBES).take_while(|&i| self.lobes[i].is_some()) {
             if i == index {
-                own.set(0, *lobe, weight);
+                own.set_from(0, self, i);
             } else {
-                shared.set(place, *lobe, weight);
+                shared.set_from(place, self, i);
                 place += 1;
             }
         }
         Parts([shared, own])
+    }
+
+    /// Sets a lobe to one of another BSDF.
+    #[inline]
+    fn set_from(&mut self, place: usize, other: &Bsdf, i: usize) {
+        (self.lobes[place], self.weights[place]) = (other.lobes[i], other.weights[i]);
+        (self.strengths[place], self.rises[place]) = (other.strengths[i], other.rises[i]);
+        self.total_strength += other.strengths[i];
+        self.total_rise += other.rises[i];
     }
 }
 
