@@ -146,6 +146,14 @@ impl CoatedDiffuse {
 
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let (wi, transmits) = self.direction(wo, u_choice, u);
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
+        Some(BsdfSample { transmits, ..sample })
+    }
+
+    /// The direction of [`CoatedDiffuse::sample`], and whether it is on the other side.
+    pub(super) fn direction(&self, wo: Vec3, u_choice: f32, u: Vec2) -> (Vec3, bool) {
         let through = self.share_through();
         let transmits = u_choice < through;
         let even = self.rough_diffuse.map_or(0.0, |rough_diffuse| rough_diffuse.uniform_probability(wo))
@@ -153,9 +161,7 @@ impl CoatedDiffuse {
         let is_even = !transmits && u_choice - through < even;
         let mut wi = if is_even { warp::sample_cone(u, 0.0) } else { warp::sample_cosine_hemisphere(u) };
         wi.z *= 1f32.copysign(if transmits { -wo.z } else { wo.z });
-        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
-        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
-        Some(BsdfSample { transmits, ..sample })
+        (wi, transmits)
     }
 
     #[inline]

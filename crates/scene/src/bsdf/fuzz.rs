@@ -74,10 +74,16 @@ impl Fuzz {
         u: Vec2,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
+        let wi = self.direction(wo, u);
+        BsdfSample::reflected(wi, self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    /// The direction of [`Fuzz::sample`].
+    #[inline]
+    pub(super) fn direction(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let z = (1.0 - u.x).max(f32::MIN_POSITIVE);
         let ((sin, cos), radius) = (sin_cos(2.0 * PI * u.y), (1.0 - z * z).max(0.0).sqrt());
-        let wi = Vec3::new(radius * cos, radius * sin, z.copysign(wo.z));
-        BsdfSample::reflected(wi, self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+        Vec3::new(radius * cos, radius * sin, z.copysign(wo.z))
     }
 
     #[inline]

@@ -75,6 +75,29 @@ impl Lobe {
         each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
     }
 
+    /// The direction of [`Lobe::sample`] for a lobe that is not a delta lobe. What it scatters there is not evaluated
+    /// where that would take long: sums of lobes evaluate all of them anyway.
+    #[inline]
+    pub(super) fn sample_direction(
+        &self,
+        wo: Vec3,
+        u_choice: f32,
+        u: Vec2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        match self {
+            Lobe::OpaqueBase(lobe) => BsdfSample::direction(wo, lobe.direction(wo, u_choice, u)),
+            Lobe::MicrofacetReflection(lobe) => BsdfSample::direction(wo, lobe.direction(wo, u_choice, u)),
+            Lobe::Fuzz(lobe) => BsdfSample::direction(wo, lobe.direction(wo, u)),
+            Lobe::CoatedDiffuse(lobe) => {
+                let (wi, transmits) = lobe.direction(wo, u_choice, u);
+                let above = if transmits { wi * Vec3::new(1.0, 1.0, -1.0) } else { wi };
+                BsdfSample::direction(wo, above).map(|sample| BsdfSample { wi, transmits, ..sample })
+            }
+            _ => self.sample(wo, u_choice, u, mode),
+        }
+    }
+
     /// The direction in which a delta lobe transmits light known to come along `wo`, however little it is.
     #[inline]
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {

@@ -218,6 +218,13 @@ impl MicrofacetReflection {
                 BsdfSample { wi, weight, pdf_solid_angle: 1.0, is_delta: true, transmits: false, eta: 1.0 };
             return Some(sample);
         }
+        let wi = self.direction(wo, u_choice, u);
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        BsdfSample::reflected(wi, f, pdf_solid_angle)
+    }
+
+    /// The direction of [`MicrofacetReflection::sample`] for a rough surface.
+    pub(super) fn direction(&self, wo: Vec3, u_choice: f32, u: Vec2) -> Vec3 {
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
         let is_again =
             self.again_share > 0.0 && u_choice < self.again_share * (1.0 - self.albedo.opaque_at(above.z));
@@ -228,9 +235,7 @@ impl MicrofacetReflection {
         } else {
             reflect(above, self.ggx.sample_visible(above, u, self.ggx.bound(above)))
         };
-        let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(wi.z * wo.z)).normalize();
-        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
-        BsdfSample::reflected(wi, f, pdf_solid_angle)
+        Vec3::new(wi.x, wi.y, wi.z.copysign(wi.z * wo.z)).normalize()
     }
 
     #[inline]

@@ -307,6 +307,18 @@ impl Bsdf {
         if let Some(parts) = self.parts() {
             return parts.sample(wo, u_choice, u, mode);
         }
+        let sample = self.sample_direction(wo, u_choice, u, mode)?;
+        if sample.is_delta {
+            return Some(sample);
+        }
+        let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
+        let weight = scattered / pdf_solid_angle;
+        (pdf_solid_angle > 0.0).then_some(BsdfSample { weight, pdf_solid_angle, ..sample })
+    }
+
+    /// [`Bsdf::sample`] about one normal; only for a delta lobe with weight and density.
+    #[inline]
+    fn sample_direction(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let (index, u_choice, share) = self.choose(wo, u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
         if chosen.is_delta() {
@@ -316,7 +328,7 @@ impl Bsdf {
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
         let about = |lobe: &Lobe, frame: &Frame, u_choice: f32| {
-            let sample = lobe.sample(frame.to_local(wo), u_choice, u, mode)?;
+            let sample = lobe.sample_direction(frame.to_local(wo), u_choice, u, mode)?;
             Some(BsdfSample { wi: frame.to_world(sample.wi).normalize(), ..sample })
         };
         let mut sample = if self.bends {
@@ -324,13 +336,11 @@ impl Bsdf {
         } else {
             about(chosen, &self.frame, u_choice)
         }?;
-        let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
-        (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
         if self.bends && !self.keeps_side(wo, &sample) {
             // The sampled normal differs from the visible one, so classify the event by the triangle alone.
             (sample.transmits, sample.eta) = (!sample.transmits, 1.0);
         }
-        (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
+        self.keeps_side(wo, &sample).then_some(sample)
     }
 
     /// Light scattered about a normal `n`, as radiance or as importance.

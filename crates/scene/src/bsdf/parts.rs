@@ -73,7 +73,8 @@ impl Parts {
         } else {
             (own, 1.0 - share, (u_choice - share) / (1.0 - share))
         };
-        let mut sample = chosen.sample(wo, u_choice.clamp(0.0, 1.0 - f32::EPSILON), u, mode)?;
+        let u_choice = u_choice.clamp(0.0, 1.0 - f32::EPSILON);
+        let mut sample = chosen.sample_direction(wo, u_choice, u, mode)?;
         if sample.is_delta {
             sample.weight = sample.weight / share;
             sample.pdf_solid_angle *= share;

@@ -20,6 +20,15 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
+    /// A direction of a non-delta lobe, whose weight and density are not known yet; `None` if it is not on the side of
+    /// `wo`, where the lobe's density is zero.
+    #[inline]
+    pub(super) fn direction(wo: Vec3, wi: Vec3) -> Option<BsdfSample> {
+        let (weight, pdf_solid_angle) = (Rgb::BLACK, 0.0);
+        let sample = BsdfSample { wi, weight, pdf_solid_angle, is_delta: false, transmits: false, eta: 1.0 };
+        (wo.z * wi.z > 0.0).then_some(sample)
+    }
+
     /// A sample of a non-delta lobe, on the side of `wo`; `None` where its density is zero.
     #[inline]
     pub(super) fn reflected(wi: Vec3, scattered: Rgb, pdf_solid_angle: f32) -> Option<BsdfSample> {

@@ -127,19 +127,26 @@ pub struct OpaqueBaseAlbedos {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpaqueBase {
     inputs: OpaqueBaseInputs,
+    /// [`OpaqueBaseAlbedos::mean`].
+    mean: [f32; 2],
+    /// [`OpaqueBaseAlbedos::at_normal`].
+    at_normal: f32,
     strength: f32,
 }
 
 impl OpaqueBase {
     /// The lobe at a point with these inputs, which [are rough](is_rough).
     pub fn new(inputs: &OpaqueBaseInputs) -> OpaqueBase {
-        let strength =
-            OpaqueBaseForWo::new(inputs, Vec3::Z, &inputs.look_up(1.0, AlbedoTable::shared())).strength();
-        OpaqueBase { inputs: *inputs, strength }
+        let albedos = inputs.look_up(1.0, AlbedoTable::shared());
+        let OpaqueBaseAlbedos { mean, at_normal, .. } = albedos;
+        let strength = OpaqueBaseForWo::new(inputs, Vec3::Z, &albedos).strength();
+        OpaqueBase { inputs: *inputs, mean, at_normal, strength }
     }
 
     fn facing(&self, wo: Vec3) -> OpaqueBaseForWo {
-        OpaqueBaseForWo::new(&self.inputs, wo, &self.inputs.look_up(wo.z, AlbedoTable::shared()))
+        let OpaqueBase { inputs, mean, at_normal, .. } = *self;
+        let along_wo = inputs.albedo().pair_at(AlbedoTable::shared(), wo.z.abs());
+        OpaqueBaseForWo::new(&inputs, wo, &OpaqueBaseAlbedos { mean, at_normal, along_wo })
     }
 
     /// True for white metal, which reflects all light.
@@ -170,6 +177,12 @@ impl OpaqueBase {
         let wi = facing.sample(u_choice, u);
         let (f, pdf_solid_angle) = facing.eval_and_pdf(wi, facing.look_up(wi.z, AlbedoTable::shared()));
         BsdfSample::reflected(wi, f, pdf_solid_angle)
+    }
+
+    /// The direction of [`OpaqueBase::sample`].
+    #[inline]
+    pub(super) fn direction(&self, wo: Vec3, u_choice: f32, u: Vec2) -> Vec3 {
+        self.facing(wo).sample(u_choice, u)
     }
 
     #[inline]
