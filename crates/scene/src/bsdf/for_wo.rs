@@ -1,6 +1,6 @@
 //! A [`Bsdf`] with one fixed direction and many others, as in photon mapping: terms of the fixed one are computed once.
 
-use super::{Bsdf, TransportMode};
+use super::{AlbedoTable, Bsdf, Lobe, OpaqueBaseForWo, TransportMode};
 use bilux_math::{Rgb, Vec3};
 
 /// A [`Bsdf`] with its `wo`.
@@ -12,6 +12,8 @@ pub struct BsdfForWo<'a> {
     cos_geom: f32,
     /// [`Bsdf::risen`] there.
     risen: f32,
+    /// The only lobe, if it is of this kind.
+    opaque: Option<OpaqueBaseForWo>,
     mode: TransportMode,
 }
 
@@ -20,7 +22,11 @@ impl Bsdf {
     #[inline]
     pub fn facing(&self, wo: Vec3, mode: TransportMode) -> BsdfForWo<'_> {
         let (local_wo, cos_geom) = (self.frame.to_local(wo), wo.dot(self.n_geom));
-        BsdfForWo { bsdf: self, wo, local_wo, cos_geom, risen: self.risen(wo), mode }
+        let opaque = match self.lobes {
+            [Some(Lobe::OpaqueBase(lobe)), None, ..] if !self.is_special() => Some(lobe.facing(local_wo)),
+            _ => None,
+        };
+        BsdfForWo { bsdf: self, wo, local_wo, cos_geom, risen: self.risen(wo), opaque, mode }
     }
 }
 
@@ -29,7 +35,7 @@ impl BsdfForWo<'_> {
     /// black.
     #[inline]
     pub fn eval_and_pdfs(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
-        let BsdfForWo { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
+        let BsdfForWo { bsdf, wo, local_wo, cos_geom, risen, ref opaque, mode } = *self;
         if bsdf.is_special() {
             let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);
             let back = || bsdf.pdf_solid_angle(wi, wo, mode.reversed());
@@ -43,7 +49,10 @@ impl BsdfForWo<'_> {
         let risen_back = bsdf.risen(wi);
         let (mut scattered, mut pdf, mut back) = (Rgb::BLACK, 0.0, 0.0);
         for (i, (weight, lobe)) in bsdf.weighted().enumerate() {
-            let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
+            let (f, p) = match opaque {
+                Some(lobe) => lobe.eval_and_pdf(local_wi, lobe.look_up(local_wi.z, AlbedoTable::shared())),
+                None => lobe.eval_and_pdf(local_wo, local_wi, mode),
+            };
             scattered += f * weight;
             pdf += (bsdf.strengths[i] + bsdf.rises[i] * risen) * p;
             back +=

@@ -143,7 +143,7 @@ impl OpaqueBase {
         OpaqueBase { inputs: *inputs, mean, at_normal, strength }
     }
 
-    fn facing(&self, wo: Vec3) -> OpaqueBaseForWo {
+    pub(super) fn facing(&self, wo: Vec3) -> OpaqueBaseForWo {
         let OpaqueBase { inputs, mean, at_normal, .. } = *self;
         let along_wo = inputs.albedo().pair_at(AlbedoTable::shared(), wo.z.abs());
         OpaqueBaseForWo::new(&inputs, wo, &OpaqueBaseAlbedos { mean, at_normal, along_wo })
@@ -162,7 +162,7 @@ impl OpaqueBase {
 
     #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.eval_and_pdf(wo, wi, TransportMode::Radiance).1
+        self.facing(wo).pdf_solid_angle(wi)
     }
 
     #[inline]
@@ -291,21 +291,43 @@ impl OpaqueBaseForWo {
         let is_lit = self.wo.z * wi.z > 0.0;
         let (wo, wi) = (Vec3::new(self.wo.x, self.wo.y, self.wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
         let a2 = self.alpha * self.alpha;
-        let half = wo + wi;
-        let m = half * (1.0 / half.length_squared().sqrt());
-        // [Walter 2007, eq. 33; Heitz 2014, eq. 99]
-        let q = (m.x * m.x + m.y * m.y) / a2 + m.z * m.z;
-        let distribution = FRAC_1_PI / (a2 * q * q);
+        let (m, distribution) = self.microfacets(wo, wi);
+        // [Heitz 2014, eq. 99]
         let visible = 0.5 * wi.z / (self.shadow * wi.z + shadow(a2, wi) * wo.z);
         let single = self.fresnel(wo.dot(m)) * (distribution * visible);
         let cosine = FRAC_1_PI * wi.z;
         let scattered =
             single + self.again * ((1.0 - opaque) * cosine) + self.base * ((1.0 - boundary) * cosine);
-        // [Eto 2023, eq. 8]
-        let microfacet = distribution * 0.5 / (self.bound * wo.z + self.shadow);
-        let pdf = self.gloss_share * microfacet + (1.0 - self.gloss_share) * cosine;
+        let pdf = self.density(wo, distribution, cosine);
         let of = |x: f32| if is_lit { x } else { 0.0 };
         (Rgb::new(of(scattered.r), of(scattered.g), of(scattered.b)), of(pdf))
+    }
+
+    /// The density alone.
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wi: Vec3) -> f32 {
+        let is_lit = self.wo.z * wi.z > 0.0;
+        let (wo, wi) = (Vec3::new(self.wo.x, self.wo.y, self.wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));
+        let (_, distribution) = self.microfacets(wo, wi);
+        if is_lit { self.density(wo, distribution, FRAC_1_PI * wi.z) } else { 0.0 }
+    }
+
+    /// The normal of the microfacets that reflect between two directions above the surface, and their density. [Walter
+    /// 2007, eq. 33]
+    #[inline(always)]
+    fn microfacets(&self, wo: Vec3, wi: Vec3) -> (Vec3, f32) {
+        let a2 = self.alpha * self.alpha;
+        let half = wo + wi;
+        let m = half * (1.0 / half.length_squared().sqrt());
+        let q = (m.x * m.x + m.y * m.y) / a2 + m.z * m.z;
+        (m, FRAC_1_PI / (a2 * q * q))
+    }
+
+    /// The mean of two densities: of reflections at microfacets [Eto 2023, eq. 8], and one in proportion to the cosine.
+    #[inline(always)]
+    fn density(&self, wo: Vec3, distribution: f32, cosine: f32) -> f32 {
+        let microfacet = distribution * 0.5 / (self.bound * wo.z + self.shadow);
+        self.gloss_share * microfacet + (1.0 - self.gloss_share) * cosine
     }
 
     /// A direction: `u_choice` picks one of the two densities, `u` the direction. It may be below the surface, where
