@@ -1,6 +1,6 @@
 //! From the index of a sample to its camera ray, and to the task of its integrator.
 
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::SampleQueue;
 use crate::emission::{Emission, Guide};
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
@@ -51,9 +51,9 @@ impl<'a> CameraRays<'a> {
         CameraRays { emission: Emission::new(self.scene, guide), ..self }
     }
 
-    /// The subpaths that the integrator follows from both ends, if it does.
-    pub(crate) fn both_ends(&self) -> Option<BothEnds<'a>> {
-        self.integrator.both_ends(self.photons)
+    /// Takes many of the integrator's samples at a time, if it can.
+    pub(crate) fn queue(&self) -> Option<Box<dyn SampleQueue + 'a>> {
+        self.integrator.queue(self.photons)
     }
 
     /// The camera ray of a sample, and the task for its integrator.

@@ -1,6 +1,6 @@
 //! What an integrator has to answer; the integrators are in [`crate::integrators`].
 
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::{BothEnds, BothEndsSamples, SampleQueue};
 use crate::emission::Guide;
 use crate::layers::Layers;
 use crate::photons::{Merging, Photons};
@@ -72,10 +72,16 @@ pub trait PixelIntegrator: Any + Send + Sync {
         }
     }
 
-    /// The subpaths from both ends that its samples consist of, if they do. Many of them can be followed at once.
+    /// The subpaths from both ends that its samples consist of, if they do.
     #[doc(hidden)]
     fn both_ends<'a>(&self, _photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
         None
+    }
+
+    /// Takes many of its samples at a time, each as [`PixelIntegrator::sample`] does; `None` where they are taken one by one.
+    #[doc(hidden)]
+    fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+        Some(Box::new(BothEndsSamples::new(self.both_ends(photons)?)))
     }
 
     /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).

@@ -1,5 +1,5 @@
 //! Paths that are followed many at a time bring the same light, bit for bit, as paths that are followed one by one; and
-//! so do pairs of subpaths from both ends.
+//! so do light subpaths, photons' gathering, and pairs of subpaths from both ends.
 
 mod common;
 
@@ -38,7 +38,7 @@ impl PixelIntegrator for OneByOne {
 }
 
 /// The integrators that follow many paths at once.
-const QUEUED: [&str; 3] = ["path", "bdpt", "vcm"];
+const QUEUED: [&str; 5] = ["path", "light", "bdpt", "sppm", "vcm"];
 
 fn settings() -> RenderSettings {
     RenderSettings { threads: 2, seed: 3, ..RenderSettings::new(37, 29, 6) }

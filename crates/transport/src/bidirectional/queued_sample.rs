@@ -5,7 +5,7 @@ use crate::task::Task;
 use bilux_scene::{Ray, Wavelength};
 
 /// A sample of the film.
-pub(crate) struct QueuedSample {
+pub struct QueuedSample {
     /// From the camera.
     pub(crate) ray: Ray,
     pub(super) sampler: PixelSampler,
@@ -22,7 +22,7 @@ impl QueuedSample {
 
     /// Gives its random numbers and wavelength to the task that serves all samples.
     #[inline]
-    pub(super) fn enter(&self, task: &mut Task) {
+    pub(crate) fn enter(&self, task: &mut Task) {
         (task.sampler, task.wavelength) = (self.sampler.clone(), self.wavelength);
     }
 }

@@ -3,7 +3,7 @@
 //! against all others. [Veach 1997, 10; Lafortune 1993]
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::{BothEnds, CameraSubpath};
 use crate::photons::Photons;
 use crate::splats::PixelSum;
 use crate::task::Task;
@@ -50,6 +50,6 @@ impl PixelIntegrator for Bdpt {
 /// What a camera subpath finds without a light subpath, weighted as if there were some.
 pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, both_ends: &BothEnds) -> Rgb {
     let mut sum = PixelSum::default();
-    both_ends.camera_path(ray, &[], task, &mut sum);
+    both_ends.follow(ray, &[], task, &mut sum);
     sum.0
 }
