@@ -36,7 +36,8 @@ impl<'a> CameraRays<'a> {
         settings: &'a RenderSettings,
     ) -> CameraRays<'a> {
         let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
-        let emission = Emission::new(scene, integrator.guide());
+        let guide = integrator.light_subpaths().and_then(|subpaths| subpaths.guide());
+        let emission = Emission::new(scene, guide);
         let merges = integrator.merging().is_some();
         CameraRays { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
     }

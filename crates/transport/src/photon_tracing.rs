@@ -79,7 +79,7 @@ impl<const N: usize> Photons<N> {
                 };
                 let samples: Vec<_> = places.iter().map(&mut sampled).collect();
                 let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
-                paths.trace(&samples, &mut task, eye.integrator.roulette_depth(), &techniques);
+                paths.trace(&samples, &mut task, merging.roulette_depth, &techniques);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
                     paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {

@@ -5,9 +5,8 @@ use super::camera_queue::CameraQueue;
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
 use super::{BothEnds, SampleQueue};
-use crate::splats::PixelSum;
 use crate::task::Task;
-use crate::techniques::{Contribution, Step, Tally, Technique};
+use crate::techniques::{Contribution, PixelSum, Step, Tally, Technique};
 use bilux_math::{Rgb, Vec2};
 
 /// A queue of samples: the memory that it works in.

@@ -2,7 +2,7 @@
 //! [Arvo 1986] What is visible only in mirrors or through glass is not found, and no other technique adds it: this
 //! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
-use super::{IntegratorEntry, PixelIntegrator};
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::{LightTracing, LightTracingSamples, SampleQueue};
 use crate::photons::Photons;
 use crate::splats::Splats;
@@ -31,17 +31,19 @@ impl PixelIntegrator for LightTracing {
         LightTracing::emitted(ray, task)
     }
 
-    fn splats(&self) -> bool {
-        true
-    }
-
-    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
-        LightTracing::splats(self, ray.time, task, |film, light| splats.add(film, light));
-        emitted
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
     }
 
     fn queue<'a>(&self, _photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
         Some(Box::new(LightTracingSamples::new(*self)))
+    }
+}
+
+impl LightSubpaths for LightTracing {
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
+        self.trace(ray.time, task, |film, light| splats.add(film, light));
+        emitted
     }
 }

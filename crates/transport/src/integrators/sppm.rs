@@ -2,15 +2,14 @@
 //! mirrors and glass to the first surface that is not specular, and gather the photons around it. The radius shrinks
 //! from iteration to iteration. [Hachisuka 2009; Knaus 2011]
 
-use super::{IntegratorEntry, PixelIntegrator, merging};
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator, merging};
 use crate::bidirectional::{
     CameraQueue, CameraSubpath, LightPaths, QueuedSample, SampleQueue, Vertex, Walk, emitted, from_infinity,
     merged,
 };
 use crate::photons::{Merging, Photons};
-use crate::splats::PixelSum;
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, Tally, Technique, TechniqueCounts};
+use crate::techniques::{Contribution, Lanes, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::Ray;
@@ -25,22 +24,16 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| {
-        Ok(Box::new(Sppm {
-            roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: merging::read(reader, TechniqueCounts::CAMERA),
-        }))
-    },
+    build: |reader| Ok(Box::new(Sppm { merging: merging::read(reader, TechniqueCounts::CAMERA) })),
 };
 
 struct Sppm {
-    roulette_depth: u32,
     merging: Merging,
 }
 
 impl Sppm {
     fn gathering<'a>(&self, photons: Option<&'a Photons>) -> PhotonGathering<'a> {
-        PhotonGathering { photons, roulette_depth: self.roulette_depth }
+        PhotonGathering { photons, roulette_depth: self.merging.roulette_depth }
     }
 }
 
@@ -51,17 +44,24 @@ impl PixelIntegrator for Sppm {
         sum.0
     }
 
-    fn merging(&self) -> Option<&Merging> {
-        Some(&self.merging)
-    }
-
-    fn roulette_depth(&self) -> u32 {
-        self.roulette_depth
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
     }
 
     fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
         let (queue, light_paths) = (CameraQueue::default(), LightPaths::default());
         Some(Box::new(PhotonGatheringSamples { gathering: self.gathering(photons), queue, light_paths }))
+    }
+}
+
+impl LightSubpaths for Sppm {
+    /// All are photons'.
+    fn splats(&self) -> bool {
+        false
+    }
+
+    fn merging(&self) -> Option<&Merging> {
+        Some(&self.merging)
     }
 }
 

@@ -243,7 +243,7 @@ where
     let (photons, mut counted) =
         Photons::trace(light, merging, &sources, iteration, |eta, _| techniques(eta), visitor);
     let shows = visitor.is_none();
-    let both_ends = BothEnds::merging(&photons, shows, eye.integrator.roulette_depth());
+    let both_ends = BothEnds::merging(&photons, shows, merging.roulette_depth);
     let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
         let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
         let places = tiles.iter().flat_map(|tile| (0..tile.pixels()).map(|i| grid.pixel(tile.position(i))));
