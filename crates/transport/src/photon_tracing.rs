@@ -74,8 +74,8 @@ impl<const N: usize> Photons<N> {
             let mut paths = LightPaths::default();
             for places in places.chunks(PATHS) {
                 let mut sampled = |&(x, y): &(u32, u32)| {
-                    let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
-                    QueuedSample::new(ray, &task, false)
+                    let (time, task) = eye.light_sample(&mut tracer, x, y, iteration);
+                    QueuedSample::of_light(time, &task)
                 };
                 let samples: Vec<_> = places.iter().map(&mut sampled).collect();
                 let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);

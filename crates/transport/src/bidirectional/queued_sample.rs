@@ -20,6 +20,12 @@ impl QueuedSample {
         QueuedSample { ray, sampler: task.sampler.clone(), wavelength: task.wavelength, is_wanted }
     }
 
+    /// A sample whose light subpath alone is traced.
+    pub(crate) fn of_light(time: f32, task: &Task) -> QueuedSample {
+        let nowhere = Ray { time, ..Ray::new([0.0; 3], [0.0; 3]) };
+        QueuedSample::new(nowhere, task, false)
+    }
+
     /// Gives its random numbers and wavelength to the task that serves all samples.
     #[inline]
     pub(crate) fn enter(&self, task: &mut Task) {
