@@ -133,7 +133,7 @@ impl Competitor {
             speedup: None,
             build_seconds: self.build_seconds,
             bytes_per_triangle: bytes as f64 / triangles as f64,
-            outcome_counters: outcome.counters,
+            outcome_counters: outcome.rendered.counters,
             picture: hash(&outcome)?,
         })
     }

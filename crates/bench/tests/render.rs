@@ -82,7 +82,7 @@ fn small(scene: &str, integrator: &str, samples: i64) -> Vec<Rgb> {
     settings.set("spp", Value::Integer(samples));
     let job = Job::new(&bilux::generate(&Spec::new("", scene)).unwrap(), &settings).unwrap();
     assert!(job.warnings().is_empty(), "{scene}: {:?}", job.warnings());
-    let pixels = job.render(&Quiet).unwrap().film.to_rgb();
+    let pixels = job.render(&Quiet).unwrap().rendered.film.to_rgb();
     assert!(pixels.iter().all(|p| p.is_finite()), "{scene}, {integrator}");
     pixels
 }

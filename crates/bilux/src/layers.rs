@@ -77,8 +77,9 @@ impl Outcome {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
             features.push_layers(picture, wants)?;
         }
-        if let Some(batches) = self.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
-            push_variance(picture, &self.film, batches)?;
+        if let Some(batches) = self.rendered.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance))
+        {
+            push_variance(picture, &self.rendered.film, batches)?;
         }
         Ok(())
     }
@@ -95,22 +96,23 @@ impl Outcome {
 
 impl Source for Outcome {
     fn size(&self) -> (usize, usize) {
-        let window = self.film.window();
+        let window = self.rendered.film.window();
         (window.width as usize, window.height as usize)
     }
 
     fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
-        let window = self.film.window();
+        let window = self.rendered.film.window();
         let (width, height) = (window.width as usize, rows.len());
         let pixels = rows.start * width..rows.end * width;
         let light = |of: fn(&Film, u32, u32) -> Rgb| {
             let places = pixels.clone().into_par_iter().map(|i| window.position(i));
-            places.map(|(x, y)| of(&self.film, x, y)).collect()
+            places.map(|(x, y)| of(&self.rendered.film, x, y)).collect()
         };
-        let [camera, light_paths] = match self.batch_means.as_ref().and_then(|b| b.variance(pixels.clone())) {
-            Some(variances) => variances.map(Some),
-            None => [None, None],
-        };
+        let [camera, light_paths] =
+            match self.rendered.batch_means.as_ref().and_then(|b| b.variance(pixels.clone())) {
+                Some(variances) => variances.map(Some),
+                None => [None, None],
+            };
         let mut layers = vec![Layer { colour: light(Film::pixel), variance: camera }];
         if light_paths.as_ref().is_some_and(|variance| !variance.is_empty()) {
             layers.push(Layer { colour: light(Film::splatted), variance: light_paths });

@@ -2,29 +2,16 @@
 
 use crate::Error;
 use bilux_pictures::Picture;
-use bilux_scene::Counters;
-use bilux_transport::{BatchMeans, Choice, Features, Film, Interval, Reached};
+use bilux_transport::{Features, Reached, Rendered};
 
-/// The result of a render.
+/// What was rendered, with whatever else the picture needs.
 pub struct Outcome {
-    /// The film.
-    pub film: Film,
-    /// Counts of the work that its rays took.
-    pub counters: Counters,
-    /// Whether it was stopped early; the film holds what had been rendered by then.
-    pub cancelled: bool,
-    /// What an integrator that chooses its strategies has chosen, and why.
-    pub choice: Option<Choice>,
-    /// How far it got, if noise or time could end it.
-    pub reached: Option<Reached>,
-    /// The confidence interval of each pixel, if it was asked for ([`with_interval`](crate::Job::with_interval)).
-    pub interval: Option<Interval>,
+    /// What was rendered: the film, the work that it took, how far it got.
+    pub rendered: Rendered,
     /// Features of the visible surfaces, if they were asked for ([`with_layers`](crate::Job::with_layers)).
     pub features: Option<Features>,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,
-    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`with_layers`](crate::Job::with_layers)).
-    pub batch_means: Option<BatchMeans>,
     pub(crate) linear_transfer: bool,
 }
 
@@ -39,7 +26,7 @@ impl Outcome {
 
     /// The light in the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
-        let mut picture = self.film.window_to_picture(self.film.window())?;
+        let mut picture = self.rendered.film.window_to_picture(self.rendered.film.window())?;
         if let Some(coverage) = &self.coverage {
             picture.push_channel("A", coverage.clone())?;
         }
@@ -58,7 +45,9 @@ impl Outcome {
 
     /// Records in the picture's metadata how the stopping rule affected it.
     fn record_stop(&self, picture: &mut Picture) {
-        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
+        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.rendered.reached else {
+            return;
+        };
         let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
         note("", noise.to_string());
         note(".samples", spp.to_string());

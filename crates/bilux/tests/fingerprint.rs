@@ -260,7 +260,7 @@ fn films_of_two_integrators_or_two_materials_do_not_join() {
         settings.set("integrator", integrator);
         let mut job = Job::new(scene, &settings).unwrap();
         job.samples(samples);
-        job.render(&Quiet).unwrap().film
+        job.render(&Quiet).unwrap().rendered.film
     };
     let mut dull = scene();
     dull.materials[0].parameters.set("reflectance", 0.2f32);

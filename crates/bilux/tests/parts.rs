@@ -69,9 +69,12 @@ fn assert_same(settings: &Parameters, what: &str, numbers: &[u32]) {
     let local = job(settings).render(&Quiet).unwrap();
     for &workers in numbers {
         let other = gathered(settings, workers);
-        assert!(other.film == local.film, "{what}: the films of {workers} workers differ");
-        assert_eq!(other.reached, local.reached, "{what}, {workers} workers");
-        assert!(other.batch_means == local.batch_means, "{what}: the batches of {workers} workers differ");
+        assert!(other.rendered.film == local.rendered.film, "{what}: the films of {workers} workers differ");
+        assert_eq!(other.rendered.reached, local.rendered.reached, "{what}, {workers} workers");
+        assert!(
+            other.rendered.batch_means == local.rendered.batch_means,
+            "{what}: the batches of {workers} workers differ"
+        );
         assert!(other.features == local.features, "{what}: the features of {workers} workers differ");
         assert_eq!(other.picture().unwrap(), local.picture().unwrap(), "{what}, {workers} workers");
     }
@@ -91,7 +94,7 @@ fn every_integrator_gives_the_same_picture_in_parts() {
 fn noise_ends_the_picture_at_the_same_sample() {
     for (integrator, noise) in [("auto", 0.05), ("path", 0.08), ("vcm", 0.05)] {
         let settings = settings(&[("integrator", integrator.into()), ("noise", Value::Number(noise))]);
-        let reached = job(&settings).render(&Quiet).unwrap().reached.unwrap();
+        let reached = job(&settings).render(&Quiet).unwrap().rendered.reached.unwrap();
         assert!(reached.spp > 16, "{integrator}: {} samples are too few to go wrong", reached.spp);
         assert_same(&settings, integrator, &[4]);
     }
@@ -108,9 +111,9 @@ fn denoised_and_transparent_pictures_are_the_same() {
 fn time_ends_the_picture_with_all_that_came_back() {
     let settings = settings(&[("time_limit", Value::Number(0.3)), ("denoise", "off".into())]);
     let outcome = gathered(&settings, 2);
-    let spp = outcome.reached.unwrap().spp;
-    assert!(spp > 0 && !outcome.cancelled);
-    assert!((0..24).all(|x| outcome.film.samples(x, 7) == spp));
+    let spp = outcome.rendered.reached.unwrap().spp;
+    assert!(spp > 0 && !outcome.rendered.cancelled);
+    assert!((0..24).all(|x| outcome.rendered.film.samples(x, 7) == spp));
 }
 
 #[test]
@@ -122,8 +125,8 @@ fn a_picture_that_is_stopped_keeps_what_came_back() {
     gathering.add(&parts[1], done.film, done.rays).unwrap();
     assert_eq!(gathering.so_far().unwrap().samples(3, 3), parts[1].samples.len() as u32);
     let outcome = job.gathered(gathering, &Quiet).unwrap();
-    assert!(outcome.cancelled);
-    assert_eq!(outcome.film.fingerprint, job.fingerprint());
+    assert!(outcome.rendered.cancelled);
+    assert_eq!(outcome.rendered.film.fingerprint, job.fingerprint());
 }
 
 #[test]
@@ -152,5 +155,5 @@ fn wrong_parts_are_refused() {
 fn a_limit_that_has_passed_still_gives_one_pass() {
     let settings = settings(&[("time_limit", Value::Number(0.001)), ("denoise", "off".into())]);
     std::thread::sleep(Duration::from_millis(2));
-    assert!(gathered(&settings, 4).reached.unwrap().spp >= 1);
+    assert!(gathered(&settings, 4).rendered.reached.unwrap().spp >= 1);
 }

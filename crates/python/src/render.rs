@@ -197,7 +197,7 @@ pub(crate) fn with_layers(
     aovs: &[Aov],
     build: BuildWork,
 ) -> Result<Rendered, bilux::Error> {
-    let denoiser = denoiser.filter(|_| !outcome.cancelled);
+    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
     let mut picture = match &denoiser {
         Some(chosen) => outcome.denoised(chosen)?,
         None => outcome.picture()?,
@@ -206,7 +206,7 @@ pub(crate) fn with_layers(
     if denoiser.is_some() {
         picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
     }
-    if let Some(interval) = &outcome.interval {
+    if let Some(interval) = &outcome.rendered.interval {
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
     let settings = job.settings();
@@ -214,7 +214,7 @@ pub(crate) fn with_layers(
         picture,
         shown: shown(job)?,
         warnings: job.warnings().to_vec(),
-        spp: match (outcome.cancelled, outcome.reached) {
+        spp: match (outcome.rendered.cancelled, outcome.rendered.reached) {
             (true, _) => mean_samples(&outcome),
             (false, Some(reached)) => f64::from(reached.spp),
             (false, None) => f64::from(job.samples_per_pixel()),
@@ -262,8 +262,8 @@ fn window(job: &Job, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::E
 
 /// The mean number of samples of a pixel.
 fn mean_samples(outcome: &Outcome) -> f64 {
-    let Window { x, y, width, height } = outcome.film.window();
-    let row = |row| (x..x + width).map(move |column| u64::from(outcome.film.samples(column, row)));
+    let Window { x, y, width, height } = outcome.rendered.film.window();
+    let row = |row| (x..x + width).map(move |column| u64::from(outcome.rendered.film.samples(column, row)));
     let all: u64 = (y..y + height).flat_map(row).sum();
     all as f64 / (f64::from(width) * f64::from(height))
 }
@@ -272,20 +272,20 @@ fn mean_samples(outcome: &Outcome) -> f64 {
 fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
     let outcome = &rendered.outcome;
-    match rendered.outcome.cancelled {
+    match rendered.outcome.rendered.cancelled {
         true => info.set_item("spp", rendered.spp)?,
         false => info.set_item("spp", rendered.spp as u64)?,
     }
-    info.set_item("noise", outcome.reached.and_then(|reached| reached.noise))?;
+    info.set_item("noise", outcome.rendered.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
     info.set_item("build_seconds", rendered.build.seconds)?;
     info.set_item("trees_built", rendered.build.trees)?;
-    info.set_item("complete", !outcome.cancelled)?;
+    info.set_item("complete", !outcome.rendered.cancelled)?;
     info.set_item("integrator", rendered.integrator)?;
-    info.set_item("choice", outcome.choice.as_ref().map(ToString::to_string))?;
+    info.set_item("choice", outcome.rendered.choice.as_ref().map(ToString::to_string))?;
     info.set_item("denoiser", rendered.denoiser.as_deref())?;
     info.set_item("seed", rendered.seed)?;
-    info.set_item("rays", outcome.counters.rays)?;
+    info.set_item("rays", outcome.rendered.counters.rays)?;
     let warnings: Vec<String> = rendered.warnings.iter().map(ToString::to_string).collect();
     info.set_item("warnings", warnings)?;
     Ok(info)

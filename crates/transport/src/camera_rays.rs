@@ -1,6 +1,6 @@
 //! From the index of a sample to its camera ray, and to the task of its integrator.
 
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::SampleQueue;
 use crate::emission::{Emission, Guide};
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
@@ -36,7 +36,8 @@ impl<'a> CameraRays<'a> {
         settings: &'a RenderSettings,
     ) -> CameraRays<'a> {
         let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
-        let emission = Emission::new(scene, integrator.guide());
+        let guide = integrator.light_subpaths().and_then(|subpaths| subpaths.guide());
+        let emission = Emission::new(scene, guide);
         let merges = integrator.merging().is_some();
         CameraRays { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
     }
@@ -51,9 +52,9 @@ impl<'a> CameraRays<'a> {
         CameraRays { emission: Emission::new(self.scene, guide), ..self }
     }
 
-    /// The subpaths that the integrator follows from both ends, if it does.
-    pub(crate) fn both_ends(&self) -> Option<BothEnds<'a>> {
-        self.integrator.both_ends(self.photons)
+    /// Takes many of the integrator's samples at a time, if it can.
+    pub(crate) fn queue(&self) -> Option<Box<dyn SampleQueue + 'a>> {
+        self.integrator.queue(self.photons)
     }
 
     /// The camera ray of a sample, and the task for its integrator.
@@ -65,15 +66,41 @@ impl<'a> CameraRays<'a> {
         y: u32,
         index: u32,
     ) -> (Ray, Task<'t, 'a>) {
+        let mut task = self.task(tracer, x, y, index);
+        let camera_sample = self.camera_sample(&mut task.sampler, x, y, index);
+        (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
+    }
+
+    /// The time of a sample, and the task for its light subpath alone: streams of random numbers do not depend on what was drawn
+    /// before them.
+    #[inline]
+    pub(crate) fn light_sample<'t>(
+        &'t self,
+        tracer: &'t mut Tracer<'a>,
+        x: u32,
+        y: u32,
+        index: u32,
+    ) -> (f32, Task<'t, 'a>) {
+        let mut task = self.task(tracer, x, y, index);
+        let [opens, closes] = self.scene.shutter();
+        let time = match opens == closes {
+            true => opens,
+            false => self.camera_sample(&mut task.sampler, x, y, index).time,
+        };
+        (time, task)
+    }
+
+    /// The task of a sample that has drawn nothing yet.
+    #[inline]
+    fn task<'t>(&'t self, tracer: &'t mut Tracer<'a>, x: u32, y: u32, index: u32) -> Task<'t, 'a> {
         let (seed, number) = match self.settings.interval {
             true => replicate(self.settings.seed, index),
             false => (self.settings.seed, index),
         };
-        let mut sampler = PixelSampler::new(seed, x, y, number);
-        let camera_sample = self.camera_sample(&mut sampler, x, y, index);
+        let sampler = PixelSampler::new(seed, x, y, number);
         let wavelength =
             if self.scene.disperses() { self.wavelength(seed, &sampler, number) } else { Wavelength::D };
-        let task = Task {
+        Task {
             tracer,
             sampler,
             wavelength,
@@ -83,8 +110,7 @@ impl<'a> CameraRays<'a> {
             emission: &self.emission,
             photons: self.photons,
             events: None,
-        };
-        (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
+        }
     }
 
     /// The rays as those of a pinhole, if there is nothing else to them: neither a lens, nor motion, nor wavelengths, nor a

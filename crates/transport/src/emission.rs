@@ -75,7 +75,7 @@ impl Emission {
             }
         };
         let cell = self.guide.as_ref().and_then(|guide| guide.cell(scene, light, ray.p, ray.direction));
-        let pdf_emission = self.pdf(scene, light, ray.p, ray.pdf_direct, ray.direction, ray.cos());
+        let pdf_emission = self.pdf_through(cell, scene, light, ray.pdf_direct, ray.direction, ray.cos());
         let ray = EmissionSample { pdf_emission, ..ray };
         (pdf_emission > 0.0).then_some(Start { light, ray, cell: cell.unwrap_or(0) as u16 })
     }
@@ -98,10 +98,24 @@ impl Emission {
         direction: Vec3,
         cos: f32,
     ) -> f32 {
+        let cell = self.guide.as_ref().and_then(|guide| guide.cell(scene, light, p, direction));
+        self.pdf_through(cell, scene, light, pdf_direct, direction, cos)
+    }
+
+    /// The same for a line through this cell of the guide.
+    fn pdf_through(
+        &self,
+        cell: Option<usize>,
+        scene: &Scene,
+        light: usize,
+        pdf_direct: f32,
+        direction: Vec3,
+        cos: f32,
+    ) -> f32 {
         let (bounds, source) = (scene.bounds(), &scene.lights()[light].light);
         let unaimed = source.emission_pdf(&bounds, pdf_direct, direction, cos) * self.probabilities[light];
         let Some(guide) = &self.guide else { return unaimed };
-        let share = guide.cell(scene, light, p, direction).map_or(0.0, |cell| guide.shares[cell]);
+        let share = cell.map_or(0.0, |cell| guide.shares[cell]);
         if share == 0.0 {
             return unaimed * guide.unaimed;
         }

@@ -47,7 +47,7 @@ impl fmt::Display for Strategy {
 pub(crate) type Both<T> = [T; 2];
 
 /// What all techniques find in a tile.
-pub struct Layers<'a> {
+pub(crate) struct Layers<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,
     /// The requested part of the tile.

@@ -69,7 +69,7 @@ pub use layers::Strategy;
 pub use light_choice::LightChoice;
 pub use limits::{DEFAULT_MAX_DEPTH, MAX_DEPTH};
 pub use photons::{Merging, Photons};
-pub use pixel_integrator::{CameraSpread, PixelIntegrator, Plan};
+pub use pixel_integrator::{CameraSpread, Chooser, LightSubpaths, PixelIntegrator, Plan};
 pub use plan::{Candidate, Choice};
 pub use progress::{Progress, Silent};
 pub use render::{plan, render};

@@ -1,6 +1,6 @@
 //! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
-use crate::bidirectional::{self, BothEnds, BothEndsQueue, QueuedSample};
+use crate::bidirectional::{PATHS, QueuedSample, SampleQueue};
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
@@ -8,7 +8,7 @@ use crate::integrators::path::Path;
 use crate::progress::Progress;
 use crate::queue::PathQueue;
 use crate::rendered::Rendered;
-use crate::splats::{Iterations, PixelSum, Splats};
+use crate::splats::{Iterations, Splats};
 use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_scene::Tracer;
@@ -100,7 +100,7 @@ impl<'a> Work<'a> {
         let scale = scale_exponent(self.eye.scene);
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
-        let (mut queue, mut both_ends_queue) = (PathQueue::default(), BothEndsQueue::default());
+        let (mut path_queue, mut sample_queue) = (PathQueue::default(), self.eye.queue());
         let jobs = (self.tiles.len() * self.passes.len()) as u64;
         loop {
             let job = self.next.fetch_add(1, Ordering::Relaxed);
@@ -113,11 +113,12 @@ impl<'a> Work<'a> {
             part.restart(tile.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
             let job_samples = JobSamples { tile, samples: samples.clone() };
-            let finished = match (PathQueue::integrator(&self.eye), self.eye.both_ends()) {
-                (Some(path), _) => self.queue_paths(path, job_samples, &mut tracer, (&mut part, &mut queue)),
-                (None, Some(both_ends)) => {
-                    let parts = (&mut part, &mut splats, &mut both_ends_queue);
-                    self.queue_both_ends(&both_ends, job_samples, &mut tracer, parts)
+            let finished = match (PathQueue::integrator(&self.eye), &mut sample_queue) {
+                (Some(path), _) => {
+                    self.queue_paths(path, job_samples, &mut tracer, (&mut part, &mut path_queue))
+                }
+                (None, Some(queue)) => {
+                    self.queue_samples(&mut **queue, job_samples, &mut tracer, (&mut part, &mut splats))
                 }
                 (None, None) => self.one_by_one(job_samples, &mut tracer, (&mut part, &mut splats)),
             };
@@ -175,15 +176,15 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// The same for subpaths from both ends.
-    fn queue_both_ends(
+    /// The same for samples of other integrators.
+    fn queue_samples(
         &self,
-        both_ends: &BothEnds,
+        queue: &mut dyn SampleQueue,
         samples: JobSamples,
         tracer: &mut Tracer<'a>,
-        (part, splats, queue): (&mut Film, &mut Splats, &mut BothEndsQueue),
+        (part, splats): (&mut Film, &mut Splats),
     ) -> bool {
-        for samples in samples.all().chunks(bidirectional::PATHS) {
+        for samples in samples.all().chunks(PATHS) {
             if self.progress.is_cancelled() {
                 return false;
             }
@@ -197,17 +198,16 @@ impl<'a> Work<'a> {
             let Some(&(x, y, sample)) = samples.first() else { continue };
             // Its tools serve all samples; each has its own random numbers and wavelength.
             let (_, mut task) = self.eye.sample(tracer, x, y, sample);
-            let mut sums = vec![PixelSum::default(); samples.len()];
             let mut current = None;
-            queue.take(both_ends, &queued, &mut task, &mut sums, |i, film, _, found| {
+            let light = queue.take(&queued, &mut task, &mut |i, film, light| {
                 if current != Some(i) {
                     let (x, y, sample) = samples[i];
                     splats.begin(x, y, sample);
                     current = Some(i);
                 }
-                splats.add(film, found.weighted());
+                splats.add(film, light);
             });
-            for (&(x, y, sample), PixelSum(light)) in samples.iter().zip(sums) {
+            for (&(x, y, sample), light) in samples.iter().zip(light) {
                 part.add(x, y, sample, light);
             }
         }

@@ -74,12 +74,12 @@ impl<const N: usize> Photons<N> {
             let mut paths = LightPaths::default();
             for places in places.chunks(PATHS) {
                 let mut sampled = |&(x, y): &(u32, u32)| {
-                    let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
-                    QueuedSample::new(ray, &task, false)
+                    let (time, task) = eye.light_sample(&mut tracer, x, y, iteration);
+                    QueuedSample::of_light(time, &task)
                 };
                 let samples: Vec<_> = places.iter().map(&mut sampled).collect();
                 let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
-                paths.trace(&samples, &mut task, eye.integrator.roulette_depth(), &techniques);
+                paths.trace(&samples, &mut task, merging.roulette_depth, &techniques);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
                     paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {

@@ -18,6 +18,8 @@ pub struct Merging {
     pub max_light_paths: u32,
     /// The fraction of the light subpaths, one per pixel, that are traced: 0..=1.
     pub part: f32,
+    /// When Russian roulette begins on the light subpaths.
+    pub roulette_depth: u32,
     /// The techniques that are used as well as merging.
     pub(crate) techniques: TechniqueCounts,
 }

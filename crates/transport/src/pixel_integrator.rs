@@ -1,8 +1,7 @@
 //! What an integrator has to answer; the integrators are in [`crate::integrators`].
 
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::{BothEnds, BothEndsSamples, SampleQueue};
 use crate::emission::Guide;
-use crate::layers::Layers;
 use crate::photons::{Merging, Photons};
 use crate::plan::Choice;
 use crate::settings::RenderSettings;
@@ -14,36 +13,41 @@ use std::any::Any;
 use std::sync::Arc;
 
 /// Estimates the light along camera rays; [`crate::render()`] handles pixels, tiles and threads.
+///
+/// What an integrator may do beyond that is asked of it by role: [`LightSubpaths`] of those that trace paths from the lights,
+/// [`Chooser`] of those that let another one render.
 pub trait PixelIntegrator: Any + Send + Sync {
     /// Radiance (in the classic modes: intensity) that arrives along a camera ray, as far as the integrator finds it
     /// from the camera.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
 
-    /// True when it also traces light subpaths, which may contribute anywhere on the film.
+    /// How far samples spread over pixel, lens and shutter.
+    fn camera_spread(&self) -> CameraSpread {
+        CameraSpread::FULL
+    }
+
+    /// Its subpaths from the lights, if it traces any.
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        None
+    }
+
+    /// How it chooses another integrator, if it does.
+    fn chooser(&self) -> Option<&dyn Chooser> {
+        None
+    }
+
+    /// Takes many of its samples at a time, each as if on its own; `None` where they are taken one by one.
+    #[doc(hidden)]
+    fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+        Some(Box::new(BothEndsSamples::new(self.light_subpaths()?.both_ends(photons)?)))
+    }
+}
+
+/// An integrator that also traces subpaths from the lights: one for each sample, or for photons.
+pub trait LightSubpaths: PixelIntegrator {
+    /// True when each sample has a light subpath of its own, which may contribute anywhere on the film.
     fn splats(&self) -> bool {
-        false
-    }
-
-    /// How it merges camera subpaths with light subpaths. Each sample of all pixels is then an iteration, which begins
-    /// with the light subpaths of all pixels ([`Task::photons`]).
-    fn merging(&self) -> Option<&Merging> {
-        None
-    }
-
-    /// The guide that aims its light subpaths, if there is one.
-    fn guide(&self) -> Option<Arc<Guide>> {
-        None
-    }
-
-    /// When Russian roulette begins on the light subpaths of an iteration.
-    fn roulette_depth(&self) -> u32 {
-        0
-    }
-
-    /// The integrator that renders in its place, if this one chooses: by scene, camera and the film's settings,
-    /// whatever samples and pixels are requested.
-    fn plan(&self, _scene: &Scene, _camera: &dyn Camera, _film: &RenderSettings) -> Option<Plan> {
-        None
+        true
     }
 
     /// Takes a sample of a pixel: [`PixelIntegrator::radiance`] where it `is_wanted` (pixels outside the crop trace
@@ -60,32 +64,65 @@ pub trait PixelIntegrator: Any + Send + Sync {
         }
     }
 
-    /// True when it has techniques that can be rendered separately ([`crate::strategies()`]).
-    fn has_strategies(&self) -> bool {
-        self.both_ends(None).is_some()
-    }
-
-    /// The same sample as [`PixelIntegrator::sample`], technique by technique.
-    fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
-        if let Some(both_ends) = self.both_ends(task.photons) {
-            both_ends.showing().sample(ray, is_wanted, task, layers);
-        }
-    }
-
-    /// The subpaths from both ends that its samples consist of, if they do. Many of them can be followed at once.
+    /// The pair of subpaths that each sample consists of, if its techniques can be rendered separately
+    /// ([`crate::strategies()`]).
     #[doc(hidden)]
     fn both_ends<'a>(&self, _photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
         None
     }
 
+    /// How camera subpaths are merged with photons. Each sample of all pixels is then an iteration, which begins
+    /// with the photons' light subpaths ([`Task::photons`]).
+    fn merging(&self) -> Option<&Merging> {
+        None
+    }
+
+    /// The guide that aims the light subpaths, if there is one.
+    fn guide(&self) -> Option<Arc<Guide>> {
+        None
+    }
+}
+
+/// An integrator that chooses the one that renders in its place.
+pub trait Chooser {
+    /// Chooses by scene, camera and the film's settings, whatever samples and pixels are requested.
+    fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Plan;
+}
+
+/// What follows from the roles of an integrator.
+impl dyn PixelIntegrator {
     /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).
-    fn is_random(&self) -> bool {
+    pub fn is_random(&self) -> bool {
         self.camera_spread().pixel > 0.0
     }
 
-    /// How far samples spread over pixel, lens and shutter.
-    fn camera_spread(&self) -> CameraSpread {
-        CameraSpread::FULL
+    /// Takes a sample of a pixel: from the camera where it `is_wanted`, and all splats.
+    pub fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        match self.light_subpaths() {
+            Some(subpaths) => subpaths.sample(ray, is_wanted, task, splats),
+            None if is_wanted => self.radiance(ray, task),
+            None => Rgb::BLACK,
+        }
+    }
+
+    /// [`LightSubpaths::splats`].
+    pub fn splats(&self) -> bool {
+        self.light_subpaths().is_some_and(LightSubpaths::splats)
+    }
+
+    /// [`LightSubpaths::merging`].
+    pub fn merging(&self) -> Option<&Merging> {
+        self.light_subpaths()?.merging()
+    }
+
+    /// True when it has techniques that can be rendered separately ([`crate::strategies()`]).
+    pub fn has_strategies(&self) -> bool {
+        self.light_subpaths().is_some_and(|subpaths| subpaths.both_ends(None).is_some())
+    }
+
+    /// What it chooses for a picture, if it chooses.
+    pub(crate) fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
+        Some(self.chooser()?.plan(scene, camera, film))
     }
 }
 

@@ -120,17 +120,6 @@ impl Tally<1> for Sum<'_, '_> {
     }
 }
 
-/// The weighted light of a sample in its own pixel; splats are left out.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct PixelSum(pub(crate) Rgb);
-
-impl Tally<1> for PixelSum {
-    fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
-        self.0 += found.weighted();
-    }
-    fn add_splat(&mut self, _film: Vec2, _technique: Technique, _found: &Contribution) {}
-}
-
 impl<const N: usize> Tally<N> for Splats<'_> {
     fn add_sample(&mut self, _technique: Technique, _found: &Contribution<N>) {}
 

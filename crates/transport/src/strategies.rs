@@ -1,6 +1,7 @@
 //! A picture of each technique: what connecting `s` vertices from the light with `t` from the camera finds, with its
 //! MIS weight and without. [Veach 1997, fig. 10.3]
 
+use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent, zeroed};
@@ -99,6 +100,8 @@ impl Sums {
         samples: Range<u32>,
         progress: &dyn Progress,
     ) -> Result<(), FilmError> {
+        let both_ends = eye.integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(eye.photons));
+        let Some(both_ends) = both_ends.map(BothEnds::showing) else { return Ok(()) };
         let sums = Mutex::new(self);
         tiles.par_iter().try_for_each(|tile| {
             let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
@@ -111,7 +114,7 @@ impl Sums {
                     layers.begin(x, y, sample);
                     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
                     let is_wanted = layers.window.index(x, y).is_some();
-                    eye.integrator.sample_strategies(&ray, is_wanted, &mut task, &mut layers);
+                    both_ends.sample(&ray, is_wanted, &mut task, &mut layers);
                 }
             }
             progress.advance(tile.pixels() as u64 * samples.len() as u64, tracer.counters.rays);

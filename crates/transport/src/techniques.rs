@@ -82,6 +82,17 @@ pub(crate) trait Tally<const N: usize> {
     fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 
+/// The weighted light of a sample in its own pixel; splats are left out.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct PixelSum(pub(crate) Rgb);
+
+impl Tally<1> for PixelSum {
+    fn add_sample(&mut self, _technique: Technique, found: &Contribution) {
+        self.0 += found.weighted();
+    }
+    fn add_splat(&mut self, _film: Vec2, _technique: Technique, _found: &Contribution) {}
+}
+
 /// Receives the light subpaths' connections with the camera while they are traced, tile by tile on all threads.
 pub(crate) trait LightPathVisitor<const N: usize>: Sync {
     type Tally: Tally<N>;

@@ -5,7 +5,9 @@ mod common;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CameraSample, Object, Ray, Scene, SceneBuilder, Spec, Texture, Value};
-use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
+use bilux_transport::{
+    FILTERS, Filter, LightSubpaths, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
+};
 use common::statistics::{UNLIKELY, agreement, assert_like_path, blocks};
 use common::{
     ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life, without_mirrors,
@@ -413,9 +415,12 @@ impl PixelIntegrator for Wrong {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         self.0.radiance(ray, task)
     }
-    fn splats(&self) -> bool {
-        true
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
     }
+}
+
+impl LightSubpaths for Wrong {
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         self.0.sample(ray, is_wanted, task, splats) * 1.05
     }

@@ -7,7 +7,9 @@ use bilux_math::{Aabb, DVec3, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec, Wavelength};
-use bilux_transport::{Merging, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
+use bilux_transport::{
+    LightSubpaths, Merging, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
+};
 use common::statistics::{UNLIKELY, agreement, blocks, estimate};
 use common::{ball, built, diffuse, integrator, look, put, quad, shoot, sky, still_life};
 use std::sync::Arc;
@@ -245,6 +247,12 @@ impl PixelIntegrator for Wrong {
         (self.1)(task);
         self.0.radiance(ray, task)
     }
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
+    }
+}
+
+impl LightSubpaths for Wrong {
     fn splats(&self) -> bool {
         self.0.splats()
     }

@@ -1,5 +1,5 @@
 //! Paths that are followed many at a time bring the same light, bit for bit, as paths that are followed one by one; and
-//! so do pairs of subpaths from both ends.
+//! so do light subpaths, photons' gathering, and pairs of subpaths from both ends.
 
 mod common;
 
@@ -8,7 +8,7 @@ use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::texture::Texture;
 use bilux_scene::{AccelChoice, Counters, CpuLevel, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Value};
-use bilux_transport::{Film, Merging, PixelIntegrator, RenderSettings, Splats, Task};
+use bilux_transport::{Film, LightSubpaths, Merging, PixelIntegrator, RenderSettings, Splats, Task};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life};
 use std::sync::Arc;
 
@@ -20,6 +20,12 @@ impl PixelIntegrator for OneByOne {
         self.0.radiance(ray, task)
     }
 
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        self.0.light_subpaths().map(|_| self as &dyn LightSubpaths)
+    }
+}
+
+impl LightSubpaths for OneByOne {
     fn splats(&self) -> bool {
         self.0.splats()
     }
@@ -28,17 +34,13 @@ impl PixelIntegrator for OneByOne {
         self.0.merging()
     }
 
-    fn roulette_depth(&self) -> u32 {
-        self.0.roulette_depth()
-    }
-
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         self.0.sample(ray, is_wanted, task, splats)
     }
 }
 
 /// The integrators that follow many paths at once.
-const QUEUED: [&str; 3] = ["path", "bdpt", "vcm"];
+const QUEUED: [&str; 5] = ["path", "light", "bdpt", "sppm", "vcm"];
 
 fn settings() -> RenderSettings {
     RenderSettings { threads: 2, seed: 3, ..RenderSettings::new(37, 29, 6) }

@@ -3,7 +3,7 @@
 
 use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
-use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
+use bilux_transport::{LightSubpaths, PixelIntegrator, Splats, Task, integrators};
 use bilux_validation::agreement::{Evidence, Stage, Technique, stages, techniques};
 use bilux_validation::statistics::{histogram, uniformity_p};
 
@@ -77,6 +77,12 @@ impl PixelIntegrator for Buggy {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         self.integrator.radiance(ray, task) * self.camera_paths
     }
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
+    }
+}
+
+impl LightSubpaths for Buggy {
     fn splats(&self) -> bool {
         !self.forgets_splats && self.integrator.splats()
     }

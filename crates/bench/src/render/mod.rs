@@ -303,7 +303,12 @@ fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<TimedRender, Err
     let clock = Clock::start(job.settings().threads);
     let outcome = job.render(&Quiet)?;
     let (seconds, peak_mb) = clock.stop();
-    Ok(TimedRender { seconds, peak_mb, picture: outcome.film.to_rgb(), choice: outcome.choice })
+    Ok(TimedRender {
+        seconds,
+        peak_mb,
+        picture: outcome.rendered.film.to_rgb(),
+        choice: outcome.rendered.choice,
+    })
 }
 
 fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {

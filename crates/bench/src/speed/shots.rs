@@ -28,7 +28,12 @@ impl Shot {
         let (cpu_seconds, _) = clock.stop();
         // The system counts in hundredths, so that very short pictures seem to take no time.
         let cpu_seconds = cpu_seconds.max(1e-3);
-        Ok(Shot { cpu_seconds, seconds, pixels: outcome.film.to_rgb(), rays: outcome.counters.rays })
+        Ok(Shot {
+            cpu_seconds,
+            seconds,
+            pixels: outcome.rendered.film.to_rgb(),
+            rays: outcome.rendered.counters.rays,
+        })
     }
 }
 
@@ -59,7 +64,7 @@ pub(super) fn as_a_user(
     };
     bilux::pictures::write(output, &picture, &job.write_options_for(&picture)?)?;
     Ok(UserPicture {
-        samples: outcome.reached.map_or(job.settings().spp, |reached| reached.spp),
+        samples: outcome.rendered.reached.map_or(job.settings().spp, |reached| reached.spp),
         size: format!("{}x{}", job.settings().width, job.settings().height),
     })
 }

@@ -129,7 +129,7 @@ fn a_decoded_scene_renders_the_same_picture() {
         settings.set("spp", Value::Integer(4));
         let film = |scene: &SceneBuilder| {
             let job = Job::new(scene, &settings).unwrap();
-            (job.render(&crate::Quiet).unwrap().film, job.fingerprint().to_owned())
+            (job.render(&crate::Quiet).unwrap().rendered.film, job.fingerprint().to_owned())
         };
         assert!(film(&scene) == film(&there_and_back(&scene)));
     }

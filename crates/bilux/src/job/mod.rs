@@ -266,26 +266,23 @@ impl Job {
     }
 
     /// Adds to what was rendered whatever else the picture needs.
-    pub(crate) fn completed(&self, rendered: Rendered, features: Option<Features>) -> Result<Outcome, Error> {
+    pub(crate) fn completed(
+        &self,
+        mut rendered: Rendered,
+        features: Option<Features>,
+    ) -> Result<Outcome, Error> {
         let render = &self.render;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
         let coverage = self.coverage(render, samples)?;
-        let mut film = rendered.film;
-        if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
-            self.fingerprint().clone_into(&mut film.fingerprint);
+        if rendered.cancelled {
+            rendered.batch_means = None;
         }
-        Ok(Outcome {
-            film,
-            counters: rendered.counters,
-            cancelled: rendered.cancelled,
-            choice: rendered.choice.or_else(|| self.chosen().map(|plan| plan.choice.clone())),
-            reached: rendered.reached,
-            interval: rendered.interval,
-            features,
-            coverage,
-            batch_means: rendered.batch_means.filter(|_| !rendered.cancelled),
-            linear_transfer: self.settings.linear_transfer,
-        })
+        if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
+            self.fingerprint().clone_into(&mut rendered.film.fingerprint);
+        }
+        let chosen = || self.chosen().map(|plan| plan.choice.clone());
+        rendered.choice = rendered.choice.or_else(chosen);
+        Ok(Outcome { rendered, features, coverage, linear_transfer: self.settings.linear_transfer })
     }
 
     /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel.
@@ -313,7 +310,7 @@ impl Job {
     /// # Errors
     /// As [`Job::render`].
     pub fn strategies(&self, of: &Outcome, progress: &dyn Progress) -> Result<Option<Strategies>, Error> {
-        self.strategies_of(of.reached.map(|reached| reached.spp), progress)
+        self.strategies_of(of.rendered.reached.map(|reached| reached.spp), progress)
     }
 
     /// The same for the first samples of each pixel; by default for all.
@@ -361,7 +358,7 @@ impl Job {
     /// # Errors
     /// If memory is short.
     pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
-        let mut picture = outcome.film.to_partial()?;
+        let mut picture = outcome.rendered.film.to_partial()?;
         if let Some(coverage) = &outcome.coverage {
             picture.push_channel("A", coverage.clone())?;
         }

@@ -4,7 +4,7 @@ use super::Job;
 use crate::settings::Settings;
 use crate::{Error, Outcome};
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{Plan, Progress, RenderSettings, Stop};
+use bilux_transport::{Plan, Progress, RenderSettings, Rendered, Stop};
 use std::ops::Range;
 
 impl Job {
@@ -43,8 +43,8 @@ impl Job {
             return Ok(None);
         }
         if let Some(before) = so_far {
-            before.film.merge(&rendered.film)?;
-            before.counters += rendered.counters;
+            before.rendered.film.merge(&rendered.film)?;
+            before.rendered.counters += rendered.counters;
             return Ok(Some(()));
         }
         let mut features = None;
@@ -55,18 +55,10 @@ impl Job {
             }
         }
         let coverage = self.coverage(&render, self.render.spp)?;
-        *so_far = Some(Outcome {
-            film: rendered.film,
-            counters: rendered.counters,
-            cancelled: false,
-            choice: self.chosen().map(|plan| plan.choice.clone()),
-            reached: None,
-            interval: None,
-            features,
-            coverage,
-            batch_means: None,
-            linear_transfer: self.settings.linear_transfer,
-        });
+        let choice = self.chosen().map(|plan| plan.choice.clone());
+        let rendered = Rendered { choice, interval: None, ..rendered };
+        let linear_transfer = self.settings.linear_transfer;
+        *so_far = Some(Outcome { rendered, features, coverage, linear_transfer });
         Ok(Some(()))
     }
 

@@ -62,7 +62,7 @@ pub fn write(
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
-    if let Some(interval) = &outcome.interval {
+    if let Some(interval) = &outcome.rendered.interval {
         write_interval(interval, output, common)?;
     }
     let layers = layers(arguments);
@@ -70,8 +70,8 @@ pub fn write(
         let path = output.with_extension("layers.exr");
         bilux::pictures::write(&path, &outcome.layered(&layers)?, &WriteOptions::default())?;
     }
-    if !wants(arguments, Aov::Strategies) || outcome.cancelled {
-        return Ok(!outcome.cancelled);
+    if !wants(arguments, Aov::Strategies) || outcome.rendered.cancelled {
+        return Ok(!outcome.rendered.cancelled);
     }
     let folder = output.with_extension("strategies");
     let report =
@@ -152,7 +152,7 @@ fn longer(strategies: &Strategies, outcome: &Outcome) -> String {
         pixels.iter().filter(|pixel| pixel.is_finite()).map(|pixel| f64::from(pixel.luminance())).sum()
     };
     let shown: f64 = strategies.pictures.iter().map(|one| light(&one.weighted)).sum();
-    let missing = 1.0 - shown / light(&outcome.film.to_rgb());
+    let missing = 1.0 - shown / light(&outcome.rendered.film.to_rgb());
     if missing > 5e-4 {
         format!("; longer paths carry {:.1}% of the light", missing * 100.0)
     } else {

@@ -34,12 +34,12 @@ pub struct Rendered<'a> {
 impl Rendered<'_> {
     /// Samples per pixel, on average.
     fn spp(&self) -> u32 {
-        self.outcome.reached.map_or_else(|| self.job.samples_per_pixel(), |reached| reached.spp)
+        self.outcome.rendered.reached.map_or_else(|| self.job.samples_per_pixel(), |reached| reached.spp)
     }
 
     /// The remaining noise, as a fraction of the light, if it was measured.
     fn noise(&self) -> Option<f32> {
-        self.outcome.reached.and_then(|reached| reached.noise)
+        self.outcome.rendered.reached.and_then(|reached| reached.noise)
     }
 
     /// Prints the report as text: one line, and more with `-v`.
@@ -51,7 +51,7 @@ impl Rendered<'_> {
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
-        let cut = match self.outcome.cancelled {
+        let cut = match self.outcome.rendered.cancelled {
             true if self.timed_out => "; ended by --timeout: this is the picture so far",
             true => "; interrupted: this is the picture so far",
             false => "",
@@ -97,7 +97,7 @@ impl Rendered<'_> {
 
     fn report_details(&self) {
         let (s, outcome, output) = (self.job.settings(), self.outcome, self.output.display());
-        if let Some(choice) = &outcome.choice {
+        if let Some(choice) = &outcome.rendered.choice {
             output::eprint(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
         }
         output::eprint(format_args!(
@@ -106,10 +106,12 @@ impl Rendered<'_> {
             s.accel.name,
             self.build_seconds,
             self.seconds,
-            outcome.counters.rays as f64 / self.seconds.max(1e-9) / 1e6,
+            outcome.rendered.counters.rays as f64 / self.seconds.max(1e-9) / 1e6,
         ));
         // The samples that measure the noise are also in the mean; this reports the bias where it may matter.
-        if let Some(bias) = outcome.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05) {
+        if let Some(bias) =
+            outcome.rendered.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05)
+        {
             output::eprint(format_args!(
                 "{output}: stopping at a noise level biases the mean by at most {bias:.2} of the noise"
             ));
@@ -124,7 +126,7 @@ impl Rendered<'_> {
             "width": s.width, "height": s.height, "spp": self.spp(), "noise": self.noise(),
             "seconds": self.total_seconds, "integrator": s.integrator.entry.name,
             "denoiser": self.denoiser.map(|chosen| chosen.denoiser.describe()), "seed": s.seed,
-            "complete": !outcome.cancelled, "warnings": self.warnings,
+            "complete": !outcome.rendered.cancelled, "warnings": self.warnings,
         })
     }
 }
@@ -148,7 +150,7 @@ pub fn report_default_budget(output: &Path) {
 
 /// Reports samples that are not finite or overflowed: they are counted and located, never hidden.
 pub fn report_sample_failures(outcome: &Outcome) {
-    let failures = outcome.film.sample_failures();
+    let failures = outcome.rendered.film.sample_failures();
     if let Some(first) = failures.first_non_finite {
         output::warning(format_args!(
             "{} not finite and left out; see the first with --replay {},{},{}",

@@ -306,7 +306,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let rendered = input.begun.get().elapsed();
-    let denoiser = denoiser.filter(|_| !outcome.cancelled);
+    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
     let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
@@ -332,7 +332,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     if !common.quiet {
         rendered.print(common.verbose);
     }
-    Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
+    Ok(if outcome.rendered.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
 }
 
 /// Refuses an unknown scene format.
@@ -372,7 +372,7 @@ fn write(
 ) -> anyhow::Result<bool> {
     let arguments = input.arguments;
     let is_exr = !is_stdout(output) && aov::is_exr(output);
-    let is_part = is_exr && (is_part(arguments) || outcome.cancelled);
+    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
     let denoiser = denoiser.filter(|_| !is_part);
     let mut picture = match denoiser {
         Some(chosen) => outcome.denoised(chosen)?,

@@ -17,7 +17,7 @@ fn choice(choice: &Choice) -> serde_json::Value {
 /// Everything known about a picture once it is done.
 pub fn of(rendered: &Rendered) -> serde_json::Value {
     let Rendered { job, outcome, scene, build_seconds, seconds, .. } = *rendered;
-    let (s, c) = (job.settings(), &outcome.counters);
+    let (s, c) = (job.settings(), &outcome.rendered.counters);
     let trees: Vec<_> = job
         .scene()
         .geometry()
@@ -38,12 +38,12 @@ pub fn of(rendered: &Rendered) -> serde_json::Value {
         "width": s.width, "height": s.height, "spp": job.samples_per_pixel(), "seed": s.seed,
         "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
-        "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
-        "non_finite_samples": outcome.film.sample_failures().non_finite,
-        "overflows": outcome.film.sample_failures().overflowed,
-        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
+        "culled_back_faces": c.culled_back_faces, "cancelled": outcome.rendered.cancelled,
+        "non_finite_samples": outcome.rendered.film.sample_failures().non_finite,
+        "overflows": outcome.rendered.film.sample_failures().overflowed,
+        "tree": trees.first(), "reached": outcome.rendered.reached.map(|r| json!({
             "spp": r.spp, "noise": r.noise, "noise_samples_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
         })),
-        "choice": outcome.choice.as_ref().map(choice),
+        "choice": outcome.rendered.choice.as_ref().map(choice),
     })
 }

@@ -12,10 +12,10 @@ const TOLERANCE: (Duration, f64) = (Duration::from_millis(200), 0.05);
 pub fn overrun(job: &Job, outcome: &Outcome, times: [Duration; 3]) -> Option<String> {
     let all = times[2];
     let limit = job.settings().stop.time_limit?;
-    if outcome.cancelled || all <= limit + TOLERANCE.0.max(limit.mul_f64(TOLERANCE.1)) {
+    if outcome.rendered.cancelled || all <= limit + TOLERANCE.0.max(limit.mul_f64(TOLERANCE.1)) {
         return None;
     }
-    let samples = outcome.reached.map_or(0, |reached| reached.spp);
+    let samples = outcome.rendered.reached.map_or(0, |reached| reached.spp);
     // The limit was given as an f32, and prints as it was given only as one.
     let limit = limit.as_secs_f32();
     // Rounded before they are subtracted, so that the parts sum to the total.

@@ -5,13 +5,11 @@
 //! same light, bit for bit.
 
 use super::connect::{Connection, merged, to_light, to_vertex};
-use super::walk::count;
-use super::{Partial, Vertex, Walk, emitted, from_infinity, light_vertices, show_to_camera};
+use super::{CameraSubpath, Partial, Vertex, Walk, emitted, from_infinity, light_vertices, show_to_camera};
 use crate::photons::Photons;
 use crate::task::Task;
 use crate::techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts};
-use bilux_math::Rgb;
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::Ray;
 
 /// One subpath from each end, and all that they find.
 pub struct BothEnds<'a, const N: usize = 1> {
@@ -57,54 +55,23 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             show_to_camera(task, &light_path, &self.techniques, tally);
         }
         if is_wanted {
-            self.camera_path(ray, &light_path, task, tally);
+            self.follow(ray, &light_path, task, tally);
         }
     }
+}
 
-    /// Traces a subpath from the camera.
-    pub(crate) fn camera_path(
-        &self,
-        ray: &Ray,
-        light_path: &[Vertex<N>],
-        task: &mut Task,
-        tally: &mut impl Tally<N>,
-    ) {
-        let mut walk = self.leave_camera(ray);
-        loop {
-            tally.spend(Step::Camera, 1);
-            let Some(mut z) = walk.next_vertex(task) else { return self.escape(&walk, task, tally) };
-            if !self.arrive(&mut walk, &mut z, task, tally) {
-                return;
-            }
-            self.connect(&z, light_path.iter(), task, |task, step, connection| {
-                tally.spend(step, 1);
-                if let Some(connection) = connection
-                    && let Some(found) = connection.trace(task)
-                {
-                    tally.add_sample(connection.technique, &found);
-                }
-            });
-            self.merge(&z, task, tally);
-            if !walk.scatter(&z, self.roulette_depth, task) {
-                return;
-            }
-        }
+impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
+    fn techniques(&self) -> &TechniqueCounts<N> {
+        &self.techniques
     }
 
-    /// A camera subpath with only its first ray.
-    pub(super) fn leave_camera(&self, ray: &Ray) -> Walk<'_, N> {
-        Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &self.techniques)
-    }
-
-    /// The end of a camera subpath that leaves the scene.
-    pub(super) fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>) {
-        let technique = Technique::Joined { s: 0, t: count(walk.depth) };
+    fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>) {
+        let technique = Technique::Joined { s: 0, t: walk.count() };
         from_infinity(task, walk, |hit| tally.add_sample(technique, &hit.by(walk.seen(task), &walk.partial)));
     }
 
-    /// A camera subpath arrives at a surface, and collects the light that is emitted there (s = 0); false where it has
-    /// reached its maximum depth.
-    pub(super) fn arrive(
+    /// The emitter is found by chance (s = 0).
+    fn arrive(
         &self,
         walk: &mut Walk<N>,
         z: &mut Vertex<N>,
@@ -131,10 +98,9 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         true
     }
 
-    /// Connects a camera vertex with points on lights (s = 1), then with the vertices of the light subpath (s, t > 1).
-    /// `visit` is told of each attempt, and receives the connection if there is one.
+    /// Connects a vertex with points on lights (s = 1), then with the vertices of the light subpath (s, t > 1).
     #[inline]
-    pub(super) fn connect<'v>(
+    fn connect<'v>(
         &self,
         z: &Vertex<N>,
         light_path: impl Iterator<Item = &'v Vertex<N>>,
@@ -160,14 +126,18 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         }
     }
 
-    /// Merges a camera vertex with the photons around it.
     #[inline]
-    pub(super) fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>) {
+    fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>) {
         if let Some(photons) = self.photons
             && !z.bsdf.is_delta()
         {
             tally.spend(Step::Lookup, 1);
             merged(task, photons, z, |technique, found| tally.add_sample(technique, found));
         }
+    }
+
+    #[inline]
+    fn scatter(&self, walk: &mut Walk<N>, z: &Vertex<N>, task: &mut Task) -> bool {
+        walk.scatter(z, self.roulette_depth, task)
     }
 }

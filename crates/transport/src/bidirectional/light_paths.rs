@@ -211,6 +211,16 @@ impl<const N: usize> LightPaths<N> {
         self.order[range].iter().map(|&vertex| &self.vertices[vertex as usize])
     }
 
+    /// Those of them that are connected with the camera.
+    #[inline]
+    pub(super) fn shown(
+        &self,
+        sample: usize,
+        techniques: &TechniqueCounts<N>,
+    ) -> impl Iterator<Item = &Vertex<N>> {
+        self.of(sample).filter(|y| is_shown(y, techniques))
+    }
+
     /// Connects every vertex with the camera, as [`show_to_camera`] does. `add` receives the index of the sample, the
     /// point of the film, and what was found, in the order of the samples.
     pub(crate) fn show_to_camera(
@@ -225,7 +235,7 @@ impl<const N: usize> LightPaths<N> {
         let is_clear = task.scene().has_clear_media();
         for (i, sample) in samples.iter().enumerate() {
             sample.enter(task);
-            for y in self.of(i).filter(|y| is_shown(y, techniques)) {
+            for y in self.shown(i, techniques) {
                 task.enter_light_vertex(y.depth);
                 let Some((film, connection)) = to_camera(task, y, techniques) else { continue };
                 let Connection { technique, found, .. } = connection;

@@ -11,21 +11,29 @@
 //! that weights need is to be the same for all techniques.
 
 mod both_ends;
+mod camera_queue;
+mod camera_subpath;
 mod connect;
 mod emitters;
 mod light_paths;
+mod light_tracing;
 mod partial;
 mod queue;
 mod queued_sample;
+mod sample_queue;
 mod walk;
 #[cfg(test)]
 mod weights;
 
 pub(crate) use both_ends::BothEnds;
-pub(crate) use connect::{merged, to_camera};
+pub(crate) use camera_queue::CameraQueue;
+pub(crate) use camera_subpath::CameraSubpath;
+pub(crate) use connect::merged;
 pub(crate) use emitters::{emitted, from_infinity};
 pub(crate) use light_paths::{LightPaths, light_vertices, show_to_camera};
+pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
 pub(crate) use partial::Partial;
-pub(crate) use queue::{BothEndsQueue, PATHS};
+pub(crate) use queue::{BothEndsQueue, BothEndsSamples};
 pub(crate) use queued_sample::QueuedSample;
+pub(crate) use sample_queue::{PATHS, SampleQueue};
 pub(crate) use walk::{Vertex, Walk};

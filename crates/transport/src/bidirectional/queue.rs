@@ -1,50 +1,19 @@
-//! Many samples at a time: the light subpaths of all of them, then the camera subpaths, event by event, so that rays are
-//! traced in batches. What happens to one pair of subpaths is told by [`BothEnds`].
+//! Many samples at a time: the light subpaths of all of them, then the camera subpaths. What happens to one pair of subpaths
+//! is told by [`BothEnds`].
 
-use super::connect::Connection;
+use super::camera_queue::CameraQueue;
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
-use super::{BothEnds, Vertex, Walk};
-use crate::sampler::PixelSampler;
-use crate::shadow_rays::ShadowRays;
+use super::{BothEnds, SampleQueue};
 use crate::task::Task;
-use crate::techniques::{Contribution, Tally, Technique};
-use bilux_accel::Hit;
-use bilux_math::Vec2;
-use bilux_scene::Ray;
+use crate::techniques::{Contribution, PixelSum, Step, Tally, Technique};
+use bilux_math::{Rgb, Vec2};
 
-/// The number of samples in a queue: the vertices of their light subpaths fit into the second cache.
-pub(crate) const PATHS: usize = 256;
-
-/// A queue of samples, and the memory that it works in.
+/// A queue of samples: the memory that it works in.
 #[derive(Default)]
 pub(crate) struct BothEndsQueue<const N: usize = 1> {
     light_paths: LightPaths<N>,
-    /// The current vertices of camera subpaths.
-    vertices: Vec<Vertex<N>>,
-    /// The sample of each, and the random numbers that follow.
-    samples: Vec<(u32, PixelSampler)>,
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    active: Vec<u32>,
-    next: Vec<u32>,
-    /// Connections with lights, and with light subpaths. Rays towards the same light are traced fastest.
-    shadow_rays: [ShadowRays<Unoccluded<N>>; 2],
-}
-
-/// The camera subpaths of all samples, and what they find.
-struct CameraPaths<'b, const N: usize, T> {
-    both_ends: &'b BothEnds<'b, N>,
-    samples: &'b [QueuedSample],
-    walks: Vec<Walk<'b, N>>,
-    tallies: &'b mut [T],
-}
-
-/// What a connection brings if its shadow ray hits nothing.
-struct Unoccluded<const N: usize> {
-    sample: u32,
-    technique: Technique,
-    found: Contribution<N>,
+    camera: CameraQueue<N>,
 }
 
 impl<const N: usize> BothEndsQueue<N> {
@@ -60,91 +29,152 @@ impl<const N: usize> BothEndsQueue<N> {
     ) {
         let techniques = &both_ends.techniques;
         if both_ends.shows || both_ends.joins() {
+            let rays = task.tracer.counters.rays;
             self.light_paths.trace(samples, task, both_ends.roulette_depth, techniques);
+            // Who counts steps adds up those of all samples.
+            tallies[0].spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
         } else {
             self.light_paths.clear(samples.len());
         }
         if both_ends.shows {
             self.light_paths.show_to_camera(samples, task, techniques, add_splat);
-        }
-        let walks = samples.iter().map(|sample| both_ends.leave_camera(&sample.ray)).collect();
-        self.active.clear();
-        self.active.extend((0..samples.len() as u32).filter(|&i| samples[i as usize].is_wanted));
-        let mut camera_paths = CameraPaths { both_ends, samples, walks, tallies };
-        while !self.active.is_empty() {
-            self.arrive(&mut camera_paths, task);
-            self.connect(&mut camera_paths, task);
-            self.scatter(&mut camera_paths, task);
-        }
-    }
-
-    /// Takes every camera subpath to its next vertex, or out of the scene.
-    fn arrive<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
-        let CameraPaths { both_ends, samples, walks, tallies } = paths;
-        self.rays.clear();
-        self.rays.extend(self.active.iter().map(|&i| walks[i as usize].ray));
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        task.tracer.hits(&self.rays, &mut self.hits);
-        self.vertices.clear();
-        self.samples.clear();
-        for (&index, hit) in self.active.iter().zip(&self.hits) {
-            let i = index as usize;
-            let (walk, tally) = (&mut walks[i], &mut tallies[i]);
-            samples[i].enter(task);
-            let surface = hit.map(|hit| task.tracer.surface(&walk.ray, &hit));
-            let before = self.vertices.len();
-            self.vertices.extend(surface.and_then(|surface| walk.vertex_at(surface, task)));
-            let Some(z) = self.vertices.get_mut(before) else {
-                both_ends.escape(walk, task, tally);
-                continue;
-            };
-            if both_ends.arrive(walk, z, task, tally) {
-                self.samples.push((index, task.sampler.clone()));
-            } else {
-                self.vertices.truncate(before);
+            for (i, tally) in tallies.iter_mut().enumerate() {
+                tally.spend(Step::Seen, self.light_paths.shown(i, techniques).count());
             }
         }
+        self.camera.follow(both_ends, samples, &self.light_paths, task, tallies);
+    }
+}
+
+/// The samples of `bdpt` and `vcm`.
+pub(crate) struct BothEndsSamples<'a> {
+    both_ends: BothEnds<'a>,
+    queue: BothEndsQueue,
+}
+
+impl<'a> BothEndsSamples<'a> {
+    pub(crate) fn new(both_ends: BothEnds<'a>) -> BothEndsSamples<'a> {
+        BothEndsSamples { both_ends, queue: BothEndsQueue::default() }
+    }
+}
+
+impl SampleQueue for BothEndsSamples<'_> {
+    fn take(
+        &mut self,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        let mut sums = vec![PixelSum::default(); samples.len()];
+        self.queue.take(&self.both_ends, samples, task, &mut sums, |i, film, _, found| {
+            add_splat(i, film, found.weighted());
+        });
+        sums.into_iter().map(|PixelSum(light)| light).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera_rays::CameraRays;
+    use crate::photons::Photons;
+    use crate::settings::RenderSettings;
+    use crate::shapes::{ball, built, integrator, mixed, put, still_life};
+    use crate::splats::IterationSplats;
+    use crate::techniques::{Lanes, TechniqueCounts};
+    use crate::window::Window;
+    use bilux_math::Vec3;
+    use bilux_scene::{SceneBuilder, Spec, Tracer};
+
+    /// Sets of techniques, as in the pilot of `auto`.
+    const N: usize = 3;
+
+    /// All that a sample finds, in order, and the steps that it takes.
+    #[derive(Clone, Debug, Default, PartialEq)]
+    struct Record {
+        samples: Vec<(Technique, Vec<u32>)>,
+        splats: Vec<(Technique, Vec<u32>)>,
+        steps: [usize; 6],
     }
 
-    /// Connects every vertex with lights and with its light subpath.
-    fn connect<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
-        let CameraPaths { both_ends, samples, tallies, .. } = paths;
-        self.shadow_rays.iter_mut().for_each(ShadowRays::clear);
-        let is_clear = task.scene().has_clear_media();
-        for (z, (sample, sampler)) in self.vertices.iter().zip(&mut self.samples) {
-            task.wavelength = samples[*sample as usize].wavelength;
-            task.sampler = sampler.clone();
-            let light_path = self.light_paths.of(*sample as usize);
-            both_ends.connect(z, light_path, task, |_, _, connection| {
-                let Some(connection) = connection else { return };
-                let Connection { technique, found, .. } = connection;
-                let is_join = matches!(technique, Technique::Joined { s: 2.., .. });
-                let unoccluded = Unoccluded { sample: *sample, technique, found };
-                connection.list(&mut self.shadow_rays[usize::from(is_join)], is_clear, unoccluded);
-            });
-            *sampler = task.sampler.clone();
+    fn bits(found: &Contribution<N>, film: Vec2) -> Vec<u32> {
+        let Contribution { light, own, others, favour, origin } = *found;
+        let parts = [&light.to_array()[..], &own.0, &others.0, &[favour, f32::from(origin), film.x, film.y]];
+        parts.concat().into_iter().map(f32::to_bits).collect()
+    }
+
+    impl Tally<N> for Record {
+        fn spend(&mut self, step: Step, count: usize) {
+            self.steps[step as usize] += count;
         }
-        for shadow_rays in &mut self.shadow_rays {
-            shadow_rays.trace(task, |Unoccluded { sample, technique, found }, passed| {
-                tallies[*sample as usize].add_sample(*technique, &found.passed(passed));
-            });
+        fn add_sample(&mut self, technique: Technique, found: &Contribution<N>) {
+            self.samples.push((technique, bits(found, Vec2::ZERO)));
+        }
+        fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>) {
+            self.splats.push((technique, bits(found, film)));
         }
     }
 
-    /// Merges every vertex with photons, and sends its subpath on.
-    fn scatter<T: Tally<N>>(&mut self, paths: &mut CameraPaths<N, T>, task: &mut Task) {
-        let CameraPaths { both_ends, samples, walks, tallies } = paths;
-        self.next.clear();
-        for (z, (index, sampler)) in self.vertices.iter().zip(&self.samples) {
-            let i = *index as usize;
-            task.wavelength = samples[i].wavelength;
-            task.sampler = sampler.clone();
-            both_ends.merge(z, task, &mut tallies[i]);
-            if walks[i].scatter(z, both_ends.roulette_depth, task) {
-                self.next.push(*index);
-            }
+    fn techniques(eta: f32, direct: bool) -> TechniqueCounts<N> {
+        let (splats, joins) = (Lanes([1.0, 0.25, 0.0]), Lanes([1.0, 0.0, 1.0]));
+        TechniqueCounts { splats, joins, eta: Lanes([eta, 0.0, 2.0 * eta]), direct }
+    }
+
+    /// Compares all contributions of all samples, and the steps of all together.
+    fn assert_same(name: &str, builder: &SceneBuilder, shows: bool) {
+        let (scene, vcm) = (built(builder), integrator("vcm"));
+        let settings = RenderSettings::new(64, 48, 1);
+        let rays = CameraRays::new(&scene, &*scene.cameras()[0].1, &*vcm, &settings);
+        let (merging, window) = (vcm.merging().unwrap(), Window::whole(64, 48));
+        let techniques = |eta, _| techniques(eta, !shows);
+        let (photons, _) = Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None);
+        let both_ends = BothEnds::merging(&photons, shows, 4);
+        let places: Vec<_> = (0..window.pixels()).map(|i| window.position(i)).collect();
+        let mut tracer = Tracer::new(&scene, false);
+        let mut queued = Vec::new();
+        let mut one_by_one = vec![Record::default(); places.len()];
+        for (&(x, y), record) in places.iter().zip(&mut one_by_one) {
+            let (ray, mut task) = rays.sample(&mut tracer, x, y, 0);
+            queued.push(QueuedSample::new(ray, &task, true));
+            both_ends.sample(&ray, true, &mut task, record);
         }
-        std::mem::swap(&mut self.active, &mut self.next);
+        let mut together = vec![Record::default(); places.len()];
+        let (_, mut task) = rays.sample(&mut tracer, 0, 0, 0);
+        let mut splats = Vec::new();
+        let add_splat = |i: usize, film: Vec2, technique: Technique, found: &Contribution<N>| {
+            splats.push((i, film, technique, *found));
+        };
+        BothEndsQueue::default().take(&both_ends, &queued, &mut task, &mut together, add_splat);
+        splats
+            .iter()
+            .for_each(|(i, film, technique, found)| together[*i].add_splat(*film, *technique, found));
+        let steps = |records: &[Record]| {
+            records.iter().fold([0; 6], |sum: [usize; 6], one| std::array::from_fn(|k| sum[k] + one.steps[k]))
+        };
+        assert_eq!(steps(&one_by_one), steps(&together), "{name}");
+        for (one, other) in one_by_one.iter().zip(&together) {
+            assert_eq!((&one.samples, &one.splats), (&other.samples, &other.splats), "{name}");
+        }
+        let splats: usize = one_by_one.iter().map(|one| one.splats.len()).sum();
+        assert_eq!(shows, splats > 20, "{name}: {splats}");
+    }
+
+    #[test]
+    fn samples_that_are_taken_together_find_the_same_by_the_same_steps() {
+        let mut nested = mixed();
+        let glass = Spec::new("", "dielectric").with("absorption", 0.4f32);
+        let water = glass.clone().with("eta", 1.33f32).with("priority", 1);
+        put(&mut nested, "glass", ball(Vec3::new(0.1, 0.7, 1.3), 0.6, 8, true), glass.with("priority", 2));
+        put(&mut nested, "water", ball(Vec3::new(0.3, 0.7, 1.3), 0.6, 8, true), water);
+        let mut sheet = mixed();
+        let one_sided = Spec::new("", "diffuse").with("visible_sides", "front");
+        put(&mut sheet, "shell", ball(Vec3::new(0.2, 0.5, 1.2), 0.5, 8, true), one_sided.clone());
+        put(&mut sheet, "other", ball(Vec3::new(0.2, 0.5, 1.2), 0.4999, 8, false), one_sided);
+        for (name, builder) in
+            [("mixed", mixed()), ("still life", still_life()), ("nested", nested), ("sheet", sheet)]
+        {
+            assert_same(name, &builder, true);
+            assert_same(name, &builder, false);
+        }
     }
 }

@@ -5,7 +5,7 @@ use crate::task::Task;
 use bilux_scene::{Ray, Wavelength};
 
 /// A sample of the film.
-pub(crate) struct QueuedSample {
+pub struct QueuedSample {
     /// From the camera.
     pub(crate) ray: Ray,
     pub(super) sampler: PixelSampler,
@@ -20,9 +20,15 @@ impl QueuedSample {
         QueuedSample { ray, sampler: task.sampler.clone(), wavelength: task.wavelength, is_wanted }
     }
 
+    /// A sample whose light subpath alone is traced.
+    pub(crate) fn of_light(time: f32, task: &Task) -> QueuedSample {
+        let nowhere = Ray { time, ..Ray::new([0.0; 3], [0.0; 3]) };
+        QueuedSample::new(nowhere, task, false)
+    }
+
     /// Gives its random numbers and wavelength to the task that serves all samples.
     #[inline]
-    pub(super) fn enter(&self, task: &mut Task) {
+    pub(crate) fn enter(&self, task: &mut Task) {
         (task.sampler, task.wavelength) = (self.sampler.clone(), self.wavelength);
     }
 }

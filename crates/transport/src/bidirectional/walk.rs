@@ -173,6 +173,11 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.survives(u_survival, roulette_depth)
     }
 
+    /// The number of its vertices if it hits an emitter next.
+    pub(crate) fn count(&self) -> u32 {
+        count(self.depth)
+    }
+
     /// Its throughput as the colour channels see it, if it hits an emitter next.
     pub(crate) fn seen(&self, task: &Task) -> Rgb {
         task.seen(self.beta, self.is_split)

@@ -2,12 +2,11 @@
 //! of one is connected with every vertex of the other, with the camera and with a light, and each technique is weighted
 //! against all others. [Veach 1997, 10; Lafortune 1993]
 
-use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::BothEnds;
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
+use crate::bidirectional::{BothEnds, CameraSubpath};
 use crate::photons::Photons;
-use crate::splats::PixelSum;
 use crate::task::Task;
-use crate::techniques::TechniqueCounts;
+use crate::techniques::{PixelSum, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;
@@ -34,14 +33,12 @@ impl PixelIntegrator for Bdpt {
         of_camera_path(ray, task, &BothEnds::new(TechniqueCounts::BOTH_ENDS, self.roulette_depth))
     }
 
-    fn splats(&self) -> bool {
-        true
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
     }
+}
 
-    fn roulette_depth(&self) -> u32 {
-        self.roulette_depth
-    }
-
+impl LightSubpaths for Bdpt {
     fn both_ends<'a>(&self, _photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
         Some(BothEnds::new(TechniqueCounts::BOTH_ENDS, self.roulette_depth))
     }
@@ -50,6 +47,6 @@ impl PixelIntegrator for Bdpt {
 /// What a camera subpath finds without a light subpath, weighted as if there were some.
 pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, both_ends: &BothEnds) -> Rgb {
     let mut sum = PixelSum::default();
-    both_ends.camera_path(ray, &[], task, &mut sum);
+    both_ends.follow(ray, &[], task, &mut sum);
     sum.0
 }

@@ -2,14 +2,13 @@
 //! [Arvo 1986] What is visible only in mirrors or through glass is not found, and no other technique adds it: this
 //! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
-use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{light_vertices, to_camera};
-use crate::media::Media;
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
+use crate::bidirectional::{LightTracing, LightTracingSamples, SampleQueue};
+use crate::photons::Photons;
 use crate::splats::Splats;
 use crate::task::Task;
-use crate::techniques::TechniqueCounts;
+use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-use bilux_math::{Rgb, Vec3};
 use bilux_scene::Ray;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -23,38 +22,28 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*(D|G)E|LE",
     classic: false,
     default_spp: 64,
-    build: |reader| Ok(Box::new(Light { roulette_depth: reader.integer("roulette_depth") as u32 })),
+    build: |reader| Ok(Box::new(LightTracing { roulette_depth: reader.integer("roulette_depth") as u32 })),
 };
 
-struct Light {
-    roulette_depth: u32,
-}
-
-impl PixelIntegrator for Light {
+impl PixelIntegrator for LightTracing {
     /// Only the directly visible lights.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut media = Media::at_start(task.tracer, ray);
-        match media.closest(task.tracer, ray) {
-            Some((surface, passed)) => passed * task.scene().emission(&surface, -Vec3::from(ray.direction)),
-            None => task.scene().background(ray.direction.into(), 0),
-        }
+        LightTracing::emitted(ray, task)
     }
 
-    fn splats(&self) -> bool {
-        true
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
     }
 
+    fn queue<'a>(&self, _photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+        Some(Box::new(LightTracingSamples::new(*self)))
+    }
+}
+
+impl LightSubpaths for LightTracing {
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
-        for vertex in light_vertices(task, ray.time, self.roulette_depth, &TechniqueCounts::BOTH_ENDS) {
-            task.enter_light_vertex(vertex.depth);
-            if let Some((film, connection)) = to_camera(task, &vertex, &TechniqueCounts::BOTH_ENDS)
-                && let Some(found) = connection.trace(task)
-            {
-                // There is no other technique.
-                splats.add(film, found.light);
-            }
-        }
+        self.trace(ray.time, task, |film, light| splats.add(film, light));
         emitted
     }
 }

@@ -15,7 +15,7 @@ mod whitted;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Reader, SceneError, Spec};
 
-pub use crate::pixel_integrator::{CameraSpread, PixelIntegrator};
+pub use crate::pixel_integrator::{CameraSpread, Chooser, LightSubpaths, PixelIntegrator};
 
 /// A row of [`INTEGRATORS`].
 #[derive(Clone, Copy, Debug)]

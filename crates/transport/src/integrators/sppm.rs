@@ -2,14 +2,17 @@
 //! mirrors and glass to the first surface that is not specular, and gather the photons around it. The radius shrinks
 //! from iteration to iteration. [Hachisuka 2009; Knaus 2011]
 
-use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{Partial, Walk, emitted, from_infinity, merged};
-use crate::photons::Merging;
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator, merging};
+use crate::bidirectional::{
+    CameraQueue, CameraSubpath, LightPaths, QueuedSample, SampleQueue, Vertex, Walk, emitted, from_infinity,
+    merged,
+};
+use crate::photons::{Merging, Photons};
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, TechniqueCounts};
-use bilux_math::Rgb;
+use crate::techniques::{Contribution, Lanes, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
-use bilux_scene::{Ray, TransportMode};
+use bilux_math::{Rgb, Vec2};
+use bilux_scene::Ray;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -21,63 +24,109 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| {
-        Ok(Box::new(Sppm {
-            roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: merging::read(reader, TechniqueCounts::CAMERA),
-        }))
-    },
+    build: |reader| Ok(Box::new(Sppm { merging: merging::read(reader, TechniqueCounts::CAMERA) })),
 };
 
 struct Sppm {
-    roulette_depth: u32,
     merging: Merging,
+}
+
+impl Sppm {
+    fn gathering<'a>(&self, photons: Option<&'a Photons>) -> PhotonGathering<'a> {
+        PhotonGathering { photons, roulette_depth: self.merging.roulette_depth }
+    }
 }
 
 impl PixelIntegrator for Sppm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut walk = Walk::new(
-            TransportMode::Radiance,
-            *ray,
-            Rgb::WHITE,
-            Partial::START,
-            false,
-            &TechniqueCounts::CAMERA,
-        );
-        let mut sum = Rgb::BLACK;
-        loop {
-            let Some(z) = walk.next_vertex(task) else {
-                // Lights that are visible, in mirrors too; photons bring the light that they give to other surfaces.
-                from_infinity(task, &walk, |hit| sum += walk.seen(task) * hit.radiance);
-                return sum;
-            };
-            if let Some(hit) = emitted(task, &z.surface, z.wo) {
-                sum += walk.seen(task) * hit.radiance;
-            }
-            if z.depth >= task.max_depth {
-                return sum;
-            }
-            if let Some(photons) = task.photons
-                && !z.bsdf.is_delta()
-            {
-                // There is no other technique.
-                merged(task, photons, &z, |_, found| {
-                    sum += Contribution { others: Lanes::ZERO, ..*found }.weighted()
-                });
-            }
-            task.sampler.enter(u64::from(z.depth) + 1);
-            // Beyond an event that is not a delta event, photons have counted everything.
-            if !walk.scatter(&z, self.roulette_depth, task) || !walk.specular {
-                return sum;
-            }
-        }
+        let mut sum = PixelSum::default();
+        self.gathering(task.photons).follow(ray, &[], task, &mut sum);
+        sum.0
+    }
+
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
+    }
+
+    fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+        let (queue, light_paths) = (CameraQueue::default(), LightPaths::default());
+        Some(Box::new(PhotonGatheringSamples { gathering: self.gathering(photons), queue, light_paths }))
+    }
+}
+
+impl LightSubpaths for Sppm {
+    /// All are photons'.
+    fn splats(&self) -> bool {
+        false
     }
 
     fn merging(&self) -> Option<&Merging> {
         Some(&self.merging)
     }
+}
 
-    fn roulette_depth(&self) -> u32 {
-        self.roulette_depth
+/// A camera subpath that gathers photons. There is no other technique, so nothing is weighted.
+struct PhotonGathering<'a> {
+    photons: Option<&'a Photons>,
+    roulette_depth: u32,
+}
+
+impl CameraSubpath for PhotonGathering<'_> {
+    fn techniques(&self) -> &TechniqueCounts {
+        &TechniqueCounts::CAMERA
+    }
+
+    /// Lights are seen directly, in mirrors too; photons bring the light that they give to other surfaces.
+    fn escape(&self, walk: &Walk, task: &Task, tally: &mut impl Tally<1>) {
+        let technique = Technique::Joined { s: 0, t: walk.count() };
+        from_infinity(task, walk, |hit| {
+            tally.add_sample(technique, &Contribution::only(walk.seen(task) * hit.radiance));
+        });
+    }
+
+    fn arrive(&self, walk: &mut Walk, z: &mut Vertex, task: &mut Task, tally: &mut impl Tally<1>) -> bool {
+        if let Some(hit) = emitted(task, &z.surface, z.wo) {
+            let technique = Technique::Joined { s: 0, t: z.count() };
+            tally.add_sample(technique, &Contribution::only(walk.seen(task) * hit.radiance));
+        }
+        task.sampler.enter(u64::from(z.depth) + 1);
+        z.depth < task.max_depth
+    }
+
+    fn merge(&self, z: &Vertex, task: &Task, tally: &mut impl Tally<1>) {
+        if let Some(photons) = self.photons
+            && !z.bsdf.is_delta()
+        {
+            merged(task, photons, z, |technique, found| {
+                tally.add_sample(technique, &Contribution { others: Lanes::ZERO, ..*found });
+            });
+        }
+    }
+
+    /// Beyond an event that is not a delta event, photons have counted everything.
+    fn scatter(&self, walk: &mut Walk, z: &Vertex, task: &mut Task) -> bool {
+        walk.scatter(z, self.roulette_depth, task) && walk.specular
+    }
+}
+
+/// Samples of photon mapping.
+struct PhotonGatheringSamples<'a> {
+    gathering: PhotonGathering<'a>,
+    queue: CameraQueue,
+    /// None.
+    light_paths: LightPaths,
+}
+
+impl SampleQueue for PhotonGatheringSamples<'_> {
+    fn take(
+        &mut self,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        _add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        let mut sums = vec![PixelSum::default(); samples.len()];
+        self.light_paths.clear(samples.len());
+        self.queue.follow(&self.gathering, samples, &self.light_paths, task, &mut sums);
+        sums.into_iter().map(|PixelSum(light)| light).collect()
     }
 }

@@ -3,7 +3,7 @@
 //! iterations. This finds light that passes through mirrors or glass at both ends. [Georgiev 2012; Hachisuka 2012]
 
 use super::bdpt::of_camera_path;
-use super::{IntegratorEntry, PixelIntegrator};
+use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
 use crate::photons::{Merging, Photons};
@@ -37,17 +37,12 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             direct: reader.bool("direct"),
             ..TechniqueCounts::with_splats_and_joins(reader.bool("splats"), reader.bool("joins"))
         };
-        Ok(Box::new(Vcm {
-            roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: super::merging::read(reader, techniques),
-            guide: None,
-        }))
+        Ok(Box::new(Vcm { merging: super::merging::read(reader, techniques), guide: None }))
     },
 };
 
 /// Vertex connection and merging, with the techniques of `merging`.
 pub(super) struct Vcm {
-    pub(super) roulette_depth: u32,
     pub(super) merging: Merging,
     /// The guide that aims light subpaths.
     pub(super) guide: Option<Arc<Guide>>,
@@ -58,6 +53,12 @@ impl PixelIntegrator for Vcm {
         of_camera_path(ray, task, &self.unmerged())
     }
 
+    fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
+        Some(self)
+    }
+}
+
+impl LightSubpaths for Vcm {
     fn splats(&self) -> bool {
         // Where photons are connected with the camera, that happens before the camera subpaths are traced.
         self.merging.techniques.begins_at_lights() && !self.merging.shows_photons()
@@ -71,14 +72,10 @@ impl PixelIntegrator for Vcm {
         self.guide.clone()
     }
 
-    fn roulette_depth(&self) -> u32 {
-        self.roulette_depth
-    }
-
     fn both_ends<'a>(&self, photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
         let shows = !self.merging.shows_photons() && self.merging.techniques.splats != Lanes::ZERO;
         Some(match photons {
-            Some(photons) => BothEnds::merging(photons, shows, self.roulette_depth),
+            Some(photons) => BothEnds::merging(photons, shows, self.merging.roulette_depth),
             None => self.unmerged(),
         })
     }
@@ -86,6 +83,6 @@ impl PixelIntegrator for Vcm {
 
 impl Vcm {
     fn unmerged(&self) -> BothEnds<'static> {
-        BothEnds::new(self.merging.techniques(0.0, 1.0), self.roulette_depth)
+        BothEnds::new(self.merging.techniques(0.0, 1.0), self.merging.roulette_depth)
     }
 }

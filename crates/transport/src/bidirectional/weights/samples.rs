@@ -2,7 +2,7 @@
 
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
-use crate::bidirectional::connect::{to_light, to_vertex};
+use crate::bidirectional::connect::{to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
 use crate::photons::Photons;

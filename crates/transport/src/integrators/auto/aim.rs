@@ -16,6 +16,7 @@ use crate::sampler::PixelSampler;
 use crate::techniques::{Contribution, Lanes, LightPathVisitor, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
 use bilux_scene::Counters;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Minimum number of light subpaths of an iteration.
@@ -104,13 +105,15 @@ fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
 /// How often an unaimed light subpath begins in each cell.
 fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
     let (scene, seed) = (turn.eye.scene, turn.eye.settings.seed);
-    let mut counts = vec![0.0; cells];
-    for i in 0..STARTS {
+    let cell = |i| {
         let mut sampler = PixelSampler::new(seed, i, 0, 0);
         let (u_light, u) = (sampler.next_1d(), (sampler.next_2d(), sampler.next_2d()));
-        if let Some(start) = turn.eye.emission.sample(scene, scene.shutter()[0], u_light, u) {
-            counts[usize::from(start.cell)] += 1.0 / f64::from(STARTS);
-        }
+        Some(turn.eye.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
+    };
+    let begun: Vec<Option<u16>> = (0..STARTS).into_par_iter().map(cell).collect();
+    let mut counts = vec![0.0; cells];
+    for cell in begun.into_iter().flatten() {
+        counts[usize::from(cell)] += 1.0 / f64::from(STARTS);
     }
     counts
 }

@@ -13,7 +13,7 @@ mod sets;
 
 use super::path::Path;
 use super::vcm::Vcm;
-use super::{IntegratorEntry, PixelIntegrator, merging};
+use super::{Chooser, IntegratorEntry, PixelIntegrator, merging};
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
 use crate::light_choice::LightChoice;
@@ -85,7 +85,6 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             aims: reader.bool("aim"),
             may_merge,
             given,
-            roulette_depth: reader.integer("roulette_depth") as u32,
             merging: merging::read(reader, TechniqueCounts::BOTH_ENDS),
         }))
     },
@@ -96,7 +95,6 @@ struct Auto {
     may_merge: bool,
     /// The prescribed set, if there is one.
     given: Option<usize>,
-    roulette_depth: u32,
     merging: Merging,
 }
 
@@ -119,14 +117,16 @@ const TYPICAL_ITERATION: u32 = 16;
 impl PixelIntegrator for Auto {
     /// Without a plan: path tracing.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        Path::new(self.roulette_depth).radiance(ray, task)
+        Path::new(self.merging.roulette_depth).radiance(ray, task)
     }
 
-    fn roulette_depth(&self) -> u32 {
-        self.roulette_depth
+    fn chooser(&self) -> Option<&dyn Chooser> {
+        Some(self)
     }
+}
 
-    fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
+impl Chooser for Auto {
+    fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Plan {
         let settings = pilot::settings(film);
         let least = |turn| if turn == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|turn| pilot::photon_settings(film, &settings[turn], least(turn)));
@@ -169,7 +169,7 @@ impl PixelIntegrator for Auto {
             })
             .collect();
         let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&candidates)), candidates };
-        Some(Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters })
+        Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters }
     }
 }
 
@@ -190,9 +190,9 @@ impl Auto {
 
     fn made_of(&self, set: &Set, merging: Merging, guide: Option<Arc<Guide>>) -> Box<dyn PixelIntegrator> {
         if !set.sees && !set.joins && !set.merges() {
-            return Box::new(Path::new(self.roulette_depth));
+            return Box::new(Path::new(self.merging.roulette_depth));
         }
-        Box::new(Vcm { roulette_depth: self.roulette_depth, merging: set.merging(merging), guide })
+        Box::new(Vcm { merging: set.merging(merging), guide })
     }
 }
 

@@ -8,7 +8,7 @@
 use super::contributions::Contributions;
 use super::cost::Steps;
 use super::sets::LANES;
-use crate::bidirectional::BothEnds;
+use crate::bidirectional::{BothEnds, BothEndsQueue, QueuedSample};
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
 use crate::photons::{Merging, Photons};
@@ -32,6 +32,9 @@ pub(super) const SAMPLES: u32 = 8;
 
 /// Side of a block of pixels that is evaluated as a whole.
 const BLOCK: u32 = 4;
+
+/// The number of blocks whose samples are taken together.
+const TOGETHER: usize = 8;
 
 /// Maximum number of pixels of a pilot; and minimum, unless the film has fewer.
 const MAX_PIXELS: u64 = 1024;
@@ -239,22 +242,34 @@ where
     let sources = Window::whole(light.settings.width, 1).tiles(256);
     let (photons, mut counted) =
         Photons::trace(light, merging, &sources, iteration, |eta, _| techniques(eta), visitor);
-    let of_tile = |tile: &Window| {
+    let shows = visitor.is_none();
+    let both_ends = BothEnds::merging(&photons, shows, merging.roulette_depth);
+    let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
         let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
-        let look = |i| {
-            let (x, y) = grid.pixel(tile.position(i));
-            let mut tally = T::default();
-            let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-            let both_ends = BothEnds::merging(&photons, visitor.is_none(), eye.integrator.roulette_depth());
-            both_ends.sample(&ray, true, &mut task, &mut tally);
-            tally
+        let places = tiles.iter().flat_map(|tile| (0..tile.pixels()).map(|i| grid.pixel(tile.position(i))));
+        let places: Vec<(u32, u32)> = places.collect();
+        let mut sampled = |&(x, y): &(u32, u32)| {
+            let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
+            QueuedSample::new(ray, &task, true)
         };
-        let tallies: Vec<T> = (0..tile.pixels()).map(look).collect();
-        (tallies, tracer.counters)
+        let samples: Vec<_> = places.iter().map(&mut sampled).collect();
+        let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
+        let mut tallies: Vec<T> = samples.iter().map(|_| T::default()).collect();
+        let mut splats = Vec::new();
+        queue.take(&both_ends, &samples, &mut task, &mut tallies, |i, film, technique, found| {
+            splats.push((i, film, technique, *found));
+        });
+        for (i, film, technique, found) in &splats {
+            tallies[*i].add_splat(*film, *technique, found);
+        }
+        let mut tallies = tallies.into_iter();
+        let of_tile = |tile: &Window| tallies.by_ref().take(tile.pixels()).collect();
+        (tiles.iter().map(of_tile).collect(), tracer.counters)
     };
-    let (found, counters): (Vec<_>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
+    let (found, counters): (Vec<Vec<Vec<T>>>, Vec<Counters>) =
+        tiles.par_chunks(TOGETHER).map_init(BothEndsQueue::default, look).unzip();
     counters.into_iter().for_each(|counters| counted += counters);
-    (found, counted)
+    (found.into_iter().flatten().collect(), counted)
 }
 
 /// Samples per pixel in both rounds.

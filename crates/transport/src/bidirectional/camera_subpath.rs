@@ -1,0 +1,74 @@
+//! What happens to one camera subpath at each event. [`CameraSubpath::follow`] takes one event after the other;
+//! [`super::CameraQueue`] takes each event for many subpaths at a time, and finds the same light, bit for bit.
+
+use super::connect::Connection;
+use super::{Partial, Vertex, Walk};
+use crate::task::Task;
+use crate::techniques::{Step, Tally, TechniqueCounts};
+use bilux_math::Rgb;
+use bilux_scene::{Ray, TransportMode};
+
+/// The events of a camera subpath, as an algorithm treats them.
+pub(crate) trait CameraSubpath<const N: usize = 1> {
+    /// The techniques by which its vertices may be found otherwise.
+    fn techniques(&self) -> &TechniqueCounts<N>;
+
+    /// The subpath leaves the scene.
+    fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>);
+
+    /// It arrives at a surface, and collects the light that is emitted there; false where it ends.
+    fn arrive(
+        &self,
+        walk: &mut Walk<N>,
+        z: &mut Vertex<N>,
+        task: &mut Task,
+        tally: &mut impl Tally<N>,
+    ) -> bool;
+
+    /// Connects a vertex with lights, and with a light subpath. `visit` is told of each attempt, and receives the connection if
+    /// there is one.
+    #[inline]
+    fn connect<'v>(
+        &self,
+        _z: &Vertex<N>,
+        _light_path: impl Iterator<Item = &'v Vertex<N>>,
+        _task: &mut Task,
+        _visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
+    ) {
+    }
+
+    /// Merges a vertex with the photons around it.
+    fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>);
+
+    /// Sends the subpath on; false where it ends.
+    fn scatter(&self, walk: &mut Walk<N>, z: &Vertex<N>, task: &mut Task) -> bool;
+
+    /// A subpath with only its first ray.
+    fn leave_camera(&self, ray: &Ray) -> Walk<'_, N> {
+        Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.techniques())
+    }
+
+    /// Follows one subpath to its end.
+    fn follow(&self, ray: &Ray, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
+        let mut walk = self.leave_camera(ray);
+        loop {
+            tally.spend(Step::Camera, 1);
+            let Some(mut z) = walk.next_vertex(task) else { return self.escape(&walk, task, tally) };
+            if !self.arrive(&mut walk, &mut z, task, tally) {
+                return;
+            }
+            self.connect(&z, light_path.iter(), task, |task, step, connection| {
+                tally.spend(step, 1);
+                if let Some(connection) = connection
+                    && let Some(found) = connection.trace(task)
+                {
+                    tally.add_sample(connection.technique, &found);
+                }
+            });
+            self.merge(&z, task, tally);
+            if !self.scatter(&mut walk, &z, task) {
+                return;
+            }
+        }
+    }
+}

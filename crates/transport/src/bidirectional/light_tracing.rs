@@ -1,0 +1,93 @@
+//! Light tracing: a subpath from a light, each of whose vertices is connected with the camera; from the camera, only what emits
+//! light is seen. [Arvo 1986]
+
+use super::connect::to_camera;
+use super::light_paths::{LightPaths, light_vertices};
+use super::queued_sample::QueuedSample;
+use super::sample_queue::SampleQueue;
+use crate::media::Media;
+use crate::task::Task;
+use crate::techniques::TechniqueCounts;
+use bilux_accel::Hit;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{Ray, Surface};
+
+/// A sample of light tracing. There is no other technique, so nothing is weighted.
+#[derive(Clone, Copy)]
+pub(crate) struct LightTracing {
+    pub(crate) roulette_depth: u32,
+}
+
+/// The techniques that its light subpaths prepare for.
+const TECHNIQUES: TechniqueCounts = TechniqueCounts::BOTH_ENDS;
+
+impl LightTracing {
+    /// Light that the camera sees directly.
+    pub(crate) fn emitted(ray: &Ray, task: &mut Task) -> Rgb {
+        let media = Media::at_start(task.tracer, ray);
+        let first = task.tracer.closest(ray);
+        emitted_by(first, media, ray, task)
+    }
+
+    /// Follows one light subpath. `add_splat` receives the points of the film, and the light there.
+    pub(crate) fn trace(&self, time: f32, task: &mut Task, mut add_splat: impl FnMut(Vec2, Rgb)) {
+        for vertex in light_vertices(task, time, self.roulette_depth, &TECHNIQUES) {
+            task.enter_light_vertex(vertex.depth);
+            if let Some((film, connection)) = to_camera(task, &vertex, &TECHNIQUES)
+                && let Some(found) = connection.trace(task)
+            {
+                add_splat(film, found.light);
+            }
+        }
+    }
+}
+
+/// The light that arrives from the first surface along a camera ray, which starts in these media, or from infinity.
+fn emitted_by(first: Option<Surface>, mut media: Media, ray: &Ray, task: &mut Task) -> Rgb {
+    match first.and_then(|surface| media.closest_from(task.tracer, ray, surface)) {
+        Some((surface, passed)) => passed * task.scene().emission(&surface, -Vec3::from(ray.direction)),
+        None => task.scene().background(ray.direction.into(), 0),
+    }
+}
+
+/// Samples of light tracing.
+pub(crate) struct LightTracingSamples {
+    light_tracing: LightTracing,
+    light_paths: LightPaths,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+}
+
+impl LightTracingSamples {
+    pub(crate) fn new(light_tracing: LightTracing) -> LightTracingSamples {
+        let (light_paths, rays, hits) = (LightPaths::default(), Vec::new(), Vec::new());
+        LightTracingSamples { light_tracing, light_paths, rays, hits }
+    }
+}
+
+impl SampleQueue for LightTracingSamples {
+    fn take(
+        &mut self,
+        samples: &[QueuedSample],
+        task: &mut Task,
+        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        self.light_paths.trace(samples, task, self.light_tracing.roulette_depth, &TECHNIQUES);
+        self.light_paths.show_to_camera(samples, task, &TECHNIQUES, |i, film, _, found| {
+            add_splat(i, film, found.light);
+        });
+        self.rays.clear();
+        self.rays.extend(samples.iter().filter(|sample| sample.is_wanted).map(|sample| sample.ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        task.tracer.hits(&self.rays, &mut self.hits);
+        let mut hits = self.hits.iter();
+        let light = |sample: &QueuedSample| {
+            let Some(hit) = sample.is_wanted.then(|| hits.next()).flatten() else { return Rgb::BLACK };
+            let first = hit.map(|hit| task.tracer.surface(&sample.ray, &hit));
+            let media = Media::at_start(task.tracer, &sample.ray);
+            emitted_by(first, media, &sample.ray, task)
+        };
+        samples.iter().map(light).collect()
+    }
+}
