@@ -10,6 +10,8 @@ pub(super) struct Steps {
     counts: [f64; STEPS],
     /// Merged photons, for η = 1.
     pub(super) merged: f64,
+    /// The part of the camera steps that path tracing shades in columns, 0..=1.
+    pub(super) in_columns: f64,
 }
 
 const STEPS: usize = 6;
@@ -27,8 +29,10 @@ const MERGED: f64 = 80.0;
 /// cell.
 const PHOTON: f64 = 450.0;
 
-/// The duration of the steps of paths that are followed in a queue, relative to those that are followed one by one.
-const QUEUED: f64 = 0.7;
+/// The same for paths that are followed in a queue without techniques from the light: on surfaces of any kind, and on
+/// those that are shaded in columns. See docs/adr/0013-auto.md.
+const CAMERA_IN_QUEUE: [f64; 2] = [500.0, 180.0];
+const PICKED_IN_QUEUE: [f64; 2] = [80.0, 35.0];
 
 impl Steps {
     pub(super) fn count(&mut self, step: Step, count: usize) {
@@ -49,10 +53,11 @@ impl Steps {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
         let Set { sees, joins, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
-        let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
         if !sees && !joins && !merges {
-            return sum * QUEUED;
+            let mean = |[any, columns]: [f64; 2]| any + (columns - any) * self.in_columns;
+            return of(Step::Camera, mean(CAMERA_IN_QUEUE)) + of(Step::Picked, mean(PICKED_IN_QUEUE));
         }
+        let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
         // Photons serve as splats without further work; connections cannot use them, so light subpaths are traced
         // again.
         if joins || (sees && !merges) {

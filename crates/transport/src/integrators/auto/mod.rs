@@ -155,7 +155,8 @@ impl Chooser for Auto {
             TechniqueCounts::pack(all)
         };
         let turns: Vec<PilotRound> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
-        let seen = pilot::look(&turns, &merging, lanes);
+        let mut seen = pilot::look(&turns, &merging, lanes);
+        seen.steps.in_columns = pilot::share_in_columns(&turns[0].eye, film);
         counters += seen.counters;
         let candidates: Vec<Candidate> = SETS
             .iter()

@@ -18,7 +18,7 @@ use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, 
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;
-use bilux_scene::{Counters, Tracer};
+use bilux_scene::{Counters, Shading, Tracer};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -119,6 +119,26 @@ impl Grid {
         let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
         (place[1] * width.div_ceil(BLOCK) + place[0]) as usize
     }
+}
+
+/// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none.
+pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
+    let (scene, mut tracer) = (eye.scene, Tracer::new(eye.scene, false));
+    let grid = Grid::of(film);
+    let whole = Window::whole(grid.size[0], grid.size[1]);
+    let (mut hits, mut in_columns) = (0u32, 0u32);
+    for (x, y) in (0..whole.pixels()).map(|i| grid.pixel(whole.position(i))) {
+        let (ray, task) = eye.sample(&mut tracer, x, y, 0);
+        let Some(hit) = task.tracer.hit(&ray) else { continue };
+        let is_in_columns = match scene.shading(scene.geometry().object_of(&hit)) {
+            Shading::Lambertian | Shading::OpaqueBase => true,
+            Shading::Smooth => scene.has_clear_media(),
+            Shading::General => false,
+        };
+        hits += 1;
+        in_columns += u32::from(is_in_columns);
+    }
+    if hits == 0 { 1.0 } else { f64::from(in_columns) / f64::from(hits) }
 }
 
 /// The settings of the pilot's photons: the light subpaths of a film of its own, `least` or more.
