@@ -2,10 +2,11 @@
 
 use crate::arrays;
 use crate::errors::Error;
-use crate::rays::{Columns, Rays, rows};
+use crate::hits::{self, Columns, rows};
+use crate::rays::{Meaning, NotFinite, RayArrays};
 use bilux::accel::registry::Quality;
 use bilux::accel::{
-    Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, MeshError, Query, Ray, TriangleMesh, build,
+    Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, Query, TriangleMesh, build,
 };
 use bilux::scene::{SceneError, Span};
 use numpy::PyArray1;
@@ -14,9 +15,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
-
-/// The number of rays that one thread takes at a time.
-const BATCH: usize = 4096;
 
 /// Triangles, ready for ray queries.
 ///
@@ -71,13 +69,10 @@ impl Accel {
             ))
         })?;
         let options = BuildOptions { quality, ..BuildOptions::default() };
-        let built = py.detach(|| {
-            let mesh = Arc::new(TriangleMesh::new(vertices, triangles)?);
-            Ok((mesh.clone(), normals_of(&mesh), build(kind, mesh, &options)))
-        });
-        let (mesh, normals, structure) =
-            built.map_err(|error: MeshError| PyValueError::new_err(format!("triangles: {error}")))?;
-        let structure = structure.map_err(|error| unbuilt(kind, &error))?;
+        let (mesh, normals, structure) = py.detach(|| {
+            let (mesh, structure) = structure_of(vertices, triangles, kind, &options)?;
+            PyResult::Ok((mesh.clone(), normals_of(&mesh), structure))
+        })?;
         Ok(Accel { mesh, normals, structure, quality, wide: OnceLock::new(), kind: kind.to_owned() })
     }
 
@@ -105,9 +100,11 @@ impl Accel {
         cull_back: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let columns = py.detach(|| self.closest_of(&rays, &query(cull_back)));
-        let columns = columns.into_python(py)?;
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let (structure, query) = (&*self.structure, query(cull_back));
+        let columns = py.detach(|| hits::closest(structure, &self.normals, &rays, &query));
+        let columns = columns.map_err(|_| arrays.not_finite(&rays))?.into_python(py)?;
         py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, columns)?)
     }
 
@@ -129,9 +126,10 @@ impl Accel {
         cull_back: bool,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let hits = py.detach(|| self.any_of(&rays, &query(cull_back)));
-        Ok(PyArray1::from_vec(py, hits))
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let hits = py.detach(|| hits::any(&*self.structure, &rays, &query(cull_back)));
+        Ok(PyArray1::from_vec(py, hits.map_err(|_| arrays.not_finite(&rays))?))
     }
 
     /// Whether nothing lies between points, so that each of `a` sees its counterpart in `b`.
@@ -155,19 +153,14 @@ impl Accel {
         if !(0.0..0.5).contains(&margin) {
             return Err(PyValueError::new_err(format!("margin: {margin} is not from 0 to below 0.5")));
         }
-        let mut rays = Rays::new(a, b, ["a", "b"], [margin, 1.0 - margin])?;
+        let arrays = RayArrays::new(a, b, ["a", "b"])?;
+        let rays = arrays.rays([margin, 1.0 - margin], Meaning::Segments);
         let visible = py.detach(|| {
-            let ends = |i: usize| {
-                let of = |rows: &[[f32; 3]]| if rows.len() == 1 { rows[0] } else { rows[i] };
-                (of(&rays.origins), of(&rays.directions))
-            };
-            let between = |i: usize| {
-                let (a, b) = ends(i);
-                std::array::from_fn(|axis| b[axis] - a[axis])
-            };
-            rays.directions = (0..rays.count).map(between).collect();
-            self.any_of(&rays, &query(false)).into_iter().map(|blocked| !blocked).collect()
+            let mut visible = hits::any(&*self.structure, &rays, &query(false))?;
+            visible.iter_mut().for_each(|blocked| *blocked = !*blocked);
+            Ok(visible)
         });
+        let visible = visible.map_err(|_: NotFinite| arrays.not_finite(&rays))?;
         Ok(PyArray1::from_vec(py, visible))
     }
 
@@ -190,8 +183,11 @@ impl Accel {
         cull_back: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let (numbers, columns) = py.detach(|| self.all_of(&rays, &query(cull_back)));
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let (structure, query) = (&*self.structure, query(cull_back));
+        let found = py.detach(|| hits::all(structure, &self.normals, &rays, &query));
+        let (numbers, columns) = found.map_err(|_| arrays.not_finite(&rays))?;
         let mut all = vec![PyArray1::from_vec(py, numbers).into_any()];
         all.extend(columns.into_python(py)?);
         py.import("bilux._types")?.getattr("AllHits")?.call1(PyTuple::new(py, all)?)
@@ -219,14 +215,15 @@ impl Accel {
             let options = BuildOptions { quality: self.quality, ..BuildOptions::default() };
             let wide = self.wide.get_or_init(|| Bvh8::new(&self.mesh, &options));
             let wide = wide.as_ref().map_err(ToString::to_string)?;
-            let mut columns = Columns::misses(points.len());
+            let mut columns = Columns::zeros(points.len());
             let Columns { t, primitive, u, v, point, .. } = &mut columns;
             (&points, t, primitive, u, v, point).into_par_iter().for_each(
-                |(from, t, primitive, u, v, point)| {
-                    if let Some(near) = wide.nearest_point(*from, within) {
+                |(from, t, primitive, u, v, point)| match wide.nearest_point(*from, within) {
+                    Some(near) => {
                         (*t, *primitive, *u, *v) = (near.distance, i64::from(near.primitive), near.u, near.v);
                         *point = near.point;
                     }
+                    None => (*t, *primitive, *point) = (f32::INFINITY, -1, [f32::NAN; 3]),
                 },
             );
             Ok(columns)
@@ -290,58 +287,19 @@ impl Accel {
             Quality::Best => "best",
         }
     }
+}
 
-    fn closest_of(&self, rays: &Rays, query: &Query<'_>) -> Columns {
-        let mut columns = Columns::misses(rays.count);
-        let Columns { t, primitive, u, v, point, normal } = &mut columns;
-        let batches = (
-            t.par_chunks_mut(BATCH),
-            primitive.par_chunks_mut(BATCH),
-            u.par_chunks_mut(BATCH),
-            v.par_chunks_mut(BATCH),
-            point.par_chunks_mut(BATCH),
-            normal.par_chunks_mut(BATCH),
-        );
-        batches.into_par_iter().enumerate().for_each(|(batch, (t, primitive, u, v, point, normal))| {
-            let batch = rays.batch(batch * BATCH, t.len());
-            let mut hits = vec![None; batch.len()];
-            self.structure.closest_hits(&batch, query, &mut hits);
-            for (i, hit) in hits.iter().enumerate() {
-                if let Some(hit) = hit {
-                    (t[i], primitive[i], u[i], v[i]) = (hit.t, i64::from(hit.primitive), hit.u, hit.v);
-                    (point[i], normal[i]) = (hit.point(&batch[i]), self.normals[hit.primitive as usize]);
-                }
-            }
-        });
-        columns
-    }
-
-    fn any_of(&self, rays: &Rays, query: &Query<'_>) -> Vec<bool> {
-        let mut hits = vec![false; rays.count];
-        hits.par_chunks_mut(BATCH).enumerate().for_each(|(batch, hits)| {
-            self.structure.any_hits(&rays.batch(batch * BATCH, hits.len()), query, hits);
-        });
-        hits
-    }
-
-    /// The numbers of the rays, and their hits.
-    fn all_of(&self, rays: &Rays, query: &Query<'_>) -> (Vec<i64>, Columns) {
-        let hits_of = |i: usize| {
-            let ray = rays.ray(i);
-            self.structure.all_hits(&ray, query).into_iter().map(move |hit| (i, ray, hit)).collect::<Vec<_>>()
-        };
-        let all: Vec<Vec<(usize, Ray, Hit)>> = (0..rays.count).into_par_iter().map(hits_of).collect();
-        let all: Vec<(usize, Ray, Hit)> = all.into_iter().flatten().collect();
-        let columns = Columns {
-            t: all.iter().map(|(.., hit)| hit.t).collect(),
-            primitive: all.iter().map(|(.., hit)| i64::from(hit.primitive)).collect(),
-            u: all.iter().map(|(.., hit)| hit.u).collect(),
-            v: all.iter().map(|(.., hit)| hit.v).collect(),
-            point: all.iter().map(|(_, ray, hit)| hit.point(ray)).collect(),
-            normal: all.iter().map(|(.., hit)| self.normals[hit.primitive as usize]).collect(),
-        };
-        (all.iter().map(|(i, ..)| *i as i64).collect(), columns)
-    }
+/// A mesh with a structure of this name over it.
+pub(crate) fn structure_of(
+    vertices: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    kind: &str,
+    options: &BuildOptions,
+) -> PyResult<(Arc<TriangleMesh>, Box<dyn Accelerator>)> {
+    let mesh = TriangleMesh::new(vertices, triangles);
+    let mesh = Arc::new(mesh.map_err(|error| PyValueError::new_err(format!("triangles: {error}")))?);
+    let structure = build(kind, mesh.clone(), options).map_err(|error| unbuilt(kind, &error))?;
+    Ok((mesh, structure))
 }
 
 /// The unit normal of each triangle, on its front; zero where it has no area.

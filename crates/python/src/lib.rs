@@ -9,12 +9,14 @@ mod arrays;
 mod encoded;
 mod errors;
 mod forks;
+mod hits;
 mod inspect;
 mod keyframes;
 mod layer;
 mod parts;
 mod pickling;
 mod picture;
+mod placed_mesh;
 mod progressive;
 mod rays;
 mod render;
@@ -43,6 +45,8 @@ mod _bilux {
     use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
+    #[pymodule_export]
+    use crate::placed_mesh::PlacedMesh;
     #[pymodule_export]
     use crate::progressive::Progressive;
     #[pymodule_export]

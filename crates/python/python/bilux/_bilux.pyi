@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
+__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
 
 __version__: str
 
@@ -166,6 +166,16 @@ class Accel:
     @staticmethod
     def _restored(corners: ArrayLike, indices: ArrayLike, kind: str, quality: str) -> Accel: ...
     def __len__(self) -> int: ...
+
+@final
+class PlacedMesh:
+    def __new__(cls, vertices: ArrayLike, triangles: ArrayLike, size: float | None, kind: str) -> Self: ...
+    def first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int64]: ...
+    def any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]: ...
+    def crossings(
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, most: int, positions: bool
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64] | None]: ...
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]: ...
 
 @final
 class Progressive:
