@@ -22,7 +22,11 @@ fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
             "{name}: an array of {dtype} is no array of numbers: convert it with .astype('float32')"
         )));
     }
-    Ok(array)
+    // One whose numbers are not at multiples of their size, as in a packed file, cannot be read in place.
+    if array.getattr("flags")?.getattr("aligned")?.is_truthy()? {
+        return Ok(array);
+    }
+    Ok(array.call_method0("copy")?.cast_into()?)
 }
 
 /// The shape as Python writes it.
