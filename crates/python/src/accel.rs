@@ -1,13 +1,12 @@
 //! Ray queries on arrays.
 
 use crate::arrays;
+use crate::ending::{returning_from, without_gil};
 use crate::errors::Error;
 use crate::hits::{self, Columns, rows};
 use crate::rays::{Meaning, NotFinite, RayArrays};
 use bilux::accel::registry::Quality;
-use bilux::accel::{
-    Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, Query, TriangleMesh, build,
-};
+use bilux::accel::{Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, Query, TriangleMesh, build};
 use bilux::scene::{SceneError, Span};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
@@ -69,7 +68,7 @@ impl Accel {
             ))
         })?;
         let options = BuildOptions { quality, ..BuildOptions::default() };
-        let (mesh, normals, structure) = py.detach(|| {
+        let (mesh, normals, structure) = without_gil(py, || {
             let (mesh, structure) = structure_of(vertices, triangles, kind, &options)?;
             PyResult::Ok((mesh.clone(), normals_of(&mesh), structure))
         })?;
@@ -103,7 +102,8 @@ impl Accel {
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays([t_min, t_max], Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
-        let columns = py.detach(|| hits::closest(structure, &self.normals, &rays, &query));
+        let (columns, _returning) =
+            returning_from(py, || hits::closest(structure, &self.normals, &rays, &query));
         let columns = columns.map_err(|_| arrays.not_finite(&rays))?.into_python(py)?;
         py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, columns)?)
     }
@@ -128,7 +128,7 @@ impl Accel {
         crate::forks::check()?;
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays([t_min, t_max], Meaning::Rays);
-        let hits = py.detach(|| hits::any(&*self.structure, &rays, &query(cull_back)));
+        let hits = without_gil(py, || hits::any(&*self.structure, &rays, &query(cull_back)));
         Ok(PyArray1::from_vec(py, hits.map_err(|_| arrays.not_finite(&rays))?))
     }
 
@@ -155,7 +155,7 @@ impl Accel {
         }
         let arrays = RayArrays::new(a, b, ["a", "b"])?;
         let rays = arrays.rays([margin, 1.0 - margin], Meaning::Segments);
-        let visible = py.detach(|| {
+        let visible = without_gil(py, || {
             let mut visible = hits::any(&*self.structure, &rays, &query(false))?;
             visible.iter_mut().for_each(|blocked| *blocked = !*blocked);
             Ok(visible)
@@ -186,7 +186,7 @@ impl Accel {
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays([t_min, t_max], Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
-        let found = py.detach(|| hits::all(structure, &self.normals, &rays, &query));
+        let (found, _returning) = returning_from(py, || hits::all(structure, &self.normals, &rays, &query));
         let (numbers, columns) = found.map_err(|_| arrays.not_finite(&rays))?;
         let mut all = vec![PyArray1::from_vec(py, numbers).into_any()];
         all.extend(columns.into_python(py)?);
@@ -211,7 +211,7 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let points = arrays::rows::<3>("points", points)?;
-        let columns = py.detach(|| {
+        let (columns, _returning) = returning_from(py, || {
             let options = BuildOptions { quality: self.quality, ..BuildOptions::default() };
             let wide = self.wide.get_or_init(|| Bvh8::new(&self.mesh, &options));
             let wide = wide.as_ref().map_err(ToString::to_string)?;

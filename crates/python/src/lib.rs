@@ -7,6 +7,7 @@ mod accel;
 mod adding;
 mod arrays;
 mod encoded;
+mod ending;
 mod errors;
 mod forks;
 mod hits;
@@ -24,6 +25,7 @@ mod scene;
 mod shown;
 mod spec;
 mod texture;
+mod turntable;
 mod values;
 mod watch;
 
@@ -55,6 +57,8 @@ mod _bilux {
     use crate::spec::{Spec, rows};
     #[pymodule_export]
     use crate::texture::Texture;
+    #[pymodule_export]
+    use crate::turntable::Turntable;
 
     /// The licences of Bilux, and of everything in this package that others wrote.
     ///
@@ -69,6 +73,7 @@ mod _bilux {
     /// Adds the version.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        ending::watch_for_it(module)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

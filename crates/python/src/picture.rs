@@ -1,5 +1,6 @@
 //! Pictures whose layers are numpy arrays.
 
+use crate::ending::without_gil;
 use crate::errors::{exception, of_picture, warn};
 use crate::layer::{Layer, layers_of};
 use crate::pickling::{PictureValues, picture_of, values_of};
@@ -184,7 +185,7 @@ impl Picture {
         }
         let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
         warn(py, lost.as_slice())?;
-        py.detach(|| bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
+        without_gil(py, || bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
     }
 
     /// The picture as a display shows it: exposed, with a tone curve, sRGB-encoded, from 0 to 1, with straight alpha.
@@ -229,7 +230,7 @@ impl Picture {
     fn denoised(&self, py: Python<'_>, by: &str, threads: usize) -> PyResult<Picture> {
         crate::forks::check()?;
         let noisy = self.to_rust(py)?;
-        let smooth = py.detach(|| {
+        let smooth = without_gil(py, || {
             let chosen = denoiser(by, &Task { threads, ..Task::default() })?;
             denoise(&noisy, &*chosen.denoiser)
         });
@@ -240,7 +241,7 @@ impl Picture {
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let picture = self.to_rust(py)?;
         let options = self.shown.options(&picture);
-        let bytes = py.detach(|| bilux::pictures::write_bytes("png", &picture, &options));
+        let bytes = without_gil(py, || bilux::pictures::write_bytes("png", &picture, &options));
         Ok(PyBytes::new(py, &bytes.map_err(of_picture)?))
     }
 
@@ -307,7 +308,7 @@ impl Picture {
         let shown = self.shown.with(exposure, curve)?;
         let picture = self.to_rust(py)?;
         let display = || to_display(&picture, shown.exposure_of(&picture), shown.curve);
-        py.detach(display).map_err(of_picture)
+        without_gil(py, display).map_err(of_picture)
     }
 }
 
@@ -329,9 +330,9 @@ impl Picture {
 ///     (2, 3, 3)
 #[pyfunction]
 pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
-    let bytes = py.detach(|| std::fs::File::open(&path).map(|_| ()));
+    let bytes = without_gil(py, || std::fs::File::open(&path).map(|_| ()));
     bytes?;
-    let picture = py.detach(|| bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
+    let picture = without_gil(py, || bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
     Picture::of(py, &picture.map_err(of_picture)?, Shown::default(), None)
 }
 
@@ -360,7 +361,7 @@ pub(crate) fn compare<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     crate::forks::check()?;
     let (picture, reference) = (any_picture(picture)?, any_picture(reference)?);
-    let report = py.detach(|| bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
+    let report = without_gil(py, || bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
     let values = PyDict::new(py);
     for (name, value) in report.values {
         values.set_item(name, value)?;

@@ -2,6 +2,7 @@
 
 use crate::accel::structure_of;
 use crate::arrays;
+use crate::ending::without_gil;
 use crate::hits::{self, Buffers, in_batches, joined, rows};
 use crate::rays::{Meaning, NotFinite, Placement, RayArrays, Rays};
 use bilux::accel::{Accelerator, BuildOptions, Hit, Query, Ray, TriangleMesh};
@@ -38,8 +39,7 @@ struct Plane {
 }
 
 /// Arrays of triangles, of rays and, if they are wanted, of positions.
-type Crossings<'py> =
-    (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Option<Bound<'py, PyAny>>);
+type Crossings<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Option<Bound<'py, PyAny>>);
 
 #[pymethods]
 impl PlacedMesh {
@@ -70,7 +70,7 @@ impl PlacedMesh {
         }
         let (planes, bounds) = planes_of(&vertices, &triangles, placement.origin.into());
         let options = BuildOptions::default();
-        let (mesh, structure) = py.detach(|| structure_of(placed, triangles, kind, &options))?;
+        let (mesh, structure) = without_gil(py, || structure_of(placed, triangles, kind, &options))?;
         let same_place = 4.0 * f32::EPSILON * (structure.bounds().max - structure.bounds().min).length();
         Ok(PlacedMesh { mesh, structure, placement, planes, bounds, same_place })
     }
@@ -130,7 +130,7 @@ impl PlacedMesh {
                 Ok(part)
             })
         })?;
-        let (triangles, rays, positions) = py.detach(|| {
+        let (triangles, rays, positions) = without_gil(py, || {
             let positions = positions.then(|| joined(&parts, |part| &part.positions));
             (joined(&parts, |part| &part.triangles), joined(&parts, |part| &part.rays), positions)
         });
@@ -148,7 +148,7 @@ impl PlacedMesh {
         let points = arrays::points("points", points)?;
         let points = points.rows();
         let mut inside = vec![false; points.len()];
-        py.detach(|| {
+        without_gil(py, || {
             let each = inside.par_iter_mut().enumerate().with_min_len(64);
             each.for_each_init(Vec::new, |hits, (i, inside)| {
                 *inside = self.is_inside(points.row(i), hits);
@@ -190,7 +190,7 @@ impl PlacedMesh {
         crate::forks::check()?;
         let arrays = RayArrays::new(ray_origins, ray_directions, ["ray_origins", "ray_directions"])?;
         let rays = arrays.rays([0.0, f32::INFINITY], Meaning::Placed(self.placement));
-        let found = py.detach(|| find(&rays));
+        let found = without_gil(py, || find(&rays));
         found.map_err(|_| arrays.not_finite(&rays))
     }
 

@@ -1,5 +1,6 @@
 //! Ever better pictures of one scene.
 
+use crate::ending::without_gil;
 use crate::errors::{Error, exception, warn};
 use crate::picture::Picture;
 use crate::render::{build, interrupted, shown};
@@ -28,7 +29,7 @@ impl Progressive {
         callback: Option<Py<PyAny>>,
     ) -> PyResult<Progressive> {
         crate::forks::check()?;
-        let (job, _) = py.detach(|| build(scene, user, max_memory)).map_err(exception)?;
+        let (job, _) = without_gil(py, || build(scene, user, max_memory)).map_err(exception)?;
         warn(py, job.warnings())?;
         let shown = shown(&job).map_err(exception)?;
         Ok(Progressive { picture: Mutex::new(bilux::Progressive::new(job)), shown, callback })

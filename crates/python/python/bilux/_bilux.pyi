@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
+__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
 
 __version__: str
 
@@ -179,6 +179,22 @@ class PlacedMesh:
 
 @final
 class Progressive:
+    def __iter__(self) -> Self: ...
+    def __next__(self) -> Picture: ...
+
+@final
+class Turntable:
+    def __new__(
+        cls,
+        scene: Scene,
+        settings: dict[str, Any],
+        aov: Sequence[str],
+        fast: bool,
+        max_memory: int,
+        loaded_at: float,
+        callback: Callable[[int, int, int, float], object] | None,
+        count: int,
+    ) -> Self: ...
     def __iter__(self) -> Self: ...
     def __next__(self) -> Picture: ...
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _bilux
-from ._bilux import Picture, Spec
+from ._bilux import Picture, Spec, Turntable
 from ._progress import following
 from ._types import Mesh, Object, Progress, Replay, Strategy
 
@@ -286,6 +286,59 @@ class Scene(_bilux.Scene):
         given |= {"noise": 0, "time_limit": 0}
         with following(progress) as callback:
             yield from self._progressive(given, _bytes(max_memory), callback)
+
+    def turntable(
+        self,
+        count: int = 36,
+        *,
+        aov: Sequence[str] = (),
+        fast: bool = False,
+        progress: bool | Callable[[Progress], object] = False,
+        max_memory: int = MAX_MEMORY,
+        **settings: Any,
+    ) -> Iterator[Picture]:
+        """Renders pictures from all around a model, a full turn: those of `bilux render --turntable`.
+
+        The studio's camera, which frames a model without a camera, moves around it; all pictures are framed and lit
+        alike. What the scene builds is built once.
+
+        Args:
+            count: the number of pictures.
+            aov, fast, progress, max_memory: as for `render`.
+            **settings: any other keyword of `render`, apart from `crop`.
+
+        Raises:
+            SceneError, RenderError, Interrupted: as for `render`.
+            ValueError: if `count` is less than 1.
+
+        Example:
+            >>> scene = bilux.Scene()
+            >>> number = scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+            >>> [picture.width for picture in scene.turntable(3, size=16, spp=1)]
+            [16, 16, 16]
+        """
+        number = operator.index(count)
+        if not 0 < number < 1 << 32:
+            raise ValueError(f"count: {number} is no number of pictures: give at least 1, such as 36")
+        if "crop" in settings:
+            raise TypeError("crop: a turntable shows all of each picture: leave it out")
+        plain = dict.fromkeys(("size", "camera", "time", "exposure"))
+        given = self._settings(**plain | settings)
+        layers = [aov] if isinstance(aov, str) else list(aov)
+        return self._turned(number, given, layers, fast, _bytes(max_memory), progress)
+
+    def _turned(
+        self,
+        count: int,
+        given: dict[str, Any],
+        layers: Sequence[str],
+        fast: bool,
+        max_memory: int,
+        progress: bool | Callable[[Progress], object],
+    ) -> Iterator[Picture]:
+        """The pictures of a turntable."""
+        with following(progress) as callback:
+            yield from Turntable(self, given, layers, fast, max_memory, self._time, callback, count)
 
     def view(
         self,
