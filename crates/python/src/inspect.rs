@@ -3,7 +3,7 @@
 use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{build, interrupted, shown};
+use crate::render::{build, interrupted};
 use crate::scene::Scene;
 use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, follow};
@@ -57,7 +57,7 @@ pub(crate) fn strategies(
     let built = &scene.get().built;
     let job =
         without_gil(py, || checked(build((&builder, built), &user, max_memory)?.0)).map_err(exception)?;
-    let shown = shown(&job).map_err(exception)?;
+    let shown = job.display().map_err(exception)?;
     let (found, stopped) = follow(py, callback, |watch| job.strategies_of(None, watch));
     match stopped {
         Stopped::No => {}

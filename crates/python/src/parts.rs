@@ -5,7 +5,7 @@ use crate::ending::without_gil;
 use crate::errors::{Error, exception};
 use crate::picture::Picture;
 use crate::render::{
-    BuildWork, Prepared, Request, interrupted, prepared, shown, to_python, with_everything, with_layers,
+    BuildWork, Prepared, Request, interrupted, prepared, to_python, with_everything, with_layers,
 };
 use crate::scene::Scene;
 use crate::watch::{Stopped, follow};
@@ -176,7 +176,7 @@ impl Gathering {
             if film.coverage().pieces().is_empty() {
                 return Ok(None);
             }
-            Ok::<_, bilux::Error>(Some((film.to_picture()?, shown(job)?)))
+            Ok::<_, bilux::Error>(Some((film.to_picture()?, job.display()?)))
         });
         let Some((picture, shown)) = made.map_err(exception)? else { return Ok(None) };
         let info = PyDict::new(py);

@@ -2,16 +2,14 @@
 
 use crate::errors::{Error, exception, of_scene, warn};
 use crate::picture::Picture;
-use crate::shown::Shown;
 use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
-use bilux::pictures::WriteOptions;
 use bilux::pictures::denoise::{DenoiserChoice, preload};
 use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
 use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
-use bilux::{Built, Job, Outcome, Series};
+use bilux::{Built, Display, Job, Outcome, Series};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
@@ -58,7 +56,7 @@ impl Request {
 /// A picture that was rendered, before it becomes Python's.
 pub(crate) struct Rendered {
     picture: bilux::pictures::Picture,
-    shown: Shown,
+    shown: Display,
     outcome: Outcome,
     warnings: Vec<Warning>,
     spp: f64,
@@ -233,7 +231,7 @@ pub(crate) fn with_layers(
     let settings = job.settings();
     Ok(Rendered {
         picture,
-        shown: shown(job)?,
+        shown: job.display()?,
         warnings: job.warnings().to_vec(),
         spp: match (outcome.cancelled, outcome.reached) {
             (true, _) => mean_samples(&outcome),
@@ -268,12 +266,6 @@ fn build_of(
     let before = built.tree_work().trees;
     let job = Job::with_built(scene, user, max_memory, series, &mut built)?;
     Ok((job, built.tree_work().trees - before))
-}
-
-/// How the job's pictures are shown.
-pub(crate) fn shown(job: &Job) -> Result<Shown, bilux::Error> {
-    let WriteOptions { exposure, tone_map, behind, .. } = job.write_options()?;
-    Ok(Shown { auto_exposure: job.settings().auto_exposure, exposure, curve: tone_map, behind })
 }
 
 /// The window of the picture that `crop` asks for.
