@@ -100,7 +100,7 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
-        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
         let (columns, _returning) =
             returning_from(py, || hits::closest(structure, &self.normals, &rays, &query));
@@ -127,7 +127,7 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         crate::forks::check()?;
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
-        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
         let hits = without_gil(py, || hits::any(&*self.structure, &rays, &query(cull_back)));
         Ok(PyArray1::from_vec(py, hits.map_err(|_| arrays.not_finite(&rays))?))
     }
@@ -184,7 +184,7 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
-        let rays = arrays.rays([t_min, t_max], Meaning::Rays);
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
         let (found, _returning) = returning_from(py, || hits::all(structure, &self.normals, &rays, &query));
         let (numbers, columns) = found.map_err(|_| arrays.not_finite(&rays))?;
@@ -211,6 +211,9 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let points = arrays::rows::<3>("points", points)?;
+        if within.is_nan() {
+            return Err(PyValueError::new_err("within: NaN is no distance: infinity is the default"));
+        }
         let (columns, _returning) = returning_from(py, || {
             let options = BuildOptions { quality: self.quality, ..BuildOptions::default() };
             let wide = self.wide.get_or_init(|| Bvh8::new(&self.mesh, &options));
@@ -306,6 +309,15 @@ pub(crate) fn structure_of(
 fn normals_of(mesh: &TriangleMesh) -> Vec<[f32; 3]> {
     let normal = |primitive| Hit { t: 0.0, u: 0.0, v: 0.0, primitive, instance: 0 }.normal(mesh);
     (0..mesh.len() as u32).into_par_iter().map(normal).collect()
+}
+
+/// The distances that count.
+fn interval(t_min: f32, t_max: f32) -> PyResult<[f32; 2]> {
+    match (t_min.is_nan(), t_max.is_nan()) {
+        (false, false) => Ok([t_min, t_max]),
+        (true, _) => Err(PyValueError::new_err("t_min: NaN is no distance: 0 is the default")),
+        _ => Err(PyValueError::new_err("t_max: NaN is no distance: infinity is the default")),
+    }
 }
 
 fn query(cull_back: bool) -> Query<'static> {

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use std::fmt::Debug;
 
 /// An argument as an array of numbers of any shape.
-fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+pub(crate) fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
     let numpy = argument.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (argument,)).map_err(|error| {
         PyTypeError::new_err(format!("{name}: this is no array of numbers: {}", error.value(argument.py())))
@@ -30,7 +30,7 @@ fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
 }
 
 /// The shape as Python writes it.
-fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
+pub(crate) fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
     let sides: Vec<String> = array.shape().iter().map(ToString::to_string).collect();
     let comma = if sides.len() == 1 { "," } else { "" };
     format!("({}{comma})", sides.join(", "))

@@ -1,7 +1,7 @@
 //! Pictures whose layers are numpy arrays.
 
 use crate::ending::without_gil;
-use crate::errors::{exception, of_picture, warn};
+use crate::errors::{exception, of_picture, unopened, warn};
 use crate::layer::{Layer, layers_of};
 use crate::pickling::{PictureValues, picture_of, values_of};
 use crate::shown;
@@ -331,8 +331,8 @@ impl Picture {
 ///     (2, 3, 3)
 #[pyfunction]
 pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
-    let bytes = without_gil(py, || std::fs::File::open(&path).map(|_| ()));
-    bytes?;
+    let file = without_gil(py, || std::fs::File::open(&path).map(drop));
+    file.map_err(|error| unopened(&path, &error))?;
     let picture = without_gil(py, || bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
     Picture::of(py, &picture.map_err(of_picture)?, Display::default(), None)
 }

@@ -91,6 +91,16 @@ def test_the_first_row_that_is_not_finite_is_named(soup):
         accel.visible([[np.inf, 0, 0]], many)
 
 
+def test_distances_that_are_not_numbers_are_refused(soup):
+    vertices, triangles, origins, directions = soup
+    accel = bilux.Accel(vertices, triangles)
+    for name in ["t_min", "t_max"]:
+        with pytest.raises(ValueError, match=f"{name}: NaN"):
+            accel.closest(origins, directions, **{name: np.nan})
+    with pytest.raises(ValueError, match="within: NaN"):
+        accel.nearest_point(origins, within=np.nan)
+
+
 def test_the_other_queries_agree(soup):
     vertices, triangles, origins, directions = soup
     t = by_hand(*soup)[0]

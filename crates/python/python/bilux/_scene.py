@@ -70,6 +70,7 @@ class Scene(_bilux.Scene):
             ValueError: if an array has the wrong shape, or holds what is not finite or out of range.
             TypeError: if an array holds no numbers.
         """
+        _check_spec("material", material, optional=True)
         first, count = self._add(vertices, triangles, normals, uvs, material, transform, name)
         if count != 1:
             for index in reversed(range(first, first + count)):
@@ -103,15 +104,18 @@ class Scene(_bilux.Scene):
             >>> bilux.Scene().add_instances([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], places)
             range(0, 5)
         """
+        _check_spec("material", material, optional=True)
         first, count = self._add(vertices, triangles, normals, uvs, material, transforms, name)
         return range(first, first + count)
 
     def add_light(self, light: Spec) -> int:
         """Adds one of `bilux.lights`, and returns its number in `lights`."""
+        _check_spec("light", light)
         return self._add_light(light)
 
     def add_camera(self, camera: Spec) -> int:
         """Adds one of `bilux.cameras`, and returns its number, which `render(camera=…)` takes."""
+        _check_spec("camera", camera)
         return self._add_camera(camera)
 
     @property
@@ -155,6 +159,7 @@ class Scene(_bilux.Scene):
 
     def set_material(self, object: int, material: Spec) -> None:
         """Makes an object of another material."""
+        _check_spec("material", material)
         self._set_material(self._number(object), material)
 
     def remove(self, object: int) -> None:
@@ -485,6 +490,12 @@ def _sides(size: tuple[int, int] | int) -> tuple[int, int]:
         return int(width), int(height)
     except (TypeError, ValueError):
         raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
+
+
+def _check_spec(name: str, spec: object, *, optional: bool = False) -> None:
+    """Refuses what was not made by one of the tables."""
+    if not (isinstance(spec, Spec) or optional and spec is None):
+        raise TypeError(f"{name}: {spec!r} is no {name}: give one of bilux.{name}s (bilux.{name}s() lists them)")
 
 
 def _window(crop: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
