@@ -3,7 +3,8 @@
 use crate::arrays;
 use crate::ending::{returning_from, without_gil};
 use crate::errors::Error;
-use crate::hits::{self, Columns, rows};
+use crate::hits::{self, AllHits, Columns, HitArrays, rows};
+use crate::output::Output;
 use crate::rays::{Meaning, NotFinite, RayArrays};
 use bilux::accel::registry::Quality;
 use bilux::accel::{Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, Query, TriangleMesh, build};
@@ -102,10 +103,12 @@ impl Accel {
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
-        let (columns, _returning) =
-            returning_from(py, || hits::closest(structure, &self.normals, &rays, &query));
-        let columns = columns.map_err(|_| arrays.not_finite(&rays))?.into_python(py)?;
-        py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, columns)?)
+        let mut found = HitArrays::new(py, rays.count)?;
+        let columns = found.columns();
+        let (done, _returning) =
+            returning_from(py, || hits::closest(structure, &self.normals, &rays, &query, columns));
+        done.map_err(|_| arrays.not_finite(&rays))?;
+        py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, found.into_python())?)
     }
 
     /// Whether each ray hits anything.
@@ -124,12 +127,15 @@ impl Accel {
         t_min: f32,
         t_max: f32,
         cull_back: bool,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
-        let hits = without_gil(py, || hits::any(&*self.structure, &rays, &query(cull_back)));
-        Ok(PyArray1::from_vec(py, hits.map_err(|_| arrays.not_finite(&rays))?))
+        let mut hits = Output::column(py, rays.count)?;
+        let column = hits.numbers();
+        without_gil(py, || hits::any(&*self.structure, &rays, &query(cull_back), column))
+            .map_err(|_| arrays.not_finite(&rays))?;
+        Ok(hits.into_python())
     }
 
     /// Whether nothing lies between points, so that each of `a` sees its counterpart in `b`.
@@ -148,20 +154,22 @@ impl Accel {
         a: &Bound<'_, PyAny>,
         b: &Bound<'_, PyAny>,
         margin: f32,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         if !(0.0..0.5).contains(&margin) {
             return Err(PyValueError::new_err(format!("margin: {margin} is not from 0 to below 0.5")));
         }
         let arrays = RayArrays::new(a, b, ["a", "b"])?;
         let rays = arrays.rays([margin, 1.0 - margin], Meaning::Segments);
-        let visible = without_gil(py, || {
-            let mut visible = hits::any(&*self.structure, &rays, &query(false))?;
-            visible.iter_mut().for_each(|blocked| *blocked = !*blocked);
-            Ok(visible)
+        let mut visible = Output::column(py, rays.count)?;
+        let column = visible.numbers();
+        let done = without_gil(py, || {
+            hits::any(&*self.structure, &rays, &query(false), column)?;
+            column.iter_mut().for_each(|blocked| *blocked = !*blocked);
+            Ok(())
         });
-        let visible = visible.map_err(|_: NotFinite| arrays.not_finite(&rays))?;
-        Ok(PyArray1::from_vec(py, visible))
+        done.map_err(|_: NotFinite| arrays.not_finite(&rays))?;
+        Ok(visible.into_python())
     }
 
     /// Every hit of each ray.
@@ -186,10 +194,16 @@ impl Accel {
         let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
         let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
         let (structure, query) = (&*self.structure, query(cull_back));
-        let (found, _returning) = returning_from(py, || hits::all(structure, &self.normals, &rays, &query));
-        let (numbers, columns) = found.map_err(|_| arrays.not_finite(&rays))?;
-        let mut all = vec![PyArray1::from_vec(py, numbers).into_any()];
-        all.extend(columns.into_python(py)?);
+        let parts = without_gil(py, || hits::all(structure, &rays, &query));
+        let parts = parts.map_err(|_| arrays.not_finite(&rays))?;
+        let count = AllHits::count(&parts);
+        let (mut numbers, mut found) = (Output::column(py, count)?, HitArrays::new(py, count)?);
+        let (numbers_of_rays, mut columns) = (numbers.numbers(), found.columns());
+        let ((), _returning) = returning_from(py, || {
+            AllHits::write(&parts, &self.normals, numbers_of_rays, &mut columns);
+        });
+        let mut all = vec![numbers.into_python()];
+        all.extend(found.into_python());
         py.import("bilux._types")?.getattr("AllHits")?.call1(PyTuple::new(py, all)?)
     }
 
@@ -214,25 +228,28 @@ impl Accel {
         if within.is_nan() {
             return Err(PyValueError::new_err("within: NaN is no distance: infinity is the default"));
         }
-        let (columns, _returning) = returning_from(py, || {
+        let mut found = HitArrays::new(py, points.len())?;
+        let Columns { t, primitive, u, v, point, .. } = found.columns();
+        let (done, _returning) = returning_from(py, || {
             let options = BuildOptions { quality: self.quality, ..BuildOptions::default() };
             let wide = self.wide.get_or_init(|| Bvh8::new(&self.mesh, &options));
             let wide = wide.as_ref().map_err(ToString::to_string)?;
-            let mut columns = Columns::zeros(points.len());
-            let Columns { t, primitive, u, v, point, .. } = &mut columns;
             (&points, t, primitive, u, v, point).into_par_iter().for_each(
                 |(from, t, primitive, u, v, point)| match wide.nearest_point(*from, within) {
                     Some(near) => {
                         (*t, *primitive, *u, *v) = (near.distance, i64::from(near.primitive), near.u, near.v);
                         *point = near.point;
                     }
-                    None => (*t, *primitive, *point) = (f32::INFINITY, -1, [f32::NAN; 3]),
+                    None => {
+                        (*t, *primitive, *u, *v) = (f32::INFINITY, -1, 0.0, 0.0);
+                        *point = [f32::NAN; 3];
+                    }
                 },
             );
-            Ok(columns)
+            Ok(())
         });
-        let columns = columns.map_err(|error: String| Error::new_err(error))?.into_python(py)?;
-        let found = columns.into_iter().take(5);
+        done.map_err(|error: String| Error::new_err(error))?;
+        let found = found.into_python().into_iter().take(5);
         py.import("bilux._types")?
             .getattr("NearestPoints")?
             .call1(PyTuple::new(py, found.collect::<Vec<_>>())?)

@@ -1,45 +1,60 @@
 //! Hits of many rays, found on all cores.
 
+use crate::output::Output;
 use crate::rays::{BATCH, NotFinite, Rays};
 use bilux::accel::{Accelerator, Hit, Query, Ray};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// The hits of some rays, one column for each property.
-#[derive(Default)]
-pub(crate) struct Columns {
-    pub(crate) t: Vec<f32>,
-    pub(crate) primitive: Vec<i64>,
-    pub(crate) u: Vec<f32>,
-    pub(crate) v: Vec<f32>,
-    pub(crate) point: Vec<[f32; 3]>,
-    pub(crate) normal: Vec<[f32; 3]>,
+/// Arrays for hits, one for each property.
+pub(crate) struct HitArrays<'py> {
+    t: Output<'py, f32>,
+    primitive: Output<'py, i64>,
+    u: Output<'py, f32>,
+    v: Output<'py, f32>,
+    point: Output<'py, f32>,
+    normal: Output<'py, f32>,
 }
 
-impl Columns {
-    /// Columns of zeros, which the system gives out when they are first written to: by all threads, therefore.
-    pub(crate) fn zeros(count: usize) -> Columns {
+/// What [`HitArrays`] hold.
+pub(crate) struct Columns<'a> {
+    pub(crate) t: &'a mut [f32],
+    pub(crate) primitive: &'a mut [i64],
+    pub(crate) u: &'a mut [f32],
+    pub(crate) v: &'a mut [f32],
+    pub(crate) point: &'a mut [[f32; 3]],
+    pub(crate) normal: &'a mut [[f32; 3]],
+}
+
+impl<'py> HitArrays<'py> {
+    pub(crate) fn new(py: Python<'py>, count: usize) -> PyResult<HitArrays<'py>> {
+        Ok(HitArrays {
+            t: Output::column(py, count)?,
+            primitive: Output::column(py, count)?,
+            u: Output::column(py, count)?,
+            v: Output::column(py, count)?,
+            point: Output::rows(py, count)?,
+            normal: Output::rows(py, count)?,
+        })
+    }
+
+    pub(crate) fn columns(&mut self) -> Columns<'_> {
         Columns {
-            t: vec![0.0; count],
-            primitive: vec![0; count],
-            u: vec![0.0; count],
-            v: vec![0.0; count],
-            point: vec![[0.0; 3]; count],
-            normal: vec![[0.0; 3]; count],
+            t: self.t.numbers(),
+            primitive: self.primitive.numbers(),
+            u: self.u.numbers(),
+            v: self.v.numbers(),
+            point: self.point.triples(),
+            normal: self.normal.triples(),
         }
     }
 
-    pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Vec<Bound<'_, PyAny>>> {
-        let Columns { t, primitive, u, v, point, normal } = self;
-        Ok(vec![
-            PyArray1::from_vec(py, t).into_any(),
-            PyArray1::from_vec(py, primitive).into_any(),
-            PyArray1::from_vec(py, u).into_any(),
-            PyArray1::from_vec(py, v).into_any(),
-            rows(py, point)?,
-            rows(py, normal)?,
-        ])
+    pub(crate) fn into_python(self) -> Vec<Bound<'py, PyAny>> {
+        let HitArrays { t, primitive, u, v, point, normal } = self;
+        let [t, u, v, point, normal] = [t, u, v, point, normal].map(Output::into_python);
+        vec![t, primitive.into_python(), u, v, point, normal]
     }
 }
 
@@ -65,15 +80,15 @@ impl Buffers {
     }
 }
 
-/// The nearest hit of each ray. `normals` are those of the triangles.
+/// Finds the nearest hit of each ray. `normals` are those of the triangles.
 pub(crate) fn closest(
     structure: &dyn Accelerator,
     normals: &[[f32; 3]],
     rays: &Rays<'_>,
     query: &Query<'_>,
-) -> Result<Columns, NotFinite> {
-    let mut columns = Columns::zeros(rays.count);
-    let Columns { t, primitive, u, v, point, normal } = &mut columns;
+    columns: Columns<'_>,
+) -> Result<(), NotFinite> {
+    let Columns { t, primitive, u, v, point, normal } = columns;
     let batches = (
         t.par_chunks_mut(BATCH),
         primitive.par_chunks_mut(BATCH),
@@ -94,107 +109,122 @@ pub(crate) fn closest(
                         (point[i], normal[i]) = (hit.point(ray), normals[hit.primitive as usize]);
                     }
                     None => {
-                        (t[i], primitive[i]) = (f32::INFINITY, -1);
+                        (t[i], primitive[i], u[i], v[i]) = (f32::INFINITY, -1, 0.0, 0.0);
                         (point[i], normal[i]) = ([f32::NAN; 3], [f32::NAN; 3]);
                     }
                 }
             }
             Ok(())
         },
-    )?;
-    Ok(columns)
+    )
 }
 
-/// The triangle that each ray hits first; -1 where it hits none.
-pub(crate) fn first(structure: &dyn Accelerator, rays: &Rays<'_>) -> Result<Vec<i64>, NotFinite> {
-    let mut first = vec![0; rays.count];
-    first.par_chunks_mut(BATCH).enumerate().try_for_each_init(
-        Buffers::default,
-        |buffers, (batch, first)| {
-            rays.batch(batch * BATCH..batch * BATCH + first.len(), &mut buffers.rays)?;
-            buffers.closest(structure, &Query::default());
-            for (first, hit) in first.iter_mut().zip(&buffers.hits) {
-                *first = hit.map_or(-1, |hit| i64::from(hit.primitive));
-            }
-            Ok(())
-        },
-    )?;
-    Ok(first)
+/// Finds the triangle that each ray hits first; -1 where it hits none.
+pub(crate) fn first(
+    structure: &dyn Accelerator,
+    rays: &Rays<'_>,
+    first: &mut [i64],
+) -> Result<(), NotFinite> {
+    first.par_chunks_mut(BATCH).enumerate().try_for_each_init(Buffers::default, |buffers, (batch, first)| {
+        rays.batch(batch * BATCH..batch * BATCH + first.len(), &mut buffers.rays)?;
+        buffers.closest(structure, &Query::default());
+        for (first, hit) in first.iter_mut().zip(&buffers.hits) {
+            *first = hit.map_or(-1, |hit| i64::from(hit.primitive));
+        }
+        Ok(())
+    })
 }
 
-/// Whether each ray hits anything.
+/// Finds whether each ray hits anything.
 pub(crate) fn any(
     structure: &dyn Accelerator,
     rays: &Rays<'_>,
     query: &Query<'_>,
-) -> Result<Vec<bool>, NotFinite> {
-    let mut hits = vec![false; rays.count];
+    hits: &mut [bool],
+) -> Result<(), NotFinite> {
     hits.par_chunks_mut(BATCH).enumerate().try_for_each_init(Vec::new, |buffer, (batch, hits)| {
         rays.batch(batch * BATCH..batch * BATCH + hits.len(), buffer)?;
         structure.any_hits(buffer, query, hits);
         Ok(())
-    })?;
-    Ok(hits)
+    })
 }
 
-/// All hits of each ray: the numbers of the rays, and the hits.
+/// All hits of a batch of rays: the numbers of the rays, and the hits, with their points.
+#[derive(Default)]
+pub(crate) struct AllHits {
+    numbers: Vec<i64>,
+    hits: Vec<(Hit, [f32; 3])>,
+}
+
+/// Finds all hits of each ray.
 pub(crate) fn all(
     structure: &dyn Accelerator,
-    normals: &[[f32; 3]],
     rays: &Rays<'_>,
     query: &Query<'_>,
-) -> Result<(Vec<i64>, Columns), NotFinite> {
-    let parts = in_batches(rays.count, |which, (batch, hits): &mut (Vec<Ray>, Vec<Hit>)| {
+) -> Result<Vec<AllHits>, NotFinite> {
+    in_batches(rays.count, |which, (batch, hits): &mut (Vec<Ray>, Vec<Hit>)| {
         rays.batch(which.clone(), batch)?;
-        let (mut numbers, mut columns) = (Vec::new(), Columns::default());
+        let mut all = AllHits::default();
         for (number, ray) in which.zip(batch) {
             structure.all_hits_into(ray, query, hits);
-            for hit in hits.iter() {
-                numbers.push(number as i64);
-                columns.t.push(hit.t);
-                columns.primitive.push(i64::from(hit.primitive));
-                columns.u.push(hit.u);
-                columns.v.push(hit.v);
-                columns.point.push(hit.point(ray));
-                columns.normal.push(normals[hit.primitive as usize]);
-            }
+            all.numbers.extend(hits.iter().map(|_| number as i64));
+            all.hits.extend(hits.iter().map(|hit| (*hit, hit.point(ray))));
         }
-        Ok((numbers, columns))
-    })?;
-    let columns = Columns {
-        t: joined(&parts, |(_, part)| &part.t),
-        primitive: joined(&parts, |(_, part)| &part.primitive),
-        u: joined(&parts, |(_, part)| &part.u),
-        v: joined(&parts, |(_, part)| &part.v),
-        point: joined(&parts, |(_, part)| &part.point),
-        normal: joined(&parts, |(_, part)| &part.normal),
-    };
-    Ok((joined(&parts, |(numbers, _)| numbers), columns))
+        Ok(all)
+    })
+}
+
+impl AllHits {
+    /// How many there are in all parts.
+    pub(crate) fn count(parts: &[AllHits]) -> usize {
+        parts.iter().map(|part| part.hits.len()).sum()
+    }
+
+    /// Writes them into arrays.
+    pub(crate) fn write(
+        parts: &[AllHits],
+        normals: &[[f32; 3]],
+        numbers: &mut [i64],
+        columns: &mut Columns<'_>,
+    ) {
+        let hits = |part: &AllHits| part.hits.len();
+        fill(parts, numbers, hits, |part, i| part.numbers[i]);
+        fill(parts, columns.t, hits, |part, i| part.hits[i].0.t);
+        fill(parts, columns.primitive, hits, |part, i| i64::from(part.hits[i].0.primitive));
+        fill(parts, columns.u, hits, |part, i| part.hits[i].0.u);
+        fill(parts, columns.v, hits, |part, i| part.hits[i].0.v);
+        fill(parts, columns.point, hits, |part, i| part.hits[i].1);
+        fill(parts, columns.normal, hits, |part, i| normals[part.hits[i].0.primitive as usize]);
+    }
 }
 
 /// What all threads find for batches of rays, in their order.
 pub(crate) fn in_batches<B: Default, T: Send>(
     count: usize,
-    find: impl Fn(std::ops::Range<usize>, &mut B) -> Result<T, NotFinite> + Sync,
+    find: impl Fn(Range<usize>, &mut B) -> Result<T, NotFinite> + Sync,
 ) -> Result<Vec<T>, NotFinite> {
     let which = |batch: usize| batch * BATCH..count.min((batch + 1) * BATCH);
     let batches = (0..count.div_ceil(BATCH)).into_par_iter();
     batches.map_init(B::default, |buffers, batch| find(which(batch), buffers)).collect()
 }
 
-/// One column of all parts, one after the other.
-pub(crate) fn joined<P: Sync, T: Copy + Default + Send + Sync>(
+/// Fills a column with what all parts have, one after the other: `count` elements of each, by their number.
+pub(crate) fn fill<P: Sync, T: Send>(
     parts: &[P],
-    column: impl Fn(&P) -> &Vec<T> + Sync,
-) -> Vec<T> {
-    let mut all = vec![T::default(); parts.iter().map(|part| column(part).len()).sum()];
+    column: &mut [T],
+    count: impl Fn(&P) -> usize,
+    element: impl Fn(&P, usize) -> T + Sync,
+) {
     let mut places = Vec::with_capacity(parts.len());
-    let mut rest = &mut all[..];
+    let mut rest = column;
     for part in parts {
-        let (place, after) = rest.split_at_mut(column(part).len());
+        let (place, after) = rest.split_at_mut(count(part));
         places.push((place, part));
         rest = after;
     }
-    places.into_par_iter().for_each(|(place, part)| place.copy_from_slice(column(part)));
-    all
+    places.into_par_iter().for_each(|(place, part)| {
+        for (i, into) in place.iter_mut().enumerate() {
+            *into = element(part, i);
+        }
+    });
 }

@@ -14,6 +14,7 @@ mod hits;
 mod inspect;
 mod keyframes;
 mod layer;
+mod output;
 mod parts;
 mod pickling;
 mod picture;

@@ -3,11 +3,11 @@
 use crate::accel::structure_of;
 use crate::arrays;
 use crate::ending::without_gil;
-use crate::hits::{self, Buffers, in_batches, joined, rows};
+use crate::hits::{self, Buffers, fill, in_batches};
+use crate::output::Output;
 use crate::rays::{Meaning, NotFinite, Placement, RayArrays, Rays};
 use bilux::accel::{Accelerator, BuildOptions, Hit, Query, Ray, TriangleMesh};
 use bilux::math::glam::DVec3;
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ struct Plane {
 }
 
 /// Arrays of triangles, of rays and, if they are wanted, of positions.
-type Crossings<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Option<Bound<'py, PyAny>>);
+type Crossings<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<Bound<'py, PyAny>>);
 
 #[pymethods]
 impl PlacedMesh {
@@ -81,9 +81,14 @@ impl PlacedMesh {
         py: Python<'py>,
         ray_origins: &Bound<'py, PyAny>,
         ray_directions: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let first = self.of_rays(py, ray_origins, ray_directions, |rays| hits::first(&*self.structure, rays));
-        Ok(PyArray1::from_vec(py, first?))
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arrays = of_python(ray_origins, ray_directions)?;
+        let rays = self.placed(&arrays);
+        let mut first = Output::column(py, rays.count)?;
+        let column = first.numbers();
+        without_gil(py, || hits::first(&*self.structure, &rays, column))
+            .map_err(|_| arrays.not_finite(&rays))?;
+        Ok(first.into_python())
     }
 
     /// Whether each ray hits anything.
@@ -92,11 +97,14 @@ impl PlacedMesh {
         py: Python<'py>,
         ray_origins: &Bound<'py, PyAny>,
         ray_directions: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let query = Query::default();
-        let any =
-            self.of_rays(py, ray_origins, ray_directions, |rays| hits::any(&*self.structure, rays, &query));
-        Ok(PyArray1::from_vec(py, any?))
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arrays = of_python(ray_origins, ray_directions)?;
+        let rays = self.placed(&arrays);
+        let mut any = Output::column(py, rays.count)?;
+        let column = any.numbers();
+        without_gil(py, || hits::any(&*self.structure, &rays, &Query::default(), column))
+            .map_err(|_| arrays.not_finite(&rays))?;
+        Ok(any.into_python())
     }
 
     /// Where each ray crosses the surface, at most `most` times: triangles, rays and, if they are wanted, positions.
@@ -108,96 +116,98 @@ impl PlacedMesh {
         most: usize,
         positions: bool,
     ) -> PyResult<Crossings<'py>> {
-        let parts = self.of_rays(py, ray_origins, ray_directions, |rays| {
-            in_batches(rays.count, |which, buffers: &mut (Buffers, Vec<Hit>)| {
-                let (Buffers { rays: batch, .. }, _) = buffers;
-                rays.batch(which.clone(), batch)?;
-                let mut part = Part::default();
-                if most == 1 {
-                    buffers.0.closest(&*self.structure, &Query::default());
-                    for (ray, hit) in which.zip(&buffers.0.hits) {
-                        part.extend(ray, hit.as_slice());
-                    }
-                } else {
-                    for (ray, of_batch) in which.zip(&*batch) {
-                        self.crossings_of(of_batch, &mut buffers.1);
-                        part.extend(ray, &buffers.1[..buffers.1.len().min(most)]);
-                    }
-                }
-                if positions {
-                    part.positions = part.hits().map(|hit| self.position(rays, hit)).collect();
-                }
-                Ok(part)
-            })
-        })?;
-        let (triangles, rays, positions) = without_gil(py, || {
-            let positions = positions.then(|| joined(&parts, |part| &part.positions));
-            (joined(&parts, |part| &part.triangles), joined(&parts, |part| &part.rays), positions)
+        let arrays = of_python(ray_origins, ray_directions)?;
+        let rays = self.placed(&arrays);
+        let parts = without_gil(py, || match most {
+            1 => self.first_crossings(&rays),
+            _ => self.all_crossings(&rays, most),
         });
-        let positions = positions.map(|positions| rows(py, positions)).transpose()?;
-        Ok((PyArray1::from_vec(py, triangles), PyArray1::from_vec(py, rays), positions))
+        let parts = parts.map_err(|_| arrays.not_finite(&rays))?;
+        let count = parts.iter().map(Vec::len).sum();
+        let mut outputs = [Output::column(py, count)?, Output::column(py, count)?];
+        let mut places = positions.then(|| Output::rows(py, count)).transpose()?;
+        let [triangles, numbers] = outputs.each_mut().map(Output::numbers);
+        let positions = places.as_mut().map(Output::triples);
+        without_gil(py, || {
+            fill(&parts, triangles, Vec::len, |part, i| i64::from(part[i].triangle));
+            fill(&parts, numbers, Vec::len, |part, i| part[i].ray as i64);
+            if let Some(positions) = positions {
+                fill(&parts, positions, Vec::len, |part, i| self.position(&rays, part[i]));
+            }
+        });
+        let [triangles, numbers] = outputs.map(Output::into_python);
+        Ok((triangles, numbers, places.map(Output::into_python)))
     }
 
     /// Whether each point is inside, if the mesh is closed.
-    fn inside<'py>(
-        &self,
-        py: Python<'py>,
-        points: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    fn inside<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let points = arrays::points("points", points)?;
         let points = points.rows();
-        let mut inside = vec![false; points.len()];
+        let mut inside = Output::column(py, points.len())?;
+        let column = inside.numbers();
         without_gil(py, || {
-            let each = inside.par_iter_mut().enumerate().with_min_len(64);
+            let each = column.par_iter_mut().enumerate().with_min_len(64);
             each.for_each_init(Vec::new, |hits, (i, inside)| {
                 *inside = self.is_inside(points.row(i), hits);
             });
         });
-        Ok(PyArray1::from_vec(py, inside))
+        Ok(inside.into_python())
     }
 }
 
-/// What was found for a batch of rays: an element for each crossing.
-#[derive(Default)]
-struct Part {
-    triangles: Vec<i64>,
-    rays: Vec<i64>,
-    positions: Vec<[f64; 3]>,
+/// Where a ray crosses the surface.
+#[derive(Clone, Copy)]
+struct Crossing {
+    ray: usize,
+    triangle: u32,
 }
 
-impl Part {
-    fn extend(&mut self, ray: usize, hits: &[Hit]) {
-        self.triangles.extend(hits.iter().map(|hit| i64::from(hit.primitive)));
-        self.rays.extend(hits.iter().map(|_| ray as i64));
-    }
-
-    /// Rays and triangles.
-    fn hits(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.rays.iter().zip(&self.triangles).map(|(&ray, &triangle)| (ray as usize, triangle as usize))
-    }
+/// Arrays of rays as trimesh names them.
+fn of_python<'py>(
+    ray_origins: &Bound<'py, PyAny>,
+    ray_directions: &Bound<'py, PyAny>,
+) -> PyResult<RayArrays<'py>> {
+    crate::forks::check()?;
+    RayArrays::new(ray_origins, ray_directions, ["ray_origins", "ray_directions"])
 }
 
 impl PlacedMesh {
-    /// What `find` finds for the rays of two arrays, without the GIL.
-    fn of_rays<T: Send>(
-        &self,
-        py: Python<'_>,
-        ray_origins: &Bound<'_, PyAny>,
-        ray_directions: &Bound<'_, PyAny>,
-        find: impl Fn(&Rays<'_>) -> Result<T, NotFinite> + Sync,
-    ) -> PyResult<T> {
-        crate::forks::check()?;
-        let arrays = RayArrays::new(ray_origins, ray_directions, ["ray_origins", "ray_directions"])?;
-        let rays = arrays.rays([0.0, f32::INFINITY], Meaning::Placed(self.placement));
-        let found = without_gil(py, || find(&rays));
-        found.map_err(|_| arrays.not_finite(&rays))
+    /// The rays in the mesh's box.
+    fn placed<'a>(&self, arrays: &'a RayArrays<'_>) -> Rays<'a> {
+        arrays.rays([0.0, f32::INFINITY], Meaning::Placed(self.placement))
+    }
+
+    /// The first crossing of each ray.
+    fn first_crossings(&self, rays: &Rays<'_>) -> Result<Vec<Vec<Crossing>>, NotFinite> {
+        in_batches(rays.count, |which, buffers: &mut Buffers| {
+            rays.batch(which.clone(), &mut buffers.rays)?;
+            buffers.closest(&*self.structure, &Query::default());
+            let crossing = |(ray, hit): (usize, &Option<Hit>)| {
+                hit.as_ref().map(|hit| Crossing { ray, triangle: hit.primitive })
+            };
+            Ok(which.zip(&buffers.hits).filter_map(crossing).collect())
+        })
+    }
+
+    /// The crossings of each ray, at most so many of each.
+    fn all_crossings(&self, rays: &Rays<'_>, most: usize) -> Result<Vec<Vec<Crossing>>, NotFinite> {
+        in_batches(rays.count, |which, (batch, hits): &mut (Vec<Ray>, Vec<Hit>)| {
+            rays.batch(which.clone(), batch)?;
+            let mut crossings = Vec::new();
+            for (number, ray) in which.zip(batch) {
+                self.crossings_of(ray, hits);
+                let kept = hits.iter().take(most);
+                crossings.extend(kept.map(|hit| Crossing { ray: number, triangle: hit.primitive }));
+            }
+            Ok(crossings)
+        })
     }
 
     /// Where a ray meets the plane of a triangle, in 64-bit floats.
-    fn position(&self, rays: &Rays<'_>, (ray, triangle): (usize, usize)) -> [f64; 3] {
-        let [origin, direction] = rays.given(ray).map(DVec3::from);
-        let Plane { normal, distance } = &self.planes[triangle];
+    fn position(&self, rays: &Rays<'_>, crossing: Crossing) -> [f64; 3] {
+        let [origin, direction] = rays.given(crossing.ray).map(DVec3::from);
+        let Plane { normal, distance } = &self.planes[crossing.triangle as usize];
         let along = normal.dot(direction);
         if along == 0.0 {
             // A ray that lies in the plane, to the last bit, keeps its own origin.
