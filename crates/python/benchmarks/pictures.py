@@ -35,12 +35,12 @@ def seconds(work, of=resource.RUSAGE_SELF):
 
 def against_the_command_line(binary, pairs):
     """Loading, rendering and saving a picture here, and in a process of the command line: the ratios of their times."""
-    settings = {"size": (320, 240), "integrator": "path", "spp": 96, "denoise": False}
+    settings = {"size": (320, 240), "integrator": "path", "spp": 32, "denoise": False}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         subprocess.run([binary, "generate", "interior", "-o", folder / "scene.glb", "--quiet"], check=True)
         here, there = folder / "here.png", folder / "there.png"
-        command = [binary, "render", folder / "scene.glb", "-o", there, "--size", "320x240", "-i", "path", "--spp", "96", "--no-denoise", "--quiet"]
+        command = [binary, "render", folder / "scene.glb", "-o", there, "--size", "320x240", "-i", "path", "--spp", "32", "--denoise=off", "--quiet"]
 
         def own():
             bilux.load(folder / "scene.glb").render(**settings).save(here)
