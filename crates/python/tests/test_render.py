@@ -174,7 +174,7 @@ def test_a_picture_shows_itself_in_a_notebook(folder):
 @pytest.mark.parametrize(
     ("pixels", "error", "words"),
     [
-        (np.ones(5), ValueError, r"pixels: its shape is \[5\]"),
+        (np.ones(5), ValueError, r"pixels: its shape is \(5,\)"),
         (np.ones((0, 5)), ValueError, "pixels"),
         (np.ones((2, 2, 7)), ValueError, "1 to 4 channels"),
         (np.ones((2, 2), complex), TypeError, "complex128"),
