@@ -28,7 +28,14 @@ pub trait Accelerator: Send + Sync {
     /// Every hit along the ray that the query keeps, nearest first, ties by lowest instance and then lowest
     /// primitive. Each hit is listed once, however the structure splits its triangles.
     fn all_hits(&self, ray: &Ray, query: &Query) -> Vec<Hit> {
-        let found = Mutex::new(Vec::new());
+        let mut hits = Vec::new();
+        self.all_hits_into(ray, query, &mut hits);
+        hits
+    }
+    /// As [`Accelerator::all_hits`], into a vector, whose elements are replaced: for many rays, one vector will do.
+    fn all_hits_into(&self, ray: &Ray, query: &Query, hits: &mut Vec<Hit>) {
+        hits.clear();
+        let found = Mutex::new(&mut *hits);
         let note = |hit: &Hit| {
             if query.accepts(hit) {
                 found.lock().unwrap_or_else(PoisonError::into_inner).push(hit.with_positive_zeros());
@@ -37,14 +44,12 @@ pub trait Accelerator: Send + Sync {
             false
         };
         self.closest_hit(ray, &Query { filter: Some(&note), ..*query });
-        let mut hits = found.into_inner().unwrap_or_else(PoisonError::into_inner);
         hits.sort_unstable_by(|a, b| {
             let primitives = |hit: &Hit| (hit.instance, hit.primitive);
             // Zeros of either sign are the same distance; a NaN distance is never a hit.
             a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal).then(primitives(a).cmp(&primitives(b)))
         });
         hits.dedup();
-        hits
     }
     /// As [`Accelerator::any_hit`], and counts the work.
     fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool;

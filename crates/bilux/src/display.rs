@@ -16,15 +16,22 @@ const ENCODED: &str = "bilux.display.encoded";
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Exposure in stops.
-    pub(crate) exposure: f32,
+    pub exposure: f32,
     /// Whether the picture is also exposed automatically.
-    pub(crate) auto_exposure: bool,
+    pub auto_exposure: bool,
     /// The tone curve.
-    pub(crate) tone_map: &'static ToneMapEntry,
+    pub tone_map: &'static ToneMapEntry,
     /// The colour behind transparent pixels.
-    pub(crate) behind: Option<Rgb>,
+    pub behind: Option<Rgb>,
     /// Whether the picture's values are shown as they are.
-    pub(crate) encoded: bool,
+    pub encoded: bool,
+}
+
+impl Default for Display {
+    fn default() -> Display {
+        let WriteOptions { exposure, tone_map, behind, .. } = WriteOptions::default();
+        Display { exposure, auto_exposure: false, tone_map, behind, encoded: false }
+    }
 }
 
 impl Display {
@@ -46,7 +53,7 @@ impl Display {
     /// If a value makes no sense.
     pub fn recorded(part: &Picture) -> Result<Display, Error> {
         let curve = part.metadata.get(TONE_MAP).map(|name| tone_map(name)).transpose()?;
-        let usual = WriteOptions::default();
+        let usual = Display::default();
         Ok(Display {
             exposure: value(part, EXPOSURE)?.unwrap_or(usual.exposure),
             auto_exposure: value(part, AUTO_EXPOSURE)?.unwrap_or(false),
@@ -56,12 +63,17 @@ impl Display {
         })
     }
 
-    /// The options for writing a merged picture, which is marked as encoded if it is.
+    /// The exposure of this picture, in stops.
+    pub fn exposure_of(&self, picture: &Picture) -> f32 {
+        self.exposure + if self.auto_exposure { auto_exposure(picture) } else { 0.0 }
+    }
+
+    /// The options for writing a picture, which is marked as encoded if it is.
     pub fn options(&self, picture: &mut Picture) -> WriteOptions {
         if self.encoded {
             picture.colour_space = ColourSpace::Srgb;
         }
-        let exposure = self.exposure + if self.auto_exposure { auto_exposure(picture) } else { 0.0 };
+        let exposure = self.exposure_of(picture);
         WriteOptions { exposure, tone_map: self.tone_map, behind: self.behind, ..WriteOptions::default() }
     }
 }

@@ -81,7 +81,7 @@ impl Job {
     ///
     /// # Errors
     /// If no tone curve has the name.
-    pub(crate) fn display(&self) -> Result<Display, Error> {
+    pub fn display(&self) -> Result<Display, Error> {
         let WriteOptions { exposure, tone_map, behind, .. } = self.write_options()?;
         let Settings { auto_exposure, linear_transfer: encoded, .. } = self.settings;
         Ok(Display { exposure, auto_exposure, tone_map, behind, encoded })

@@ -1,12 +1,13 @@
 //! Ray queries on arrays.
 
 use crate::arrays;
+use crate::ending::{returning_from, without_gil};
 use crate::errors::Error;
-use crate::rays::{Columns, Rays, rows};
+use crate::hits::{self, AllHits, Columns, HitArrays, rows};
+use crate::output::Output;
+use crate::rays::{Meaning, NotFinite, RayArrays};
 use bilux::accel::registry::Quality;
-use bilux::accel::{
-    Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, MeshError, Query, Ray, TriangleMesh, build,
-};
+use bilux::accel::{Accelerator, BuildError, BuildOptions, Bvh8, Culling, Hit, Query, TriangleMesh, build};
 use bilux::scene::{SceneError, Span};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
@@ -14,9 +15,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
-
-/// The number of rays that one thread takes at a time.
-const BATCH: usize = 4096;
 
 /// Triangles, ready for ray queries.
 ///
@@ -71,13 +69,10 @@ impl Accel {
             ))
         })?;
         let options = BuildOptions { quality, ..BuildOptions::default() };
-        let built = py.detach(|| {
-            let mesh = Arc::new(TriangleMesh::new(vertices, triangles)?);
-            Ok((mesh.clone(), normals_of(&mesh), build(kind, mesh, &options)))
-        });
-        let (mesh, normals, structure) =
-            built.map_err(|error: MeshError| PyValueError::new_err(format!("triangles: {error}")))?;
-        let structure = structure.map_err(|error| unbuilt(kind, &error))?;
+        let (mesh, normals, structure) = without_gil(py, || {
+            let (mesh, structure) = structure_of(vertices, triangles, kind, &options)?;
+            PyResult::Ok((mesh.clone(), normals_of(&mesh), structure))
+        })?;
         Ok(Accel { mesh, normals, structure, quality, wide: OnceLock::new(), kind: kind.to_owned() })
     }
 
@@ -105,10 +100,15 @@ impl Accel {
         cull_back: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let columns = py.detach(|| self.closest_of(&rays, &query(cull_back)));
-        let columns = columns.into_python(py)?;
-        py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, columns)?)
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
+        let (structure, query) = (&*self.structure, query(cull_back));
+        let mut found = HitArrays::new(py, rays.count)?;
+        let columns = found.columns();
+        let (done, _returning) =
+            returning_from(py, || hits::closest(structure, &self.normals, &rays, &query, columns));
+        done.map_err(|_| arrays.not_finite(&rays))?;
+        py.import("bilux._types")?.getattr("Hits")?.call1(PyTuple::new(py, found.into_python())?)
     }
 
     /// Whether each ray hits anything.
@@ -127,11 +127,15 @@ impl Accel {
         t_min: f32,
         t_max: f32,
         cull_back: bool,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let hits = py.detach(|| self.any_of(&rays, &query(cull_back)));
-        Ok(PyArray1::from_vec(py, hits))
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
+        let mut hits = Output::column(py, rays.count)?;
+        let column = hits.numbers();
+        without_gil(py, || hits::any(&*self.structure, &rays, &query(cull_back), column))
+            .map_err(|_| arrays.not_finite(&rays))?;
+        Ok(hits.into_python())
     }
 
     /// Whether nothing lies between points, so that each of `a` sees its counterpart in `b`.
@@ -150,25 +154,22 @@ impl Accel {
         a: &Bound<'_, PyAny>,
         b: &Bound<'_, PyAny>,
         margin: f32,
-    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         if !(0.0..0.5).contains(&margin) {
             return Err(PyValueError::new_err(format!("margin: {margin} is not from 0 to below 0.5")));
         }
-        let mut rays = Rays::new(a, b, ["a", "b"], [margin, 1.0 - margin])?;
-        let visible = py.detach(|| {
-            let ends = |i: usize| {
-                let of = |rows: &[[f32; 3]]| if rows.len() == 1 { rows[0] } else { rows[i] };
-                (of(&rays.origins), of(&rays.directions))
-            };
-            let between = |i: usize| {
-                let (a, b) = ends(i);
-                std::array::from_fn(|axis| b[axis] - a[axis])
-            };
-            rays.directions = (0..rays.count).map(between).collect();
-            self.any_of(&rays, &query(false)).into_iter().map(|blocked| !blocked).collect()
+        let arrays = RayArrays::new(a, b, ["a", "b"])?;
+        let rays = arrays.rays([margin, 1.0 - margin], Meaning::Segments);
+        let mut visible = Output::column(py, rays.count)?;
+        let column = visible.numbers();
+        let done = without_gil(py, || {
+            hits::any(&*self.structure, &rays, &query(false), column)?;
+            column.iter_mut().for_each(|blocked| *blocked = !*blocked);
+            Ok(())
         });
-        Ok(PyArray1::from_vec(py, visible))
+        done.map_err(|_: NotFinite| arrays.not_finite(&rays))?;
+        Ok(visible.into_python())
     }
 
     /// Every hit of each ray.
@@ -190,10 +191,19 @@ impl Accel {
         cull_back: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
-        let rays = Rays::new(origins, directions, ["origins", "directions"], [t_min, t_max])?;
-        let (numbers, columns) = py.detach(|| self.all_of(&rays, &query(cull_back)));
-        let mut all = vec![PyArray1::from_vec(py, numbers).into_any()];
-        all.extend(columns.into_python(py)?);
+        let arrays = RayArrays::new(origins, directions, ["origins", "directions"])?;
+        let rays = arrays.rays(interval(t_min, t_max)?, Meaning::Rays);
+        let (structure, query) = (&*self.structure, query(cull_back));
+        let parts = without_gil(py, || hits::all(structure, &rays, &query));
+        let parts = parts.map_err(|_| arrays.not_finite(&rays))?;
+        let count = AllHits::count(&parts);
+        let (mut numbers, mut found) = (Output::column(py, count)?, HitArrays::new(py, count)?);
+        let (numbers_of_rays, mut columns) = (numbers.numbers(), found.columns());
+        let ((), _returning) = returning_from(py, || {
+            AllHits::write(&parts, &self.normals, numbers_of_rays, &mut columns);
+        });
+        let mut all = vec![numbers.into_python()];
+        all.extend(found.into_python());
         py.import("bilux._types")?.getattr("AllHits")?.call1(PyTuple::new(py, all)?)
     }
 
@@ -215,24 +225,31 @@ impl Accel {
     ) -> PyResult<Bound<'py, PyAny>> {
         crate::forks::check()?;
         let points = arrays::rows::<3>("points", points)?;
-        let columns = py.detach(|| {
+        if within.is_nan() {
+            return Err(PyValueError::new_err("within: NaN is no distance: infinity is the default"));
+        }
+        let mut found = HitArrays::new(py, points.len())?;
+        let Columns { t, primitive, u, v, point, .. } = found.columns();
+        let (done, _returning) = returning_from(py, || {
             let options = BuildOptions { quality: self.quality, ..BuildOptions::default() };
             let wide = self.wide.get_or_init(|| Bvh8::new(&self.mesh, &options));
             let wide = wide.as_ref().map_err(ToString::to_string)?;
-            let mut columns = Columns::misses(points.len());
-            let Columns { t, primitive, u, v, point, .. } = &mut columns;
             (&points, t, primitive, u, v, point).into_par_iter().for_each(
-                |(from, t, primitive, u, v, point)| {
-                    if let Some(near) = wide.nearest_point(*from, within) {
+                |(from, t, primitive, u, v, point)| match wide.nearest_point(*from, within) {
+                    Some(near) => {
                         (*t, *primitive, *u, *v) = (near.distance, i64::from(near.primitive), near.u, near.v);
                         *point = near.point;
                     }
+                    None => {
+                        (*t, *primitive, *u, *v) = (f32::INFINITY, -1, 0.0, 0.0);
+                        *point = [f32::NAN; 3];
+                    }
                 },
             );
-            Ok(columns)
+            Ok(())
         });
-        let columns = columns.map_err(|error: String| Error::new_err(error))?.into_python(py)?;
-        let found = columns.into_iter().take(5);
+        done.map_err(|error: String| Error::new_err(error))?;
+        let found = found.into_python().into_iter().take(5);
         py.import("bilux._types")?
             .getattr("NearestPoints")?
             .call1(PyTuple::new(py, found.collect::<Vec<_>>())?)
@@ -290,64 +307,34 @@ impl Accel {
             Quality::Best => "best",
         }
     }
+}
 
-    fn closest_of(&self, rays: &Rays, query: &Query<'_>) -> Columns {
-        let mut columns = Columns::misses(rays.count);
-        let Columns { t, primitive, u, v, point, normal } = &mut columns;
-        let batches = (
-            t.par_chunks_mut(BATCH),
-            primitive.par_chunks_mut(BATCH),
-            u.par_chunks_mut(BATCH),
-            v.par_chunks_mut(BATCH),
-            point.par_chunks_mut(BATCH),
-            normal.par_chunks_mut(BATCH),
-        );
-        batches.into_par_iter().enumerate().for_each(|(batch, (t, primitive, u, v, point, normal))| {
-            let batch = rays.batch(batch * BATCH, t.len());
-            let mut hits = vec![None; batch.len()];
-            self.structure.closest_hits(&batch, query, &mut hits);
-            for (i, hit) in hits.iter().enumerate() {
-                if let Some(hit) = hit {
-                    (t[i], primitive[i], u[i], v[i]) = (hit.t, i64::from(hit.primitive), hit.u, hit.v);
-                    (point[i], normal[i]) = (hit.point(&batch[i]), self.normals[hit.primitive as usize]);
-                }
-            }
-        });
-        columns
-    }
-
-    fn any_of(&self, rays: &Rays, query: &Query<'_>) -> Vec<bool> {
-        let mut hits = vec![false; rays.count];
-        hits.par_chunks_mut(BATCH).enumerate().for_each(|(batch, hits)| {
-            self.structure.any_hits(&rays.batch(batch * BATCH, hits.len()), query, hits);
-        });
-        hits
-    }
-
-    /// The numbers of the rays, and their hits.
-    fn all_of(&self, rays: &Rays, query: &Query<'_>) -> (Vec<i64>, Columns) {
-        let hits_of = |i: usize| {
-            let ray = rays.ray(i);
-            self.structure.all_hits(&ray, query).into_iter().map(move |hit| (i, ray, hit)).collect::<Vec<_>>()
-        };
-        let all: Vec<Vec<(usize, Ray, Hit)>> = (0..rays.count).into_par_iter().map(hits_of).collect();
-        let all: Vec<(usize, Ray, Hit)> = all.into_iter().flatten().collect();
-        let columns = Columns {
-            t: all.iter().map(|(.., hit)| hit.t).collect(),
-            primitive: all.iter().map(|(.., hit)| i64::from(hit.primitive)).collect(),
-            u: all.iter().map(|(.., hit)| hit.u).collect(),
-            v: all.iter().map(|(.., hit)| hit.v).collect(),
-            point: all.iter().map(|(_, ray, hit)| hit.point(ray)).collect(),
-            normal: all.iter().map(|(.., hit)| self.normals[hit.primitive as usize]).collect(),
-        };
-        (all.iter().map(|(i, ..)| *i as i64).collect(), columns)
-    }
+/// A mesh with a structure of this name over it.
+pub(crate) fn structure_of(
+    vertices: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    kind: &str,
+    options: &BuildOptions,
+) -> PyResult<(Arc<TriangleMesh>, Box<dyn Accelerator>)> {
+    let mesh = TriangleMesh::new(vertices, triangles);
+    let mesh = Arc::new(mesh.map_err(|error| PyValueError::new_err(format!("triangles: {error}")))?);
+    let structure = build(kind, mesh.clone(), options).map_err(|error| unbuilt(kind, &error))?;
+    Ok((mesh, structure))
 }
 
 /// The unit normal of each triangle, on its front; zero where it has no area.
 fn normals_of(mesh: &TriangleMesh) -> Vec<[f32; 3]> {
     let normal = |primitive| Hit { t: 0.0, u: 0.0, v: 0.0, primitive, instance: 0 }.normal(mesh);
     (0..mesh.len() as u32).into_par_iter().map(normal).collect()
+}
+
+/// The distances that count.
+fn interval(t_min: f32, t_max: f32) -> PyResult<[f32; 2]> {
+    match (t_min.is_nan(), t_max.is_nan()) {
+        (false, false) => Ok([t_min, t_max]),
+        (true, _) => Err(PyValueError::new_err("t_min: NaN is no distance: 0 is the default")),
+        _ => Err(PyValueError::new_err("t_max: NaN is no distance: infinity is the default")),
+    }
 }
 
 fn query(cull_back: bool) -> Query<'static> {

@@ -3,12 +3,13 @@
 
 use bilux::math::glam::DMat4;
 use bilux::math::{Transform, Vec2, Vec3};
-use numpy::{PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray2, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use std::fmt::Debug;
 
 /// An argument as an array of numbers of any shape.
-fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+pub(crate) fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
     let numpy = argument.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (argument,)).map_err(|error| {
         PyTypeError::new_err(format!("{name}: this is no array of numbers: {}", error.value(argument.py())))
@@ -21,11 +22,15 @@ fn numbers<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Bound<'py,
             "{name}: an array of {dtype} is no array of numbers: convert it with .astype('float32')"
         )));
     }
-    Ok(array)
+    // One whose numbers are not at multiples of their size, as in a packed file, cannot be read in place.
+    if array.getattr("flags")?.getattr("aligned")?.is_truthy()? {
+        return Ok(array);
+    }
+    Ok(array.call_method0("copy")?.cast_into()?)
 }
 
 /// The shape as Python writes it.
-fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
+pub(crate) fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
     let sides: Vec<String> = array.shape().iter().map(ToString::to_string).collect();
     let comma = if sides.len() == 1 { "," } else { "" };
     format!("({}{comma})", sides.join(", "))
@@ -42,11 +47,11 @@ fn floats(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<f32>> {
     Ok(doubles.as_array().iter().map(|&number| number as f32).collect())
 }
 
-/// Rows of `N` finite numbers.
-///
-/// # Errors
-/// `TypeError` if it is no array of numbers; `ValueError` if it has another shape, or a number is not finite.
-pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; N]>> {
+/// An array of rows of `N` numbers.
+fn rows_of<'py, const N: usize>(
+    name: &str,
+    argument: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyUntypedArray>> {
     let array = numbers(name, argument)?;
     if array.ndim() != 2 || array.shape()[1] != N {
         let transposed = array.ndim() == 2 && array.shape()[0] == N;
@@ -56,14 +61,87 @@ pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> P
             "{name}: its shape is {shape}, but must be (n, {N}), one row for each{advice}"
         )));
     }
+    Ok(array)
+}
+
+/// Rows of `N` finite numbers.
+///
+/// # Errors
+/// `TypeError` if it is no array of numbers; `ValueError` if it has another shape, or a number is not finite.
+pub(crate) fn rows<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Vec<[f32; N]>> {
+    let array = rows_of::<N>(name, argument)?;
     let rows = floats(&array)?.as_chunks::<N>().0.to_vec();
     match rows.iter().position(|row| row.iter().any(|x| !x.is_finite())) {
         None => Ok(rows),
-        Some(bad) => Err(PyValueError::new_err(format!(
-            "{name}: row {bad} is {:?}, which is not finite as 32-bit floats: leave it out, or correct it",
-            rows[bad]
-        ))),
+        Some(bad) => Err(not_finite(name, bad, rows[bad])),
     }
+}
+
+/// The exception for a row that is not finite.
+pub(crate) fn not_finite(name: &str, row: usize, numbers: impl Debug) -> PyErr {
+    PyValueError::new_err(format!(
+        "{name}: row {row} is {numbers:?}, which is not finite as 32-bit floats: leave it out, or correct it"
+    ))
+}
+
+/// Rows of three numbers, finite or not. Those of 32- or 64-bit floats, one row after the other, are not copied.
+pub(crate) enum Points<'py> {
+    Singles(PyReadonlyArray2<'py, f32>),
+    Doubles(PyReadonlyArray2<'py, f64>),
+}
+
+impl Points<'_> {
+    pub(crate) fn rows(&self) -> Rows<'_> {
+        match self {
+            Points::Singles(array) => Rows::Singles(array.as_slice().unwrap_or_default().as_chunks().0),
+            Points::Doubles(array) => Rows::Doubles(array.as_slice().unwrap_or_default().as_chunks().0),
+        }
+    }
+}
+
+/// What [`Points`] hold.
+#[derive(Clone, Copy)]
+pub(crate) enum Rows<'a> {
+    Singles(&'a [[f32; 3]]),
+    Doubles(&'a [[f64; 3]]),
+}
+
+impl Rows<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Rows::Singles(rows) => rows.len(),
+            Rows::Doubles(rows) => rows.len(),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn row(&self, i: usize) -> [f64; 3] {
+        match self {
+            Rows::Singles(rows) => rows[i].map(f64::from),
+            Rows::Doubles(rows) => rows[i],
+        }
+    }
+
+    /// The row of this number, or the only one.
+    #[inline]
+    pub(crate) fn shared(&self, i: usize) -> [f64; 3] {
+        self.row(if self.len() == 1 { 0 } else { i })
+    }
+}
+
+/// Rows of three numbers.
+///
+/// # Errors
+/// `TypeError` if it is no array of numbers; `ValueError` if it has another shape.
+pub(crate) fn points<'py>(name: &str, argument: &Bound<'py, PyAny>) -> PyResult<Points<'py>> {
+    let array = rows_of::<3>(name, argument)?;
+    if array.is_c_contiguous()
+        && let Ok(singles) = array.extract()
+    {
+        return Ok(Points::Singles(singles));
+    }
+    let array = array.call_method1("astype", ("float64", "C", "unsafe", false, false))?;
+    Ok(Points::Doubles(array.extract()?))
 }
 
 /// Points or directions.

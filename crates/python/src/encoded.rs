@@ -1,5 +1,6 @@
 //! Scenes as bytes, for `pickle` and for other machines.
 
+use crate::ending::without_gil;
 use crate::errors::exception;
 use bilux::encoding::{Blob, ContentHash, EncodedScene, decode, encode};
 use bilux::scene::SceneBuilder;
@@ -31,14 +32,14 @@ impl Encoded {
     fn blob<'py>(&self, py: Python<'py>, hash: &str) -> PyResult<Bound<'py, PyBytes>> {
         let blob = ContentHash::from_hex(hash).and_then(|hash| self.0.blobs.get(&hash));
         let blob = blob.ok_or_else(|| PyKeyError::new_err(format!("there is no blob {hash}")))?;
-        let bytes = py.detach(|| Blob::bytes(blob));
+        let bytes = without_gil(py, || Blob::bytes(blob));
         Ok(PyBytes::new(py, &bytes))
     }
 }
 
 impl Encoded {
     pub(crate) fn of(py: Python<'_>, scene: &SceneBuilder) -> PyResult<Encoded> {
-        py.detach(|| encode(scene)).map(Encoded).map_err(exception)
+        without_gil(py, || encode(scene)).map(Encoded).map_err(exception)
     }
 }
 
@@ -80,6 +81,6 @@ pub(crate) fn decoded(document: &Bound<'_, PyAny>, blobs: &Bound<'_, PyDict>) ->
         }
     }
     let document = document.get()?;
-    let scene = py.detach(|| decode(document, &|hash| by_hash.get(&hash).copied()));
+    let scene = without_gil(py, || decode(document, &|hash| by_hash.get(&hash).copied()));
     scene.map_err(exception)
 }

@@ -3,10 +3,11 @@
 use bilux::formats::FormatError;
 use bilux::pictures::PictureError;
 use bilux::scene::{SceneError, Warning};
-use pyo3::exceptions::PyFileNotFoundError;
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
 use std::ffi::CString;
 use std::io::ErrorKind;
+use std::path::Path;
 
 /// The exception classes.
 mod classes {
@@ -37,6 +38,15 @@ pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
             classes::RenderError::new_err(text)
         }
         _ => Error::new_err(text),
+    }
+}
+
+/// The exception for a file that cannot be opened.
+pub(crate) fn unopened(path: &Path, error: &std::io::Error) -> PyErr {
+    let text = format!("{}: cannot open it: {error}", path.display());
+    match error.kind() {
+        ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
+        _ => PyOSError::new_err(text),
     }
 }
 

@@ -1,8 +1,9 @@
 //! What happens behind a picture: one sample, event by event, and what each strategy finds.
 
+use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{build, interrupted, shown};
+use crate::render::{build, interrupted};
 use crate::scene::Scene;
 use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, follow};
@@ -29,7 +30,7 @@ pub(crate) fn replay(
     let user = values::parameters(settings, &mut Unresolved)?;
     let builder = scene.get().builder(py).clone();
     let (built, [x, y, sample]) = (&scene.get().built, place);
-    let replay = py.detach(|| build((&builder, built), &user, max_memory)?.0.replay(x, y, sample));
+    let replay = without_gil(py, || build((&builder, built), &user, max_memory)?.0.replay(x, y, sample));
     let replay = replay.map_err(exception)?;
     let events = replay.events.iter().map(|event| (event.depth, event.what.clone())).collect();
     let (ray, radiance) = (replay.ray, replay.radiance.to_array());
@@ -54,8 +55,9 @@ pub(crate) fn strategies(
     let user = values::parameters(settings, &mut Unresolved)?;
     let builder = scene.get().builder(py).clone();
     let built = &scene.get().built;
-    let job = py.detach(|| checked(build((&builder, built), &user, max_memory)?.0)).map_err(exception)?;
-    let shown = shown(&job).map_err(exception)?;
+    let job =
+        without_gil(py, || checked(build((&builder, built), &user, max_memory)?.0)).map_err(exception)?;
+    let shown = job.display().map_err(exception)?;
     let (found, stopped) = follow(py, callback, |watch| job.strategies_of(None, watch));
     match stopped {
         Stopped::No => {}

@@ -1,9 +1,10 @@
 //! One layer of a picture: an array, and the names of its channels.
 
+use crate::arrays;
 use crate::errors::of_picture;
 use bilux::pictures::Picture;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of pixels with names for its channels.
@@ -22,23 +23,16 @@ impl Layer {
     /// # Errors
     /// If it is no array of pixels.
     pub(crate) fn of_array(name: &str, pixels: &Bound<'_, PyAny>) -> PyResult<Layer> {
-        let py = pixels.py();
         let argument = if name.is_empty() { "pixels" } else { name };
-        let array = py.import("numpy")?.call_method1("asarray", (pixels,))?.cast_into::<PyUntypedArray>()?;
+        let array = arrays::numbers(argument, pixels)?;
         let dtype = array.dtype().getattr("str")?.extract::<String>()?;
-        let kind: char = array.dtype().getattr("kind")?.extract()?;
-        if !"fiu".contains(kind) {
-            return Err(PyTypeError::new_err(format!(
-                "{argument}: an array of {} is no array of numbers: convert it with .astype('float32')",
-                array.dtype()
-            )));
-        }
         let channels = match *array.shape() {
             [height, width] if height > 0 && width > 0 => 1,
             [height, width, channels @ 1..=4] if height > 0 && width > 0 => channels,
-            ref shape => {
+            _ => {
+                let shape = arrays::shape_of(&array);
                 return Err(PyValueError::new_err(format!(
-                    "{argument}: its shape is {shape:?}, but must be (height, width) or (height, width, channels), \
+                    "{argument}: its shape is {shape}, but must be (height, width) or (height, width, channels), \
                      with 1 to 4 channels"
                 )));
             }

@@ -7,14 +7,18 @@ mod accel;
 mod adding;
 mod arrays;
 mod encoded;
+mod ending;
 mod errors;
 mod forks;
+mod hits;
 mod inspect;
 mod keyframes;
 mod layer;
+mod output;
 mod parts;
 mod pickling;
 mod picture;
+mod placed_mesh;
 mod progressive;
 mod rays;
 mod render;
@@ -22,6 +26,7 @@ mod scene;
 mod shown;
 mod spec;
 mod texture;
+mod turntable;
 mod values;
 mod watch;
 
@@ -44,6 +49,8 @@ mod _bilux {
     #[pymodule_export]
     use crate::picture::{Picture, compare, read_picture};
     #[pymodule_export]
+    use crate::placed_mesh::PlacedMesh;
+    #[pymodule_export]
     use crate::progressive::Progressive;
     #[pymodule_export]
     use crate::scene::Scene;
@@ -51,6 +58,8 @@ mod _bilux {
     use crate::spec::{Spec, rows};
     #[pymodule_export]
     use crate::texture::Texture;
+    #[pymodule_export]
+    use crate::turntable::Turntable;
 
     /// The licences of Bilux, and of everything in this package that others wrote.
     ///
@@ -65,6 +74,7 @@ mod _bilux {
     /// Adds the version.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        ending::watch_for_it(module)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

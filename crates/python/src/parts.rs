@@ -1,13 +1,13 @@
 //! Pictures whose parts are rendered in several processes: one that renders parts, and one that gathers them.
 
 use crate::encoded::Bytes;
-use crate::errors::{Error, exception, of_scene};
+use crate::ending::without_gil;
+use crate::errors::{Error, exception};
 use crate::picture::Picture;
 use crate::render::{
-    BuildWork, Prepared, Request, aovs, interrupted, prepared, shown, to_python, with_everything, with_layers,
+    BuildWork, Prepared, Request, interrupted, prepared, to_python, with_everything, with_layers,
 };
 use crate::scene::Scene;
-use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, follow};
 use bilux::Job;
 use bilux::transport::aovs::Aov;
@@ -28,26 +28,17 @@ fn part_of((start, end, x, y, width, height): PartNumbers) -> Part {
 /// A film as an array, the rays that it took, and whether it was stopped.
 type RenderedPart<'py> = (Bound<'py, PyArray1<u8>>, u64, bool);
 
-fn request(
-    settings: &Bound<'_, PyDict>,
-    aovs: Vec<Aov>,
-    (fast, max_memory, loaded_at): (bool, u64, f32),
-) -> PyResult<Request> {
-    let user = values::parameters(settings, &mut Unresolved)?;
-    Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun: Instant::now() })
-}
-
 fn built(py: Python<'_>, scene: &Bound<'_, Scene>, request: &Request) -> PyResult<Prepared> {
     crate::forks::check()?;
     let own = scene.get();
     let scene = own.builder(py).clone();
-    py.detach(|| prepared((&scene, &own.built), request)).map_err(exception)
+    without_gil(py, || prepared((&scene, &own.built), request)).map_err(exception)
 }
 
 fn film_of(py: Python<'_>, film: &Bound<'_, PyAny>) -> PyResult<Film> {
     let bytes = Bytes::of(film)?;
     let bytes = bytes.get()?;
-    py.detach(|| Film::from_bytes(bytes)).map_err(exception)
+    without_gil(py, || Film::from_bytes(bytes)).map_err(exception)
 }
 
 /// Renders parts of one picture.
@@ -65,18 +56,18 @@ impl PartRenderer {
         max_memory: u64,
         loaded_at: f32,
     ) -> PyResult<PartRenderer> {
-        let request = request(settings, Vec::new(), (fast, max_memory, loaded_at))?;
+        let request = Request::new(settings, &[], (fast, max_memory, loaded_at))?;
         Ok(PartRenderer(built(scene.py(), scene, &request)?.job))
     }
 
     /// Whether parts may be windows of the picture.
     fn may_crop(&self, py: Python<'_>) -> PyResult<bool> {
-        py.detach(|| self.0.may_crop_parts()).map_err(exception)
+        without_gil(py, || self.0.may_crop_parts()).map_err(exception)
     }
 
     /// The choice of an integrator that chooses.
     fn choice(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        py.detach(|| self.0.choice()).map_err(exception)
+        without_gil(py, || self.0.choice()).map_err(exception)
     }
 
     /// Renders a part.
@@ -124,11 +115,10 @@ impl Gathering {
         max_memory: u64,
         loaded_at: f32,
     ) -> PyResult<Gathering> {
-        let aovs = aovs(&aov).map_err(of_scene)?;
-        let request = request(settings, aovs, (fast, max_memory, loaded_at))?;
+        let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         let py = scene.py();
         let Prepared { mut job, build } = built(py, scene, &request)?;
-        py.detach(|| with_everything(&mut job, &request).map(drop)).map_err(exception)?;
+        without_gil(py, || with_everything(&mut job, &request).map(drop)).map_err(exception)?;
         let Request { aovs, begun, .. } = request;
         Ok(Gathering { aovs, begun, build, state: Mutex::new(State { job, parts: None }) })
     }
@@ -155,7 +145,7 @@ impl Gathering {
     /// Adds a part, and the rays that it took.
     fn add(&self, py: Python<'_>, part: PartNumbers, film: &Bound<'_, PyAny>, rays: u64) -> PyResult<()> {
         let film = film_of(py, film)?;
-        py.detach(|| match &mut self.lock().parts {
+        without_gil(py, || match &mut self.lock().parts {
             Some(parts) => parts.add(&part_of(part), film, rays),
             None => Ok(()),
         })
@@ -179,14 +169,14 @@ impl Gathering {
 
     /// The picture so far, without its layers; None if there is nothing yet.
     fn preview(&self, py: Python<'_>) -> PyResult<Option<Picture>> {
-        let made = py.detach(|| {
+        let made = without_gil(py, || {
             let State { job, parts } = &*self.lock();
             let Some(parts) = parts else { return Ok(None) };
             let film = parts.so_far()?;
             if film.coverage().pieces().is_empty() {
                 return Ok(None);
             }
-            Ok::<_, bilux::Error>(Some((film.to_picture()?, shown(job)?)))
+            Ok::<_, bilux::Error>(Some((film.to_picture()?, job.display()?)))
         });
         let Some((picture, shown)) = made.map_err(exception)? else { return Ok(None) };
         let info = PyDict::new(py);

@@ -2,7 +2,7 @@
 
 use crate::layer::Layer;
 use crate::picture::Picture;
-use crate::shown::Shown;
+use bilux::Display;
 use bilux::math::Rgb;
 use bilux::pictures::{ColourSpace, tone_map};
 use pyo3::exceptions::PyValueError;
@@ -23,8 +23,8 @@ pub(crate) type PictureValues =
 pub(crate) fn values_of(py: Python<'_>, picture: &Picture) -> PictureValues {
     let layers = picture.layers.iter();
     let layers = layers.map(|l| (l.name.clone(), l.components.clone(), l.pixels.clone_ref(py))).collect();
-    let Shown { exposure, auto_exposure, curve, behind } = picture.shown;
-    let shown = (exposure, auto_exposure, curve.entry.name.to_owned(), behind.map(Rgb::to_array));
+    let Display { exposure, auto_exposure, tone_map, behind, .. } = picture.shown;
+    let shown = (exposure, auto_exposure, tone_map.entry.name.to_owned(), behind.map(Rgb::to_array));
     // Linear light, sRGB as a power of 0, or a power.
     let space = match picture.colour_space {
         ColourSpace::LinearRec709 => None,
@@ -47,12 +47,9 @@ pub(crate) fn picture_of(py: Python<'_>, values: PictureValues) -> PyResult<Pict
     }
     let layers: Vec<Layer> =
         layers.into_iter().map(|(name, components, pixels)| Layer { name, components, pixels }).collect();
-    let shown = Shown {
-        exposure,
-        auto_exposure,
-        curve: tone_map(&curve).map_err(|_| other())?,
-        behind: behind.map(Rgb::from_array),
-    };
+    let tone_map = tone_map(&curve).map_err(|_| other())?;
+    let behind = behind.map(Rgb::from_array);
+    let shown = Display { exposure, auto_exposure, tone_map, behind, ..Display::default() };
     let colour_space = match space {
         None => ColourSpace::LinearRec709,
         Some(0.0) => ColourSpace::Srgb,

@@ -1,9 +1,11 @@
 //! Pictures whose layers are numpy arrays.
 
-use crate::errors::{exception, of_picture, warn};
+use crate::ending::without_gil;
+use crate::errors::{exception, of_picture, unopened, warn};
 use crate::layer::{Layer, layers_of};
 use crate::pickling::{PictureValues, picture_of, values_of};
-use crate::shown::Shown;
+use crate::shown;
+use bilux::Display;
 use bilux::pictures::denoise::{Task, denoise, denoiser};
 use bilux::pictures::formats::BitDepth;
 use bilux::pictures::{ColourSpace, to_display};
@@ -32,7 +34,7 @@ pub(crate) struct Picture {
     pub(crate) size: [usize; 2],
     /// The main picture first, whose name is empty.
     pub(crate) layers: Vec<Layer>,
-    pub(crate) shown: Shown,
+    pub(crate) shown: Display,
     pub(crate) colour_space: ColourSpace,
     pub(crate) metadata: Py<PyDict>,
     pub(crate) info: Py<PyDict>,
@@ -66,7 +68,7 @@ impl Picture {
         Ok(Picture {
             size,
             layers: all,
-            shown: Shown::default(),
+            shown: Display::default(),
             colour_space: ColourSpace::default(),
             metadata: metadata.unwrap_or_else(|| PyDict::new(py)).unbind(),
             info: PyDict::new(py).unbind(),
@@ -168,9 +170,9 @@ impl Picture {
         bits: u32,
         quality: Option<f64>,
     ) -> PyResult<()> {
-        let shown = self.shown.with(exposure, tonemap)?;
-        let picture = self.to_rust(py)?;
-        let mut options = shown.options(&picture);
+        let shown = shown::with(self.shown, exposure, tonemap)?;
+        let mut picture = self.to_rust(py)?;
+        let mut options = shown.options(&mut picture);
         options.bit_depth = match bits {
             8 => BitDepth::Eight,
             16 => BitDepth::Sixteen,
@@ -184,7 +186,7 @@ impl Picture {
         }
         let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
         warn(py, lost.as_slice())?;
-        py.detach(|| bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
+        without_gil(py, || bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
     }
 
     /// The picture as a display shows it: exposed, with a tone curve, sRGB-encoded, from 0 to 1, with straight alpha.
@@ -229,7 +231,7 @@ impl Picture {
     fn denoised(&self, py: Python<'_>, by: &str, threads: usize) -> PyResult<Picture> {
         crate::forks::check()?;
         let noisy = self.to_rust(py)?;
-        let smooth = py.detach(|| {
+        let smooth = without_gil(py, || {
             let chosen = denoiser(by, &Task { threads, ..Task::default() })?;
             denoise(&noisy, &*chosen.denoiser)
         });
@@ -238,9 +240,9 @@ impl Picture {
 
     /// The bytes of a PNG, for notebooks.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let picture = self.to_rust(py)?;
-        let options = self.shown.options(&picture);
-        let bytes = py.detach(|| bilux::pictures::write_bytes("png", &picture, &options));
+        let mut picture = self.to_rust(py)?;
+        let options = self.shown.options(&mut picture);
+        let bytes = without_gil(py, || bilux::pictures::write_bytes("png", &picture, &options));
         Ok(PyBytes::new(py, &bytes.map_err(of_picture)?))
     }
 
@@ -267,7 +269,7 @@ impl Picture {
     pub(crate) fn of(
         py: Python<'_>,
         picture: &bilux::pictures::Picture,
-        shown: Shown,
+        shown: Display,
         info: Option<Py<PyDict>>,
     ) -> PyResult<Picture> {
         let metadata = PyDict::new(py);
@@ -304,10 +306,10 @@ impl Picture {
         curve: Option<&str>,
         exposure: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<bilux::pictures::Picture> {
-        let shown = self.shown.with(exposure, curve)?;
+        let shown = shown::with(self.shown, exposure, curve)?;
         let picture = self.to_rust(py)?;
-        let display = || to_display(&picture, shown.exposure_of(&picture), shown.curve);
-        py.detach(display).map_err(of_picture)
+        let display = || to_display(&picture, shown.exposure_of(&picture), shown.tone_map);
+        without_gil(py, display).map_err(of_picture)
     }
 }
 
@@ -329,10 +331,10 @@ impl Picture {
 ///     (2, 3, 3)
 #[pyfunction]
 pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
-    let bytes = py.detach(|| std::fs::File::open(&path).map(|_| ()));
-    bytes?;
-    let picture = py.detach(|| bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
-    Picture::of(py, &picture.map_err(of_picture)?, Shown::default(), None)
+    let file = without_gil(py, || std::fs::File::open(&path).map(drop));
+    file.map_err(|error| unopened(&path, &error))?;
+    let picture = without_gil(py, || bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
+    Picture::of(py, &picture.map_err(of_picture)?, Display::default(), None)
 }
 
 /// Measures how much a picture differs from a reference.
@@ -360,7 +362,7 @@ pub(crate) fn compare<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     crate::forks::check()?;
     let (picture, reference) = (any_picture(picture)?, any_picture(reference)?);
-    let report = py.detach(|| bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
+    let report = without_gil(py, || bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
     let values = PyDict::new(py);
     for (name, value) in report.values {
         values.set_item(name, value)?;

@@ -1,12 +1,12 @@
 //! Ever better pictures of one scene.
 
+use crate::ending::without_gil;
 use crate::errors::{Error, exception, warn};
 use crate::picture::Picture;
-use crate::render::{build, interrupted, shown};
-use crate::shown::Shown;
+use crate::render::{build, interrupted};
 use crate::watch::{Stopped, follow};
 use bilux::scene::{Parameters, SceneBuilder};
-use bilux::{Budget, Built, Outcome};
+use bilux::{Budget, Built, Display, Outcome};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Mutex;
@@ -15,7 +15,7 @@ use std::sync::Mutex;
 #[pyclass(frozen, module = "bilux._bilux")]
 pub(crate) struct Progressive {
     picture: Mutex<bilux::Progressive>,
-    shown: Shown,
+    shown: Display,
     callback: Option<Py<PyAny>>,
 }
 
@@ -28,9 +28,9 @@ impl Progressive {
         callback: Option<Py<PyAny>>,
     ) -> PyResult<Progressive> {
         crate::forks::check()?;
-        let (job, _) = py.detach(|| build(scene, user, max_memory)).map_err(exception)?;
+        let (job, _) = without_gil(py, || build(scene, user, max_memory)).map_err(exception)?;
         warn(py, job.warnings())?;
-        let shown = shown(&job).map_err(exception)?;
+        let shown = job.display().map_err(exception)?;
         Ok(Progressive { picture: Mutex::new(bilux::Progressive::new(job)), shown, callback })
     }
 

@@ -1,22 +1,22 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
-use crate::errors::{Error, exception, warn};
+use crate::errors::{Error, exception, of_scene, warn};
 use crate::picture::Picture;
-use crate::shown::Shown;
+use crate::values::{self, Unresolved};
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
-use bilux::pictures::WriteOptions;
 use bilux::pictures::denoise::{DenoiserChoice, preload};
 use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
 use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
-use bilux::{Built, Job, Outcome, Series};
+use bilux::{Built, Display, Job, Outcome, Series};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// What a call asks for.
+#[derive(Clone)]
 pub(crate) struct Request {
     /// Settings that take precedence over those of the scene.
     pub(crate) user: Parameters,
@@ -32,12 +32,31 @@ pub(crate) struct Request {
     pub(crate) loaded_at: f32,
     /// When the call began.
     pub(crate) begun: Instant,
+    /// What the picture has in common with others.
+    pub(crate) series: Series,
+}
+
+impl Request {
+    /// A picture with settings, layers of these names and, in the end, `fast`, `max_memory` and `loaded_at`.
+    ///
+    /// # Errors
+    /// If a setting or a layer makes no sense.
+    pub(crate) fn new(
+        settings: &Bound<'_, PyDict>,
+        layers: &[String],
+        (fast, max_memory, loaded_at): (bool, u64, f32),
+    ) -> PyResult<Request> {
+        let (begun, series) = (Instant::now(), Series::default());
+        let user = values::parameters(settings, &mut Unresolved)?;
+        let aovs = aovs(layers).map_err(of_scene)?;
+        Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series })
+    }
 }
 
 /// A picture that was rendered, before it becomes Python's.
 pub(crate) struct Rendered {
     picture: bilux::pictures::Picture,
-    shown: Shown,
+    shown: Display,
     outcome: Outcome,
     warnings: Vec<Warning>,
     spp: f64,
@@ -51,7 +70,7 @@ pub(crate) struct Rendered {
 ///
 /// # Errors
 /// If there is no such AOV, or it is no layer.
-pub(crate) fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
+fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
     let layers = || AOVS.iter().filter(|row| row.aov != Aov::Strategies);
     let find = |name: &String| {
         let found = layers().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
@@ -156,7 +175,7 @@ pub(crate) fn prepared(
         with_default_budget(&scene.settings, &mut user);
     }
     let building = Instant::now();
-    let (job, trees) = build((scene, built), &user, request.max_memory)?;
+    let (job, trees) = build_of((scene, built), &user, request.max_memory, &request.series)?;
     let seconds = building.elapsed().as_secs_f64();
     let time = job.settings().time;
     if scene.inventory.moves() && time != request.loaded_at {
@@ -212,7 +231,7 @@ pub(crate) fn with_layers(
     let settings = job.settings();
     Ok(Rendered {
         picture,
-        shown: shown(job)?,
+        shown: job.display()?,
         warnings: job.warnings().to_vec(),
         spp: match (outcome.rendered.cancelled, outcome.rendered.reached) {
             (true, _) => mean_samples(&outcome),
@@ -233,16 +252,20 @@ pub(crate) fn build(
     user: &Parameters,
     max_memory: u64,
 ) -> Result<(Job, u64), bilux::Error> {
-    let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);
-    let before = built.tree_work().trees;
-    let job = Job::with_built(scene, user, max_memory, &Series::default(), &mut built)?;
-    Ok((job, built.tree_work().trees - before))
+    build_of((scene, built), user, max_memory, &Series::default())
 }
 
-/// How the job's pictures are shown.
-pub(crate) fn shown(job: &Job) -> Result<Shown, bilux::Error> {
-    let WriteOptions { exposure, tone_map, behind, .. } = job.write_options()?;
-    Ok(Shown { auto_exposure: job.settings().auto_exposure, exposure, curve: tone_map, behind })
+/// As [`build`], for a picture of a series.
+fn build_of(
+    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    user: &Parameters,
+    max_memory: u64,
+    series: &Series,
+) -> Result<(Job, u64), bilux::Error> {
+    let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = built.tree_work().trees;
+    let job = Job::with_built(scene, user, max_memory, series, &mut built)?;
+    Ok((job, built.tree_work().trees - before))
 }
 
 /// The window of the picture that `crop` asks for.

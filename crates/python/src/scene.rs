@@ -3,10 +3,11 @@
 use crate::adding::{self, Adding, mesh, of_table};
 use crate::arrays;
 use crate::encoded::{Encoded, decoded};
-use crate::errors::{exception, of_scene, warn};
+use crate::ending::without_gil;
+use crate::errors::{exception, warn};
 use crate::picture::Picture;
 use crate::progressive::Progressive;
-use crate::render::{Request, aovs, render};
+use crate::render::{Request, render};
 use crate::spec::Spec;
 use crate::values::{self, Resolve, Unresolved};
 use bilux::Built;
@@ -21,7 +22,6 @@ use pyo3::sync::MutexExt;
 use pyo3::types::{PyDict, PyString, PyType};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
 
 /// The native part of `bilux.Scene`.
 #[pyclass(frozen, subclass, module = "bilux._bilux", name = "Scene")]
@@ -77,7 +77,7 @@ impl Scene {
         };
         crate::forks::check()?;
         let py = class.py();
-        let scene = py.detach(|| bilux::load(&path, &options)).map_err(exception)?;
+        let scene = without_gil(py, || bilux::load(&path, &options)).map_err(exception)?;
         warn(py, &scene.warnings)?;
         with_builder(class, scene)
     }
@@ -92,7 +92,7 @@ impl Scene {
         crate::forks::check()?;
         let mut spec = bilux::scene::Spec::new("", kind);
         spec.parameters = values::parameters(parameters, &mut Unresolved)?;
-        let scene = class.py().detach(|| bilux::generate(&spec)).map_err(exception)?;
+        let scene = without_gil(class.py(), || bilux::generate(&spec)).map_err(exception)?;
         with_builder(class, scene)
     }
 
@@ -296,7 +296,7 @@ impl Scene {
     /// Writes the scene to a file; the extension says in which format. Returns what the format cannot hold.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
         let scene = self.builder(py).clone();
-        let lost = py.detach(|| bilux::formats::write(&path, &scene, &Default::default()));
+        let lost = without_gil(py, || bilux::formats::write(&path, &scene, &Default::default()));
         Ok(lost.map_err(exception)?.iter().map(ToString::to_string).collect())
     }
 
@@ -313,17 +313,10 @@ impl Scene {
         loaded_at: f32,
         callback: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Picture> {
-        let begun = Instant::now();
-        let user = values::parameters(settings, &mut Unresolved)?;
-        let aovs = aovs(&aov).map_err(of_scene)?;
+        let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
-        render(
-            py,
-            (&scene, &self.built),
-            Request { user, aovs, crop, fast, max_memory, loaded_at, begun },
-            callback,
-        )
+        render(py, (&scene, &self.built), Request { crop, ..request }, callback)
     }
 
     fn _progressive(
@@ -358,7 +351,7 @@ impl Scene {
         *other.get().builder(other.py()) = copy;
         // Meshes are shared, and so are the trees over them.
         let (own, other) = (&self.built, &other.get().built);
-        py.detach(|| {
+        without_gil(py, || {
             let copy = own.lock().unwrap_or_else(PoisonError::into_inner).clone();
             *other.lock().unwrap_or_else(PoisonError::into_inner) = copy;
         });

@@ -1,56 +1,30 @@
-//! How pictures are prepared for a display.
+//! How pictures are prepared for a display when a call says so.
 
 use crate::errors::of_picture;
-use bilux::math::Rgb;
-use bilux::pictures::{Picture, ToneMapEntry, WriteOptions, auto_exposure, tone_map};
+use bilux::Display;
+use bilux::pictures::tone_map;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// How a picture is prepared for a display, unless a call says otherwise.
-#[derive(Clone, Copy)]
-pub(crate) struct Shown {
-    /// Whether the picture is also exposed automatically.
-    pub(crate) auto_exposure: bool,
-    /// Exposure in stops.
-    pub(crate) exposure: f32,
-    /// The tone curve.
-    pub(crate) curve: &'static ToneMapEntry,
-    /// The colour behind transparent pixels.
-    pub(crate) behind: Option<Rgb>,
-}
-
-impl Default for Shown {
-    fn default() -> Shown {
-        let WriteOptions { exposure, tone_map, behind, .. } = WriteOptions::default();
-        Shown { auto_exposure: false, exposure, curve: tone_map, behind }
+/// How a picture is shown, with what a call says.
+///
+/// # Errors
+/// If there is no such tone curve, or the exposure is none.
+pub(crate) fn with(
+    shown: Display,
+    exposure: Option<&Bound<'_, PyAny>>,
+    curve: Option<&str>,
+) -> PyResult<Display> {
+    let mut shown = shown;
+    if let Some(name) = curve {
+        shown.tone_map = tone_map(name).map_err(of_picture)?;
     }
-}
-
-impl Shown {
-    /// The same with what a call says.
-    pub(crate) fn with(self, exposure: Option<&Bound<'_, PyAny>>, curve: Option<&str>) -> PyResult<Shown> {
-        let mut shown = self;
-        if let Some(name) = curve {
-            shown.curve = tone_map(name).map_err(of_picture)?;
-        }
-        if let Some(exposure) = exposure {
-            let is_auto = exposure.extract::<String>().is_ok_and(|text| text == "auto");
-            shown.auto_exposure = is_auto;
-            shown.exposure = if is_auto { 0.0 } else { stops(exposure)? };
-        }
-        Ok(shown)
+    if let Some(exposure) = exposure {
+        let is_auto = exposure.extract::<String>().is_ok_and(|text| text == "auto");
+        shown.auto_exposure = is_auto;
+        shown.exposure = if is_auto { 0.0 } else { stops(exposure)? };
     }
-
-    /// The exposure of this picture, in stops.
-    pub(crate) fn exposure_of(&self, picture: &Picture) -> f32 {
-        self.exposure + if self.auto_exposure { auto_exposure(picture) } else { 0.0 }
-    }
-
-    /// The options for writing a picture.
-    pub(crate) fn options(&self, picture: &Picture) -> WriteOptions {
-        let exposure = self.exposure_of(picture);
-        WriteOptions { exposure, tone_map: self.curve, behind: self.behind, ..WriteOptions::default() }
-    }
+    Ok(shown)
 }
 
 fn stops(exposure: &Bound<'_, PyAny>) -> PyResult<f32> {

@@ -1,7 +1,8 @@
 //! Textures from arrays and files.
 
 use crate::arrays;
-use crate::errors::of_picture;
+use crate::ending::without_gil;
+use crate::errors::{of_picture, unopened};
 use bilux::math::Rgb;
 use bilux::pictures::{Limits, PictureError, Rgba8, read_rgba8};
 use bilux::scene::texture::{Filter, Image, Texels, Wrap};
@@ -55,9 +56,9 @@ impl Texture {
     #[pyo3(signature = (path, *, data = false, wrap = "repeat", filter = "linear"))]
     fn read(py: Python<'_>, path: PathBuf, data: bool, wrap: &str, filter: &str) -> PyResult<Texture> {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let bytes = py.detach(|| std::fs::read(&path))?;
+        let bytes = without_gil(py, || std::fs::read(&path)).map_err(|error| unopened(&path, &error))?;
         let extension = path.extension().and_then(|extension| extension.to_str());
-        let image = py.detach(|| decoded(&bytes, extension, data)).map_err(of_picture)?;
+        let image = without_gil(py, || decoded(&bytes, extension, data)).map_err(of_picture)?;
         let image = image.ok_or_else(|| {
             PyValueError::new_err(format!("{}: this picture has no colours", path.display()))
         })?;

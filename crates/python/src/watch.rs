@@ -1,5 +1,6 @@
 //! Follows work in another thread: shows its progress, and stops it on Ctrl-C or when a callback says so.
 
+use crate::ending::{is_ending, returning_from, without_gil};
 use bilux::transport::Progress;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -32,7 +33,7 @@ impl Progress for Watch {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        self.cancelled.load(Ordering::Relaxed) || is_ending()
     }
 }
 
@@ -69,8 +70,8 @@ pub(crate) fn follow<T: Send>(
             work(shared)
         });
         loop {
-            let waited;
-            (waited, wait) = py.detach(move || (wait.recv_timeout(EVERY), wait));
+            let (waited, _returning);
+            ((waited, wait), _returning) = returning_from(py, move || (wait.recv_timeout(EVERY), wait));
             let is_done = !matches!(waited, Err(RecvTimeoutError::Timeout));
             if matches!(stopped, Stopped::No) {
                 stopped = look(py, callback.filter(|_| !is_done || begun.elapsed() > EVERY), &watch, begun);
@@ -80,7 +81,7 @@ pub(crate) fn follow<T: Send>(
                 break;
             }
         }
-        py.detach(|| worker.join()).ok()
+        without_gil(py, || worker.join()).ok()
     });
     (result, stopped)
 }

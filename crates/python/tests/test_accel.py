@@ -52,6 +52,55 @@ def test_the_closest_hit_is_the_one_found_by_hand(soup, kind):
     assert hits.t.dtype == np.float32 and hits.primitive.dtype == np.int64 and hits.point.shape == (500, 3)
 
 
+@pytest.mark.parametrize("layout", ["packed", "big-endian", "columns", "reversed", "read-only", "float64", "broadcast"])
+def test_any_layout_of_an_array_will_do(soup, layout):
+    vertices, triangles, origins, directions = soup
+    accel = bilux.Accel(vertices, triangles)
+    if layout == "packed":
+        bytes = np.zeros(origins.nbytes + 1, np.uint8)
+        other = bytes[1:].view(np.float32).reshape(-1, 3)
+        other[:] = origins
+        assert not other.flags.aligned
+    elif layout == "broadcast":
+        other = np.broadcast_to(origins[0], origins.shape)
+    else:
+        other = {
+            "big-endian": origins.astype(">f4"),
+            "columns": np.asfortranarray(origins),
+            "reversed": origins[::-1].copy()[::-1],
+            "read-only": origins.copy(),
+            "float64": origins.astype(float),
+        }[layout]
+        other.flags.writeable = layout != "read-only"
+    expected = accel.closest(np.array(other), directions)
+    for one, same in zip(accel.closest(other, directions), expected):
+        assert np.array_equal(one, same, equal_nan=True)
+
+
+def test_the_first_row_that_is_not_finite_is_named(soup):
+    vertices, triangles, origins, directions = soup
+    accel = bilux.Accel(vertices, triangles)
+    many = np.tile(directions, (20, 1))
+    many[[7_000, 9_999], 1] = np.nan
+    for query in [accel.closest, accel.any, accel.all_hits]:
+        with pytest.raises(ValueError, match="directions: row 7000 is .*NaN"):
+            query(origins[:1], many)
+    with pytest.raises(ValueError, match="b: row 7000"):
+        accel.visible(origins[:1], many)
+    with pytest.raises(ValueError, match="a: row 0 "):
+        accel.visible([[np.inf, 0, 0]], many)
+
+
+def test_distances_that_are_not_numbers_are_refused(soup):
+    vertices, triangles, origins, directions = soup
+    accel = bilux.Accel(vertices, triangles)
+    for name in ["t_min", "t_max"]:
+        with pytest.raises(ValueError, match=f"{name}: NaN"):
+            accel.closest(origins, directions, **{name: np.nan})
+    with pytest.raises(ValueError, match="within: NaN"):
+        accel.nearest_point(origins, within=np.nan)
+
+
 def test_the_other_queries_agree(soup):
     vertices, triangles, origins, directions = soup
     t = by_hand(*soup)[0]

@@ -179,3 +179,31 @@ def test_true_shows_a_bar(monkeypatch, capsys, bar):
     bilux.generate("cornell").render(size=160, spp=300, integrator="path", progress=True)
     shown = capsys.readouterr().err
     assert "Mrays/s" in shown and "%" in shown
+
+
+@pytest.mark.parametrize("work", ["render", "callback", "progressive", "queries"])
+def test_a_program_may_end_while_a_thread_works(work):
+    script = f"""
+import threading, time, numpy as np, bilux
+scene = bilux.generate("trio")
+accel = bilux.Accel([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+rays = np.ones((3, 3))
+begun = threading.Event()
+def work(what={work!r}):
+    while True:
+        begun.set()
+        if what == "render":
+            scene.render(size=128, spp=10_000)
+        if what == "callback":
+            scene.render(size=128, spp=10_000, progress=lambda progress: time.sleep(0.01))
+        if what == "progressive":
+            list(scene.progressive(size=64, spp=10_000))
+        if what == "queries":
+            accel.closest(rays, rays)
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep(0.3)
+"""
+    for _ in range(3):
+        ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+        assert (ended.returncode, ended.stderr) == (0, "")

@@ -3,6 +3,7 @@
 import base64
 import copy
 import json
+import pathlib
 import pickle
 import warnings
 
@@ -173,7 +174,7 @@ def test_a_picture_shows_itself_in_a_notebook(folder):
 @pytest.mark.parametrize(
     ("pixels", "error", "words"),
     [
-        (np.ones(5), ValueError, r"pixels: its shape is \[5\]"),
+        (np.ones(5), ValueError, r"pixels: its shape is \(5,\)"),
         (np.ones((0, 5)), ValueError, "pixels"),
         (np.ones((2, 2, 7)), ValueError, "1 to 4 channels"),
         (np.ones((2, 2), complex), TypeError, "complex128"),
@@ -283,3 +284,32 @@ def write_moving_triangle(path):
         "animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [channel]}],
     }
     path.write_text(json.dumps(gltf))
+
+
+def test_a_turntable_is_that_of_the_command_line(folder, command_line, square):
+    scene = bilux.Scene()
+    scene.add_mesh(*square)
+    scene.save("square.ply")
+    command_line("render", "square.ply", "-o", "there-{frame}.png", "--turntable", 3, "--size", "24x20", "--spp", 2, "-i", "path")
+    scene = bilux.load("square.ply")
+    pictures = scene.turntable(3, size=(24, 20), spp=2, integrator="path")
+    for number, picture in enumerate(pictures):
+        picture.save("here.png")
+        assert pathlib.Path("here.png").read_bytes() == pathlib.Path(f"there-000{number}.png").read_bytes()
+        # What changes on the way is not in it.
+        scene.lights = [bilux.lights.environment(radiance=number)]
+    assert number == 2
+    built = [picture.info["trees_built"] for picture in bilux.generate("trio").turntable(3, size=16, spp=1)]
+    assert built[0] > 0 and built[1:] == [0, 0]
+    with pytest.raises(ValueError, match="count"):
+        scene.turntable(0)
+    with pytest.raises(TypeError, match="crop"):
+        scene.turntable(3, crop=(0, 0, 1, 1))
+    with pytest.raises(bilux.SceneError, match="max_depth"):
+        next(scene.turntable(3, max_dept=1))
+    with pytest.raises(RuntimeError, match="enough"):
+        next(scene.turntable(3, size=64, spp=10_000, progress=stop))
+
+
+def stop(progress):
+    raise RuntimeError("enough")

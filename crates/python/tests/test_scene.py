@@ -231,3 +231,23 @@ def test_a_picture_surrounds_a_scene(folder):
     assert np.allclose(render(scene), [0.5, 1.0, 2.0], rtol=0.01)
     with pytest.raises(bilux.Error, match="none.hdr"):
         scene.surround("none.hdr")
+
+
+def test_what_is_no_material_light_or_camera_is_refused_by_name(square):
+    scene = bilux.Scene()
+    with pytest.raises(TypeError, match="material: 'red' is no material: give one of bilux.materials"):
+        scene.add_mesh(*square, material="red")
+    number = scene.add_mesh(*square)
+    with pytest.raises(TypeError, match="material: None is no material"):
+        scene.set_material(number, None)
+    with pytest.raises(TypeError, match="light: 3 is no light: give one of bilux.lights"):
+        scene.add_light(3)
+    with pytest.raises(TypeError, match="camera: .* is no camera"):
+        scene.add_camera((0, 0, 1))
+
+
+def test_files_that_are_not_there_are_named(folder):
+    with pytest.raises(FileNotFoundError, match="nope.png"):
+        bilux.Texture.read("nope.png")
+    with pytest.raises(FileNotFoundError, match="nope.png"):
+        bilux.read_picture("nope.png")

@@ -90,6 +90,24 @@ def test_a_changed_mesh_is_built_again():
     assert copy.copy(box.ray).mesh is box and copy.deepcopy(box.ray).mesh is not box
 
 
+def test_many_rays_agree_with_single_ones(mesh, rays):
+    origins, directions = (np.tile(numbers, (20, 1)) for numbers in rays)
+    ours = own(mesh)
+    triangle, ray, places = ours.intersects_id(origins, directions, return_locations=True)
+    assert len(ray) > 1000 and np.array_equal(np.sort(ray), ray)
+    for number in [0, 150, 3999]:
+        of_one = ours.intersects_id(origins[[number]], directions[[number]], return_locations=True)
+        mine = ray == number
+        assert np.array_equal(triangle[mine], of_one[0]) and np.array_equal(places[mine], of_one[2])
+    first = ours.intersects_first(origins, directions)
+    assert np.array_equal(first[np.unique(ray)], triangle[np.unique(ray, return_index=True)[1]])
+    assert np.array_equal(first >= 0, ours.intersects_any(origins, directions))
+    for most in [0, 1, 2]:
+        kept = ours.intersects_id(origins, directions, max_hits=most)[1]
+        assert np.array_equal(kept, np.repeat(np.arange(4000), np.minimum(np.bincount(ray, minlength=4000), most)))
+    assert ours.intersects_first(origins[:1], directions[:1] * 1e-40) == ours.intersects_first(origins[:1], directions[:1] * 1e30)
+
+
 def test_wrong_rays_are_refused_and_none_are_fine():
     box = trimesh.creation.box()
     with pytest.raises(ValueError, match="don't match"):

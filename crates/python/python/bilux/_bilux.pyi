@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "Progressive", "Scene", "Spec", "Texture", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
+__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
 
 __version__: str
 
@@ -168,7 +168,33 @@ class Accel:
     def __len__(self) -> int: ...
 
 @final
+class PlacedMesh:
+    def __new__(cls, vertices: ArrayLike, triangles: ArrayLike, size: float | None, kind: str) -> Self: ...
+    def first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int64]: ...
+    def any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]: ...
+    def crossings(
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, most: int, positions: bool
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64] | None]: ...
+    def inside(self, points: ArrayLike) -> NDArray[np.bool_]: ...
+
+@final
 class Progressive:
+    def __iter__(self) -> Self: ...
+    def __next__(self) -> Picture: ...
+
+@final
+class Turntable:
+    def __new__(
+        cls,
+        scene: Scene,
+        settings: dict[str, Any],
+        aov: Sequence[str],
+        fast: bool,
+        max_memory: int,
+        loaded_at: float,
+        callback: Callable[[int, int, int, float], object] | None,
+        count: int,
+    ) -> Self: ...
     def __iter__(self) -> Self: ...
     def __next__(self) -> Picture: ...
 

@@ -25,6 +25,7 @@ FOLLOW
   const kernel = window.Jupyter && Jupyter.notebook && Jupyter.notebook.kernel;
   if (!kernel) return;
   const [image, caption] = document.getElementById("ID").children;
+  image.style.cursor = "grab";
   const comm = kernel.comm_manager.new_comm("ID", {});
   comm.on_msg((message) => {
     const { png, text } = message.content.data;

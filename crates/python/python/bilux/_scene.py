@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _bilux
-from ._bilux import Picture, Spec
+from ._bilux import Picture, Spec, Turntable
 from ._progress import following
 from ._types import Mesh, Object, Progress, Replay, Strategy
 
@@ -70,6 +70,7 @@ class Scene(_bilux.Scene):
             ValueError: if an array has the wrong shape, or holds what is not finite or out of range.
             TypeError: if an array holds no numbers.
         """
+        _check_spec("material", material, optional=True)
         first, count = self._add(vertices, triangles, normals, uvs, material, transform, name)
         if count != 1:
             for index in reversed(range(first, first + count)):
@@ -103,15 +104,18 @@ class Scene(_bilux.Scene):
             >>> bilux.Scene().add_instances([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], places)
             range(0, 5)
         """
+        _check_spec("material", material, optional=True)
         first, count = self._add(vertices, triangles, normals, uvs, material, transforms, name)
         return range(first, first + count)
 
     def add_light(self, light: Spec) -> int:
         """Adds one of `bilux.lights`, and returns its number in `lights`."""
+        _check_spec("light", light)
         return self._add_light(light)
 
     def add_camera(self, camera: Spec) -> int:
         """Adds one of `bilux.cameras`, and returns its number, which `render(camera=…)` takes."""
+        _check_spec("camera", camera)
         return self._add_camera(camera)
 
     @property
@@ -155,6 +159,7 @@ class Scene(_bilux.Scene):
 
     def set_material(self, object: int, material: Spec) -> None:
         """Makes an object of another material."""
+        _check_spec("material", material)
         self._set_material(self._number(object), material)
 
     def remove(self, object: int) -> None:
@@ -286,6 +291,59 @@ class Scene(_bilux.Scene):
         given |= {"noise": 0, "time_limit": 0}
         with following(progress) as callback:
             yield from self._progressive(given, _bytes(max_memory), callback)
+
+    def turntable(
+        self,
+        count: int = 36,
+        *,
+        aov: Sequence[str] = (),
+        fast: bool = False,
+        progress: bool | Callable[[Progress], object] = False,
+        max_memory: int = MAX_MEMORY,
+        **settings: Any,
+    ) -> Iterator[Picture]:
+        """Renders pictures from all around a model, a full turn: those of `bilux render --turntable`.
+
+        The studio's camera, which frames a model without a camera, moves around it; all pictures are framed and lit
+        alike. What the scene builds is built once.
+
+        Args:
+            count: the number of pictures.
+            aov, fast, progress, max_memory: as for `render`.
+            **settings: any other keyword of `render`, apart from `crop`.
+
+        Raises:
+            SceneError, RenderError, Interrupted: as for `render`.
+            ValueError: if `count` is less than 1.
+
+        Example:
+            >>> scene = bilux.Scene()
+            >>> number = scene.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+            >>> [picture.width for picture in scene.turntable(3, size=16, spp=1)]
+            [16, 16, 16]
+        """
+        number = operator.index(count)
+        if not 0 < number < 1 << 32:
+            raise ValueError(f"count: {number} is no number of pictures: give at least 1, such as 36")
+        if "crop" in settings:
+            raise TypeError("crop: a turntable shows all of each picture: leave it out")
+        plain = dict.fromkeys(("size", "camera", "time", "exposure"))
+        given = self._settings(**plain | settings)
+        layers = [aov] if isinstance(aov, str) else list(aov)
+        return self._turned(number, given, layers, fast, _bytes(max_memory), progress)
+
+    def _turned(
+        self,
+        count: int,
+        given: dict[str, Any],
+        layers: Sequence[str],
+        fast: bool,
+        max_memory: int,
+        progress: bool | Callable[[Progress], object],
+    ) -> Iterator[Picture]:
+        """The pictures of a turntable."""
+        with following(progress) as callback:
+            yield from Turntable(self, given, layers, fast, max_memory, self._time, callback, count)
 
     def view(
         self,
@@ -432,6 +490,12 @@ def _sides(size: tuple[int, int] | int) -> tuple[int, int]:
         return int(width), int(height)
     except (TypeError, ValueError):
         raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
+
+
+def _check_spec(name: str, spec: object, *, optional: bool = False) -> None:
+    """Refuses what was not made by one of the tables."""
+    if not (isinstance(spec, Spec) or optional and spec is None):
+        raise TypeError(f"{name}: {spec!r} is no {name}: give one of bilux.{name}s (bilux.{name}s() lists them)")
 
 
 def _window(crop: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:

@@ -143,18 +143,7 @@ def _plan(workers: Workers, store: Parts | None) -> dict[str, Any]:
     return plan
 
 
-def animation(
-    scene: Scene,
-    times: Iterable[float],
-    *,
-    address: str | None = None,
-    cpus: int | None = None,
-    resume: Path | None = None,
-    aov: Sequence[str] = (),
-    fast: bool = False,
-    max_memory: int = MAX_MEMORY,
-    **settings: Any,
-) -> Iterator[Picture]:
+def animation(scene: Scene, times: Iterable[float], **keywords: Any) -> Iterator[Picture]:
     """Renders a scene at several times on a cluster.
 
     What the scene's keyframes move, moves. Meshes that change their shape with time are read from the file for one time:
@@ -163,8 +152,7 @@ def animation(
     Args:
         scene: the scene.
         times: the time of each picture, in seconds.
-        address, cpus, aov, fast, max_memory, **settings: as for `render`.
-        resume: a folder that keeps the pictures that are done.
+        **keywords: those of `dataset`, and settings.
 
     Yields:
         the pictures, in the order of their times.
@@ -177,8 +165,7 @@ def animation(
         >>> for number, picture in enumerate(bilux.cluster.animation(scene, times, spp=64)):  # doctest: +SKIP
         ...     picture.save(f"{number:04}.png")
     """
-    at = ((scene, {"time": float(time)}) for time in times)
-    yield from _pictures(at, (address, cpus, resume), aov, fast, max_memory, settings)
+    return dataset(((scene, {"time": float(time)}) for time in times), **keywords)
 
 
 def dataset(
@@ -215,19 +202,6 @@ def dataset(
         >>> for picture in bilux.cluster.dataset(scenes(), size=256, spp=32):  # doctest: +SKIP
         ...     learn_from(picture)
     """
-    yield from _pictures(scenes, (address, cpus, resume), aov, fast, max_memory, settings)
-
-
-def _pictures(
-    scenes: Iterable[Scene | tuple[Scene, dict[str, Any]]],
-    where: tuple[str | None, int | None, Path | None],
-    aov: Sequence[str],
-    fast: bool,
-    max_memory: int,
-    settings: dict[str, Any],
-) -> Iterator[Picture]:
-    """The pictures of scenes, in order."""
-    address, cpus, resume = where
     layers = [aov] if isinstance(aov, str) else list(aov)
     memory = _bytes(max_memory)
     store = None if resume is None else Pictures(resume)

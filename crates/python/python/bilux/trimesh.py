@@ -16,14 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._bilux import Accel
+from ._bilux import PlacedMesh
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
-
-
-_DIRECTIONS = [(0.318, 0.577, 0.753), (-0.693, 0.147, 0.706), (0.271, -0.828, 0.491)]
-"""Arbitrary directions, which no edge of an ordinary model is parallel to."""
 
 
 class RayMeshIntersector:
@@ -43,31 +39,22 @@ class RayMeshIntersector:
         self.mesh = geometry
         self._scale_to_box = scale_to_box
         self._kind = kind
-        self._built: tuple[int, Accel, _Floats, float] | None = None
+        self._built: tuple[int, PlacedMesh] | None = None
 
-    def _placed(self) -> tuple[Accel, _Floats, float]:
-        """The structure over the mesh in its box, what is subtracted from positions, and by what they are then
-        multiplied."""
+    def _placed(self) -> PlacedMesh:
+        """The structure over the mesh."""
         state = hash(self.mesh)
         if self._built is None or self._built[0] != state:
-            vertices = np.asarray(self.mesh.vertices, np.float64)
-            origin, scale = np.zeros(3), 1.0
-            if self._scale_to_box and len(vertices) > 0:
-                origin, scale = vertices.min(axis=0), 100.0 / (float(self.mesh.scale) or 100.0)
-            accel = Accel((vertices - origin) * scale, np.asarray(self.mesh.faces), kind=self._kind)
-            self._built = state, accel, origin, scale
-        return self._built[1:]
+            size = self.mesh.scale if self._scale_to_box and len(self.mesh.vertices) > 0 else None
+            self._built = state, PlacedMesh(self.mesh.vertices, self.mesh.faces, size, self._kind)
+        return self._built[1]
 
-    def _rays(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[Accel, _Floats, _Floats]:
-        """The structure, and the rays in the mesh's box."""
-        accel, origin, scale = self._placed()
-        origins = np.asarray(ray_origins, np.float64)
-        directions = np.asarray(ray_directions)
-        if origins.shape != directions.shape:
-            raise ValueError(
-                f"Ray origin and direction don't match! {origins.shape} and {directions.shape}: give one for each"
-            )
-        return accel, (origins - origin) * scale, directions
+    def _crossings(
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, most: int, positions: bool
+    ) -> tuple[_Integers, _Integers, _Floats | None]:
+        """Rows of faces, of rays, and positions."""
+        rays = _matching(ray_origins, ray_directions)
+        return self._placed().crossings(*rays, most, positions)
 
     def intersects_id(
         self,
@@ -90,32 +77,9 @@ class RayMeshIntersector:
             index_ray: (m,) rows of rays, in ascending order.
             locations: (m, 3) positions, if `return_locations`.
         """
-        accel, origins, directions = self._rays(ray_origins, ray_directions)
-        if multiple_hits:
-            index_tri, index_ray = self._crossings(accel, origins, directions)
-            kept = np.arange(len(index_ray)) - np.searchsorted(index_ray, index_ray) < max_hits
-            index_tri, index_ray = index_tri[kept], index_ray[kept]
-        else:
-            first = accel.closest(origins, directions).primitive
-            index_ray = np.flatnonzero(first >= 0)
-            index_tri = first[index_ray]
-        if not return_locations:
-            return index_tri, index_ray
-        return index_tri, index_ray, self._locations(ray_origins, ray_directions, index_ray, index_tri)
-
-    def _locations(
-        self, ray_origins: ArrayLike, ray_directions: ArrayLike, index_ray: _Integers, index_tri: _Integers
-    ) -> _Floats:
-        """Where rays meet the planes of triangles, in 64-bit floats."""
-        origins = np.asarray(ray_origins, np.float64)[index_ray]
-        directions = np.asarray(ray_directions, np.float64)[index_ray]
-        a, b, c = np.moveaxis(np.asarray(self.mesh.triangles, np.float64)[index_tri], 1, 0)
-        normals = np.cross(b - a, c - a)
-        along = np.einsum("ij,ij->i", normals, directions)
-        # A ray that lies in the plane, to the last bit, keeps its own origin.
-        along[along == 0] = np.inf
-        t = np.einsum("ij,ij->i", normals, a - origins) / along
-        return np.asarray(origins + directions * t[:, None], np.float64)
+        most = max(int(max_hits), 0) if multiple_hits else 1
+        index_tri, index_ray, locations = self._crossings(ray_origins, ray_directions, most, return_locations)
+        return (index_tri, index_ray, locations) if return_locations else (index_tri, index_ray)
 
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True
@@ -134,61 +98,15 @@ class RayMeshIntersector:
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> _Integers:
         """The first triangle that each ray hits: (n,) rows of faces, -1 where nothing is hit."""
-        accel, origins, directions = self._rays(ray_origins, ray_directions)
-        return accel.closest(origins, directions).primitive
+        return self._placed().first(*_matching(ray_origins, ray_directions))
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Whether each ray hits anything: (n,) bool."""
-        accel, origins, directions = self._rays(ray_origins, ray_directions)
-        return accel.any(origins, directions)
+        return self._placed().any(*_matching(ray_origins, ray_directions))
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether each point is inside the mesh, which must be closed: (n,) bool."""
-        points = np.asarray(points, np.float64)
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ValueError(f"points: the shape is {points.shape}, but must be (n, 3)")
-        inside: NDArray[np.bool_] = np.zeros(len(points), bool)
-        lower, upper = np.asarray(self.mesh.bounds)
-        near = np.flatnonzero(((points >= lower) & (points <= upper)).all(axis=1))
-        if len(near) > 0:
-            accel, origin, scale = self._placed()
-            places = (points[near] - origin) * scale
-            # Where a ray grazes the surface at a vertex, its count may be wrong: the majority of three decides.
-            odd = [self._count(accel, places, direction) % 2 for direction in _DIRECTIONS]
-            inside[near] = np.sum(odd, axis=0) >= 2
-        return inside
-
-    def _count(self, accel: Accel, places: _Floats, direction: tuple[float, float, float]) -> _Integers:
-        """How often a ray in a direction from each place in the mesh's box crosses the surface."""
-        index_ray = self._crossings(accel, places, np.array([direction]))[1]
-        return np.bincount(index_ray, minlength=len(places))
-
-    def _crossings(
-        self, accel: Accel, origins: _Floats, directions: NDArray[Any]
-    ) -> tuple[_Integers, _Integers]:
-        """All hits in the mesh's box: rows of faces, and of rays. A ray through an edge or a vertex hits all triangles
-        there, but crosses the surface once: of triangles that touch, and that it enters or leaves at the same point,
-        only one counts."""
-        hits = accel.all_hits(origins, directions)
-        if len(hits.ray) < 2:
-            return hits.primitive, hits.ray
-        along = np.broadcast_to(directions, origins.shape)[hits.ray]
-        distance = hits.t * np.linalg.norm(along, axis=1)
-        size = float(np.linalg.norm(np.diff(accel.bounds, axis=0)))
-        gap = np.diff(distance) > 4 * np.finfo(np.float32).eps * np.maximum(distance[1:], size)
-        place = np.concatenate([[0], np.cumsum(gap | (np.diff(hits.ray) > 0))])
-        together = np.diff(place) == 0
-        several = np.flatnonzero(np.append(together, False) | np.insert(together, 0, False))
-        enters = np.einsum("ij,ij->i", hits.normal[several], along[several]) < 0
-        order = np.lexsort((hits.primitive[several], enters, place[several]))
-        several, enters = several[order], enters[order]
-        same = (np.diff(place[several]) == 0) & (enters[:-1] == enters[1:])
-        one, other = several[:-1][same], several[1:][same]
-        corners = np.asarray(self.mesh.triangles)
-        touch = corners[hits.primitive[one]][:, :, None] == corners[hits.primitive[other]][:, None, :]
-        kept = np.ones(len(hits.ray), bool)
-        kept[other[touch.all(axis=3).any(axis=(1, 2))]] = False
-        return hits.primitive[kept], hits.ray[kept]
+        return self._placed().inside(points)
 
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_built": None}
@@ -198,3 +116,13 @@ class RayMeshIntersector:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> RayMeshIntersector:
         return RayMeshIntersector(copy.deepcopy(self.mesh, memo), self._scale_to_box, kind=self._kind)
+
+
+def _matching(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Origins and directions as arrays of the same shape."""
+    origins, directions = np.asarray(ray_origins), np.asarray(ray_directions)
+    if origins.shape != directions.shape:
+        raise ValueError(
+            f"Ray origin and direction don't match! {origins.shape} and {directions.shape}: give one for each"
+        )
+    return origins, directions
