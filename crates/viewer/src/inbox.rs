@@ -32,6 +32,11 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
+    /// True if the render is to stop what it does: the picture changes, or somebody waits for a pixel.
+    fn interrupts(&self) -> bool {
+        self.changes_picture() || self.questions.iter().any(|it| matches!(it, Question::Pick { .. }))
+    }
+
     /// True if it changes the picture.
     fn changes_picture(&self) -> bool {
         !self.moves.is_empty()
@@ -48,7 +53,7 @@ impl Waiting {
 pub(crate) struct Inbox {
     waiting: Mutex<Waiting>,
     bell: Condvar,
-    /// Whether the picture that is being rendered is out of date.
+    /// Whether the render is to stop what it does.
     interrupts: AtomicBool,
     rings: AtomicBool,
     has_ended: AtomicBool,
@@ -90,7 +95,7 @@ impl Inbox {
             }
             Request::Reload => waiting.reload = true,
         }
-        if waiting.changes_picture() {
+        if waiting.interrupts() {
             self.interrupts.store(true, Ordering::Relaxed);
         }
         drop(waiting);
@@ -133,7 +138,7 @@ impl Inbox {
         self.has_ended.load(Ordering::Relaxed)
     }
 
-    /// True if the picture that is being rendered is out of date.
+    /// True if the render is to stop what it does, and to look at what waits.
     pub(crate) fn interrupts(&self) -> bool {
         self.interrupts.load(Ordering::Relaxed)
     }

@@ -77,9 +77,8 @@ impl Stage {
         }
         match self.level {
             Level::Preview(divisor) => {
-                let size = divided(self.size, divisor);
-                self.pace.learn(size, self.entering, begun.elapsed());
                 self.publish()?;
+                self.pace.learn(divided(self.size, divisor), self.entering, begun.elapsed());
                 self.answer_waiting();
                 self.go_on_from(divisor)
             }
@@ -121,7 +120,8 @@ impl Stage {
     fn publish(&mut self) -> Result<(), Error> {
         let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
         let is_preview = self.level != Level::Full;
-        let denoiser = self.denoiser.as_ref().filter(|_| !is_preview);
+        // A preview in full size soon gives way to the picture.
+        let denoiser = self.denoiser.as_ref().filter(|_| self.level != Level::Preview(1));
         let (picture, options) = self.shown.of(job, outcome, denoiser)?;
         if !is_preview && self.session.samples() > 1 {
             self.facts.noise = self.meter.look(&outcome.film, self.session.samples()).or(self.facts.noise);
