@@ -14,6 +14,7 @@ mod process;
 mod python;
 mod test;
 mod tidy;
+mod viewer;
 mod workspace;
 
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ const CHORES: &[Chore] = &[
         summary: "test bilux.cluster on a Ray cluster of two nodes (downloads Ray; minutes)",
         run: python::cluster,
     },
+    Chore { name: "viewer", summary: "test the viewer in a browser, and take screenshots", run: viewer::run },
     Chore { name: "instructions", summary: "count the instructions per ray", run: instructions::run },
     Chore {
         name: "cpu-levels",

@@ -157,7 +157,7 @@ fn is_wheel(path: &Path) -> bool {
 }
 
 /// The name of a Python that is new enough.
-fn python() -> Result<String> {
+pub(crate) fn python() -> Result<String> {
     const ASK: &str = "import sys; print(sys.version_info[0], sys.version_info[1])";
     for name in ["python3", "python"] {
         let Ok(answer) = Command::new(name).args(["-c", ASK]).output() else { continue };
@@ -176,14 +176,14 @@ fn version(answer: &str) -> Option<(u32, u32)> {
 }
 
 /// A virtual environment with packages.
-struct Environment {
+pub(crate) struct Environment {
     interpreter: PathBuf,
 }
 
 impl Environment {
     /// The environment of this name in the target folder, made if it is not there or has other packages.
     /// `extras` are groups of packages, separated by spaces, that it also works without.
-    fn new(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
+    pub(crate) fn new(python: &str, name: &str, packages: &[&str], extras: &[&str]) -> Result<Environment> {
         let folder = target_folder().join("python").join(name);
         let scripts = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
         let environment = Environment { interpreter: folder.join(scripts) };
@@ -210,7 +210,7 @@ impl Environment {
     }
 
     /// Its Python, in the root of the repository, without influence from the user's own packages.
-    fn python(&self) -> Command {
+    pub(crate) fn python(&self) -> Command {
         let mut command = Command::new(&self.interpreter);
         command.current_dir(root()).env_remove("PYTHONPATH").env("PYTHONDONTWRITEBYTECODE", "1");
         command

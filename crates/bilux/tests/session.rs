@@ -2,6 +2,7 @@
 //! changes no sample keeps those that were taken.
 
 use bilux::math::Motion;
+use bilux::math::transcendental::{atan, tan};
 use bilux::prelude::*;
 use bilux::scene::TreeWork;
 use bilux::transport::Progress;
@@ -198,4 +199,63 @@ fn steps_end_by_time_or_when_they_are_stopped() {
     assert_eq!(session.step(Budget::Samples(u32::MAX), &Quiet).unwrap(), 1000);
     assert_eq!(session.step(Budget::Samples(1), &Quiet).unwrap(), 1000, "there are no more");
     assert!(finished(&mut session) == fresh(&cornell(), &user));
+}
+
+#[test]
+fn a_moved_camera_gives_the_picture_of_a_camera_that_stands_there() {
+    let user = settings(&[("integrator", "path".into())]);
+    let mut session = Session::new(cornell(), &user).unwrap();
+    let (eye, look_at) = (Vec3::new(0.3, 1.2, 3.0), Vec3::new(0.0, 0.8, 0.0));
+    let text = |p: Vec3| Value::Text(format!("{},{},{}", p.x, p.y, p.z));
+    let set = |key: &str, value: Value| Edit::Set(key.to_owned(), value);
+    let trees = session.tree_work().trees;
+    let edits = vec![set("eye", text(eye)), set("look_at", text(look_at)), set("zoom", Value::Number(1.0))];
+    assert!(session.apply_all(edits).unwrap());
+    assert_eq!(session.tree_work().trees, trees, "only the camera moves");
+    let mut there = cornell();
+    let camera = &mut there.cameras[0].spec.parameters;
+    camera.set("position", eye);
+    camera.set("look_at", look_at);
+    assert!(finished(&mut session) == fresh(&there, &user));
+    assert!(session.apply(set("zoom", Value::Number(2.0))).unwrap());
+    let fov = there.cameras[0].spec.number("fov").unwrap_or(40.0);
+    let half = 2.0 * atan(tan(fov.to_radians() * 0.5) / 2.0).to_degrees();
+    there.cameras[0].spec.parameters.set("fov", half);
+    assert!(finished(&mut session) == fresh(&there, &user));
+    assert!(session.apply(set("eye", "1,2".into())).is_err(), "two numbers are no point");
+    assert!(session.apply(set("look_at", text(eye))).is_err(), "a camera cannot look at itself");
+}
+
+#[test]
+fn moving_the_studios_camera_keeps_its_light_and_builds_no_tree() {
+    let mut scene = SceneBuilder::default();
+    let clay = scene.add_material(Spec::new("", "diffuse"));
+    scene.objects.push(Object::new("", Arc::new(Mesh::sphere(Vec3::ZERO, 0.4, 24)), clay));
+    let mut session = Session::new(scene.clone(), &settings(&[])).unwrap();
+    let trees = session.tree_work().trees;
+    for eye in ["1,1,2", "-1,0.5,2"] {
+        assert!(session.apply(Edit::Set("eye".to_owned(), eye.into())).unwrap());
+        assert_eq!(session.tree_work().trees, trees);
+        assert!(finished(&mut session) == fresh(&scene, &settings(&[("eye", eye.into())])), "{eye}");
+    }
+}
+
+#[test]
+fn the_interval_of_a_pixel_is_around_its_light() {
+    let user = settings(&[("integrator", "path".into()), ("spp", Value::Integer(1024))]);
+    let mut session = Session::new(cornell(), &user).unwrap();
+    session.step(Budget::Samples(1024), &Quiet).unwrap();
+    let picture = session.picture().unwrap().unwrap();
+    // At the middle of the back wall, and of the left one. Intervals of 256 samples, for a mean of 1024.
+    for [x, y] in [[12, 6], [3, 10]] {
+        let estimates = session.job().estimate([x, y], 256).unwrap().unwrap();
+        for (channel, estimate) in estimates.iter().enumerate() {
+            let light = f64::from(picture.channels()[channel].samples[(y * 24 + x) as usize]);
+            let away = (estimate.mean - light).abs();
+            assert!(estimate.half_width > 0.0 && away < 2.0 * estimate.half_width, "{estimate:?} {light}");
+        }
+    }
+    assert!(session.job().estimate([24, 0], 16).is_err());
+    session.apply(Edit::Set("integrator".to_owned(), "vcm".into())).unwrap();
+    assert!(session.job().estimate([12, 6], 16).unwrap().is_none());
 }

@@ -6,6 +6,7 @@ pub use crate::denoising::Denoise;
 pub use crate::farming::Farm;
 use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
+use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
@@ -25,6 +26,7 @@ use std::time::Duration;
     bilux render trio.toml -o trio.png           Render it\n  \
     bilux render model.glb -o model.png          Render a model in a photo studio\n  \
     bilux render model.glb -o model.jpg --env sunset.hdr --ground shadow\n  \
+    bilux serve model.glb                        Watch it in the browser\n  \
     bilux info model.glb                         Show what is in a file\n  \
     bilux list integrators                       List what --integrator can name\n  \
     bilux render --help                          Describe the options of a command")]
@@ -80,6 +82,8 @@ pub enum ProgressStyle {
 pub enum Command {
     /// Render pictures of scenes
     Render(Box<Render>),
+    /// Watch a scene in the browser while it is rendered
+    Serve(Box<Serve>),
     /// Show what is in a scene file
     Info(Info),
     /// Convert a scene or a picture to another format
@@ -190,7 +194,7 @@ pub struct Render {
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_time, help_heading = help::WHAT)]
     pub at: Option<f32>,
     /// Render frames A to B, inclusive, at 24 frames per second (`--set fps=30` changes that)
-    #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::WHAT)]
+    #[arg(long, value_name = "A-B", conflicts_with = "turntable", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
     /// Render only a window of the picture: its left and upper edge, its width and its height, in pixels
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
@@ -217,7 +221,7 @@ pub struct Render {
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_seed, help_heading = help::PICTURE)]
     pub seed: Option<u64>,
     /// Take only samples A to B (B excluded) of each pixel, for a partial render in an .exr (`bilux merge`)
-    #[arg(long, value_name = "A..B", value_parser = parse_samples, help_heading = help::PICTURE)]
+    #[arg(long, value_name = "A..B", conflicts_with = "turntable", value_parser = parse_samples, help_heading = help::PICTURE)]
     pub samples: Option<(u32, u32)>,
     /// Change any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]

@@ -18,6 +18,7 @@ mod measuring;
 mod output;
 mod progress;
 mod sandbox;
+mod serving;
 mod settings_from;
 mod studio;
 mod usage;
@@ -40,7 +41,7 @@ fn main() -> ExitCode {
     report_panics();
     allocator::return_large_blocks();
     let result = match Arguments::try_parse() {
-        Ok(arguments) => run(&arguments),
+        Ok(arguments) => run(arguments),
         Err(answer) => print_answer(&advice::added(answer)),
     };
     match result {
@@ -54,20 +55,21 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments) -> anyhow::Result<u8> {
+fn run(arguments: Arguments) -> anyhow::Result<u8> {
     let common = &arguments.common;
-    match &arguments.command {
-        Command::Render(render) => commands::render::run(render, common),
-        Command::Info(info) => commands::info::run(info, common),
-        Command::Convert(convert) => commands::convert::run(convert, common),
-        Command::Denoise(denoise) => commands::denoise::run(denoise, common),
-        Command::Compare(compare) => commands::compare::run(compare, common),
-        Command::Generate(generate) => commands::generate::run(generate, common),
-        Command::Merge(merge) => commands::merge::run(merge, common),
-        Command::Farm(farm) => commands::farm::run(farm, common),
-        Command::Bench(bench) => commands::bench::run(bench, common),
-        Command::List(list) => commands::list::run(list),
-        Command::Completions { shell } => commands::manual::completions(*shell),
+    match arguments.command {
+        Command::Render(render) => commands::render::run(&render, common),
+        Command::Serve(serve) => commands::serve::run(*serve, common),
+        Command::Info(info) => commands::info::run(&info, common),
+        Command::Convert(convert) => commands::convert::run(&convert, common),
+        Command::Denoise(denoise) => commands::denoise::run(&denoise, common),
+        Command::Compare(compare) => commands::compare::run(&compare, common),
+        Command::Generate(generate) => commands::generate::run(&generate, common),
+        Command::Merge(merge) => commands::merge::run(&merge, common),
+        Command::Farm(farm) => commands::farm::run(&farm, common),
+        Command::Bench(bench) => commands::bench::run(&bench, common),
+        Command::List(list) => commands::list::run(&list),
+        Command::Completions { shell } => commands::manual::completions(shell),
         Command::Man { folder } => commands::manual::pages(folder.as_deref()),
         Command::Schema => commands::list::schema(),
         Command::Licenses => commands::manual::licenses(),

@@ -1,6 +1,8 @@
 //! Turns flags and `--set KEY=VALUE` into the same parameters that scene files use.
 
 use crate::arguments::Render;
+use crate::serving::Serve;
+use crate::studio::StudioArguments;
 use crate::values::Exposure;
 use anyhow::Context;
 use bilux::scene::{Parameters, Span, Value};
@@ -27,12 +29,6 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("threads", "--threads", whole(a.threads.map(u64::from))),
         ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
         ("camera", "--camera", text(&a.camera)),
-        ("orbit", "--orbit", text(&a.studio.orbit)),
-        ("up", "--up", text(&a.studio.up)),
-        ("front", "--front", text(&a.studio.front)),
-        ("focal", "--focal", number(a.studio.focal)),
-        ("ground", "--ground", text(&a.studio.ground)),
-        ("background", "--background", text(&a.studio.background())),
         ("time", "--at", number(a.at)),
         ("exposure", "--exposure", number(stops)),
         ("auto_exposure", "--exposure", (a.exposure == Some(Exposure::Auto)).then_some(Value::Bool(true))),
@@ -43,17 +39,49 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("bsp_split", "--bsp-split", text(&a.bsp_split)),
         ("bsp_group", "--bsp-group", text(&a.bsp_group)),
     ];
+    let mut parameters = all(flags.into_iter().chain(studio(&a.studio)), &a.set)?;
+    bilux::budget::let_limits_decide(&mut parameters);
+    Ok(parameters)
+}
+
+/// The settings on the command line of a viewer.
+pub fn serve(arguments: &Serve) -> anyhow::Result<Parameters> {
+    let time = [("time", "--at", arguments.at.map(Value::from))];
+    all(time.into_iter().chain(studio(&arguments.studio)), &arguments.set)
+}
+
+/// A setting, its flag, and its value if it is given.
+type Flag = (&'static str, &'static str, Option<Value>);
+
+/// The settings of the camera and the studio.
+fn studio(studio: &StudioArguments) -> [Flag; 9] {
+    let text = |t: &Option<String>| t.clone().map(Value::Text);
+    let number = |n: Option<f32>| n.map(Value::from);
+    [
+        ("eye", "--eye", text(&studio.eye)),
+        ("look_at", "--look-at", text(&studio.look_at)),
+        ("zoom", "--zoom", number(studio.zoom)),
+        ("orbit", "--orbit", text(&studio.orbit)),
+        ("up", "--up", text(&studio.up)),
+        ("front", "--front", text(&studio.front)),
+        ("focal", "--focal", number(studio.focal)),
+        ("ground", "--ground", text(&studio.ground)),
+        ("background", "--background", text(&studio.background())),
+    ]
+}
+
+/// The settings that flags give, and those of `--set`.
+fn all(flags: impl Iterator<Item = Flag>, set: &[String]) -> anyhow::Result<Parameters> {
     let mut parameters = Parameters::default();
     for (key, flag, value) in flags {
         if let Some(value) = value {
             parameters.set_at(key, value, from_flag(flag));
         }
     }
-    for assignment in &a.set {
+    for assignment in set {
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
     }
-    bilux::budget::let_limits_decide(&mut parameters);
     Ok(parameters)
 }
 

@@ -1,7 +1,7 @@
 //! The options for the studio around a model.
 
 use crate::settings_from::from_flag;
-use crate::values::{parse_focal, parse_turntable};
+use crate::values::{parse_focal, parse_turntable, parse_zoom};
 use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
@@ -17,6 +17,15 @@ pub struct StudioArguments {
     /// model from up to 40 degrees above]
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub orbit: Option<String>,
+    /// Move the camera to this point
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = help::STUDIO)]
+    pub eye: Option<String>,
+    /// Turn the camera to this point
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, help_heading = help::STUDIO)]
+    pub look_at: Option<String>,
+    /// Magnify the picture by this factor [default: 1]
+    #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = parse_zoom, help_heading = help::STUDIO)]
+    pub zoom: Option<f32>,
     /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none turns
     /// the studio's lights off for a glTF file with lights of its own
     #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
@@ -42,8 +51,7 @@ pub struct StudioArguments {
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
     /// Render N pictures from all around the model, a full turn
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"], allow_hyphen_values = true,
-        value_parser = parse_turntable, help_heading = help::STUDIO)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_turntable, help_heading = help::STUDIO)]
     pub turntable: Option<u32>,
 }
 

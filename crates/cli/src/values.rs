@@ -74,6 +74,11 @@ pub fn parse_focal(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())
 }
 
+/// Parses a factor of magnification.
+pub fn parse_zoom(text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| "write a factor, such as 2".to_owned())
+}
+
 /// Parses a point in time in seconds, which may be negative.
 pub fn parse_time(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a time in seconds, such as 0.5".to_owned())

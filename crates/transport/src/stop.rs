@@ -42,9 +42,7 @@ pub(crate) struct StopMonitor {
     samples: Range<u32>,
     /// How many of them the film holds.
     pub(crate) done: u32,
-    /// Sample counts and luminances of the film at the last two powers of 2: the change since then separates later
-    /// samples from earlier ones.
-    snapshots: [Option<(u32, Vec<f32>)>; 2],
+    meter: NoiseMeter,
     pub(crate) reached: Option<Reached>,
 }
 
@@ -54,7 +52,14 @@ impl StopMonitor {
         let samples = settings.samples.clone();
         let time_limit = settings.stop.time_limit.map(|limit| limit.saturating_sub(spent));
         let stop = Stop { time_limit, ..settings.stop };
-        StopMonitor { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
+        StopMonitor {
+            stop,
+            begun: Instant::now(),
+            samples,
+            done: 0,
+            meter: NoiseMeter::default(),
+            reached: None,
+        }
     }
 
     /// The next samples to take; `None` when the picture is done.
@@ -84,12 +89,7 @@ impl StopMonitor {
         self.done += samples.len() as u32;
         let mut noise = None;
         if self.stop.noise.is_some() {
-            let light: Vec<f32> = film.to_rgb().into_iter().map(|pixel| pixel.luminance()).collect();
-            noise = self.measure(&light, film);
-            if self.done.is_power_of_two() {
-                self.snapshots.swap(0, 1);
-                self.snapshots[1] = Some((self.done, light));
-            }
+            noise = self.meter.look(film, self.done);
         }
         let pixels = film.window().pixels() as f64;
         let bias = noise.map(|_| (2.0 / pixels.sqrt()) as f32);
@@ -119,12 +119,33 @@ impl StopMonitor {
         };
         by_time.min(by_noise).clamp(done, f64::from(most)) as u32
     }
+}
+
+/// Measures the noise of a film that gets more samples of all its pixels.
+#[derive(Default)]
+pub struct NoiseMeter {
+    /// Sample counts and luminances of the film at the last two looks, each at twice as many samples as the one before: the
+    /// change since then separates later samples from earlier ones.
+    snapshots: [Option<(u32, Vec<f32>)>; 2],
+}
+
+impl NoiseMeter {
+    /// The noise of a film with `done` samples of each pixel ([`Reached::noise`]); `None` at the first look.
+    pub fn look(&mut self, film: &Film, done: u32) -> Option<f32> {
+        let light: Vec<f32> = film.to_rgb().into_iter().map(|pixel| pixel.luminance()).collect();
+        let noise = self.measure(&light, film, done);
+        if self.snapshots[1].as_ref().is_none_or(|(last, _)| done >= 2 * last) {
+            self.snapshots.swap(0, 1);
+            self.snapshots[1] = Some((done, light));
+        }
+        noise
+    }
 
     /// Measures the noise: the squared difference between the mean of n samples and that of the first m of them is
     /// σ²(1/m - 1/n); the squared error of the mean itself is σ²/n.
-    fn measure(&self, now: &[f32], film: &Film) -> Option<f32> {
-        let (m, before) = self.snapshots.iter().flatten().find(|(m, _)| *m < self.done)?;
-        let to_own = f64::from(*m) / f64::from(self.done - m);
+    fn measure(&self, now: &[f32], film: &Film, done: u32) -> Option<f32> {
+        let (m, before) = self.snapshots.iter().flatten().find(|(m, _)| *m < done)?;
+        let to_own = f64::from(*m) / f64::from(done - m);
         let mean = now.iter().map(|&x| f64::from(x)).sum::<f64>() / now.len() as f64;
         let dark = (f64::from(DARK) * mean).max(f64::MIN_POSITIVE);
         let (mut sum, mut blocks) = (0.0, 0u32);

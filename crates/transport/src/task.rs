@@ -4,7 +4,7 @@ use crate::emission::Emission;
 use crate::light_choice::LightChoice;
 use crate::photons::Photons;
 use crate::sampler::PixelSampler;
-use bilux_math::Rgb;
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, Wavelength};
 
 /// The tools of one sample: the tracer for hits, the source of random numbers, the maximum path length.
@@ -36,6 +36,49 @@ pub struct Event {
     pub depth: u32,
     /// A description for people.
     pub what: String,
+    /// Where on the path it happened, if it is a vertex of one.
+    pub vertex: Option<PathVertex>,
+}
+
+/// A vertex of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathVertex {
+    /// What happened there.
+    pub kind: VertexKind,
+    /// The point in the scene; for what is infinitely far away, the unit direction to it.
+    pub at: Vec3,
+    /// What it adds to the light of the sample.
+    pub light: Rgb,
+}
+
+impl PathVertex {
+    /// A vertex that adds no light by itself.
+    pub fn new(kind: VertexKind, at: Vec3) -> PathVertex {
+        PathVertex { kind, at, light: Rgb::BLACK }
+    }
+}
+
+/// What happens at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VertexKind {
+    /// A surface of the camera's path, whatever happens there.
+    Surface,
+    /// A surface reflects the path.
+    Reflection,
+    /// A surface lets the path through.
+    Transmission,
+    /// A surface absorbs the path.
+    Absorption,
+    /// The path hits a surface that emits light.
+    Emitter,
+    /// The path leaves the scene.
+    Escape,
+    /// A point of a light that the vertex before it is connected with.
+    LightSample,
+    /// The same of a light that is infinitely far away.
+    DistantLight,
+    /// A surface of the light's path.
+    LightPath,
 }
 
 impl<'s> Task<'_, 's> {
@@ -55,7 +98,16 @@ impl<'s> Task<'_, 's> {
     #[inline]
     pub fn note(&mut self, depth: u32, what: impl FnOnce() -> String) {
         if let Some(events) = &mut self.events {
-            events.push(Event { depth, what: what() });
+            events.push(Event { depth, what: what(), vertex: None });
+        }
+    }
+
+    /// The same for a vertex of a path.
+    #[inline]
+    pub fn note_vertex(&mut self, depth: u32, what: impl FnOnce() -> (PathVertex, String)) {
+        if let Some(events) = &mut self.events {
+            let (vertex, what) = what();
+            events.push(Event { depth, what, vertex: Some(vertex) });
         }
     }
 }

@@ -212,6 +212,22 @@ fn a_replay_reproduces_the_sample_and_records_its_events() {
 }
 
 #[test]
+fn the_vertices_of_a_replayed_path_bring_the_light_of_its_sample() {
+    let scene = built(&still_life());
+    let (camera, integrator) = (&*scene.cameras()[0].1, integrator("path"));
+    let mut bright = 0;
+    for place in (0..40).map(|i| SamplePlace { x: i % 37, y: 3 + i % 16, sample: i }) {
+        let story = replay(&scene, camera, &*integrator, &settings(), place).unwrap();
+        let vertices = story.events.iter().filter_map(|event| event.vertex);
+        let brought: Rgb = vertices.map(|vertex| vertex.light).sum();
+        let difference = (brought - story.radiance).to_array().map(f32::abs).into_iter().fold(0.0, f32::max);
+        assert!(difference <= 1e-5 * story.radiance.max_channel(), "{story}");
+        bright += u32::from(!story.radiance.is_black());
+    }
+    assert!(bright > 10, "{bright}");
+}
+
+#[test]
 fn senseless_settings_are_refused() {
     let scene = built(&still_life());
     let refused = |settings: RenderSettings| {

@@ -106,6 +106,7 @@ impl Job {
         known.keep_alone(own.is_some());
         studio.lit = studio.lit.or(own.as_ref().map(|own| own.is_enough));
         crate::presets::add_missing(&mut completed, &studio);
+        settings.view.place(&mut completed, &settings.camera);
         let objects = completed.objects.len() as u32;
         let has_ground = completed.objects.len() > scene.objects.len();
         let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
@@ -122,15 +123,14 @@ impl Job {
         settings.studio.lit = studio.lit;
         let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
         let notes = own.iter().filter_map(|own| own.decision.clone()).chain(of_curve).collect();
+        let shutter = shutter_at(&settings, settings.time);
         let built = match own.map(|own| own.alone) {
             Some((alone, built)) if own_light::is_as_large(&alone, &completed) => {
                 known.completed.clear();
-                built
+                let mut moved = || completed.build_with(&mut known.alone, &accel, shutter, aspect);
+                if settings.view.is_moved() { moved()? } else { built }
             }
-            _ => {
-                let shutter = shutter_at(&settings, settings.time);
-                completed.build_with(&mut known.completed, &accel, shutter, aspect)?
-            }
+            _ => completed.build_with(&mut known.completed, &accel, shutter, aspect)?,
         };
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
@@ -224,6 +224,16 @@ impl Job {
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The scene's description, with what the studio adds, and the camera where the settings have moved it.
+    pub fn completed_scene(&self) -> &SceneBuilder {
+        &self.source
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &dyn Camera {
+        &*self.camera
     }
 
     /// The settings.
@@ -335,14 +345,8 @@ impl Job {
     /// # Errors
     /// If the pixel is outside the picture.
     pub fn replay(&self, x: u32, y: u32, sample: u32) -> Result<Replay, Error> {
-        let (scene, camera) = (&self.scene, &*self.camera);
-        Ok(bilux_transport::replay(
-            scene,
-            camera,
-            &*self.integrator,
-            &self.render,
-            SamplePlace { x, y, sample },
-        )?)
+        let (scene, camera, place) = (&self.scene, &*self.camera, SamplePlace { x, y, sample });
+        Ok(bilux_transport::replay(scene, camera, self.renders(), &self.render, place)?)
     }
 
     /// The fingerprint of this picture: partial films merge only if it agrees.

@@ -4,7 +4,7 @@ use super::Job;
 use crate::settings::Settings;
 use crate::{Error, Outcome};
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{Plan, Progress, RenderSettings, Rendered, Stop};
+use bilux_transport::{Estimate, Plan, Progress, RenderError, RenderSettings, Rendered, Silent, Stop, Window};
 use std::ops::Range;
 
 impl Job {
@@ -25,6 +25,28 @@ impl Job {
     /// What it has chosen so far.
     pub(super) fn chosen(&self) -> Option<&Plan> {
         self.plan.get().and_then(Option::as_ref)
+    }
+
+    /// Takes this many other samples of one pixel, at least two, and returns the mean of each colour channel with its 95%
+    /// interval. `None` for integrators that are deterministic, and for those whose light paths reach any pixel: there the
+    /// samples of one pixel take those of all.
+    ///
+    /// # Errors
+    /// If the pixel is outside the picture, or memory is short.
+    pub fn estimate(&self, [x, y]: [u32; 2], samples: u32) -> Result<Option<[Estimate; 3]>, Error> {
+        let RenderSettings { width, height, .. } = self.render;
+        if x >= width || y >= height {
+            return Err(RenderError::Pixel { x, y, width, height }.into());
+        }
+        if !self.renders().is_random() || self.renders().splats() {
+            return Ok(None);
+        }
+        let (pixel, spp) = (Window { x, y, width: 1, height: 1 }, samples.max(2));
+        let render = RenderSettings { samples: 0..spp, spp, crop: Some(pixel), ..self.render.clone() };
+        let render = RenderSettings { interval: true, stop: Stop::default(), batch_means: false, ..render };
+        let (scene, camera) = (&self.scene, &*self.camera);
+        let rendered = bilux_transport::render(scene, camera, self.renders(), &render, &Silent)?;
+        Ok(rendered.interval.map(|interval| [0, 1, 2].map(|channel| interval.channel(&pixel, channel))))
     }
 
     /// Adds a range of samples to a picture that has all those before it; the first range also makes its features and

@@ -6,6 +6,7 @@ mod background;
 mod same_samples;
 mod size;
 mod studio;
+mod view;
 
 use crate::Error;
 use crate::presets::Studio;
@@ -19,7 +20,9 @@ use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 pub use size::{parse_size, size_error};
 use std::time::Duration;
 pub use studio::parse_orbit;
-use studio::{as_orbit, studio};
+use studio::{as_list_text, studio};
+use view::OF_CAMERA;
+pub use view::View;
 
 /// The values of the setting `denoise`.
 pub const DENOISE: &[&str] = &["display", "auto", "oidn", "builtin", "off"];
@@ -66,6 +69,17 @@ pub const RENDER: Entry = Entry {
         ),
         integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0"),
         text("camera", "name or number of the camera", "0"),
+        text(
+            "eye",
+            "move the camera to this point, as X,Y,Z in metres; camera leaves it where it is",
+            OF_CAMERA,
+        ),
+        text(
+            "look_at",
+            "turn the camera to this point, as X,Y,Z in metres; camera leaves it as it is",
+            OF_CAMERA,
+        ),
+        number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1"),
         choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"),
         text(
             "orbit",
@@ -205,6 +219,8 @@ pub struct Settings {
     pub camera: String,
     /// Where the camera was requested, for messages.
     pub camera_at: Span,
+    /// Where the camera is moved to.
+    pub view: View,
     /// The settings of the studio.
     pub studio: Studio,
     /// The time to show, in seconds.
@@ -255,7 +271,7 @@ impl Settings {
         let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
         let own = own.into_iter().map(|(key, value, at)| match key.as_str() {
-            "orbit" => (key, as_orbit(value), at),
+            "orbit" | "eye" | "look_at" => (key, as_list_text(value), at),
             // Users who know `--ground none` write this.
             "denoise" if value == Value::from("none") => (key, Value::from("off"), at),
             _ => (key, value, at),
@@ -291,6 +307,7 @@ impl Settings {
             },
             camera_at: reader.span("camera").clone(),
             background,
+            view: View::read(&reader)?,
             studio: Studio { cut_out: background.is_cut_out(), ..studio(&reader)? },
             time: reader.number("time"),
             shutter: reader.number("shutter"),

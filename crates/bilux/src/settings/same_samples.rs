@@ -73,6 +73,7 @@ mod tests {
             ("roulette_depth", "3"),
             ("integrator", "bdpt"),
             ("orbit", "10,20"),
+            ("eye", "0,1,4"),
         ] {
             assert!(!plain.takes_samples_of(&with(key, value)), "{key}");
         }

@@ -4,16 +4,16 @@ use crate::Error;
 use crate::presets::{Ground, Studio};
 use bilux_scene::{Axis, Reader, SceneError, Value};
 
-/// Turns a pair of numbers into the text form of an orbit: `[30, 15]` in scene files is `--set orbit=30,15`.
-pub(super) fn as_orbit(value: Value) -> Value {
-    let Value::List(pair) = &value else { return value };
+/// Turns two or three numbers into the text form of an orbit or a point: `[30, 15]` in scene files is `--set orbit=30,15`.
+pub(super) fn as_list_text(value: Value) -> Value {
+    let Value::List(list) = &value else { return value };
     let number = |value: &Value| match value {
         Value::Integer(i) => Some(i.to_string()),
         Value::Number(x) => Some(x.to_string()),
         _ => None,
     };
-    match pair.iter().map(number).collect::<Option<Vec<_>>>() {
-        Some(numbers) if numbers.len() == 2 => Value::Text(numbers.join(",")),
+    match list.iter().map(number).collect::<Option<Vec<_>>>() {
+        Some(numbers) if (2..=3).contains(&numbers.len()) => Value::Text(numbers.join(",")),
         _ => value,
     }
 }

@@ -13,6 +13,7 @@ mod log;
 pub mod manual;
 pub mod merge;
 pub mod render;
+pub mod serve;
 mod stats;
 mod targets;
 mod time_limit;

@@ -4,7 +4,7 @@ use super::Partial;
 use crate::emission::Start;
 use crate::media::Media;
 use crate::photons::{Photon, Spot};
-use crate::task::Task;
+use crate::task::{PathVertex, Task, VertexKind};
 use crate::techniques::{Lanes, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
@@ -130,12 +130,17 @@ impl<'w, const N: usize> Walk<'w, N> {
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
         let hit = task.tracer.closest(&self.ray);
         let vertex = hit.and_then(|surface| self.vertex_at(surface, task));
-        task.note(self.depth, || match &vertex {
-            None => format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction),
-            Some(Vertex { surface, .. }) => {
-                format!("{} hits object {} at {}", self.whose(), surface.object, surface.p)
-            }
-        });
+        let is_light = self.mode == TransportMode::Importance;
+        let kind = if is_light { VertexKind::LightPath } else { VertexKind::Surface };
+        match &vertex {
+            None => task.note(self.depth, || {
+                format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
+            }),
+            Some(Vertex { surface, .. }) => task.note_vertex(self.depth, || {
+                let what = format!("{} hits object {} at {}", self.whose(), surface.object, surface.p);
+                (PathVertex::new(kind, surface.p), what)
+            }),
+        }
         vertex
     }
 

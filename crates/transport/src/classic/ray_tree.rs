@@ -7,7 +7,7 @@
 use super::{Local, LocalRules};
 use crate::media::transmittance;
 use crate::sampler::PixelSampler;
-use crate::task::Task;
+use crate::task::{PathVertex, Task, VertexKind};
 use bilux_math::hash::hash_words;
 use bilux_math::transcendental::{cos, sin_cos};
 use bilux_math::{Frame, Rgb, Vec3, frame::reflect};
@@ -84,7 +84,8 @@ impl RayTree {
         let left = transmittance(sigma_a, surface.t);
         let emission = task.scene().emission(&surface, -direction);
         if !emission.is_black() {
-            task.note(node.depth, || format!("reaches a light at {}", surface.p));
+            let vertex = PathVertex::new(VertexKind::Emitter, surface.p);
+            task.note_vertex(node.depth, || (vertex, format!("reaches a light at {}", surface.p)));
             return left * emission.clamp(0.0, 1.0);
         }
         if node.depth >= task.max_depth {
@@ -108,9 +109,10 @@ impl RayTree {
         let least = self.cutoff / (16.0 * node.weight);
         let Local { ambient, diffuse, highlight } =
             self.local.illuminate(task, surface, material, eye, least);
-        task.note(node.depth, || {
-            let name = &task_name(surface);
-            format!("hits {name} at {}, {}", surface.p, if place.outside { "outside" } else { "inside" })
+        task.note_vertex(node.depth, || {
+            let (name, side) = (task_name(surface), if place.outside { "outside" } else { "inside" });
+            let vertex = PathVertex::new(VertexKind::Surface, surface.p);
+            (vertex, format!("hits {name} at {}, {side}", surface.p))
         });
         let mut sum = ambient + diffuse;
         let share = self.reflected_share(&place);

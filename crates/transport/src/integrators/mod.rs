@@ -5,6 +5,7 @@ mod bdpt;
 mod cast;
 mod cook;
 mod light;
+mod light_connection;
 mod merging;
 mod occlusion;
 pub(crate) mod path;

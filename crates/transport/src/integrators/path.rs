@@ -1,9 +1,10 @@
 //! `path`: path tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic
 //! combines the two. [Kajiya 1986; Veach 1997, 9.2]
 
+use super::light_connection::LightConnection;
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::media::Media;
-use crate::task::Task;
+use crate::task::{PathVertex, Task, VertexKind};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
@@ -84,34 +85,6 @@ pub(crate) struct Walk {
     pub(crate) media: Media,
 }
 
-/// A connection from a vertex to a sample of a light, before it is known whether something lies between.
-struct LightConnection {
-    /// The ray to the light.
-    ray: Ray,
-    /// Its length in metres; 0 for light from infinity, since beyond the last surface there is no absorbing glass: its
-    /// boundary would have blocked the ray.
-    distance: f32,
-    /// The normal of the light at the end of the ray.
-    n_light: Vec3,
-    /// The media at the start of the ray.
-    media: Media,
-    /// The light that the vertex would scatter along the path, without the factor.
-    light: Rgb,
-    /// MIS weight over density.
-    factor: f32,
-}
-
-impl LightConnection {
-    /// What it brings.
-    #[inline]
-    fn trace(&self, task: &mut Task) -> Rgb {
-        match self.media.visible(task.tracer, &self.ray, self.distance, self.n_light) {
-            Some(passed) => self.light * self.factor * passed,
-            None => Rgb::BLACK,
-        }
-    }
-}
-
 impl PixelIntegrator for Path {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut walk = Walk::new(ray, Media::at_start(task.tracer, ray));
@@ -156,7 +129,8 @@ impl Path {
         let wo = -Vec3::from(walk.ray.direction);
         let Some(bsdf) = self.arrive(walk, surface, task) else { return false };
         let from = Vertex { surface, bsdf: &bsdf, wo, media: &walk.media };
-        walk.light += task.seen(walk.beta, walk.is_split) * self.direct(task, &from);
+        let seen = task.seen(walk.beta, walk.is_split);
+        walk.light += seen * self.direct(task, &from, (walk.depth, seen));
         self.scatter(walk, surface, &bsdf, task)
     }
 
@@ -199,14 +173,18 @@ impl Path {
     ) -> bool {
         let wo = -Vec3::from(walk.ray.direction);
         let Some(sample) = bsdf.sample(wo, u_choice, u, TransportMode::Radiance) else {
-            task.note(walk.depth, || format!("is absorbed at {}", surface.p));
+            let vertex = PathVertex::new(VertexKind::Absorption, surface.p);
+            task.note_vertex(walk.depth, || (vertex, format!("is absorbed at {}", surface.p)));
             return false;
         };
         walk.scatter(task.scene(), surface, &sample);
-        task.note(walk.depth, || {
-            let kind = if sample.transmits { "transmitted" } else { "scattered" };
-            let object = surface.object;
-            format!("{kind} by object {object} at {} towards {}", surface.p, sample.wi)
+        task.note_vertex(walk.depth, || {
+            let (kind, how) = match sample.transmits {
+                true => (VertexKind::Transmission, "transmitted"),
+                false => (VertexKind::Reflection, "scattered"),
+            };
+            let what = format!("{how} by object {} at {} towards {}", surface.object, surface.p, sample.wi);
+            (PathVertex::new(kind, surface.p), what)
         });
         true
     }
@@ -214,7 +192,6 @@ impl Path {
     /// Light from infinity that the ray reaches, weighted against light sampling.
     fn background(&self, task: &mut Task, walk: &Walk) -> Rgb {
         let direction = Vec3::from(walk.ray.direction);
-        task.note(walk.depth, || format!("leaves the scene towards {direction}"));
         let mut sum = Rgb::BLACK;
         for (index, light) in task.scene().infinite_lights() {
             let found = match walk.last {
@@ -223,6 +200,11 @@ impl Path {
             };
             sum += self.seen_of(task, walk, (index, light), found);
         }
+        let light = task.seen(walk.beta, walk.is_split) * sum;
+        task.note_vertex(walk.depth, || {
+            let vertex = PathVertex { kind: VertexKind::Escape, at: direction, light };
+            (vertex, format!("leaves the scene towards {direction}"))
+        });
         sum
     }
 
@@ -252,8 +234,7 @@ impl Path {
         if radiance.is_black() {
             return radiance;
         }
-        task.note(walk.depth, || format!("hits a light at {}", surface.p));
-        match (walk.last, task.scene().light_index_of(surface.object)) {
+        let seen = match (walk.last, task.scene().light_index_of(surface.object)) {
             (Some((from, pdf)), Some(index)) => {
                 let light = &task.scene().lights()[index].light;
                 let direction = Vec3::from(walk.ray.direction);
@@ -261,11 +242,18 @@ impl Path {
                 radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
             }
             _ => radiance,
-        }
+        };
+        let light = task.seen(walk.beta, walk.is_split) * seen;
+        task.note_vertex(walk.depth, || {
+            let vertex = PathVertex { kind: VertexKind::Emitter, at: surface.p, light };
+            (vertex, format!("hits a light at {}", surface.p))
+        });
+        seen
     }
 
-    /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`.
-    fn direct(&self, task: &mut Task, from: &Vertex) -> Rgb {
+    /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`. The depth of the vertex
+    /// and what the sample sees of it are for the record.
+    fn direct(&self, task: &mut Task, from: &Vertex, (depth, seen): (u32, Rgb)) -> Rgb {
         if from.bsdf.is_delta() {
             self.skip_lights(task);
             return Rgb::BLACK;
@@ -278,7 +266,11 @@ impl Path {
             lights.sample(task.sampler.next_1d())
         };
         chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
-            Some(connection) => sum + connection.trace(task),
+            Some(connection) => {
+                let light_brought = connection.trace(task);
+                connection.note(task, depth, seen * light_brought);
+                sum + light_brought
+            }
             None => sum,
         })
     }

@@ -1,0 +1,94 @@
+//! `bilux serve`: shows a scene in browsers while it is rendered.
+
+use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
+use crate::arguments::Common;
+use crate::choices::{Choices, GlassArgument};
+use crate::interrupt::Interrupt;
+use crate::sandbox::SandboxPaths;
+use crate::serving::Serve;
+use crate::studio::StudioArguments;
+use crate::{output, settings_from, usage};
+use anyhow::bail;
+use bilux::formats::ReadOptions;
+use bilux::scene::SceneBuilder;
+use bilux_viewer::{Options, Server};
+use std::net::SocketAddr;
+use std::path::Path;
+
+pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
+    let interrupt = Interrupt::listen()?;
+    let settings = settings_from::serve(&arguments).map_err(usage::wrong)?;
+    if arguments.studio.turntable.is_some() {
+        return Err(usage::wrong(anyhow::anyhow!(
+            "--turntable: drag the picture to see the model from all around"
+        )));
+    }
+    arguments.studio.check().map_err(usage::wrong)?;
+    arguments.studio.check_files()?;
+    confine(&arguments, common)?;
+    let read = read_options_with(common, &arguments.choices, arguments.at.unwrap_or(0.0));
+    let scene = open(&arguments, &read)?;
+    report_warnings(&scene.warnings, common)?;
+    report_notes(&scene.notes, common);
+    let name = arguments.scene.file_name().unwrap_or(arguments.scene.as_os_str());
+    let options = Options {
+        address: SocketAddr::new(arguments.listen, arguments.port),
+        title: name.to_string_lossy().into_owned(),
+        may_edit: arguments.edit,
+        settings,
+        max_memory: common.max_memory,
+        command: command(&arguments),
+        open: Box::new(move || open(&arguments, &read).map_err(|error| format!("{error:#}"))),
+    };
+    let server = Server::start(options)?;
+    output::print(server.address())?;
+    server.run(|| interrupt.is_requested())?;
+    Ok(DONE)
+}
+
+fn open(arguments: &Serve, read: &ReadOptions) -> anyhow::Result<SceneBuilder> {
+    if arguments.scene == Path::new("-") {
+        bail!("a scene on standard input cannot be watched: name a file");
+    }
+    let mut scene = load(&arguments.scene, read)?;
+    check_choices(&scene, &arguments.choices).map_err(usage::wrong)?;
+    arguments.studio.set_up(&mut scene, read)?;
+    Ok(scene)
+}
+
+/// Under `--sandbox`: allows reading the scene, its folder and the files that options name. Nothing is written.
+fn confine(arguments: &Serve, common: &Common) -> anyhow::Result<()> {
+    let mut confines = SandboxPaths::default().reading_scene(&arguments.scene);
+    for file in arguments.studio.env.as_deref().into_iter().chain(arguments.studio.picture_behind()) {
+        confines = confines.reading(file);
+    }
+    confines.enter(common)
+}
+
+/// The words of the command line that renders the scene as it is opened here, without settings.
+fn command(arguments: &Serve) -> Vec<String> {
+    let Serve { scene, studio, choices, .. } = arguments;
+    let mut words = vec!["bilux".to_owned(), "render".to_owned(), scene.display().to_string()];
+    let mut say = |option: &str, value: Option<String>| {
+        if let Some(value) = value {
+            words.extend([option.to_owned(), value]);
+        }
+    };
+    let StudioArguments { env, preset, .. } = studio;
+    say("--env", env.as_ref().map(|path| path.display().to_string()));
+    say("--background", studio.picture_behind().map(|path| path.display().to_string()));
+    say("--preset", preset.clone());
+    let Choices { animation, variant, glass, light_radius } = choices;
+    say("--animation", animation.clone());
+    say("--variant", variant.clone());
+    say(
+        "--glass",
+        match glass {
+            GlassArgument::Auto => None,
+            GlassArgument::Thin => Some("thin".to_owned()),
+            GlassArgument::Solid => Some("solid".to_owned()),
+        },
+    );
+    say("--light-radius", (*light_radius > 0.0).then(|| light_radius.to_string()));
+    words
+}

@@ -1,0 +1,213 @@
+//! The camera that those who watch move: around a point, across, nearer, and through the scene.
+
+use bilux::math::transcendental::{acos, sin_cos_f64};
+use bilux::math::{DVec3, Vec3};
+use bilux::scene::cameras::CAMERAS;
+use bilux::scene::{CameraSample, Reader, Tracer};
+use bilux::{Job, math::Vec2};
+
+/// The least angle in degrees between the line of sight and the up direction.
+const STEEPEST: f64 = 2.0;
+
+/// The bounds of the distance to the pivot, in radii of the scene.
+const DISTANCES: [f64; 2] = [1e-4, 1e3];
+
+/// A camera's position, and the point that it moves around.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Eye {
+    /// Its position.
+    pub(crate) position: DVec3,
+    /// The point that it looks at, and moves around.
+    pub(crate) pivot: DVec3,
+    /// The magnification of the picture.
+    pub(crate) zoom: f64,
+    /// Up, a unit vector.
+    up: DVec3,
+    /// Whether its rays are parallel: then coming nearer changes nothing, and it magnifies instead.
+    is_parallel: bool,
+    /// The radius of the scene, in metres.
+    radius: f64,
+}
+
+impl Eye {
+    /// The eye of a job's camera. Many files say only in which direction a camera looks: what it looks at is next to the
+    /// middle of the scene.
+    pub(crate) fn of(job: &Job) -> Option<Eye> {
+        let (scene, wanted) = (job.completed_scene(), &job.settings().camera);
+        let by_name = scene.cameras.iter().find(|camera| camera.spec.name == *wanted);
+        let spec = &by_name.or_else(|| scene.cameras.get(wanted.parse::<usize>().ok()?))?.spec;
+        let row = CAMERAS.iter().find(|row| row.entry.name == spec.kind)?;
+        let reader = Reader::new(spec, &row.entry).ok()?;
+        let vector = |key: &str| reader.vector(key).as_dvec3();
+        let (position, target) = (vector("position"), vector("look_at"));
+        let ahead = (target - position).try_normalize()?;
+        let bounds = job.scene().bounds();
+        let middle = ((bounds.min + bounds.max) * 0.5).as_dvec3();
+        let radius = f64::from(bounds.radius()).max(f64::MIN_POSITIVE);
+        let depth = (middle - position).dot(ahead);
+        let has_focus = spec.number("aperture").unwrap_or(0.0) > 0.0;
+        let far = if depth > 0.0 && !has_focus { depth } else { target.distance(position) };
+        Some(Eye {
+            position,
+            pivot: position + ahead * far,
+            zoom: f64::from(job.settings().view.zoom),
+            up: nearest_axis(vector("up")),
+            is_parallel: row.entry.parameters.iter().all(|p| p.name != "fov"),
+            radius,
+        })
+    }
+
+    /// Moves around the pivot, by degrees to the right and up.
+    pub(crate) fn orbit(&mut self, right: f64, up: f64) {
+        self.position = self.pivot + self.turned(self.position - self.pivot, right, up);
+    }
+
+    /// Turns to the right and up, by degrees, without moving.
+    pub(crate) fn look(&mut self, right: f64, up: f64) {
+        self.pivot = self.position - self.turned(self.position - self.pivot, -right, -up);
+    }
+
+    /// Moves to the right and up, in metres.
+    pub(crate) fn pan(&mut self, right: f64, up: f64) {
+        let [across, above, _] = self.axes();
+        self.shift(across * right + above * up);
+    }
+
+    /// Flies to the right, up and forward, in distances of the pivot.
+    pub(crate) fn fly(&mut self, right: f64, up: f64, forward: f64) {
+        let [across, _, ahead] = self.axes();
+        let by = (across * right + self.up * up + ahead * forward) * self.pivot.distance(self.position);
+        self.shift(by);
+    }
+
+    /// Comes nearer to the pivot by a factor, or magnifies by it.
+    pub(crate) fn approach(&mut self, factor: f64) {
+        if self.is_parallel {
+            self.zoom = (self.zoom * factor).clamp(1e-2, 1e3);
+            return;
+        }
+        let offset = self.position - self.pivot;
+        let [least, most] = DISTANCES.map(|radii| radii * self.radius);
+        let far = (offset.length() / factor).clamp(least, most);
+        self.position = self.pivot + offset.normalize_or_zero() * far;
+    }
+
+    /// Moves around another point from now on, and looks at it.
+    pub(crate) fn focus(&mut self, point: Vec3) {
+        let point = point.as_dvec3();
+        if point.is_finite() && point.distance(self.position) > DISTANCES[0] * self.radius {
+            self.pivot = point;
+        }
+    }
+
+    /// Position, pivot and magnification as settings have them.
+    pub(crate) fn settings(&self) -> [(&'static str, String); 3] {
+        let point = |p: DVec3| {
+            let p = p.as_vec3();
+            format!("{},{},{}", p.x, p.y, p.z)
+        };
+        let zoom = (self.zoom as f32).to_string();
+        [("eye", point(self.position)), ("look_at", point(self.pivot)), ("zoom", zoom)]
+    }
+
+    fn shift(&mut self, by: DVec3) {
+        let limit = DISTANCES[1] * self.radius;
+        if (self.position + by - self.pivot).length() < f64::INFINITY && by.length() < limit {
+            self.position += by;
+            self.pivot += by;
+        }
+    }
+
+    /// Right, up and forward in the picture.
+    fn axes(&self) -> [DVec3; 3] {
+        let ahead = (self.pivot - self.position).normalize_or(DVec3::NEG_Z);
+        let right = ahead.cross(self.up).normalize_or(self.up.any_orthonormal_vector());
+        [right, right.cross(ahead), ahead]
+    }
+
+    /// An offset turned by degrees around the up direction, and towards it, but never onto it.
+    fn turned(&self, offset: DVec3, right: f64, up: f64) -> DVec3 {
+        let [across, ..] = self.axes();
+        let flat = rotated(offset, self.up, right.to_radians());
+        let across = rotated(across, self.up, right.to_radians());
+        let cos = (flat.normalize_or(DVec3::Z).dot(self.up) as f32).clamp(-1.0, 1.0);
+        let from_up = f64::from(acos(cos).to_degrees());
+        let wanted = (from_up - up).clamp(STEEPEST, 180.0 - STEEPEST);
+        rotated(flat, across, (wanted - from_up).to_radians())
+    }
+}
+
+/// The point of a scene at a place of the picture, as fractions of its width and height; `None` where there is nothing.
+pub(crate) fn point_at(job: &Job, at: [f32; 2]) -> Option<Vec3> {
+    let time = job.settings().time;
+    let sample = CameraSample { film: Vec2::from(at), lens: Vec2::ZERO, time };
+    let ray = job.scene().from_camera(job.camera().ray(&sample));
+    Some(Tracer::new(job.scene(), false).closest(&ray)?.p)
+}
+
+/// The axis that is nearest to a direction.
+fn nearest_axis(direction: DVec3) -> DVec3 {
+    let nearer = |a: DVec3, b: DVec3| if direction.dot(b).abs() > direction.dot(a).abs() { b } else { a };
+    let axis = nearer(nearer(DVec3::Y, DVec3::Z), DVec3::X);
+    axis * direction.dot(axis).signum()
+}
+
+/// A vector turned by an angle in radians around a unit axis, by Rodrigues' formula.
+fn rotated(v: DVec3, axis: DVec3, angle: f64) -> DVec3 {
+    let (sin, cos) = sin_cos_f64(angle);
+    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn eye() -> Eye {
+        let position = DVec3::new(0.0, 1.0, 5.0);
+        Eye { position, pivot: DVec3::Y, zoom: 1.0, up: DVec3::Y, is_parallel: false, radius: 2.0 }
+    }
+
+    #[test]
+    fn an_orbit_keeps_the_distance_and_never_reaches_the_pole() {
+        let mut moved = eye();
+        moved.orbit(90.0, 0.0);
+        assert!(moved.position.distance(DVec3::new(5.0, 1.0, 0.0)) < 1e-6, "{moved:?}");
+        for _ in 0..50 {
+            moved.orbit(7.0, 13.0);
+            assert!((moved.position.distance(moved.pivot) - 5.0).abs() < 1e-6);
+            let ahead = (moved.pivot - moved.position).normalize();
+            assert!(ahead.dot(DVec3::Y).abs() < 0.9995, "{moved:?}");
+        }
+        assert!(moved.position.y > 5.9, "it is nearly above");
+        moved.orbit(-360.0 * 2.0, -400.0);
+        assert!(moved.position.y < -3.9, "it is nearly below");
+    }
+
+    #[test]
+    fn looking_around_keeps_the_position_and_panning_the_direction() {
+        let mut moved = eye();
+        moved.look(90.0, 0.0);
+        assert_eq!(moved.position, eye().position);
+        assert!((moved.pivot - moved.position).distance(DVec3::new(5.0, 0.0, 0.0)) < 1e-6, "{moved:?}");
+        let mut moved = eye();
+        moved.pan(1.0, 2.0);
+        assert_eq!(moved.position - eye().position, DVec3::new(1.0, 2.0, 0.0));
+        assert_eq!(moved.pivot - eye().pivot, DVec3::new(1.0, 2.0, 0.0));
+        moved.fly(0.0, 0.0, 0.5);
+        assert!((moved.position - eye().position).distance(DVec3::new(1.0, 2.0, -2.5)) < 1e-6);
+    }
+
+    #[test]
+    fn coming_nearer_never_passes_the_pivot() {
+        let mut moved = eye();
+        moved.approach(2.0);
+        assert!((moved.position.z - 2.5).abs() < 1e-9);
+        (0..200).for_each(|_| moved.approach(10.0));
+        assert!(moved.position.z > 0.0 && moved.position.z < 1e-3);
+        (0..200).for_each(|_| moved.approach(0.1));
+        assert!(moved.position.is_finite() && moved.position.z > 100.0);
+        let mut parallel = Eye { is_parallel: true, ..eye() };
+        parallel.approach(2.0);
+        assert_eq!((parallel.zoom, parallel.position), (2.0, eye().position));
+    }
+}

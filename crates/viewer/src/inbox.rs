@@ -1,0 +1,185 @@
+//! What those who watch ask for, until the render takes it. However much they ask for, it takes a bounded amount of
+//! memory: moves add up, a later value of a setting replaces an earlier one, and questions that are too many are refused.
+
+use crate::message::{Move, Question, Request};
+use bilux::scene::Parameters;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// The maximum number of questions that wait for an answer.
+pub(crate) const QUESTIONS: usize = 64;
+/// The maximum number of different moves or edits that wait.
+const MOVES: usize = 64;
+
+/// What waits to be taken.
+#[derive(Default)]
+pub(crate) struct Waiting {
+    /// Moves of the camera, in order; consecutive ones of a kind are added up.
+    pub(crate) moves: Vec<Move>,
+    /// The size of the picture, in pixels.
+    pub(crate) size: Option<[u32; 2]>,
+    /// Settings.
+    pub(crate) settings: Parameters,
+    /// What is shown: the picture, or one of its layers.
+    pub(crate) shown: Option<String>,
+    /// Edits, in order.
+    pub(crate) edits: Vec<Request>,
+    /// Questions, in order.
+    pub(crate) questions: Vec<Question>,
+    /// The scene's files have changed.
+    pub(crate) reload: bool,
+}
+
+impl Waiting {
+    /// True if the render is to stop what it does: the picture changes, or somebody waits for a pixel.
+    fn interrupts(&self) -> bool {
+        self.changes_picture() || self.questions.iter().any(|it| matches!(it, Question::Pick { .. }))
+    }
+
+    /// True if it changes the picture.
+    fn changes_picture(&self) -> bool {
+        !self.moves.is_empty()
+            || self.size.is_some()
+            || !self.settings.0.is_empty()
+            || self.shown.is_some()
+            || !self.edits.is_empty()
+            || self.reload
+    }
+}
+
+/// The requests of all who watch.
+#[derive(Default)]
+pub(crate) struct Inbox {
+    waiting: Mutex<Waiting>,
+    bell: Condvar,
+    /// Whether the render is to stop what it does.
+    interrupts: AtomicBool,
+    rings: AtomicBool,
+    has_ended: AtomicBool,
+}
+
+impl Inbox {
+    /// Takes a request.
+    ///
+    /// # Errors
+    /// If too much waits already; the message is for whoever asked.
+    pub(crate) fn post(&self, request: Request) -> Result<(), String> {
+        let full = || Err("too much is asked for at once: wait a moment".to_owned());
+        let mut waiting = self.lock();
+        match request {
+            Request::Move(next) => match waiting.moves.last_mut().map(|last| last.add(&next)) {
+                Some(true) => {}
+                _ if waiting.moves.len() >= MOVES => return full(),
+                _ => waiting.moves.push(next),
+            },
+            Request::Size(size) => waiting.size = Some(size),
+            Request::Set(key, value) => {
+                if waiting.settings.0.len() >= MOVES && waiting.settings.find(&key).is_none() {
+                    return full();
+                }
+                waiting.settings.set(&key, value);
+            }
+            Request::Show(what) => waiting.shown = Some(what),
+            edit @ (Request::Edit { .. } | Request::Undo | Request::Redo) => {
+                if waiting.edits.len() >= MOVES {
+                    return full();
+                }
+                waiting.edits.push(edit);
+            }
+            Request::Ask(question) => {
+                if waiting.questions.len() >= QUESTIONS {
+                    return full();
+                }
+                waiting.questions.push(question);
+            }
+            Request::Reload => waiting.reload = true,
+        }
+        if waiting.interrupts() {
+            self.interrupts.store(true, Ordering::Relaxed);
+        }
+        drop(waiting);
+        self.ring();
+        Ok(())
+    }
+
+    /// What waits. Waits for something, up to this time; if none is given, until there is something.
+    pub(crate) fn take(&self, wait: Option<Duration>) -> Waiting {
+        let mut waiting = self.lock();
+        let is_idle = |_: &mut Waiting| !self.rings.load(Ordering::Relaxed);
+        waiting = match wait {
+            Some(time) => {
+                let woken = self.bell.wait_timeout_while(waiting, time, is_idle);
+                woken.unwrap_or_else(PoisonError::into_inner).0
+            }
+            None => self.bell.wait_while(waiting, is_idle).unwrap_or_else(PoisonError::into_inner),
+        };
+        self.interrupts.store(false, Ordering::Relaxed);
+        self.rings.store(false, Ordering::Relaxed);
+        std::mem::take(&mut *waiting)
+    }
+
+    /// Wakes the render, which looks whether anything has changed.
+    pub(crate) fn ring(&self) {
+        let _waiting = self.lock();
+        self.rings.store(true, Ordering::Relaxed);
+        self.bell.notify_all();
+    }
+
+    /// Ends the render.
+    pub(crate) fn end(&self) {
+        self.has_ended.store(true, Ordering::Relaxed);
+        self.interrupts.store(true, Ordering::Relaxed);
+        self.ring();
+    }
+
+    /// True once the render is to end.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.has_ended.load(Ordering::Relaxed)
+    }
+
+    /// True if the render is to stop what it does, and to look at what waits.
+    pub(crate) fn interrupts(&self) -> bool {
+        self.interrupts.load(Ordering::Relaxed)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux::scene::Value;
+
+    #[test]
+    fn moves_add_up_and_settings_replace_each_other() {
+        let inbox = Inbox::default();
+        for i in 0..10_000 {
+            inbox.post(Request::Move(Move::Orbit([1.0, 0.5]))).unwrap();
+            inbox.post(Request::Set("seed".to_owned(), Value::Integer(i))).unwrap();
+            inbox.post(Request::Size([i as u32, 7])).unwrap();
+        }
+        assert!(inbox.interrupts());
+        let waiting = inbox.take(None);
+        assert_eq!(waiting.moves, [Move::Orbit([10_000.0, 5_000.0])]);
+        assert_eq!(waiting.settings.0.len(), 1);
+        assert_eq!(waiting.size, Some([9_999, 7]));
+        assert!(!inbox.interrupts());
+    }
+
+    #[test]
+    fn what_waits_is_bounded() {
+        let inbox = Inbox::default();
+        let moves = (0..1000).map(|i| match i % 2 {
+            0 => Request::Move(Move::Orbit([1.0, 0.0])),
+            _ => Request::Move(Move::Home),
+        });
+        let settings = (0..1000).map(|i| Request::Set(format!("key{i}"), Value::Integer(i)));
+        let refused = moves.chain(settings).filter_map(|request| inbox.post(request).err()).count();
+        let waiting = inbox.take(None);
+        assert_eq!((waiting.moves.len(), waiting.settings.0.len()), (MOVES, MOVES));
+        assert!(refused > 1000, "{refused}");
+    }
+}

@@ -1,0 +1,211 @@
+//! The render: one thread that owns the session, takes requests, and publishes the newest frame.
+//!
+//! When the picture changes, small pictures are shown first, by path tracing, each soon after the one before; then larger
+//! ones; and when nothing has changed for a moment, the picture itself, in full size, by the integrator that was chosen.
+
+mod answers;
+mod command;
+mod edits;
+mod pace;
+mod paths;
+mod pick;
+mod refining;
+mod requests;
+mod settings;
+mod show;
+mod state;
+
+use crate::ViewerError;
+use crate::eye::Eye;
+use crate::frame::{Facts, Frame};
+use crate::inbox::Inbox;
+use crate::message::Question;
+use crate::options::Options;
+use crate::watch::Watched;
+use bilux::Session;
+use bilux::pictures::denoise::DenoiserChoice;
+use bilux::scene::{Parameters, Value};
+use bilux::transport::NoiseMeter;
+use bilux::transport::aovs::Aov;
+use edits::Edits;
+use pace::Pace;
+use show::Shown;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+
+/// The maximum number of samples of each pixel, if neither the user nor the scene says it.
+const SAMPLES: i64 = 1024;
+
+/// Where frames and the state of the stage are published: all who watch see the newest of each.
+pub(crate) struct Outlets {
+    /// The newest frame.
+    pub(crate) frames: watch::Sender<Option<Arc<Frame>>>,
+    /// The newest state, in JSON.
+    pub(crate) state: watch::Sender<Arc<str>>,
+}
+
+impl Default for Outlets {
+    fn default() -> Outlets {
+        Outlets { frames: watch::Sender::new(None), state: watch::Sender::new("".into()) }
+    }
+}
+
+/// What is being rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Level {
+    /// A picture whose sides are divided by this.
+    Preview(u32),
+    /// The picture itself.
+    Full,
+}
+
+/// The render.
+pub(crate) struct Stage {
+    options: Options,
+    session: Session,
+    /// The settings that the user and those who watch ask for.
+    user: Parameters,
+    shown: Shown,
+    /// The layers that the session keeps.
+    layers: Vec<Aov>,
+    denoiser: Option<DenoiserChoice>,
+    /// Where the scene has its camera.
+    home: Option<Eye>,
+    /// Where the camera is now.
+    eye: Option<Eye>,
+    is_moved: bool,
+    size: [u32; 2],
+    level: Level,
+    /// When something last changed.
+    changed: Instant,
+    pace: Pace,
+    meter: NoiseMeter,
+    edits: Edits,
+    problem: Option<String>,
+    /// Whether nothing is to be done until something changes.
+    rests: bool,
+    facts: Facts,
+    frame: u64,
+    last_shown: Instant,
+    /// Time that the last change of level took.
+    entering: Duration,
+    /// Time that the samples of the picture took so far.
+    worked: Duration,
+    /// What waits for a picture.
+    questions: Vec<Question>,
+    inbox: Arc<Inbox>,
+    outlets: Arc<Outlets>,
+    watched: Arc<Watched>,
+}
+
+impl Stage {
+    /// A stage with the scene that the options open.
+    ///
+    /// # Errors
+    /// If the scene cannot be opened or rendered.
+    pub(crate) fn new(
+        options: Options,
+        inbox: Arc<Inbox>,
+        outlets: Arc<Outlets>,
+        watched: Arc<Watched>,
+    ) -> Result<Stage, ViewerError> {
+        let scene = (options.open)().map_err(ViewerError::Open)?;
+        watched.add(&scene.files);
+        let user = options.settings.clone();
+        let session = Session::within(scene, &settings::with_defaults(&user), options.max_memory)?;
+        let settings = session.job().settings();
+        let size = [settings.width, settings.height];
+        let (now, home) = (Instant::now(), Eye::of(session.job()));
+        let mut stage = Stage {
+            home,
+            eye: home,
+            options,
+            session,
+            user,
+            shown: Shown::Picture,
+            layers: Vec::new(),
+            denoiser: None,
+            is_moved: false,
+            size,
+            level: Level::Full,
+            changed: now,
+            pace: Pace::new(),
+            meter: NoiseMeter::default(),
+            edits: Edits::default(),
+            problem: None,
+            rests: false,
+            facts: Facts::default(),
+            frame: 0,
+            last_shown: now,
+            entering: Duration::ZERO,
+            worked: Duration::ZERO,
+            questions: Vec::new(),
+            inbox,
+            outlets,
+            watched,
+        };
+        stage.choose_denoiser()?;
+        stage.begin()?;
+        stage.publish_state();
+        Ok(stage)
+    }
+
+    /// Renders until the inbox ends.
+    pub(crate) fn run(mut self) {
+        loop {
+            let waiting = self.inbox.take(self.may_wait());
+            if self.inbox.has_ended() {
+                return;
+            }
+            self.serve(waiting);
+            if self.is_watched() && !self.rests {
+                let worked = self.work();
+                self.note_problem(worked);
+            }
+        }
+    }
+
+    /// How long it may wait for requests; `None` for as long as there is none.
+    fn may_wait(&self) -> Option<Duration> {
+        if self.rests || !self.is_watched() { None } else { Some(Duration::ZERO) }
+    }
+
+    /// True if anybody sees what is rendered.
+    fn is_watched(&self) -> bool {
+        self.outlets.frames.receiver_count() > 0 || !self.questions.is_empty()
+    }
+
+    /// Keeps what went wrong, for the page, and rests.
+    fn note_problem(&mut self, result: Result<(), bilux::Error>) {
+        if let Err(error) = result {
+            self.problem = Some(error.to_string());
+            self.rests = true;
+            self.publish_state();
+        }
+    }
+
+    fn publish_state(&mut self) {
+        let state = state::state(self).to_string();
+        self.outlets.state.send_replace(state.into());
+    }
+
+    /// The settings that those who watch have asked for, with the camera where they have moved it.
+    fn asked(&self) -> Parameters {
+        let mut all = self.user.clone();
+        if let (true, Some(eye)) = (self.is_moved, &self.eye) {
+            eye.settings().into_iter().for_each(|(key, value)| match value.parse() {
+                Ok(number) if key == "zoom" => all.set(key, Value::Number(number)),
+                _ => all.set(key, value),
+            });
+        }
+        all
+    }
+
+    /// All settings of a level.
+    fn settings_for(&self, level: Level) -> Parameters {
+        let mut all = settings::with_defaults(&self.asked());
+        settings::set_level(&mut all, &self.session.scene().settings, self.size, level);
+        all
+    }
+}

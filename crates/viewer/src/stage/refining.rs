@@ -1,0 +1,153 @@
+//! How a picture comes about: small and soon at first, then larger, then refined.
+
+use super::pace::divided;
+use super::{Level, Stage};
+use crate::frame::{Facts, Frame};
+use crate::inbox::Inbox;
+use bilux::transport::{NoiseMeter, Progress};
+use bilux::{Budget, Edit, Error, Settings};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a step of the picture takes: then requests are looked at.
+const STEP: Duration = Duration::from_millis(60);
+/// How often a picture that gets better is shown.
+const SHOWN_EVERY: Duration = Duration::from_millis(250);
+/// How long nothing has changed when the picture itself is begun: some integrators then choose their strategies first.
+const SETTLED: Duration = Duration::from_millis(180);
+
+/// Stops a step whose picture is out of date.
+struct Interruptible<'a>(&'a Inbox);
+
+impl Progress for Interruptible<'_> {
+    fn begin(&self, _samples: u64) {}
+
+    fn advance(&self, _samples: u64, _rays: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.0.interrupts()
+    }
+}
+
+impl Stage {
+    /// Begins the picture anew, with small pictures first, unless what has changed is only how it is displayed.
+    pub(super) fn begin(&mut self) -> Result<(), Error> {
+        (self.rests, self.changed) = (false, Instant::now());
+        let full = Settings::of(self.session.scene(), &self.settings_for(Level::Full))?;
+        let has_samples = self.level == Level::Full && self.session.samples() > 0;
+        if has_samples && full.takes_samples_of(self.session.job().settings()) {
+            self.enter(Level::Full)?;
+            self.rests = self.session.is_done();
+            return self.publish();
+        }
+        self.enter(Level::Preview(self.pace.divisor(self.size)))
+    }
+
+    /// Goes on with another level.
+    fn enter(&mut self, level: Level) -> Result<(), Error> {
+        let begun = Instant::now();
+        self.level = level;
+        if self.session.apply(Edit::Settings(self.settings_for(level)))? || self.session.samples() == 0 {
+            self.facts.picture += 1;
+            (self.meter, self.facts.noise) = (NoiseMeter::default(), None);
+            self.worked = Duration::ZERO;
+        }
+        self.entering = begun.elapsed();
+        Ok(())
+    }
+
+    /// Refines what is being rendered a little, and shows it.
+    pub(super) fn work(&mut self) -> Result<(), Error> {
+        let (begun, before) = (Instant::now(), self.session.samples());
+        let budget = match self.level {
+            Level::Full if before > 0 => Budget::Time(STEP),
+            _ => Budget::Samples(1),
+        };
+        self.session.step(budget, &Interruptible(&self.inbox))?;
+        let samples = self.session.samples();
+        if samples == before && !self.session.is_done() {
+            return Ok(());
+        }
+        self.worked += begun.elapsed();
+        if samples == 1
+            && let Some(outcome) = self.session.outcome()
+        {
+            // Noise is measured by what later samples change.
+            self.meter.look(&outcome.rendered.film, samples);
+        }
+        match self.level {
+            Level::Preview(divisor) => {
+                self.publish()?;
+                self.pace.learn(divided(self.size, divisor), self.entering, begun.elapsed());
+                self.answer_waiting();
+                self.go_on_from(divisor)
+            }
+            Level::Full => {
+                let is_done = self.session.is_done();
+                let is_more = samples.is_power_of_two() && self.denoiser.is_none() && samples <= 4;
+                if is_done || is_more || self.is_due() {
+                    self.rests = is_done;
+                    self.publish()?;
+                    self.answer_waiting();
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// True if it is time to show the picture again; with a denoiser, which takes long, less often.
+    fn is_due(&self) -> bool {
+        let often = if self.denoiser.is_some() { 8 } else { 1 };
+        self.last_shown.elapsed() >= SHOWN_EVERY * often
+    }
+
+    /// Goes on with a larger picture, or with the picture itself once nothing changes any more.
+    fn go_on_from(&mut self, divisor: u32) -> Result<(), Error> {
+        if divisor > 1 {
+            return self.enter(Level::Preview(divisor / 2));
+        }
+        if self.settings_for(Level::Full) == self.settings_for(Level::Preview(1)) {
+            self.level = Level::Full;
+            return Ok(());
+        }
+        if self.changed.elapsed() >= SETTLED {
+            return self.enter(Level::Full);
+        }
+        Ok(())
+    }
+
+    /// Shows the picture as it is.
+    fn publish(&mut self) -> Result<(), Error> {
+        let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
+        let is_preview = self.level != Level::Full;
+        // A preview in full size soon gives way to the picture.
+        let denoiser = self.denoiser.as_ref().filter(|_| self.level != Level::Preview(1));
+        let (picture, options) = self.shown.of(job, outcome, denoiser)?;
+        if !is_preview && self.session.samples() > 1 {
+            self.facts.noise = self.meter.look(&outcome.rendered.film, self.session.samples()).or(self.facts.noise);
+        }
+        let seconds = self.worked.as_secs_f64().max(1e-6);
+        let pixels = picture.width() as f64 * picture.height() as f64;
+        let point = |p: bilux::math::DVec3| p.to_array();
+        let facts = Facts {
+            samples: self.session.samples(),
+            total: job.samples_per_pixel(),
+            rate: pixels * f64::from(self.session.samples()) / seconds,
+            rays: outcome.rendered.counters.rays as f64 / seconds,
+            is_preview,
+            rests: self.rests,
+            choice: outcome.rendered.choice.as_ref().map(ToString::to_string),
+            eye: self.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
+            ..self.facts.clone()
+        };
+        self.frame += 1;
+        let frame = Frame::new(self.frame, &picture, &options, self.size, &facts)?;
+        self.facts = facts;
+        self.outlets.frames.send_replace(Some(Arc::new(frame)));
+        self.last_shown = Instant::now();
+        if self.rests {
+            self.publish_state();
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,93 @@
+//! What is shown: the picture, denoised or not, or one of its layers as colours.
+
+use bilux::math::Rgb;
+use bilux::math::hash::hash_words;
+use bilux::pictures::denoise::DenoiserChoice;
+use bilux::pictures::{ColourSpace, Picture, WriteOptions};
+use bilux::transport::Features;
+use bilux::transport::aovs::{AOVS, Aov};
+use bilux::{Error, Job, Outcome};
+
+/// The layers that denoisers look at.
+pub(super) const FOR_DENOISERS: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Depth];
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// The picture.
+    Picture,
+    /// A layer of it.
+    Layer(Aov),
+}
+
+impl Shown {
+    /// What has this name: `picture`, or a layer of [`AOVS`].
+    pub(super) fn named(name: &str) -> Option<Shown> {
+        if name == "picture" {
+            return Some(Shown::Picture);
+        }
+        let row = AOVS.iter().find(|row| row.entry.name == name && row.aov.is_feature())?;
+        Some(Shown::Layer(row.aov))
+    }
+
+    /// Its name.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Shown::Picture => "picture",
+            Shown::Layer(aov) => AOVS.iter().find(|row| row.aov == aov).map_or("", |row| row.entry.name),
+        }
+    }
+
+    /// The picture to show of an outcome, and how it is written.
+    ///
+    /// # Errors
+    /// If memory is short, or the denoiser fails.
+    pub(super) fn of(
+        self,
+        job: &Job,
+        outcome: &Outcome,
+        denoiser: Option<&DenoiserChoice>,
+    ) -> Result<(Picture, WriteOptions), Error> {
+        if let (Shown::Layer(aov), Some(features)) = (self, &outcome.features) {
+            let size = [features.window.width as usize, features.window.height as usize];
+            let mut picture = Picture::from_rgb(size[0], size[1], colours(aov, features))?;
+            // These are no light: they are shown as they are.
+            if aov != Aov::Albedo {
+                picture.colour_space = ColourSpace::Srgb;
+            }
+            return Ok((picture, WriteOptions::default()));
+        }
+        let picture = match denoiser {
+            Some(denoiser) => outcome.denoised(denoiser)?,
+            None => outcome.picture()?,
+        };
+        let options = job.write_options_for(&picture)?;
+        Ok((picture, options))
+    }
+}
+
+/// A layer as colours from 0 to 1.
+fn colours(aov: Aov, features: &Features) -> Vec<Rgb> {
+    match aov {
+        Aov::Normal => {
+            features.normal.iter().map(|n| Rgb::new(n.x, n.y, n.z) * 0.5 + Rgb::grey(0.5)).collect()
+        }
+        Aov::Depth => {
+            // The nearest surface is white, the background black.
+            let nearest = features.depth.iter().copied().fold(f32::INFINITY, f32::min);
+            features.depth.iter().map(|depth| Rgb::grey((nearest / depth).clamp(0.0, 1.0))).collect()
+        }
+        Aov::Ids => features.object.iter().map(|&id| colour_of(id)).collect(),
+        _ => features.albedo.clone(),
+    }
+}
+
+/// A colour that tells an object from others; black for none.
+fn colour_of(id: u32) -> Rgb {
+    if id == 0 {
+        return Rgb::BLACK;
+    }
+    let hash = hash_words([u64::from(id)]);
+    let channel = |shift: u32| 0.2 + 0.75 * ((hash >> shift) & 0xff) as f32 / 255.0;
+    Rgb::new(channel(0), channel(8), channel(16))
+}
