@@ -46,7 +46,8 @@ pub fn is_blocker(
     (blocker, truth): (Option<Primitive>, Option<Hit>),
 ) -> bool {
     let is_hit = |blocker: Primitive| {
-        let only: Filter = &|hit: &Hit| hit.primitive() == blocker && query.filter.is_none_or(|keeps| keeps(hit));
+        let only: Filter =
+            &|hit: &Hit| hit.primitive() == blocker && query.filter.is_none_or(|keeps| keeps(hit));
         tree.closest_hit(ray, &Query { filter: Some(only), ..*query }).is_some()
     };
     blocker.is_some() == truth.is_some() && blocker.is_none_or(is_hit)

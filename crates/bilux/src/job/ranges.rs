@@ -4,7 +4,9 @@ use super::Job;
 use crate::settings::Settings;
 use crate::{Error, Outcome};
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{Estimate, Plan, Progress, RenderError, RenderSettings, Rendered, Silent, Stop, Window};
+use bilux_transport::{
+    Estimate, Plan, Progress, RenderError, RenderSettings, Rendered, Silent, Stop, Window,
+};
 use std::ops::Range;
 
 impl Job {

@@ -124,7 +124,8 @@ impl Stage {
         let denoiser = self.denoiser.as_ref().filter(|_| self.level != Level::Preview(1));
         let (picture, options) = self.shown.of(job, outcome, denoiser)?;
         if !is_preview && self.session.samples() > 1 {
-            self.facts.noise = self.meter.look(&outcome.rendered.film, self.session.samples()).or(self.facts.noise);
+            self.facts.noise =
+                self.meter.look(&outcome.rendered.film, self.session.samples()).or(self.facts.noise);
         }
         let seconds = self.worked.as_secs_f64().max(1e-6);
         let pixels = picture.width() as f64 * picture.height() as f64;

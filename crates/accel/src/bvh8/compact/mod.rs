@@ -75,7 +75,8 @@ impl Traverse for CompactBvh8 {
     #[inline(always)]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        self.view().is_some_and(|view| kernel::any::<Compact, C>(self.level, view, ray, query, count).is_some())
+        self.view()
+            .is_some_and(|view| kernel::any::<Compact, C>(self.level, view, ray, query, count).is_some())
     }
 
     fn bounds(&self) -> Aabb {

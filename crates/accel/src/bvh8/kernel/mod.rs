@@ -96,7 +96,8 @@ macro_rules! batch_entries {
             blockers: &mut [Option<$crate::Primitive>],
         ) {
             let rays = &rays[..rays.len().min(blockers.len())];
-            let note = |index: usize, hit: Option<$crate::Hit>| blockers[index] = hit.map(|hit| hit.primitive());
+            let note =
+                |index: usize, hit: Option<$crate::Hit>| blockers[index] = hit.map(|hit| hit.primitive());
             // SAFETY: as the caller promises.
             unsafe { super::batch::each::<$level, true>(view, rays, query, note) }
         }

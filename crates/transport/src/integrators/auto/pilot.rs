@@ -130,13 +130,10 @@ pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
     for (x, y) in (0..whole.pixels()).map(|i| grid.pixel(whole.position(i))) {
         let (ray, task) = eye.sample(&mut tracer, x, y, 0);
         let Some(hit) = task.tracer.hit(&ray) else { continue };
-        let is_in_columns = match scene.shading(scene.geometry().object_of(&hit)) {
-            Shading::Lambertian | Shading::OpaqueBase => true,
-            Shading::Smooth => scene.has_clear_media(),
-            Shading::General => false,
-        };
+        let shading = scene.shading(scene.geometry().object_of(&hit));
+        let is_any = shading == Shading::General || (shading == Shading::Smooth && !scene.has_clear_media());
         hits += 1;
-        in_columns += u32::from(is_in_columns);
+        in_columns += u32::from(!is_any);
     }
     if hits == 0 { 1.0 } else { f64::from(in_columns) / f64::from(hits) }
 }

@@ -87,8 +87,7 @@ impl<'p, O> Group<'p, O> {
             let (least, greatest) = (u.0.min(v.0).min(w.0), u.0.max(v.0).max(w.0));
             // If one of the three is NaN, this rejects less; the exact stage tests the rest again.
             let mixed = least.lt(zero) & zero.lt(greatest);
-            // Rejects triangles wholly behind the ray's nearest hit: the exact distance is a mean of those of the
-            // corners.
+            // Rejects triangles wholly behind the nearest hit: the exact distance is a mean of the corners'.
             let near = self.orientation.least_distance(self.packet, from, z);
             let mut mask = mask & !mixed & near.le(W::load(self.packet.limit.at(from)));
             if mask == 0 {
@@ -119,13 +118,12 @@ impl<'p, O> Group<'p, O> {
             }
             let certain = if self.query.filter.is_some() { 0 } else { certain & mask & t_min.le(low) };
             let hits = certain & if ANY { high.le(nearest) } else { high.lt(nearest_low) };
-            if !ANY && hits != 0 {
-                let mask = W::mask(hits);
-                nearest_low.select(mask, low).store(self.packet.t_low.at_mut(from));
-                nearest.select(mask, high).store(self.packet.t.at_mut(from));
-                self.name::<W>(block, lane, hits);
-            }
-            if ANY && hits != 0 {
+            if hits != 0 {
+                if !ANY {
+                    let mask = W::mask(hits);
+                    nearest_low.select(mask, low).store(self.packet.t_low.at_mut(from));
+                    nearest.select(mask, high).store(self.packet.t.at_mut(from));
+                }
                 self.name::<W>(block, lane, hits);
             }
             let doubtful = mask & !hits;
