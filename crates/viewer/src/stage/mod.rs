@@ -23,7 +23,7 @@ use crate::message::Question;
 use crate::options::Options;
 use crate::watch::Watched;
 use bilux::Session;
-use bilux::pictures::denoise::DenoiserChoice;
+use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
 use bilux::scene::{Parameters, Value};
 use bilux::transport::NoiseMeter;
 use bilux::transport::aovs::Aov;
@@ -70,6 +70,8 @@ pub(crate) struct Stage {
     /// The layers that the session keeps.
     layers: Vec<Aov>,
     denoiser: Option<DenoiserChoice>,
+    /// What denoises small previews.
+    for_previews: DenoiserChoice,
     /// Where the scene has its camera.
     home: Option<Eye>,
     /// Where the camera is now.
@@ -116,6 +118,8 @@ impl Stage {
         let session = Session::within(scene, &settings::with_defaults(&user), options.max_memory)?;
         let settings = session.job().settings();
         let size = [settings.width, settings.height];
+        let task = Task { threads: settings.threads, ..Task::default() };
+        let for_previews = denoiser("builtin", &task).map_err(bilux::Error::from)?;
         let (now, home) = (Instant::now(), Eye::of(session.job()));
         let mut stage = Stage {
             home,
@@ -126,6 +130,7 @@ impl Stage {
             shown: Shown::Picture,
             layers: Vec::new(),
             denoiser: None,
+            for_previews,
             is_moved: false,
             size,
             level: Level::Full,

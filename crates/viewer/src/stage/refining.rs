@@ -1,6 +1,7 @@
 //! How a picture comes about: small and soon at first, then larger, then refined.
 
 use super::pace::divided;
+use super::show::Shown;
 use super::{Level, Stage};
 use crate::frame::{Facts, Frame};
 use crate::inbox::Inbox;
@@ -43,10 +44,23 @@ impl Stage {
         self.enter(Level::Preview(self.pace.divisor(self.size)))
     }
 
+    /// True if what is shown is denoised: small previews always are, or little could be seen in them; the picture if that
+    /// is asked for. A preview in full size soon gives way to the picture.
+    pub(super) fn denoises(&self) -> bool {
+        match self.level {
+            Level::Preview(1) => false,
+            Level::Preview(_) => {
+                self.shown == Shown::Picture && !self.session.job().settings().integrator.classic
+            }
+            Level::Full => self.denoiser.is_some(),
+        }
+    }
+
     /// Goes on with another level.
     fn enter(&mut self, level: Level) -> Result<(), Error> {
         let begun = Instant::now();
         self.level = level;
+        self.choose_layers()?;
         if self.session.apply(Edit::Settings(self.settings_for(level)))? || self.session.samples() == 0 {
             self.facts.picture += 1;
             (self.meter, self.facts.noise) = (NoiseMeter::default(), None);
@@ -120,8 +134,8 @@ impl Stage {
     fn publish(&mut self) -> Result<(), Error> {
         let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
         let is_preview = self.level != Level::Full;
-        // A preview in full size soon gives way to the picture.
-        let denoiser = self.denoiser.as_ref().filter(|_| self.level != Level::Preview(1));
+        let chosen = self.denoiser.as_ref().unwrap_or(&self.for_previews);
+        let denoiser = self.denoises().then_some(chosen);
         let (picture, options) = self.shown.of(job, outcome, denoiser)?;
         if !is_preview && self.session.samples() > 1 {
             self.facts.noise =

@@ -126,11 +126,11 @@ impl Stage {
         self.choose_layers()
     }
 
-    /// Keeps the layers that are shown, or that the denoiser looks at.
-    fn choose_layers(&mut self) -> Result<(), bilux::Error> {
+    /// Keeps the layers that are shown, or that a denoiser looks at.
+    pub(super) fn choose_layers(&mut self) -> Result<(), bilux::Error> {
         let shown = if let Shown::Layer(aov) = self.shown { Some(aov) } else { None };
-        let guides = self.denoiser.iter().flat_map(|_| FOR_DENOISERS);
-        let wanted: Vec<Aov> = shown.into_iter().chain(guides).collect();
+        let guides = if self.denoises() { &FOR_DENOISERS[..] } else { &[] };
+        let wanted: Vec<Aov> = shown.into_iter().chain(guides.iter().copied()).collect();
         if wanted != self.layers {
             self.session.with_layers(&wanted)?;
             self.layers = wanted;
