@@ -20,6 +20,7 @@ const SUITES: &[(&str, &[&str])] = &[
     ("bench", &["bilux-bench"]),
     ("cli", &["bilux-cli"]),
     ("validation", &["bilux-validation"]),
+    ("viewer", &["bilux-viewer"]),
 ];
 
 /// Seconds: a mutant that loops is stopped after this time, and no test takes as long by itself.
