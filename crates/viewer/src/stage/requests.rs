@@ -6,31 +6,33 @@ use crate::eye::{Eye, point_at};
 use crate::inbox::{QUESTIONS, Waiting};
 use crate::message::{Move, Request};
 use bilux::pictures::denoise::{Task, denoiser};
-use bilux::scene::Parameters;
+use bilux::scene::{Parameters, Span, Value};
 use bilux::transport::aovs::Aov;
 use bilux::{Edit, Session};
 
 impl Stage {
-    /// Does what is asked for.
+    /// Does what is asked for. What cannot be done keeps nothing else from being done: others may have asked for that.
     pub(super) fn serve(&mut self, waiting: Waiting) {
         let Waiting { moves, size, settings, shown, edits, questions, reload } = waiting;
         let changes = !moves.is_empty() || !settings.0.is_empty() || !edits.is_empty();
         if changes || size.is_some() || shown.is_some() || reload {
             self.problem = None;
-            let mut result = Ok(());
             if reload {
-                result = self.reload();
+                let reloaded = self.reload();
+                self.note(reloaded);
             }
             moves.iter().for_each(|it| self.make_move(it));
             self.size = size.unwrap_or(self.size);
-            let result = result
-                .and_then(|()| self.set(settings))
-                .and_then(|()| self.show(shown))
-                .and_then(|()| edits.into_iter().try_for_each(|edit| self.edit(edit)))
-                .and_then(|()| self.begin().map_err(|error| error.to_string()));
-            if let Err(problem) = result {
-                self.problem = Some(problem);
+            let set = self.set(settings);
+            self.note(set);
+            let showed = self.show(shown);
+            self.note(showed);
+            for edit in edits {
+                let edited = self.edit(edit);
+                self.note(edited);
             }
+            let begun = self.begin().map_err(|error| error.to_string());
+            self.note(begun);
             self.publish_state();
         }
         // What waits for a picture is asked again by those who still want it.
@@ -38,6 +40,13 @@ impl Stage {
         let many = self.questions.len().saturating_sub(QUESTIONS);
         self.questions.drain(..many);
         self.answer_waiting();
+    }
+
+    /// Keeps the first problem, for the page.
+    fn note(&mut self, result: Result<(), String>) {
+        if let Err(problem) = result {
+            self.problem.get_or_insert(problem);
+        }
     }
 
     /// Moves the camera.
@@ -138,19 +147,29 @@ impl Stage {
         Ok(())
     }
 
-    /// Changes settings that are offered.
+    /// Changes settings, all at once if that is possible; otherwise one by one, without those that are refused.
     fn set(&mut self, settings: Parameters) -> Result<(), String> {
-        if settings.0.is_empty() {
+        let is_offered = |(key, ..): &(String, _, _)| crate::catalogue::is_offered(key);
+        let (offered, others): (Vec<_>, Vec<_>) = settings.0.into_iter().partition(is_offered);
+        let refuse =
+            |(key, ..): &(String, _, _)| Err(format!("'{key}' is not a setting that can be changed here"));
+        let mut set = self.set_together(&offered);
+        if set.is_err() && offered.len() > 1 {
+            set =
+                offered.iter().fold(Ok(()), |set, one| set.and(self.set_together(std::slice::from_ref(one))));
+        }
+        others.first().map_or(Ok(()), refuse).and(set)
+    }
+
+    /// Changes all of these settings, or none.
+    fn set_together(&mut self, settings: &[(String, Value, Span)]) -> Result<(), String> {
+        if settings.is_empty() {
             return Ok(());
         }
         let (before, eye) = (self.user.clone(), (self.eye, self.is_moved));
-        let mut changes_camera = false;
-        for (key, value, _) in settings.0 {
-            if !crate::catalogue::is_offered(&key) {
-                return Err(format!("'{key}' is not a setting that can be changed here"));
-            }
-            changes_camera |= key == "camera";
-            self.user.set(&key, value);
+        let changes_camera = settings.iter().any(|(key, ..)| key == "camera");
+        for (key, value, _) in settings {
+            self.user.set(key, value.clone());
         }
         if changes_camera {
             self.is_moved = false;
@@ -164,5 +183,43 @@ impl Stage {
             self.go_home(true);
         }
         applied.map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Options;
+    use bilux::scene::Spec;
+    use std::sync::Arc;
+
+    /// Several browsers may ask at once, and one of them for what cannot be done.
+    #[test]
+    fn what_is_refused_keeps_nothing_else_from_being_done() {
+        let mut settings = Parameters::default();
+        settings.set("size", "16x12");
+        settings.set("integrator", "path");
+        let options = Options {
+            address: "127.0.0.1:0".parse().unwrap(),
+            title: String::new(),
+            may_edit: false,
+            settings,
+            max_memory: 1 << 30,
+            command: Vec::new(),
+            open: Box::new(|| bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())),
+        };
+        let inbox = Arc::new(crate::inbox::Inbox::default());
+        let mut stage = Stage::new(options, inbox, Arc::default(), Arc::default()).unwrap();
+        let mut asked =
+            Waiting { size: Some([8, 6]), shown: Some("nothing".to_owned()), ..Waiting::default() };
+        for (key, value) in [("seed", 5.into()), ("output", 1.into()), ("integrator", Value::from("pathh"))] {
+            asked.settings.set(key, value);
+        }
+        asked.edits.push(Request::Undo);
+        stage.serve(asked);
+        assert_eq!(stage.problem.as_deref(), Some("'output' is not a setting that can be changed here"));
+        let settings = stage.session.job().settings();
+        assert_eq!((settings.seed, settings.integrator.entry.name), (5, "path"));
+        assert!(settings.width <= 8 && stage.size == [8, 6], "{}x{}", settings.width, settings.height);
     }
 }
