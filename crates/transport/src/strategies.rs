@@ -46,7 +46,7 @@ pub struct StrategyPicture {
 
 /// Renders the requested samples, technique by technique.
 ///
-/// `None` when it was cancelled, or the integrator has no techniques ([`PixelIntegrator::has_strategies`]). It traces
+/// `None` when it was cancelled, or the integrator has no techniques (`has_strategies`). It traces
 /// the same paths as [`crate::render()`], whatever may have ended that early.
 ///
 /// # Errors

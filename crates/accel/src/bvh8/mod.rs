@@ -23,7 +23,7 @@ use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, registry::Entry};
-use kernel::{NodeFormat, TreeView, Wide};
+use kernel::{Blocker, NodeFormat, TreeView, Wide};
 use layout::Ref;
 use mapped::Units;
 use summary::TreeSummary;
@@ -70,6 +70,17 @@ impl Bvh8 {
     fn view(&self) -> Option<TreeView<'_>> {
         TreeView::of(&self.units, &self.outline)
     }
+
+    /// Answers each ray by what blocks it.
+    fn each_blocker<A>(&self, rays: &[Ray], query: &Query, answers: &mut [A], answer: impl Fn(Blocker) -> A) {
+        let mut blockers = [None; RAYS_AT_A_TIME];
+        for (rays, answers) in rays.chunks(RAYS_AT_A_TIME).zip(answers.chunks_mut(RAYS_AT_A_TIME)) {
+            if let Some(view) = self.view() {
+                kernel::any_each(self.level, view, rays, query, &mut blockers[..answers.len()]);
+            }
+            answers.iter_mut().zip(rays).zip(&blockers).for_each(|((it, _), blocker)| *it = answer(*blocker));
+        }
+    }
 }
 
 impl Traverse for Bvh8 {
@@ -93,18 +104,12 @@ impl Traverse for Bvh8 {
     }
 
     fn blocker_each(&self, rays: &[Ray], query: &Query, blockers: &mut [Option<Primitive>]) {
-        match self.view() {
-            Some(view) => kernel::any_each(self.level, view, rays, query, blockers),
-            None => blockers.iter_mut().zip(rays).for_each(|(blocker, _)| *blocker = None),
-        }
+        let on = |blocker| Primitive { instance: 0, index: kernel::primitive(blocker) };
+        self.each_blocker(rays, query, blockers, |blocker| blocker.map(on));
     }
 
     fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
-        let mut blockers = [None; RAYS_AT_A_TIME];
-        for (rays, hits) in rays.chunks(RAYS_AT_A_TIME).zip(hits.chunks_mut(RAYS_AT_A_TIME)) {
-            self.blocker_each(rays, query, &mut blockers[..hits.len()]);
-            rays.iter().zip(hits).zip(&blockers).for_each(|((_, hit), blocker)| *hit = blocker.is_some());
-        }
+        self.each_blocker(rays, query, hits, |blocker| blocker.is_some());
     }
 
     fn bounds(&self) -> Aabb {

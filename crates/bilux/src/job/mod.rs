@@ -207,7 +207,7 @@ impl Job {
         self.render.count_work = true;
     }
 
-    /// Takes samples that also give each pixel's confidence interval ([`Outcome::interval`]). These are different
+    /// Takes samples that also give each pixel's confidence interval ([`Rendered::interval`]). These are different
     /// samples, so parts of such a picture do not merge with parts of an ordinary one.
     ///
     /// # Errors

@@ -155,8 +155,10 @@ impl Stage {
             |(key, ..): &(String, _, _)| Err(format!("'{key}' is not a setting that can be changed here"));
         let mut set = self.set_together(&offered);
         if set.is_err() && offered.len() > 1 {
-            set =
-                offered.iter().fold(Ok(()), |set, one| set.and(self.set_together(std::slice::from_ref(one))));
+            set = Ok(());
+            for one in &offered {
+                set = set.and(self.set_together(std::slice::from_ref(one)));
+            }
         }
         others.first().map_or(Ok(()), refuse).and(set)
     }

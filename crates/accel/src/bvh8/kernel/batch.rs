@@ -4,12 +4,19 @@
 use super::level::BatchLevel;
 use super::node_format::Wide;
 use super::packet::{self, Packet};
-use super::{TreeView, body, plain, stream};
+use super::{TreeView, body, plain, primitive, stream};
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
+use std::num::NonZero;
 
 /// Batches of fewer rays than this are traced one by one, which is faster.
 const FEW: usize = 8;
+
+/// A hit somewhere on what a ray hits.
+#[inline(always)]
+pub(super) fn somewhere(blocker: NonZero<u32>) -> Hit {
+    on(primitive(blocker))
+}
 
 /// A hit somewhere on a primitive.
 #[inline(always)]
@@ -63,7 +70,7 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: TreeView<'_>, ray: &Ray, que
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {
-            body::any::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters).map(on)
+            body::any::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters).map(somewhere)
         } else {
             body::closest::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters)
         }
@@ -84,7 +91,7 @@ fn irregular<const ANY: bool>(
         left &= left - 1;
         if ANY {
             let found = plain::any::<Wide, _>(view, &rays[index], query, &mut NoCounters);
-            answer(index, found.map(on));
+            answer(index, found.map(somewhere));
         } else {
             answer(index, plain::closest::<Wide, _>(view, &rays[index], query, &mut NoCounters));
         }

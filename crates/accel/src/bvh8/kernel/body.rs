@@ -3,7 +3,7 @@
 use super::level::{Boxes, Level, lanes};
 use super::node_format::NodeFormat;
 use super::stack::{Stack, StackStorage};
-use super::{TreeView, leaf, plain};
+use super::{Blocker, TreeView, leaf, plain};
 use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
@@ -171,7 +171,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> Option<u32> {
+) -> Blocker {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::prepare(ray, &view) {
@@ -196,7 +196,7 @@ pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: 
     start: Start,
     query: &Query,
     count: &mut C,
-) -> Option<u32> {
+) -> Blocker {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         let base = view.units.as_ptr().cast::<u8>();

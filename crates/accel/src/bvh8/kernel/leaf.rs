@@ -6,6 +6,7 @@
 use super::block::{BlockRay, Crossings};
 use super::level::Level;
 use super::node_format::NodeFormat;
+use super::{Blocker, blocker};
 use crate::bvh8::layout::{LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
@@ -95,7 +96,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
-) -> Option<u32> {
+) -> Blocker {
     // SAFETY: as the caller promises.
     unsafe {
         let block_ray = BlockRay::new::<L>(black_box(ray));
@@ -112,10 +113,11 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
             }
             if PLAIN {
                 let lane = crossings.mask().trailing_zeros() as usize & (LANES - 1);
-                return Some(primitive::<F>(block, lane));
+                return blocker(primitive::<F>(block, lane));
             }
-            if let Some(primitive) = accepted::<F>(block, &crossings, query) {
-                return Some(primitive);
+            let found = accepted::<F>(block, &crossings, query);
+            if found.is_some() {
+                return found;
             }
         }
     }
@@ -127,14 +129,14 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(never)]
-unsafe fn accepted<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> Option<u32> {
+unsafe fn accepted<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> Blocker {
     // SAFETY: as the caller promises.
     let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
     (0..LANES).filter(|lane| mask >> lane & 1 == 1).find_map(|lane| {
         // SAFETY: as above.
         let primitive = unsafe { primitive::<F>(block, lane) };
         let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
-        query.accepts(&hit).then_some(primitive)
+        if query.accepts(&hit) { blocker(primitive) } else { None }
     })
 }
 

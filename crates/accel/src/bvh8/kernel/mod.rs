@@ -45,7 +45,7 @@ macro_rules! entries {
             outline: &super::TreeSummary,
             ray: &$crate::Ray,
             count: &mut C,
-        ) -> Option<u32> {
+        ) -> $crate::bvh8::kernel::Blocker {
             let view = super::TreeView { units, outline };
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
@@ -59,7 +59,7 @@ macro_rules! entries {
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
-        ) -> Option<u32> {
+        ) -> $crate::bvh8::kernel::Blocker {
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, F, C, false>(view, ray, query, count) }
         }
@@ -93,11 +93,12 @@ macro_rules! batch_entries {
             view: super::TreeView<'_>,
             rays: &[$crate::Ray],
             query: &$crate::Query,
-            blockers: &mut [Option<$crate::Primitive>],
+            blockers: &mut [$crate::bvh8::kernel::Blocker],
         ) {
             let rays = &rays[..rays.len().min(blockers.len())];
-            let note =
-                |index: usize, hit: Option<$crate::Hit>| blockers[index] = hit.map(|hit| hit.primitive());
+            let note = |index: usize, hit: Option<$crate::Hit>| {
+                blockers[index] = hit.and_then(|hit| super::blocker(hit.primitive));
+            };
             // SAFETY: as the caller promises.
             unsafe { super::batch::each::<$level, true>(view, rays, query, note) }
         }
@@ -140,10 +141,26 @@ use super::layout::Unit;
 use super::summary::TreeSummary;
 use crate::counters::{Count, NoCounters};
 use crate::cpu_level::CpuLevel;
-use crate::ray::{Hit, Primitive, Query, Ray};
+use crate::ray::{Hit, Query, Ray};
+use std::num::NonZero;
 
 pub(super) use compact::Compact;
 pub(super) use node_format::{NodeFormat, Wide};
+
+/// A primitive that a ray hits, if there is one: its complement, so that the whole fits into one register. No primitive
+/// has the number `u32::MAX`.
+pub(super) type Blocker = Option<NonZero<u32>>;
+
+#[inline(always)]
+fn blocker(primitive: u32) -> Blocker {
+    NonZero::new(!primitive)
+}
+
+/// The primitive of a [`Blocker`].
+#[inline(always)]
+pub(super) fn primitive(blocker: NonZero<u32>) -> u32 {
+    !blocker.get()
+}
 
 /// The tree to traverse. The root is a node or a leaf of `units`, and so is everything that it refers to.
 #[derive(Clone, Copy)]
@@ -217,7 +234,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> Option<u32> {
+) -> Blocker {
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx512 => ask!(avx512, any, any_by, view, ray, query, count),
@@ -235,7 +252,7 @@ fn any_at_lower_levels<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> Option<u32> {
+) -> Blocker {
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Sse42 => ask!(sse42, any, any_by, view, ray, query, count),
@@ -272,7 +289,7 @@ pub(super) fn any_each(
     view: TreeView<'_>,
     rays: &[Ray],
     query: &Query,
-    blockers: &mut [Option<Primitive>],
+    blockers: &mut [Blocker],
 ) {
     match level {
         #[cfg(target_arch = "x86_64")]
@@ -283,8 +300,7 @@ pub(super) fn any_each(
         CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, blockers) },
         _ => {
             for (ray, blocker) in rays.iter().zip(blockers) {
-                let index = any::<Wide, _>(level, view, ray, query, &mut NoCounters);
-                *blocker = index.map(|index| Primitive { instance: 0, index });
+                *blocker = any::<Wide, _>(level, view, ray, query, &mut NoCounters);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The reference that the wide kernels are tested against, for every machine and every ray: the box tests of
 //! [`SlabRay`] and the triangle test itself.
 
-use super::TreeView;
 use super::node_format::NodeFormat;
+use super::{Blocker, TreeView, blocker};
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
 use crate::counters::Count;
@@ -45,7 +45,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
     ray: &Ray,
     query: &Query,
     count: &mut C,
-) -> Option<u32> {
+) -> Blocker {
     let (prepared, slabs) = prepare(&view, ray)?;
     let limit = slabs.limit(ray.t_max);
     let mut found = None;
@@ -57,7 +57,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
             }
             count.triangles(1);
             if hits(&prepared, query, &corners, primitive) {
-                found = Some(primitive);
+                found = blocker(primitive);
                 return ControlFlow::Break(());
             }
         }

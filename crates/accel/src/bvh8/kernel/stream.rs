@@ -10,7 +10,7 @@ use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
 use super::packet::{Lane, Packet, Ready, Tails};
 use super::stack::{Stack, StackStorage};
-use super::{TreeView, leaf};
+use super::{TreeView, leaf, primitive};
 use crate::bvh8::layout::Ref;
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
@@ -55,7 +55,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
                         query,
                         &mut NoCounters,
                     );
-                    found.map(batch::on)
+                    found.map(batch::somewhere)
                 } else {
                     body::search::<L, Wide, NoCounters, PLAIN>(view, ray, start, query, &mut NoCounters)
                 },
@@ -234,7 +234,7 @@ impl<'r> Walk<'r> {
         unsafe {
             if ANY {
                 let found = leaf::any::<L, Wide, PLAIN>(self.ray, leaf, query);
-                self.nearest.primitive = found.unwrap_or(u32::MAX);
+                self.nearest.primitive = found.map_or(u32::MAX, primitive);
                 return found.is_some();
             }
             leaf::closest::<L, Wide, PLAIN>(self.ray, leaf, query, &mut self.nearest);
