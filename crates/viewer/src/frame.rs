@@ -32,6 +32,8 @@ pub(crate) struct Facts {
     pub(crate) noise: Option<f32>,
     /// Whether it is one of the small, quick pictures that are shown while the camera moves.
     pub(crate) is_preview: bool,
+    /// What is shown: `picture`, or a layer of it.
+    pub(crate) shown: &'static str,
     /// Whether the picture rests: it is stored without loss.
     pub(crate) rests: bool,
     /// What the integrator has chosen, if it chooses.
@@ -75,6 +77,7 @@ fn header(number: u64, picture: &Picture, format: &str, full: [u32; 2], facts: &
         "rays": facts.rays,
         "noise": facts.noise,
         "preview": facts.is_preview,
+        "shown": facts.shown,
         "rests": facts.rests,
         "choice": facts.choice,
         "eye": facts.eye,

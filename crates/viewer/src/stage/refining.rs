@@ -145,6 +145,7 @@ impl Stage {
         let pixels = picture.width() as f64 * picture.height() as f64;
         let point = |p: bilux::math::DVec3| p.to_array();
         let facts = Facts {
+            shown: self.shown.name(),
             samples: self.session.samples(),
             total: job.samples_per_pixel(),
             rate: pixels * f64::from(self.session.samples()) / seconds,
