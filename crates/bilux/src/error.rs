@@ -1,5 +1,6 @@
 //! What can go wrong in any part of Bilux.
 
+use crate::checkpoint::CheckpointError;
 use crate::encoding::EncodingError;
 use crate::memory::Memory;
 use bilux_formats::FormatError;
@@ -42,6 +43,9 @@ pub enum Error {
     /// A scene cannot be encoded or decoded.
     #[error(transparent)]
     Encoding(#[from] EncodingError),
+    /// A checkpoint cannot be used.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// Settings that contradict each other.
     #[error("{0}")]
     Settings(String),

@@ -18,6 +18,7 @@
 pub mod budget;
 mod built;
 mod camera_choice;
+pub mod checkpoint;
 mod display;
 pub mod encoding;
 pub mod error;
@@ -37,6 +38,7 @@ pub mod settings;
 mod shadow;
 pub mod strategies;
 pub mod tables;
+pub mod watch;
 mod writing;
 
 pub use bilux_accel as accel;

@@ -5,13 +5,14 @@ pub use crate::comparison::Compare;
 pub use crate::denoising::Denoise;
 pub use crate::farming::Farm;
 use crate::help;
+use crate::lasting::Lasting;
 pub use crate::measuring::{Bench, BenchKind};
 use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
     parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
-    parse_time, parse_vector,
+    parse_time, parse_turntable, parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -146,15 +147,17 @@ pub enum Command {
     bilux render fox.glb -o fox.png --animation Walk --at 0.5\n  \
     bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
     bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
-    bilux render scene.toml -o a.exr --samples 0..64    One half here,\n  \
-    bilux render scene.toml -o b.exr --samples 64..128  and the other half elsewhere:\n  \
-    bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
+    bilux render scene.toml -o scene.png --noise 0.5% --resume    Go on if it was interrupted\n  \
+    bilux render scene.toml -o draft.png --fast --watch --preview\n  \
+    bilux render scene.toml -o a.exr --spp 128 --samples 0..64    One half here,\n  \
+    bilux render scene.toml -o b.exr --spp 128 --samples 64..128  and the other half elsewhere:\n  \
+    bilux merge a.exr b.exr -o scene.png                          Merge them\n\n\
     Exit status:\n  \
     0         Every picture was written\n  \
     1         Something failed\n  \
     2         The command line is wrong\n  \
     124       --timeout ended it; the picture so far is saved\n  \
-    130, 143  Ctrl-C or SIGTERM ended it; the picture so far is saved\n  \
+    130, 143  Ctrl-C or SIGTERM ended it; the picture so far is saved, and --resume goes on\n  \
     141       The reader of standard output closed it")]
 pub struct Render {
     /// The scene files to render (`bilux list formats`); `-` reads a scene from standard input
@@ -196,6 +199,9 @@ pub struct Render {
     /// Render frames A to B, inclusive, at 24 frames per second (`--set fps=30` changes that)
     #[arg(long, value_name = "A-B", conflicts_with = "turntable", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
+    /// Render N pictures from all around the model, a full turn
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_turntable, help_heading = help::STUDIO)]
+    pub turntable: Option<u32>,
     /// Render only a window of the picture: its left and upper edge, its width and its height, in pixels
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
     pub crop: Option<[u32; 4]>,
@@ -271,6 +277,8 @@ pub struct Render {
     /// test, which is slower
     #[arg(long, value_name = "FILE.json|-", help_heading = help::OUTPUT)]
     pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub lasting: Lasting,
     /// Trace one sample of a pixel again and print what happens along its path
     #[arg(long, value_name = "X,Y,SAMPLE", allow_hyphen_values = true, value_parser = parse_replay, help_heading = help::OUTPUT)]
     pub replay: Option<[u32; 3]>,

@@ -14,6 +14,8 @@ pub struct Interrupt {
     signal: Arc<AtomicUsize>,
     /// Whether there is a picture that can be saved.
     renders: Arc<AtomicBool>,
+    /// Whether what is being rendered has changed in the meantime.
+    superseded: Arc<AtomicBool>,
 }
 
 /// Takes the place of a signal's number when the time is up.
@@ -36,12 +38,12 @@ impl Interrupt {
             signal_hook::flag::register(wanted, again)?;
             signal_hook::flag::register_usize(wanted, signal.clone(), wanted as usize)?;
         }
-        Ok(Interrupt { signal, renders: Arc::default() })
+        Ok(Interrupt { signal, renders: Arc::default(), superseded: Arc::default() })
     }
 
     /// Stops the work after this time. What is rendered by then is saved; if nothing is, the program exits at once.
     pub fn end_after(&self, timeout: Duration) {
-        let Interrupt { signal, renders } = self.clone();
+        let Interrupt { signal, renders, .. } = self.clone();
         std::thread::spawn(move || {
             std::thread::sleep(timeout);
             signal.store(TIMEOUT, Ordering::Relaxed);
@@ -70,9 +72,24 @@ impl Interrupt {
         self.signal.load(Ordering::Relaxed) == TIMEOUT
     }
 
+    /// Says whether what is being rendered has changed: then it should stop, and nothing be saved.
+    pub fn supersede(&self, yes: bool) {
+        self.superseded.store(yes, Ordering::Relaxed);
+    }
+
+    /// True if only a change stops the work.
+    pub fn is_superseded(&self) -> bool {
+        self.superseded.load(Ordering::Relaxed) && !self.is_signalled()
+    }
+
+    /// True after a signal or a timeout.
+    pub fn is_signalled(&self) -> bool {
+        self.signal.load(Ordering::Relaxed) != 0
+    }
+
     /// True when the work should stop.
     pub fn is_requested(&self) -> bool {
-        self.signal.load(Ordering::Relaxed) != 0
+        self.is_signalled() || self.superseded.load(Ordering::Relaxed)
     }
 
     /// Returns 130 or 143 after a signal, 124 after a timeout, and 0 otherwise.

@@ -77,6 +77,11 @@ pub fn message(error: &anyhow::Error) -> String {
     text + &error.chain().find_map(suggested_flag).unwrap_or_default()
 }
 
+/// An error of a library as text.
+pub fn error_text(error: &dyn Display) -> String {
+    without_error_numbers(&error.to_string())
+}
+
 /// Removes the error number that the standard library appends to the system's messages: `(os error 2)`.
 fn without_error_numbers(text: &str) -> String {
     let mut parts = text.split(" (os error ");

@@ -65,6 +65,11 @@ impl Report {
         self.begun.elapsed().as_secs_f64()
     }
 
+    /// The bar, if there is one.
+    pub fn bar(&self) -> Option<ProgressBar> {
+        self.bar.clone()
+    }
+
     fn rate(&self) -> f64 {
         self.rays.load(Ordering::Relaxed) as f64 / self.begun.elapsed().as_secs_f64().max(1e-9)
     }
@@ -75,12 +80,11 @@ impl Report {
             return;
         }
         *last = Instant::now();
-        let share = samples as f64 / self.total.load(Ordering::Relaxed).max(1) as f64;
-        let left = self.begun.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-9);
+        let (percent, left) =
+            remaining(samples, self.total.load(Ordering::Relaxed), self.begun.elapsed().as_secs_f64());
         output::eprint(format_args!(
-            "{}: {:.0}%, {:.2} Mrays/s, {left:.0} s left",
+            "{}: {percent:.0}%, {:.2} Mrays/s, {left:.0} s left",
             self.label,
-            share * 100.0,
             self.rate() / 1e6
         ));
     }
@@ -98,7 +102,7 @@ impl Progress for Report {
         let samples = self.samples.fetch_add(samples, Ordering::Relaxed) + samples;
         self.rays.fetch_add(rays, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
-            bar.set_position(samples);
+            bar.set_position(samples.min(self.total.load(Ordering::Relaxed)));
             bar.set_message(format!("{:.2} Mrays/s", self.rate() / 1e6));
         } else if self.lines {
             self.line(samples);
@@ -107,5 +111,24 @@ impl Progress for Report {
 
     fn is_cancelled(&self) -> bool {
         self.interrupt.is_requested()
+    }
+}
+
+/// Percent done and seconds left. Where noise ends a render, the total is an estimate, and may turn out to be too low.
+fn remaining(samples: u64, total: u64, seconds: f64) -> (f64, f64) {
+    let share = (samples as f64 / total.max(1) as f64).min(1.0);
+    (share * 100.0, seconds * (1.0 - share) / share.max(1e-9))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimate_that_was_too_low_is_never_exceeded() {
+        assert_eq!(remaining(25, 100, 5.0), (25.0, 15.0));
+        assert_eq!(remaining(102, 100, 5.0), (100.0, 0.0));
+        assert!(remaining(102, 100, 5.0).1.is_sign_positive(), "no -0 s are left");
+        assert_eq!(remaining(0, 0, 5.0).0, 0.0);
     }
 }

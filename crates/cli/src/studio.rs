@@ -1,7 +1,7 @@
 //! The options for the studio around a model.
 
 use crate::settings_from::from_flag;
-use crate::values::{parse_focal, parse_turntable, parse_zoom};
+use crate::values::{parse_focal, parse_zoom};
 use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
@@ -50,9 +50,6 @@ pub struct StudioArguments {
     /// backdrop, if the file has neither camera nor lights]
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
-    /// Render N pictures from all around the model, a full turn
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_turntable, help_heading = help::STUDIO)]
-    pub turntable: Option<u32>,
 }
 
 impl StudioArguments {

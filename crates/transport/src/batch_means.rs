@@ -5,6 +5,7 @@
 //! stratification gains. The film does not have to store squares, and light paths, which have no samples of a pixel of
 //! their own, are treated like camera paths.
 
+use crate::bytes::{Rest, put_counts, put_floats};
 use crate::error::FilmError;
 use crate::film::Film;
 use bilux_math::Rgb;
@@ -134,6 +135,58 @@ impl BatchMeans {
                 pixels.clone().zip(some).map(|(i, squares)| *squares * share(i)).collect()
             })
         })
+    }
+}
+
+impl BatchMeans {
+    /// Appends the batches so far.
+    pub(crate) fn put(&self, bytes: &mut Vec<u8>) {
+        put_counts(bytes, &[self.samples, self.weights.to_bits()]);
+        for Layer { counts, means, squares } in &self.layers {
+            match counts {
+                Counts::Same(count) => put_counts(bytes, &[0, *count]),
+                Counts::Each(counts) => {
+                    put_counts(bytes, &[1, counts.len() as u32]);
+                    put_counts(bytes, counts);
+                }
+            }
+            for pixels in [means, squares] {
+                put_counts(bytes, &[pixels.len() as u32]);
+                pixels.iter().for_each(|pixel| put_floats(bytes, &pixel.to_array()));
+            }
+        }
+    }
+
+    /// Reads the batches of a film of so many pixels.
+    pub(crate) fn read(rest: &mut Rest, pixels: usize) -> Result<BatchMeans, FilmError> {
+        let wrong =
+            || FilmError::NotAFilm { what: "its batches of samples are not those of its pixels".to_owned() };
+        let [samples, weights] = rest.numbers()?;
+        let mut batches = BatchMeans { samples, weights: f32::from_bits(weights), ..BatchMeans::default() };
+        for layer in &mut batches.layers {
+            let [kind, count] = rest.numbers()?;
+            layer.counts = match kind {
+                0 => Counts::Same(count),
+                1 if count as usize == pixels => {
+                    let mut counts = crate::film::zeroed(pixels)?;
+                    rest.counts(&mut counts)?;
+                    Counts::Each(counts)
+                }
+                _ => return Err(wrong()),
+            };
+            for kept in [&mut layer.means, &mut layer.squares] {
+                let [length] = rest.numbers()?;
+                if length != 0 && length as usize != pixels {
+                    return Err(wrong());
+                }
+                let floats = rest.floats(3 * length as usize)?;
+                *kept = floats.as_chunks::<3>().0.iter().map(|rgb| Rgb::from_array(*rgb)).collect();
+            }
+            if !layer.squares.is_empty() && layer.means.is_empty() {
+                return Err(wrong());
+            }
+        }
+        Ok(batches)
     }
 }
 

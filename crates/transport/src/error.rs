@@ -99,6 +99,27 @@ pub enum RenderError {
              integrator, such as path"
     )]
     IntervalOfPattern,
+    /// A checkpoint was made by a render that did not need something.
+    #[error("the checkpoint does not hold {what}: render as before, or begin anew")]
+    CheckpointLacks {
+        /// What is missing.
+        what: &'static str,
+    },
+    /// A checkpoint has more samples than are asked for.
+    #[error(
+        "the checkpoint already holds up to {samples} samples per pixel, which is more than is asked for: ask for more \
+         samples or less noise, or begin anew"
+    )]
+    CheckpointBeyond {
+        /// Samples per pixel in the checkpoint, where there are most.
+        samples: u32,
+    },
+    /// A checkpoint belongs to another picture.
+    #[error("the checkpoint is that of another picture: {what}")]
+    OtherCheckpoint {
+        /// How it differs.
+        what: String,
+    },
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),

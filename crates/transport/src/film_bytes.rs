@@ -1,5 +1,6 @@
 //! Films as plain bytes, to be sent between processes: faster than an EXR, and for nobody else to read.
 
+use crate::bytes::{Rest, put_counts, put_sums, put_text};
 use crate::error::FilmError;
 use crate::failures::PixelFailures;
 use crate::film::{Film, zeroed};
@@ -8,9 +9,6 @@ use crate::window::Window;
 
 /// What the bytes begin with, and the version of their form.
 const MAGIC: &[u8; 12] = b"bilux film 1";
-
-/// The maximum length of the texts in a film, in bytes.
-const MAX_TEXT: usize = 1 << 20;
 
 impl Film {
     /// All of the film as bytes.
@@ -21,23 +19,15 @@ impl Film {
         let Window { x, y, width, height } = self.window();
         let has = [!self.splats.is_empty(), !self.failures.is_empty()].map(u32::from);
         let numbers = [self.width(), self.height(), x, y, width, height, has[0], has[1]];
-        numbers.iter().for_each(|number| bytes.extend_from_slice(&number.to_le_bytes()));
+        put_counts(&mut bytes, &numbers);
         bytes.extend_from_slice(&self.scale_exponent().to_le_bytes());
-        for text in [self.fingerprint.clone(), coverage_text(self.coverage())] {
-            bytes.extend_from_slice(&(text.len() as u32).to_le_bytes());
-            bytes.extend_from_slice(text.as_bytes());
-        }
-        let sums = |bytes: &mut Vec<u8>, sums: &[[i64; 3]]| {
-            sums.iter().for_each(|sum| bytes.extend_from_slice(sum.map(i64::to_le_bytes).as_flattened()));
-        };
-        let counts = |bytes: &mut Vec<u8>, counts: &[u32]| {
-            counts.iter().for_each(|count| bytes.extend_from_slice(&count.to_le_bytes()));
-        };
-        sums(&mut bytes, &self.sums);
-        counts(&mut bytes, &self.counts);
-        sums(&mut bytes, &self.splats);
-        counts(&mut bytes, &self.iterations);
-        self.failures.iter().for_each(|failures| counts(&mut bytes, &failures.to_array()));
+        put_text(&mut bytes, &self.fingerprint);
+        put_text(&mut bytes, &coverage_text(self.coverage()));
+        put_sums(&mut bytes, &self.sums);
+        put_counts(&mut bytes, &self.counts);
+        put_sums(&mut bytes, &self.splats);
+        put_counts(&mut bytes, &self.iterations);
+        self.failures.iter().for_each(|failures| put_counts(&mut bytes, &failures.to_array()));
         bytes
     }
 
@@ -85,44 +75,6 @@ impl Film {
         }
         film.check_sums()?;
         Ok(film)
-    }
-}
-
-/// Bytes that are still to be read.
-struct Rest<'a>(&'a [u8]);
-
-impl<'a> Rest<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], FilmError> {
-        let Some((taken, rest)) = self.0.split_at_checked(count) else {
-            return Err(not_a_film("its bytes are not complete".to_owned()));
-        };
-        self.0 = rest;
-        Ok(taken)
-    }
-
-    fn numbers<const N: usize>(&mut self) -> Result<[u32; N], FilmError> {
-        let mut numbers = [0; N];
-        self.counts(&mut numbers)?;
-        Ok(numbers)
-    }
-
-    fn counts(&mut self, counts: &mut [u32]) -> Result<(), FilmError> {
-        let (words, _) = self.take(4 * counts.len())?.as_chunks::<4>();
-        counts.iter_mut().zip(words).for_each(|(count, word)| *count = u32::from_le_bytes(*word));
-        Ok(())
-    }
-
-    fn sums(&mut self, sums: &mut [[i64; 3]]) -> Result<(), FilmError> {
-        let (words, _) = self.take(24 * sums.len())?.as_chunks::<8>();
-        sums.iter_mut().flatten().zip(words).for_each(|(sum, word)| *sum = i64::from_le_bytes(*word));
-        Ok(())
-    }
-
-    fn text(&mut self) -> Result<String, FilmError> {
-        let [length] = self.numbers()?;
-        let text = self.take((length as usize).min(MAX_TEXT))?;
-        let text = std::str::from_utf8(text).map_err(|_| not_a_film("its text is not UTF-8".to_owned()))?;
-        Ok(text.to_owned())
     }
 }
 

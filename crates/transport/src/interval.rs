@@ -7,6 +7,7 @@
 //! iteration, as camera subpaths do, so a pixel's interval covers all of its light; what pixels have in common shows in
 //! the interval of a block.
 
+use crate::bytes::{Rest, put_counts, put_floats};
 use crate::error::FilmError;
 use crate::film::{Film, zeroed};
 use crate::window::Window;
@@ -74,6 +75,20 @@ impl Interval {
                 *mean += (light - *mean) * share;
             }
         }
+    }
+
+    /// Appends the replicates so far.
+    pub(crate) fn put(&self, bytes: &mut Vec<u8>) {
+        put_counts(bytes, &self.counts);
+        self.means.iter().for_each(|means| put_floats(bytes, means.as_flattened()));
+    }
+
+    /// Reads the replicates of the pixels of a window.
+    pub(crate) fn read(rest: &mut Rest, window: Window) -> Result<Interval, FilmError> {
+        let counts = rest.numbers()?;
+        let floats = rest.floats(window.pixels().saturating_mul(3 * COUNT))?;
+        let pixels = floats.as_chunks::<3>().0.as_chunks::<COUNT>().0;
+        Ok(Interval { window, counts, means: pixels.to_vec() })
     }
 
     /// The pixels that have an interval.

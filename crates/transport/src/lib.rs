@@ -7,9 +7,11 @@
 pub mod aovs;
 mod batch_means;
 mod bidirectional;
+mod bytes;
 #[cfg(test)]
 extern crate self as bilux_transport;
 mod camera_rays;
+pub mod checkpoint;
 mod classic;
 pub mod emission;
 mod error;
@@ -54,6 +56,7 @@ mod techniques;
 pub mod window;
 
 pub use batch_means::{BatchMeans, push_variance};
+pub use checkpoint::{Checkpoint, Observer, Standing, Unobserved};
 pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
 pub use failures::{SampleFailures, SamplePlace};
@@ -72,7 +75,7 @@ pub use photons::{Merging, Photons};
 pub use pixel_integrator::{CameraSpread, Chooser, LightSubpaths, PixelIntegrator, Plan};
 pub use plan::{Candidate, Choice};
 pub use progress::{Progress, Silent};
-pub use render::{plan, render};
+pub use render::{plan, render, render_from};
 pub use rendered::Rendered;
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;

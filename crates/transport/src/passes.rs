@@ -2,6 +2,7 @@
 
 use crate::bidirectional::{PATHS, QueuedSample, SampleQueue};
 use crate::camera_rays::CameraRays;
+use crate::checkpoint::{Begun, Observer, OpenPass};
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
 use crate::integrators::path::Path;
@@ -9,49 +10,73 @@ use crate::progress::Progress;
 use crate::queue::PathQueue;
 use crate::rendered::Rendered;
 use crate::splats::{Iterations, Splats};
-use crate::window::Window;
+use crate::window::{Coverage, Window};
 use bilux_accel::Counters;
 use bilux_scene::Tracer;
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
 
-/// Runs some passes over all tiles, on all threads.
+/// Who follows the passes.
+#[derive(Clone, Copy)]
+pub(crate) struct Followers<'a> {
+    pub(crate) progress: &'a dyn Progress,
+    pub(crate) observer: &'a dyn Observer,
+    /// Keeps a checkpoint of the film with these passes.
+    pub(crate) keep: &'a (dyn Fn(&mut Film, Begun, Counters) + Sync),
+}
+
+/// Passes over all tiles, of which some jobs may be done.
+pub(crate) struct Passes {
+    /// The side of the tiles, in pixels.
+    pub(crate) side: u32,
+    pub(crate) ranges: Vec<OpenPass>,
+}
+
+impl Passes {
+    /// The passes that take these samples, none of which is begun.
+    pub(crate) fn of(samples: &Range<u32>, side: u32) -> Passes {
+        let open = |samples| OpenPass { samples, done: Vec::new(), splats: None };
+        Passes { side, ranges: passes(samples).into_iter().map(open).collect() }
+    }
+}
+
+/// Runs some passes over all tiles of the `sampled` window, on all threads.
 pub(crate) fn all_passes(
     pool: &rayon::ThreadPool,
     eye: CameraRays,
-    tiles: Vec<Window>,
-    passes: Vec<Range<u32>>,
-    progress: &dyn Progress,
+    sampled: Window,
+    passes: Passes,
+    followers: Followers,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
     let Rendered { film, mut counters, choice, reached, interval, batch_means, .. } = before;
-    let work = Work {
-        eye,
-        progress,
-        tiles,
-        passes,
-        next: AtomicU64::new(0),
-        dropped: Mutex::new(Vec::new()),
-        film: Mutex::new(film),
-        iterations: Mutex::new(BTreeMap::new()),
-        failed: Mutex::new(None),
-    };
-    pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
-    if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(error.into());
+    let mut work = Work::new(eye, sampled, passes, followers, film);
+    loop {
+        pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
+        if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return Err(error.into());
+        }
+        if work.is_complete() {
+            break;
+        }
+        work.keep(counters);
+        if !*work.is_paused.get_mut() {
+            break;
+        }
+        *work.is_paused.get_mut() = false;
     }
     let (film, cancelled) = work.finish();
     Ok(Rendered { film, counters, cancelled, choice, reached, interval, batch_means })
 }
 
 /// Ranges of samples that double in length, so that a first picture appears soon.
-pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
+fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
     let (mut start, mut passes) = (samples.start, Vec::new());
     while start < samples.end {
         let length = (start - samples.start).clamp(1, PASS).min(samples.end - start);
@@ -64,10 +89,15 @@ pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
 /// One render, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
 struct Work<'a> {
     eye: CameraRays<'a>,
-    progress: &'a dyn Progress,
+    followers: Followers<'a>,
+    side: u32,
     tiles: Vec<Window>,
     passes: Vec<Range<u32>>,
+    /// Jobs that were done before.
+    done: HashSet<u64>,
     next: AtomicU64,
+    /// Whether a checkpoint is due: no thread begins a job.
+    is_paused: AtomicBool,
     /// Jobs that were started but not finished.
     dropped: Mutex<Vec<u64>>,
     film: Mutex<Film>,
@@ -94,6 +124,62 @@ impl JobSamples {
 }
 
 impl<'a> Work<'a> {
+    fn new(
+        eye: CameraRays<'a>,
+        sampled: Window,
+        Passes { side, ranges }: Passes,
+        followers: Followers<'a>,
+        film: Film,
+    ) -> Work<'a> {
+        let tiles = sampled.tiles(side);
+        let (mut done, mut iterations) = (HashSet::new(), BTreeMap::new());
+        let mut passes = Vec::with_capacity(ranges.len());
+        for (pass, open) in ranges.into_iter().enumerate() {
+            let jobs = (pass * tiles.len()) as u64..;
+            done.extend(jobs.zip(open.done).filter(|(_, is_done)| *is_done).map(|(job, _)| job));
+            iterations.extend(open.splats.map(|splats| (pass, splats)));
+            passes.push(open.samples);
+        }
+        Work {
+            eye,
+            followers,
+            side,
+            tiles,
+            passes,
+            done,
+            next: AtomicU64::new(0),
+            is_paused: AtomicBool::new(false),
+            dropped: Mutex::new(Vec::new()),
+            film: Mutex::new(film),
+            iterations: Mutex::new(iterations),
+            failed: Mutex::new(None),
+        }
+    }
+
+    fn jobs(&self) -> u64 {
+        (self.tiles.len() * self.passes.len()) as u64
+    }
+
+    /// Takes the next job; `None` when there is none, or none is to be begun.
+    fn next_job(&self) -> Option<u64> {
+        loop {
+            if self.is_paused.load(Ordering::Relaxed) {
+                return None;
+            }
+            if self.followers.observer.wants_checkpoint() {
+                self.is_paused.store(true, Ordering::Relaxed);
+                return None;
+            }
+            let job = self.next.fetch_add(1, Ordering::Relaxed);
+            if job >= self.jobs() {
+                return None;
+            }
+            if !self.done.contains(&job) {
+                return Some(job);
+            }
+        }
+    }
+
     /// Runs one thread's share of the jobs.
     fn run(&self) -> Counters {
         let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
@@ -101,12 +187,7 @@ impl<'a> Work<'a> {
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
         let (mut path_queue, mut sample_queue) = (PathQueue::default(), self.eye.queue());
-        let jobs = (self.tiles.len() * self.passes.len()) as u64;
-        loop {
-            let job = self.next.fetch_add(1, Ordering::Relaxed);
-            if job >= jobs {
-                return tracer.counters;
-            }
+        while let Some(job) = self.next_job() {
             let tile = self.tiles[job as usize % self.tiles.len()];
             let pass = job as usize / self.tiles.len();
             let samples = self.passes[pass].clone();
@@ -126,7 +207,7 @@ impl<'a> Work<'a> {
                 self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
                 return tracer.counters;
             }
-            self.film.lock().unwrap_or_else(PoisonError::into_inner).absorb(&part);
+            self.add(&part);
             if self.eye.integrator.splats()
                 && let Err(error) = self.take_splats(pass, &mut splats)
             {
@@ -134,7 +215,18 @@ impl<'a> Work<'a> {
                 return tracer.counters;
             }
             let taken = tile.pixels() as u64 * samples.len() as u64;
-            self.progress.advance(taken, tracer.counters.rays - rays_before);
+            self.followers.progress.advance(taken, tracer.counters.rays - rays_before);
+        }
+        tracer.counters
+    }
+
+    /// Adds the samples of a job to the film, and shows it.
+    fn add(&self, part: &Film) {
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.absorb(part);
+        // An iteration that shows its photons has the film's splats.
+        if film.splats.len() == film.iterations.len() && self.followers.observer.wants_film() {
+            self.followers.observer.show(&film);
         }
     }
 
@@ -146,7 +238,7 @@ impl<'a> Work<'a> {
         (part, splats): (&mut Film, &mut Splats),
     ) -> bool {
         for y in tile.y..tile.y + tile.height {
-            if self.progress.is_cancelled() {
+            if self.followers.progress.is_cancelled() {
                 return false;
             }
             for x in tile.x..tile.x + tile.width {
@@ -170,7 +262,7 @@ impl<'a> Work<'a> {
         tracer: &mut Tracer<'a>,
         (part, queue): (&mut Film, &mut PathQueue),
     ) -> bool {
-        let is_cancelled = || self.progress.is_cancelled();
+        let is_cancelled = || self.followers.progress.is_cancelled();
         queue.take(path, &self.eye, tracer, &samples.all(), is_cancelled, |(x, y, sample), light| {
             part.add(x, y, sample, light)
         })
@@ -185,7 +277,7 @@ impl<'a> Work<'a> {
         (part, splats): (&mut Film, &mut Splats),
     ) -> bool {
         for samples in samples.all().chunks(PATHS) {
-            if self.progress.is_cancelled() {
+            if self.followers.progress.is_cancelled() {
                 return false;
             }
             let queued: Vec<_> = samples
@@ -233,30 +325,60 @@ impl<'a> Work<'a> {
         film.add_iterations(iterations, self.passes[pass].len() as u32)
     }
 
-    /// The film with its coverage, and whether anything is missing.
-    fn finish(self) -> (Film, bool) {
-        let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let dropped = self.dropped.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if dropped.is_empty() {
-            for samples in &self.passes {
-                film.cover(self.eye.settings.window(), samples.clone());
-            }
-            return (film, false);
-        }
-        let taken = self.next.into_inner();
-        let tiles = self.tiles.len() as u64;
-        for (pass, samples) in self.passes.iter().enumerate() {
-            let first = pass as u64 * tiles;
-            let is_done = |job: &u64| *job < taken && !dropped.contains(job);
-            if (first..first + tiles).all(|job| is_done(&job)) {
-                film.cover(self.eye.settings.window(), samples.clone());
+    /// Whether each job that was begun is complete, and there are no others.
+    fn is_complete(&mut self) -> bool {
+        let dropped = self.dropped.get_mut().unwrap_or_else(PoisonError::into_inner);
+        dropped.is_empty() && *self.next.get_mut() >= (self.tiles.len() * self.passes.len()) as u64
+    }
+
+    /// Which tiles of a pass are done, once no thread works.
+    fn tiles_done(&mut self, pass: usize) -> Vec<bool> {
+        let first = (pass * self.tiles.len()) as u64;
+        let taken = *self.next.get_mut();
+        let dropped = self.dropped.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let is_done = |job: u64| self.done.contains(&job) || job < taken && !dropped.contains(&job);
+        (first..first + self.tiles.len() as u64).map(is_done).collect()
+    }
+
+    /// Has a checkpoint kept.
+    fn keep(&mut self, counters: Counters) {
+        let last = (0..self.passes.len()).rev().find(|&pass| self.tiles_done(pass).contains(&true));
+        let mut begun = Begun { side: self.side, ..Begun::default() };
+        for pass in 0..=last.unwrap_or(0) {
+            let (samples, done) = (self.passes[pass].clone(), self.tiles_done(pass));
+            if done.contains(&false) {
+                let all = self.iterations.get_mut().unwrap_or_else(PoisonError::into_inner);
+                begun.open.push(OpenPass { samples, done, splats: all.get(&pass).cloned() });
             } else {
-                for job in (first..first + tiles).filter(is_done) {
-                    let tile = self.tiles[(job - first) as usize];
-                    film.cover(tile.intersection(&self.eye.settings.window()), samples.clone());
-                }
+                begun.complete.push(samples);
             }
         }
-        (film, true)
+        let film = self.film.get_mut().unwrap_or_else(PoisonError::into_inner);
+        (self.followers.keep)(film, begun, counters);
+    }
+
+    /// The film with its coverage, and whether anything is missing.
+    fn finish(mut self) -> (Film, bool) {
+        let is_complete = self.is_complete();
+        let window = self.eye.settings.window();
+        let mut covered = Coverage::default();
+        for pass in 0..self.passes.len() {
+            let samples = self.passes[pass].clone();
+            if is_complete {
+                covered.insert(window, samples);
+                continue;
+            }
+            let done = self.tiles_done(pass);
+            if !done.contains(&false) {
+                covered.insert(window, samples);
+                continue;
+            }
+            for (tile, _) in self.tiles.iter().zip(done).filter(|(_, is_done)| *is_done) {
+                covered.insert(tile.intersection(&window), samples.clone());
+            }
+        }
+        let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
+        film.coverage.extend(&covered);
+        (film, !is_complete)
     }
 }

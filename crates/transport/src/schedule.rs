@@ -2,9 +2,11 @@
 //! there are more.
 
 use crate::batch_means::BatchMeans;
+use crate::bytes::{Rest, put_counts};
+use crate::error::{FilmError, RenderError};
 use crate::film::Film;
 use crate::settings::{RenderSettings, Stop};
-use crate::stop::{Reached, StopMonitor};
+use crate::stop::{NoiseMemory, Reached, StopMonitor};
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::time::Duration;
@@ -17,7 +19,20 @@ pub(crate) struct Schedule {
     left: VecDeque<Range<u32>>,
     /// The first sample.
     start: u32,
+    /// How many samples the last film that was looked at has.
+    done: u32,
     batches: Option<BatchMeans>,
+}
+
+/// What a schedule remembers of the films that it has looked at.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ScheduleMemory {
+    /// Samples per pixel of the last of them.
+    pub(crate) done: u32,
+    /// Where noise or time may end the picture.
+    pub(crate) noise: Option<NoiseMemory>,
+    /// Where the variance is estimated.
+    pub(crate) batches: Option<BatchMeans>,
 }
 
 impl Schedule {
@@ -28,7 +43,57 @@ impl Schedule {
             watch: is_watched.then(|| StopMonitor::new(settings, spent)),
             left: if is_watched { VecDeque::new() } else { batches(settings).into() },
             start: settings.samples.start,
+            done: 0,
             batches: settings.batch_means.then(BatchMeans::default),
+        }
+    }
+
+    /// Goes on where another schedule was, whose samples took so long.
+    ///
+    /// # Errors
+    /// When the other one did not remember what these settings ask for.
+    pub(crate) fn going_on(
+        settings: &RenderSettings,
+        spent: Duration,
+        memory: ScheduleMemory,
+        earlier: Duration,
+    ) -> Result<Schedule, RenderError> {
+        let mut schedule = Schedule::new(settings, spent);
+        let ScheduleMemory { done, noise, batches } = memory;
+        // After the first sample there is something to remember.
+        let knows_noise = noise.as_ref().is_some_and(|noise| done == 0 || noise.meter.has_looked());
+        if settings.stop.noise.is_some() && !knows_noise {
+            return Err(RenderError::CheckpointLacks {
+                what: "the noise so far, which a limit of noise needs",
+            });
+        }
+        if settings.batch_means && batches.is_none() {
+            return Err(RenderError::CheckpointLacks {
+                what: "the variance of pixels, which denoising and the layer 'variance' need",
+            });
+        }
+        if let Some(watch) = &mut schedule.watch {
+            watch.go_on((done, earlier), noise.unwrap_or_default());
+        }
+        let next = schedule.start.saturating_add(done);
+        schedule.left.retain(|samples| samples.end > next);
+        if let Some(first) = schedule.left.front_mut() {
+            first.start = first.start.max(next);
+        }
+        schedule.batches = batches.filter(|_| settings.batch_means);
+        schedule.done = done;
+        Ok(schedule)
+    }
+
+    /// Appends what it remembers.
+    pub(crate) fn put(&self, bytes: &mut Vec<u8>) {
+        let has = [self.watch.is_some(), self.batches.is_some()].map(u32::from);
+        put_counts(bytes, &[self.done, has[0], has[1]]);
+        if let Some(watch) = &self.watch {
+            watch.put_memory(bytes);
+        }
+        if let Some(batches) = &self.batches {
+            batches.put(bytes);
         }
     }
 
@@ -61,9 +126,25 @@ impl Schedule {
         }
     }
 
+    /// The same, if samples up to `begun` are begun already: then these have to be completed, whatever time it is.
+    ///
+    /// # Errors
+    /// When they are more than the picture takes.
+    pub(crate) fn next_from(&mut self, begun: Option<u32>) -> Result<Option<Range<u32>>, RenderError> {
+        let next = self.next();
+        let Some(end) = begun else { return Ok(next) };
+        let has_clock = self.watch.as_ref().is_some_and(StopMonitor::has_clock);
+        match next {
+            Some(samples) if samples.end >= end => Ok(Some(samples)),
+            _ if has_clock => Ok(Some(self.start + self.done..end)),
+            _ => Err(RenderError::CheckpointBeyond { samples: end - self.start }),
+        }
+    }
+
     /// Looks at the film after these samples.
     pub(crate) fn look(&mut self, film: &Film, samples: &Range<u32>) {
         let done = samples.end - self.start;
+        self.done = done;
         if let Some(watch) = &mut self.watch {
             watch.look(film, samples);
         }
@@ -88,6 +169,16 @@ impl Schedule {
             batches.finish();
         }
         (watch.and_then(|watch| watch.reached), batches)
+    }
+}
+
+impl ScheduleMemory {
+    /// Reads what the schedule of a film with so many pixels remembered.
+    pub(crate) fn read(rest: &mut Rest, pixels: usize) -> Result<ScheduleMemory, FilmError> {
+        let [done, has_noise, has_batches] = rest.numbers()?;
+        let noise = (has_noise == 1).then(|| NoiseMemory::read(rest, pixels)).transpose()?;
+        let batches = (has_batches == 1).then(|| BatchMeans::read(rest, pixels)).transpose()?;
+        Ok(ScheduleMemory { done, noise, batches })
     }
 }
 

@@ -151,6 +151,21 @@ impl<'a> IterationSplats<'a> {
         Ok(IterationSplats { settings, scale_exponent: film.scale_exponent(), sign: 1, iterations })
     }
 
+    /// Goes on with an iteration whose splats the film has already, and so many of which failed.
+    pub(crate) fn going_on(self, failures: Vec<(u32, PixelFailures)>) -> IterationSplats<'a> {
+        let mut iterations = self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner);
+        iterations.failures = failures;
+        IterationSplats { iterations: Mutex::new(iterations), ..self }
+    }
+
+    /// Lends them to the film, with what failed, as long as `look` looks at it.
+    pub(crate) fn lend(&self, film: &mut Film, look: impl FnOnce(&mut Film, &[(u32, PixelFailures)])) {
+        let mut iterations = self.iterations.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::swap(&mut film.splats, &mut iterations.sums);
+        look(film, &iterations.failures);
+        std::mem::swap(&mut film.splats, &mut iterations.sums);
+    }
+
     /// Returns them to the film: the iteration is complete.
     pub(crate) fn complete(self, film: &mut Film) {
         let Iterations { sums, failures, .. } =
@@ -191,9 +206,10 @@ impl<'a, const N: usize> LightPathVisitor<N> for IterationSplats<'a> {
 }
 
 /// The splats of some iterations as they arrive.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Iterations {
-    sums: Vec<[i64; 3]>,
-    failures: Vec<(u32, PixelFailures)>,
+    pub(crate) sums: Vec<[i64; 3]>,
+    pub(crate) failures: Vec<(u32, PixelFailures)>,
     /// Tiles of the film whose light subpaths have not arrived yet.
     pub(crate) tiles_left: usize,
 }

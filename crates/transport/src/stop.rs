@@ -1,6 +1,8 @@
 //! When a picture is good enough, or has taken long enough. Both are checked between passes over the whole film.
 
-use crate::film::Film;
+use crate::bytes::{Rest, put_counts, put_floats};
+use crate::error::FilmError;
+use crate::film::{Film, MAX_SAMPLES};
 use crate::settings::{RenderSettings, Stop};
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -39,11 +41,20 @@ const NEARLY_ONE: f64 = 0.9;
 pub(crate) struct StopMonitor {
     stop: Stop,
     begun: Instant,
+    /// The time that was spent on samples before that, by a render that this one continues.
+    earlier: Duration,
     samples: Range<u32>,
     /// How many of them the film holds.
     pub(crate) done: u32,
     meter: NoiseMeter,
     pub(crate) reached: Option<Reached>,
+}
+
+/// What a monitor remembers of the films that it has seen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct NoiseMemory {
+    pub(crate) meter: NoiseMeter,
+    reached: Option<Reached>,
 }
 
 impl StopMonitor {
@@ -55,11 +66,27 @@ impl StopMonitor {
         StopMonitor {
             stop,
             begun: Instant::now(),
+            earlier: Duration::ZERO,
             samples,
             done: 0,
             meter: NoiseMeter::default(),
             reached: None,
         }
+    }
+
+    /// Goes on where another monitor was after so many samples, which took so long.
+    pub(crate) fn go_on(&mut self, (done, earlier): (u32, Duration), memory: NoiseMemory) {
+        (self.done, self.earlier) = (done, earlier);
+        (self.reached, self.meter) = (memory.reached, memory.meter);
+    }
+
+    /// True if time may end the picture.
+    pub(crate) fn has_clock(&self) -> bool {
+        self.stop.time_limit.is_some()
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.earlier + self.begun.elapsed()
     }
 
     /// The next samples to take; `None` when the picture is done.
@@ -71,7 +98,7 @@ impl StopMonitor {
         if let Some(limit) = self.stop.time_limit
             && self.done > 0
         {
-            let elapsed = self.begun.elapsed();
+            let elapsed = self.elapsed();
             let each = elapsed.as_secs_f64() / f64::from(self.done);
             let fits = limit.saturating_sub(elapsed).as_secs_f64() / each.max(1e-9);
             let last = u32::from(fits >= NEARLY_ONE);
@@ -108,7 +135,7 @@ impl StopMonitor {
         }
         let done = f64::from(self.done);
         let by_time = self.stop.time_limit.map_or(f64::INFINITY, |limit| {
-            done * limit.as_secs_f64() / self.begun.elapsed().as_secs_f64().max(1e-9)
+            done * limit.as_secs_f64() / self.elapsed().as_secs_f64().max(1e-9)
         });
         let by_noise = match (self.noise(), self.stop.noise) {
             (Some(noise), Some(enough)) => {
@@ -122,7 +149,7 @@ impl StopMonitor {
 }
 
 /// Measures the noise of a film that gets more samples of all its pixels.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct NoiseMeter {
     /// Sample counts and luminances of the film at the last two looks, each at twice as many samples as the one before: the
     /// change since then separates later samples from earlier ones.
@@ -163,6 +190,53 @@ impl NoiseMeter {
             blocks += 1;
         }
         Some((sum / f64::from(blocks.max(1))) as f32)
+    }
+}
+
+impl StopMonitor {
+    /// Appends what it remembers.
+    pub(crate) fn put_memory(&self, bytes: &mut Vec<u8>) {
+        let (spp, [noise, bias]) = self.reached.map_or((0, [None; 2]), |r| (r.spp, [r.noise, r.bias]));
+        put_counts(bytes, &[u32::from(self.reached.is_some()), spp]);
+        for number in [noise, bias] {
+            put_counts(bytes, &[u32::from(number.is_some()), number.unwrap_or_default().to_bits()]);
+        }
+        for snapshot in &self.meter.snapshots {
+            let (done, light) = snapshot.as_ref().map_or((0, &[][..]), |(done, light)| (*done, light));
+            put_counts(bytes, &[done, light.len() as u32]);
+            put_floats(bytes, light);
+        }
+    }
+}
+
+impl NoiseMemory {
+    /// Reads what the monitor of a film with so many pixels remembered.
+    pub(crate) fn read(rest: &mut Rest, pixels: usize) -> Result<NoiseMemory, FilmError> {
+        let [is_reached, spp] = rest.numbers()?;
+        let mut optional = || {
+            let [is_there, bits] = rest.numbers()?;
+            Ok::<_, FilmError>((is_there == 1).then_some(f32::from_bits(bits)))
+        };
+        let (noise, bias) = (optional()?, optional()?);
+        let reached = (is_reached == 1).then_some(Reached { spp, noise, bias });
+        let mut meter = NoiseMeter::default();
+        for snapshot in &mut meter.snapshots {
+            let [done, length] = rest.numbers()?;
+            if length != 0 && (length as usize != pixels || !(1..=MAX_SAMPLES).contains(&done)) {
+                return Err(FilmError::NotAFilm {
+                    what: "its measured noise is not that of its pixels".to_owned(),
+                });
+            }
+            *snapshot = (length != 0).then_some((done, rest.floats(length as usize)?));
+        }
+        Ok(NoiseMemory { meter, reached })
+    }
+}
+
+impl NoiseMeter {
+    /// True after the first look.
+    pub(crate) fn has_looked(&self) -> bool {
+        self.snapshots[1].is_some()
     }
 }
 

@@ -17,8 +17,9 @@ use bilux_pictures::Picture;
 use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay,
-    SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    Checkpoint, Features, Filter, Observer, PixelAnchor, Plan, Progress, RenderError, RenderSettings,
+    Rendered, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Unobserved, Window, coverage,
+    shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -45,14 +46,14 @@ pub struct Job {
     /// The time set aside for denoising.
     pub(crate) denoising: Duration,
     /// When its time limit starts; `None` means when rendering starts.
-    begun: Option<Instant>,
+    pub(crate) begun: Option<Instant>,
     /// Whether loading third-party libraries is forbidden.
     pub(crate) sandboxed: bool,
     /// How a model was rotated.
     orientation: Option<Orientation>,
     /// The scene from which the job was built. The fingerprint is computed from it, which takes long if textures are
     /// large.
-    source: SceneBuilder,
+    pub(crate) source: SceneBuilder,
     fingerprint: OnceLock<String>,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) notes: Vec<String>,
@@ -246,13 +247,27 @@ impl Job {
     /// # Errors
     /// If the size or the crop makes no sense, or memory is short.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
+        self.render_observed(None, Duration::ZERO, progress, &Unobserved)
+    }
+
+    /// Renders what a checkpoint lacks, if there is one. `aside` is the time that was spent before on other work than
+    /// rendering.
+    pub(crate) fn render_observed(
+        &self,
+        from: Option<Checkpoint>,
+        aside: Duration,
+        progress: &dyn Progress,
+        observer: &dyn Observer,
+    ) -> Result<Outcome, Error> {
         let now = Instant::now();
         let (scene, camera) = (&self.scene, &*self.camera);
         let mut render = self.render.clone();
-        let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, self.time_aside(now)));
+        let aside = aside + self.time_aside(now);
+        let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, aside));
         let features = self.features_within(end.map(|end| end - now), progress)?;
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
-        let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
+        let rendered =
+            bilux_transport::render_from(from, scene, camera, self.renders(), &render, progress, observer)?;
         self.completed(rendered, features)
     }
 

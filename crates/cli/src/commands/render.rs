@@ -1,27 +1,22 @@
 //! `bilux render`: renders pictures of scenes.
 
+use super::finishing::{finish, is_part};
+use super::frames::FinishedFrames;
+use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
-use super::{
-    DONE, aov, check_choices, load, log, read_options_with, report_notes, report_warnings, stats, time_limit,
-};
+use super::{DONE, aov, keeping, log, report_notes, watching};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
-use crate::progress::Report;
-use crate::sandbox::SandboxPaths;
+use crate::sandbox::{SandboxPaths, folder_of};
 use crate::{output, settings_from, usage};
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
+use bilux::Series;
 use bilux::budget::{with_default_budget, with_fast_budget};
-use bilux::formats::ReadOptions;
-use bilux::pictures::denoise::DenoiserChoice;
-use bilux::pictures::formats::{BitDepth, format_of_path};
-use bilux::scene::{Parameters, SceneBuilder, SceneError};
-use bilux::transport::Window;
-use bilux::{Built, Job, Outcome, Series};
-use std::cell::{Cell, RefCell};
+use bilux::scene::{Parameters, SceneBuilder};
+use bilux::watch::Watched;
 use std::collections::BTreeSet;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
@@ -30,6 +25,8 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     check_scenes(&arguments.scenes).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
+    keeping::check(arguments).map_err(usage::wrong)?;
+    watching::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
     if let Some(curve) = arguments.tonemap.as_deref().filter(|name| *name != "auto") {
@@ -40,9 +37,14 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     }
     begin_loading(arguments, common);
     confine(&targets, arguments, common)?;
+    if let ([target], true) = (&targets[..], arguments.lasting.watch) {
+        return watching::run(target, common, &interrupt, |watched| {
+            render_one(target, &user, arguments, common, (&interrupt, Some(watched)))
+        });
+    }
     let mut failed = 0;
     for target in &targets {
-        match render_one(target, &user, arguments, common, &interrupt) {
+        match render_one(target, &user, arguments, common, (&interrupt, None)) {
             Ok(DONE) => {}
             Ok(status) => return Ok(status),
             Err(error) => {
@@ -80,6 +82,13 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     if !is_stdout(&arguments.output) {
         confines = confines.writing(&arguments.output);
     }
+    // Those of frames have names of their own.
+    let folders: BTreeSet<&Path> = targets.iter().map(|target| folder_of(&target.output)).collect();
+    for file in folders.into_iter().filter_map(|folder| folder.read_dir().ok()).flatten().flatten() {
+        if file.path().extension().is_some_and(|extension| extension == "checkpoint") {
+            confines = confines.reading(&file.path());
+        }
+    }
     for target in targets {
         let files = [Some(&target.output), target.stats.as_ref()];
         for file in files.into_iter().flatten().filter(|file| !is_stdout(file)) {
@@ -89,139 +98,36 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     confines.enter(common)
 }
 
-/// A scene file, which may have to be read again for another time.
-struct Input<'a> {
-    path: &'a Path,
-    /// The bytes from standard input, which can be read only once.
-    piped: Option<Vec<u8>>,
-    arguments: &'a Render,
-    common: &'a Common,
-    interrupt: &'a Interrupt,
-    /// When the picture that is rendered next was started.
-    begun: Cell<Instant>,
-    /// What the pictures of a turntable share.
-    built: RefCell<Built>,
-    /// Every warning so far, for `--json`.
-    warnings: RefCell<Vec<String>>,
-    /// Every file that was read.
-    files: RefCell<BTreeSet<PathBuf>>,
-}
-
-impl Input<'_> {
-    fn open<'a>(
-        path: &'a Path,
-        arguments: &'a Render,
-        common: &'a Common,
-        interrupt: &'a Interrupt,
-    ) -> anyhow::Result<Input<'a>> {
-        let mut piped = None;
-        if is_stdout(path) {
-            check_input_format(&arguments.input_format).map_err(usage::wrong)?;
-            let mut bytes = Vec::new();
-            let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
-            input.context("cannot read standard input")?;
-            if bytes.is_empty() {
-                bail!("standard input is empty: name a scene file, or pipe in a scene");
-            }
-            piped = Some(bytes);
-        }
-        let begun = Cell::new(Instant::now());
-        let (built, warnings, files) = (RefCell::default(), RefCell::default(), RefCell::default());
-        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, files })
-    }
-
-    /// Prints warnings, and keeps them for `--json`.
-    fn warn(&self, warnings: &[bilux::scene::Warning]) -> anyhow::Result<()> {
-        self.warnings.borrow_mut().extend(warnings.iter().map(ToString::to_string));
-        report_warnings(warnings, self.common)
-    }
-
-    /// Reads the scene as it is at a time in seconds; for frames, with its whole movement.
-    fn read(&self, time: f32, whole_movement: bool) -> anyhow::Result<SceneBuilder> {
-        let choices = &self.arguments.choices;
-        let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
-        let mut scene = match &self.piped {
-            Some(bytes) => {
-                // There is no file name, so the first bytes decide.
-                let format =
-                    Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
-                bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
-            }
-            None => load(self.path, &options)?,
-        };
-        check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
-        self.arguments.studio.set_up(&mut scene, &options)?;
-        self.files.borrow_mut().extend(scene.files.iter().cloned());
-        Ok(scene)
-    }
-
-    /// Refuses to write over a file that was read.
-    fn check_outputs(&self, Target { output, stats, .. }: &Target) -> anyhow::Result<()> {
-        let beside = aov::files(self.arguments, output);
-        let mut written = beside.iter().chain([output]).chain(stats).filter(|file| !is_stdout(file));
-        Ok(written.try_for_each(|file| bilux::formats::check_not_read(file, &self.files.borrow()))?)
-    }
-
-    /// Makes the job for a scene, with everything that the command line says about it.
-    fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
-        let arguments = self.arguments;
-        // From one picture of a turntable to the next only the camera moves.
-        let (mut own, mut shared) = (Built::default(), self.built.borrow_mut());
-        let built = if arguments.studio.turntable.is_some() { &mut *shared } else { &mut own };
-        let mut job = Job::with_built(scene, user, self.common.max_memory, series, built)?;
-        if self.common.sandbox {
-            job.sandbox();
-        }
-        job.begun_at(self.begun.get());
-        aov::prepare(arguments, &mut job)?;
-        if let Some((from, to)) = arguments.samples {
-            job.samples(from..to);
-        }
-        if let Some([x, y, width, height]) = arguments.crop {
-            let s = job.settings();
-            let fits = |at: u32, side: u32, most: u32| {
-                side > 0 && at.checked_add(side).is_some_and(|end| end <= most)
-            };
-            if !fits(x, width, s.width) || !fits(y, height, s.height) {
-                let size = format!("{}x{}", s.width, s.height);
-                return Err(usage::wrong(anyhow!(
-                    "--crop {x},{y},{width},{height}: the window must contain pixels and lie within the picture, \
-                     which is {size}"
-                )));
-            }
-            job.crop(Window { x, y, width, height });
-        }
-        if arguments.stats.is_some() {
-            job.count_work();
-        }
-        Ok(job)
-    }
-}
-
 fn render_one(
     target: &Target,
     user: &Parameters,
     arguments: &Render,
     common: &Common,
-    interrupt: &Interrupt,
+    (interrupt, watched): (&Interrupt, Option<&Watched>),
 ) -> anyhow::Result<u8> {
-    let input = Input::open(&target.scene, arguments, common, interrupt)?;
+    let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
     let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
     input.warn(&scene.warnings)?;
     report_notes(&scene.notes, common);
     input.warn(&still_frames(arguments, &scene))?;
-    let Some(count) = arguments.studio.turntable else {
+    let Some(count) = arguments.turntable else {
         return render_scene(&input, &mut scene, target, user, &Series::default());
     };
     let series = Series::turntable(&scene, user, common.max_memory, count)?;
+    let mut finished = FinishedFrames::begin(&input, user, target)?;
     for frame in 0..count {
-        let series = series.turned(frame, count);
-        let status = render_scene(&input, &mut scene, &numbered(target, frame), user, &series)?;
+        let (series, numbered) = (series.turned(frame, count), numbered(target, frame));
+        if finished.has(frame, &numbered) {
+            continue;
+        }
+        let status = render_scene(&input, &mut scene, &numbered, user, &series)?;
         if status != DONE {
             return Ok(status);
         }
+        finished.add(frame)?;
         input.begun.set(Instant::now());
     }
+    finished.finish()?;
     Ok(DONE)
 }
 
@@ -273,7 +179,12 @@ fn render_scene(
         return finish(input, &mut job, target, build_seconds);
     };
     let series = job.series();
+    let mut finished = FinishedFrames::begin(input, &user, target)?;
     for frame in first..=last {
+        let numbered = numbered(target, frame);
+        if finished.has(frame, &numbered) {
+            continue;
+        }
         let time = frame as f32 / job.settings().fps;
         if frame > first {
             input.begun.set(Instant::now());
@@ -285,116 +196,12 @@ fn render_scene(
             job = input.job(&posed, &user, &series)?;
         }
         job.at_time(time);
-        let status = finish(input, &mut job, &numbered(target, frame), build_seconds)?;
+        let status = finish(input, &mut job, &numbered, build_seconds)?;
         if status != DONE {
             return Ok(status);
         }
+        finished.add(frame)?;
     }
+    finished.finish()?;
     Ok(DONE)
-}
-
-fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
-    let Input { arguments, common, interrupt, .. } = *input;
-    input.check_outputs(target).map_err(usage::wrong)?;
-    let output = &target.output;
-    let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
-    let for_display = is_stdout(output) || format_of_path(output)?.for_display;
-    let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
-    let before = input.begun.get().elapsed();
-    let report = Report::new(&label, common, interrupt.clone());
-    interrupt.renders(true);
-    let outcome = job.render(&report)?;
-    let seconds = report.finish();
-    let rendered = input.begun.get().elapsed();
-    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
-    let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
-    interrupt.renders(false);
-    let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
-    log::report_sample_failures(&outcome);
-    let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
-    let rendered = log::Rendered {
-        job,
-        outcome: &outcome,
-        scene: input.path,
-        output,
-        build_seconds,
-        seconds,
-        total_seconds: input.begun.get().elapsed().as_secs_f64(),
-        denoiser: denoiser.as_ref().filter(|_| denoised),
-        timed_out: interrupt.timed_out(),
-        overrun,
-        warnings: &input.warnings.borrow(),
-    };
-    write_stats(target, &rendered)?;
-    if arguments.json {
-        output::print(rendered.json())?;
-    }
-    if !common.quiet {
-        rendered.print(common.verbose);
-    }
-    Ok(if outcome.rendered.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
-}
-
-/// Refuses an unknown scene format.
-fn check_input_format(name: &str) -> anyhow::Result<()> {
-    if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
-        return Ok(());
-    }
-    let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
-    let names = rows.map(|row| row.entry.name).chain(["auto"]);
-    Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
-}
-
-/// Writes what `--stats` asks for.
-fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> {
-    let Some(path) = &target.stats else { return Ok(()) };
-    let stats = stats::of(rendered);
-    if is_stdout(path) {
-        return output::print(stats);
-    }
-    let text = serde_json::to_string_pretty(&stats)?;
-    Ok(bilux::pictures::formats::write_atomically(path, text.as_bytes())
-        .map_err(|error| error.in_file(path))?)
-}
-
-/// True if only a part of the picture is rendered.
-fn is_part(arguments: &Render) -> bool {
-    arguments.samples.is_some() || arguments.crop.is_some()
-}
-
-/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
-fn write(
-    input: &Input,
-    job: &Job,
-    outcome: &Outcome,
-    denoiser: Option<&DenoiserChoice>,
-    output: &Path,
-) -> anyhow::Result<bool> {
-    let arguments = input.arguments;
-    let is_exr = !is_stdout(output) && aov::is_exr(output);
-    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
-    let denoiser = denoiser.filter(|_| !is_part);
-    let mut picture = match denoiser {
-        Some(chosen) => outcome.denoised(chosen)?,
-        None if is_part => job.partial(outcome)?,
-        None => outcome.picture()?,
-    };
-    if is_exr {
-        outcome.push_layers(&mut picture, &aov::layers(arguments))?;
-        if denoiser.is_some() {
-            picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
-        }
-    }
-    let mut options = job.write_options_for(&picture)?;
-    if arguments.bits == "16" {
-        options.bit_depth = BitDepth::Sixteen;
-    }
-    options.quality = arguments.quality.unwrap_or(options.quality);
-    if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
-    } else {
-        super::warn_lost_alpha(&picture, output, options.behind, input.common)?;
-        bilux::pictures::write(output, &picture, &options)?;
-    }
-    Ok(denoiser.is_some())
 }

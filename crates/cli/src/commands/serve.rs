@@ -18,11 +18,6 @@ use std::path::Path;
 pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     let interrupt = Interrupt::listen()?;
     let settings = settings_from::serve(&arguments).map_err(usage::wrong)?;
-    if arguments.studio.turntable.is_some() {
-        return Err(usage::wrong(anyhow::anyhow!(
-            "--turntable: drag the picture to see the model from all around"
-        )));
-    }
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
     confine(&arguments, common)?;

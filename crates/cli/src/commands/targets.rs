@@ -67,7 +67,7 @@ fn check_result(arguments: &Render) -> anyhow::Result<()> {
 /// Refuses unknown names in braces, and one file name for several pictures.
 fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result<()> {
     let text = pattern.to_string_lossy();
-    let numbered = arguments.frames.is_some() || arguments.studio.turntable.is_some();
+    let numbered = arguments.frames.is_some() || arguments.turntable.is_some();
     for name in text.split('{').skip(1).filter_map(|rest| rest.split_once('}').map(|(name, _)| name)) {
         if !NAMES.contains(&name) {
             let names = NAMES.map(str::to_owned);

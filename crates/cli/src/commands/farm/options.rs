@@ -50,8 +50,11 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
             render.samples.is_some(),
             "each task takes a range of its own: set their number with --spp",
         ),
-        ("--turntable", render.studio.turntable.is_some(), "give the camera keyframes, and write --frames"),
+        ("--turntable", render.turntable.is_some(), "give the camera keyframes, and write --frames"),
         ("--replay", render.replay.is_some(), "it writes no picture"),
+        ("--resume", render.lasting.resume, "a task's working directory is not kept"),
+        ("--watch", render.lasting.watch, "a task renders once"),
+        ("--preview", render.lasting.preview.is_some(), "a task has no terminal"),
         ("--stats", render.stats.is_some(), "a task's working directory is not kept"),
     ];
     let is_exr = aov::is_exr(Path::new(picture));

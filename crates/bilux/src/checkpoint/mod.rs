@@ -1,0 +1,33 @@
+//! Checkpoints of long renders, as files: another process goes on from one to the same bytes.
+//!
+//! A file has a head, which says of which picture it is, then what [`bilux_transport::Standing::write`] writes, and the
+//! hash of all of that. It is written beside the old one and then renamed over it, so there is always a whole one.
+//!
+//! ```
+//! use bilux::checkpoint::{CheckpointWriter, SavedRender};
+//! use bilux::prelude::*;
+//! # use std::time::Duration;
+//!
+//! # let folder = tempfile::tempdir().unwrap();
+//! let file = folder.path().join("cornell.png.checkpoint");
+//! let scene = bilux::generate(&Spec::new("", "cornell"))?;
+//! let mut settings = Parameters::default();
+//! settings.set("size", "16x16");
+//! settings.set("spp", Value::Integer(4));
+//! let job = Job::new(&scene, &settings)?;
+//! let writer = CheckpointWriter::new(&job, &file, Some(Duration::ZERO));
+//! let whole = job.render_from(None, &Quiet, &writer)?;
+//! // Some other day:
+//! let saved = SavedRender::read(&file, u64::MAX)?;
+//! let rest = job.render_from(Some(saved), &Quiet, &bilux::transport::Unobserved)?;
+//! assert_eq!(rest.picture()?, whole.picture()?);
+//! # Ok::<(), bilux::Error>(())
+//! ```
+
+mod file;
+mod identity;
+mod writer;
+
+pub use file::{CheckpointError, Head, SavedRender, checkpoint_path};
+pub use identity::Identity;
+pub use writer::CheckpointWriter;

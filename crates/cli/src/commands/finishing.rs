@@ -1,0 +1,132 @@
+//! One picture of `bilux render`: from its job to the file.
+
+use super::input::Input;
+use super::keeping::Keeping;
+use super::targets::{Target, is_stdout};
+use super::{DONE, aov, log, stats, time_limit};
+use crate::arguments::Render;
+use crate::preview::{Observers, Preview};
+use crate::progress::Report;
+use crate::{output, usage};
+use bilux::pictures::denoise::DenoiserChoice;
+use bilux::pictures::formats::{BitDepth, format_of_path};
+use bilux::{Job, Outcome};
+use std::path::Path;
+
+/// Renders a picture and writes it, with what belongs to it.
+pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
+    let Input { arguments, common, interrupt, .. } = *input;
+    input.check_outputs(target).map_err(usage::wrong)?;
+    let output = &target.output;
+    let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
+    let for_display = is_stdout(output) || format_of_path(output)?.for_display;
+    let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
+    let (keeping, saved) = Keeping::begin(input, job, output)?;
+    let before = input.begun.get().elapsed();
+    let report = Report::new(&label, common, interrupt.clone());
+    interrupt.renders(true);
+    let (outcome, kept) = {
+        let writer = keeping.writer(job, saved.as_ref());
+        let preview = arguments.lasting.preview.map(|choice| Preview::begin(choice, job, report.bar()));
+        let preview = preview.transpose()?.flatten();
+        let observers = Observers { writer: writer.as_ref(), preview: preview.as_ref() };
+        let outcome = job.render_from(saved, &report, &observers)?;
+        if let Some(preview) = preview {
+            preview.finish(&outcome);
+        }
+        (outcome, writer.and_then(|writer| writer.samples()))
+    };
+    let seconds = report.finish();
+    if interrupt.is_superseded() && outcome.rendered.cancelled {
+        interrupt.renders(false);
+        return Ok(DONE);
+    }
+    let rendered = input.begun.get().elapsed();
+    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
+    let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
+    interrupt.renders(false);
+    let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
+    log::report_sample_failures(&outcome);
+    let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
+    let rendered = log::Rendered {
+        job,
+        outcome: &outcome,
+        scene: input.path,
+        output,
+        build_seconds,
+        seconds,
+        total_seconds: input.begun.get().elapsed().as_secs_f64(),
+        denoiser: denoiser.as_ref().filter(|_| denoised),
+        timed_out: interrupt.timed_out(),
+        overrun,
+        warnings: &input.warnings.borrow(),
+    };
+    write_stats(target, &rendered)?;
+    if arguments.json {
+        output::print(rendered.json())?;
+    }
+    if !common.quiet {
+        rendered.print(common.verbose);
+    }
+    if outcome.rendered.cancelled || !all_aovs {
+        keeping.report_stop(kept, common.quiet);
+        return Ok(interrupt.exit_status());
+    }
+    let rendered = outcome.rendered.reached.map_or(job.samples_per_pixel(), |reached| reached.spp);
+    keeping.finish(kept, rendered)?;
+    Ok(DONE)
+}
+
+/// Writes what `--stats` asks for.
+fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> {
+    let Some(path) = &target.stats else { return Ok(()) };
+    let stats = stats::of(rendered);
+    if is_stdout(path) {
+        return output::print(stats);
+    }
+    let text = serde_json::to_string_pretty(&stats)?;
+    Ok(bilux::pictures::formats::write_atomically(path, text.as_bytes())
+        .map_err(|error| error.in_file(path))?)
+}
+
+/// True if only a part of the picture is rendered.
+pub fn is_part(arguments: &Render) -> bool {
+    arguments.samples.is_some() || arguments.crop.is_some()
+}
+
+/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
+fn write(
+    input: &Input,
+    job: &Job,
+    outcome: &Outcome,
+    denoiser: Option<&DenoiserChoice>,
+    output: &Path,
+) -> anyhow::Result<bool> {
+    let arguments = input.arguments;
+    let is_exr = !is_stdout(output) && aov::is_exr(output);
+    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
+    let denoiser = denoiser.filter(|_| !is_part);
+    let mut picture = match denoiser {
+        Some(chosen) => outcome.denoised(chosen)?,
+        None if is_part => job.partial(outcome)?,
+        None => outcome.picture()?,
+    };
+    if is_exr {
+        outcome.push_layers(&mut picture, &aov::layers(arguments))?;
+        if denoiser.is_some() {
+            picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
+        }
+    }
+    let mut options = job.write_options_for(&picture)?;
+    if arguments.bits == "16" {
+        options.bit_depth = BitDepth::Sixteen;
+    }
+    options.quality = arguments.quality.unwrap_or(options.quality);
+    if is_stdout(output) {
+        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
+    } else {
+        super::warn_lost_alpha(&picture, output, options.behind, input.common)?;
+        bilux::pictures::write(output, &picture, &options)?;
+    }
+    Ok(denoiser.is_some())
+}

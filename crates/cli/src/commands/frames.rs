@@ -1,0 +1,194 @@
+//! Which pictures of an animation or a turntable are finished, so that `--resume` does not render them again.
+
+use super::input::Input;
+use super::targets::{Target, frame_path, is_stdout};
+use crate::choices::GlassArgument;
+use crate::lasting::Checkpoints;
+use crate::output;
+use anyhow::{Context, bail};
+use bilux::checkpoint::{CheckpointError, Identity, checkpoint_path};
+use bilux::encoding::ContentHash;
+use bilux::pictures::formats::write_atomically;
+use bilux::scene::{Parameters, Value};
+use std::collections::BTreeSet;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// What the file begins with.
+const FIRST_LINE: &str = "bilux frames 1\n";
+/// The line with the numbers of the frames that are finished.
+const FINISHED: &str = "finished";
+/// Settings that change no picture.
+const FOR_SPEED: [&str; 5] = ["threads", "accel", "build", "bsp_split", "bsp_group"];
+
+/// The frames that are finished, in a file next to them.
+pub struct FinishedFrames<'a> {
+    input: &'a Input<'a>,
+    user: &'a Parameters,
+    /// `None` if nothing is kept.
+    path: Option<PathBuf>,
+    /// What all frames depend on.
+    identity: Option<Identity>,
+    finished: BTreeSet<u32>,
+}
+
+impl<'a> FinishedFrames<'a> {
+    /// Reads which frames are finished, if the render is to go on.
+    pub fn begin(
+        input: &'a Input<'a>,
+        user: &'a Parameters,
+        target: &Target,
+    ) -> anyhow::Result<FinishedFrames<'a>> {
+        let lasting = &input.arguments.lasting;
+        let mut frames =
+            FinishedFrames { input, user, path: None, identity: None, finished: BTreeSet::new() };
+        if lasting.checkpoints() == Checkpoints::Off || is_stdout(&target.output) {
+            return Ok(frames);
+        }
+        let path = journal_path(&target.output);
+        if lasting.resume && path.exists() {
+            let (identity, finished) = read(&path)?;
+            let differences = frames.identity()?.differences(&identity);
+            if !differences.is_empty() {
+                return Err(bilux::Error::from(CheckpointError::OtherPicture { path, differences }).into());
+            }
+            frames.finished = finished;
+        }
+        frames.path = Some(path);
+        Ok(frames)
+    }
+
+    /// True if this frame is finished and its picture is there.
+    pub fn has(&self, frame: u32, target: &Target) -> bool {
+        let is_there = self.finished.contains(&frame) && target.output.is_file();
+        if is_there && !self.input.common.quiet {
+            output::eprint(format_args!("{}: finished before", target.output.display()));
+        }
+        is_there
+    }
+
+    /// Remembers that a frame is finished.
+    pub fn add(&mut self, frame: u32) -> anyhow::Result<()> {
+        let Some(path) = self.path.clone() else { return Ok(()) };
+        self.finished.insert(frame);
+        let numbers: Vec<String> = self.finished.iter().map(u32::to_string).collect();
+        let text = format!("{FIRST_LINE}{}{FINISHED}={}\n", self.identity()?.to_text(), numbers.join(" "));
+        if let Err(error) = write_atomically(&path, text.as_bytes()) {
+            // The pictures are what counts.
+            output::warning(output::error_text(&error.in_file(&path)));
+        }
+        Ok(())
+    }
+
+    /// All frames are finished.
+    pub fn finish(self) -> anyhow::Result<()> {
+        match self.path.filter(|path| path.is_file()) {
+            Some(path) => {
+                std::fs::remove_file(&path).with_context(|| format!("{}: cannot remove it", path.display()))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// What all frames depend on, which is computed once: the contents of all files, and the command line.
+    fn identity(&mut self) -> anyhow::Result<&Identity> {
+        if self.identity.is_none() {
+            self.identity = Some(identity(self.input, self.user)?);
+        }
+        self.identity.as_ref().context("the identity is computed")
+    }
+}
+
+/// The name of the file: that of the frames, with `frames` in place of their number.
+fn journal_path(pattern: &Path) -> PathBuf {
+    let name = frame_path(pattern, 0).to_string_lossy().into_owned();
+    let text = pattern.to_string_lossy();
+    let name = if text.contains("{frame}") {
+        text.replace("{frame}", "frames")
+    } else {
+        name.replace("-0000.", "-frames.")
+    };
+    checkpoint_path(Path::new(&name))
+}
+
+fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
+    let mut identity = Identity::default();
+    identity.add("version", env!("CARGO_PKG_VERSION"));
+    for (key, value, _) in user.0.iter().filter(|(key, ..)| !FOR_SPEED.contains(&key.as_str())) {
+        identity.add(key, &shown(value));
+    }
+    let a = input.arguments;
+    let file = |path: &Option<PathBuf>| said(path.as_ref().map(|path| path.display()));
+    let glass = match a.choices.glass {
+        GlassArgument::Auto => "auto",
+        GlassArgument::Thin => "thin",
+        GlassArgument::Solid => "solid",
+    };
+    let options = [
+        ("--preset", said(a.studio.preset.as_ref())),
+        ("--env", file(&a.studio.env)),
+        ("--background", said(a.studio.background.as_ref())),
+        ("--turntable", said(a.turntable)),
+        ("--animation", said(a.choices.animation.as_ref())),
+        ("--variant", said(a.choices.variant.as_ref())),
+        ("--glass", glass.to_owned()),
+        ("--light-radius", a.choices.light_radius.to_string()),
+        ("--fast", a.fast.to_string()),
+        ("--samples", said(a.samples.map(|(first, end)| format!("{first}..{end}")))),
+        ("--crop", said(a.crop.map(|crop| crop.map(|side| side.to_string()).join(",")))),
+        ("--aov", a.aov.join(",")),
+        ("--bits", a.bits.clone()),
+        ("--quality", said(a.quality)),
+    ];
+    options.iter().for_each(|(name, value)| identity.add(name, value));
+    for (name, bytes) in input.contents() {
+        identity.add(&format!("the file {name}"), &ContentHash::of(&bytes?).to_string());
+    }
+    Ok(identity)
+}
+
+/// The value of an option.
+fn said(value: Option<impl Display>) -> String {
+    value.map_or_else(|| "not given".to_owned(), |value| value.to_string())
+}
+
+/// The value of a setting.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Text(text) => text.clone(),
+        Value::Integer(number) => number.to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::Bool(yes) => yes.to_string(),
+        other => format!("{other:?}"),
+    }
+}
+
+fn read(path: &Path) -> anyhow::Result<(Identity, BTreeSet<u32>)> {
+    let text =
+        std::fs::read_to_string(path).with_context(|| format!("{}: cannot read it", path.display()))?;
+    let parsed = text.strip_prefix(FIRST_LINE).and_then(|text| {
+        let (lines, numbers) = text.rsplit_once(&format!("{FINISHED}="))?;
+        let numbers: Option<BTreeSet<u32>> =
+            numbers.strip_suffix('\n')?.split(' ').map(|n| n.parse().ok()).collect();
+        Some((Identity::from_text(lines), numbers?))
+    });
+    let Some(parsed) = parsed else {
+        bail!(
+            "{}: this does not say which frames are finished, or is damaged: delete it, or leave out --resume",
+            path.display()
+        );
+    };
+    Ok(parsed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_lies_next_to_the_frames() {
+        let name = |pattern: &str| journal_path(Path::new(pattern)).to_string_lossy().into_owned();
+        assert_eq!(name("a/walk-{frame}.png"), "a/walk-frames.png.checkpoint");
+        assert_eq!(name("walk.exr"), "walk-frames.exr.checkpoint");
+    }
+}

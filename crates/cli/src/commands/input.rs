@@ -1,0 +1,161 @@
+//! The scene that `bilux render` renders, and the jobs that it makes of it.
+
+use super::targets::{Target, is_stdout};
+use super::{aov, check_choices, load, read_options_with, report_warnings};
+use crate::arguments::{Common, Render};
+use crate::interrupt::Interrupt;
+use crate::{settings_from, usage};
+use anyhow::{Context, anyhow, bail};
+use bilux::checkpoint::checkpoint_path;
+use bilux::formats::ReadOptions;
+use bilux::scene::{Parameters, SceneBuilder, SceneError};
+use bilux::transport::Window;
+use bilux::watch::Watched;
+use bilux::{Built, Job, Series};
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A scene file, which may have to be read again for another time.
+pub struct Input<'a> {
+    pub path: &'a Path,
+    /// The bytes from standard input, which can be read only once.
+    piped: Option<Vec<u8>>,
+    pub arguments: &'a Render,
+    pub common: &'a Common,
+    pub interrupt: &'a Interrupt,
+    /// When the picture that is rendered next was started.
+    pub begun: Cell<Instant>,
+    /// What the pictures of a turntable share.
+    built: RefCell<Built>,
+    /// Every warning so far, for `--json`.
+    pub warnings: RefCell<Vec<String>>,
+    /// Every file that was read.
+    pub files: RefCell<BTreeSet<PathBuf>>,
+    /// Where they are watched, if they are.
+    watched: Option<&'a Watched>,
+}
+
+impl Input<'_> {
+    pub fn open<'a>(
+        path: &'a Path,
+        arguments: &'a Render,
+        common: &'a Common,
+        interrupt: &'a Interrupt,
+        watched: Option<&'a Watched>,
+    ) -> anyhow::Result<Input<'a>> {
+        let mut piped = None;
+        if is_stdout(path) {
+            check_input_format(&arguments.input_format).map_err(usage::wrong)?;
+            let mut bytes = Vec::new();
+            let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
+            input.context("cannot read standard input")?;
+            if bytes.is_empty() {
+                bail!("standard input is empty: name a scene file, or pipe in a scene");
+            }
+            piped = Some(bytes);
+        }
+        let begun = Cell::new(Instant::now());
+        let (built, warnings, files) = (RefCell::default(), RefCell::default(), RefCell::default());
+        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, files, watched })
+    }
+
+    /// Prints warnings, and keeps them for `--json`.
+    pub fn warn(&self, warnings: &[bilux::scene::Warning]) -> anyhow::Result<()> {
+        self.warnings.borrow_mut().extend(warnings.iter().map(ToString::to_string));
+        report_warnings(warnings, self.common)
+    }
+
+    /// Reads the scene as it is at a time in seconds; for frames, with its whole movement.
+    pub fn read(&self, time: f32, whole_movement: bool) -> anyhow::Result<SceneBuilder> {
+        let choices = &self.arguments.choices;
+        let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
+        let mut scene = match &self.piped {
+            Some(bytes) => {
+                // There is no file name, so the first bytes decide.
+                let format =
+                    Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
+                bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
+            }
+            None => load(self.path, &options)?,
+        };
+        check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
+        self.arguments.studio.set_up(&mut scene, &options)?;
+        self.files.borrow_mut().extend(scene.files.iter().cloned());
+        if let Some(watched) = self.watched {
+            watched.add(&scene.files);
+        }
+        Ok(scene)
+    }
+
+    /// The name and the contents of every file that was read.
+    pub fn contents(&self) -> impl Iterator<Item = (String, anyhow::Result<Vec<u8>>)> + '_ {
+        let piped = self.piped.iter().map(|bytes| ("on standard input".to_owned(), Ok(bytes.clone())));
+        let mut files = self.files.borrow().clone();
+        if self.piped.is_none() {
+            files.insert(self.path.to_owned());
+        }
+        let read = |path: PathBuf| {
+            let bytes = std::fs::read(&path).with_context(|| format!("{}: cannot read it", path.display()));
+            (path.display().to_string(), bytes)
+        };
+        piped.chain(files.into_iter().map(read))
+    }
+
+    /// Refuses to write over a file that was read.
+    pub fn check_outputs(&self, Target { output, stats, .. }: &Target) -> anyhow::Result<()> {
+        let mut beside = aov::files(self.arguments, output);
+        if !is_stdout(output) {
+            beside.push(checkpoint_path(output));
+        }
+        let mut written = beside.iter().chain([output]).chain(stats).filter(|file| !is_stdout(file));
+        Ok(written.try_for_each(|file| bilux::formats::check_not_read(file, &self.files.borrow()))?)
+    }
+
+    /// Makes the job for a scene, with everything that the command line says about it.
+    pub fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
+        let arguments = self.arguments;
+        // From one picture of a turntable to the next only the camera moves.
+        let (mut own, mut shared) = (Built::default(), self.built.borrow_mut());
+        let built = if arguments.turntable.is_some() { &mut *shared } else { &mut own };
+        let mut job = Job::with_built(scene, user, self.common.max_memory, series, built)?;
+        if self.common.sandbox {
+            job.sandbox();
+        }
+        job.begun_at(self.begun.get());
+        aov::prepare(arguments, &mut job)?;
+        if let Some((from, to)) = arguments.samples {
+            job.samples(from..to);
+        }
+        if let Some([x, y, width, height]) = arguments.crop {
+            let s = job.settings();
+            let fits = |at: u32, side: u32, most: u32| {
+                side > 0 && at.checked_add(side).is_some_and(|end| end <= most)
+            };
+            if !fits(x, width, s.width) || !fits(y, height, s.height) {
+                let size = format!("{}x{}", s.width, s.height);
+                return Err(usage::wrong(anyhow!(
+                    "--crop {x},{y},{width},{height}: the window must contain pixels and lie within the picture, \
+                     which is {size}"
+                )));
+            }
+            job.crop(Window { x, y, width, height });
+        }
+        if arguments.stats.is_some() {
+            job.count_work();
+        }
+        Ok(job)
+    }
+}
+
+/// Refuses an unknown scene format.
+fn check_input_format(name: &str) -> anyhow::Result<()> {
+    if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
+        return Ok(());
+    }
+    let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
+    let names = rows.map(|row| row.entry.name).chain(["auto"]);
+    Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
+}

@@ -1,0 +1,53 @@
+//! The options of renders that last, or that are watched.
+
+use crate::help;
+use crate::preview::PreviewChoice;
+use crate::values::parse_duration;
+use clap::Args;
+use std::time::Duration;
+
+/// How a render is kept, continued, repeated and shown.
+#[derive(Args)]
+pub struct Lasting {
+    /// Save a checkpoint in OUT.checkpoint each time that SECONDS have passed, and at Ctrl-C, from which --resume goes on;
+    /// off saves none [default: 60]
+    #[arg(long, value_name = "SECONDS|off", allow_hyphen_values = true, value_parser = parse_checkpoint, help_heading = help::SPEED)]
+    pub checkpoint: Option<Checkpoints>,
+    /// Go on with a render that was interrupted or killed: the picture has the same bytes as one that was not
+    #[arg(long, help_heading = help::SPEED)]
+    pub resume: bool,
+    /// Render again whenever the scene file or one that it names changes; Ctrl-C ends
+    #[arg(long, conflicts_with_all = ["resume", "checkpoint", "frames", "turntable", "replay"], help_heading = help::OUTPUT)]
+    pub watch: bool,
+    /// Show the picture in the terminal while it is rendered, as coloured blocks or by the protocol of the terminal
+    #[arg(long, value_name = "auto|blocks|kitty|iterm|sixel", num_args = 0..=1, default_missing_value = "auto",
+        require_equals = true, value_parser = PreviewChoice::parse, help_heading = help::OUTPUT)]
+    pub preview: Option<PreviewChoice>,
+}
+
+/// When checkpoints are saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Checkpoints {
+    /// Never.
+    Off,
+    /// Each time that this has passed.
+    Every(Duration),
+}
+
+/// What is meant if nothing is said.
+const DEFAULT: Checkpoints = Checkpoints::Every(Duration::from_secs(60));
+
+impl Lasting {
+    /// When checkpoints are saved.
+    pub fn checkpoints(&self) -> Checkpoints {
+        if self.watch { Checkpoints::Off } else { self.checkpoint.unwrap_or(DEFAULT) }
+    }
+}
+
+fn parse_checkpoint(text: &str) -> Result<Checkpoints, String> {
+    if text == "off" {
+        return Ok(Checkpoints::Off);
+    }
+    let advice = |_| "write a number of seconds above 0, such as 60, or off".to_owned();
+    parse_duration(text).map(Checkpoints::Every).map_err(advice)
+}
