@@ -44,7 +44,7 @@ impl RenderSettings {
 /// samples.
 ///
 /// # Errors
-/// As for [`render`].
+/// As for [`render()`].
 pub fn plan(
     scene: &Scene,
     camera: &dyn Camera,
@@ -71,10 +71,10 @@ pub fn render(
 }
 
 /// Renders the requested samples, of which a checkpoint may have some, while an observer sees the film. The film is that
-/// of [`render`], bit for bit, unless time ends it.
+/// of [`render()`], bit for bit, unless time ends it.
 ///
 /// # Errors
-/// As for [`render`]; and when the checkpoint belongs to another picture or has more samples than are requested.
+/// As for [`render()`]; and when the checkpoint belongs to another picture or has more samples than are requested.
 pub fn render_from(
     from: Option<Checkpoint>,
     scene: &Scene,

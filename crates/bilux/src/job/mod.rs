@@ -1,9 +1,9 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
 
 mod ranges;
+mod rendering;
 
 use crate::Error;
-use crate::budget::time_for_rendering;
 use crate::built::Built;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
@@ -17,17 +17,12 @@ use bilux_pictures::Picture;
 use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Checkpoint, Features, Filter, Observer, PixelAnchor, Plan, Progress, RenderError, RenderSettings,
-    Rendered, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Unobserved, Window, coverage,
-    shadow_alpha,
+    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay,
+    SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
-
-/// If a time limit ends the picture, the pass that collects surface features (albedo, normals, …) takes at most one
-/// part in this many of it.
-const FEATURES_PART: u32 = 12;
 
 /// A picture to be rendered.
 pub struct Job {
@@ -240,54 +235,6 @@ impl Job {
     /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
-    }
-
-    /// Renders the picture.
-    ///
-    /// # Errors
-    /// If the size or the crop makes no sense, or memory is short.
-    pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
-        self.render_observed(None, Duration::ZERO, progress, &Unobserved)
-    }
-
-    /// Renders what a checkpoint lacks, if there is one. `aside` is the time that was spent before on other work than
-    /// rendering.
-    pub(crate) fn render_observed(
-        &self,
-        from: Option<Checkpoint>,
-        aside: Duration,
-        progress: &dyn Progress,
-        observer: &dyn Observer,
-    ) -> Result<Outcome, Error> {
-        let now = Instant::now();
-        let (scene, camera) = (&self.scene, &*self.camera);
-        let mut render = self.render.clone();
-        let aside = aside + self.time_aside(now);
-        let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, aside));
-        let features = self.features_within(end.map(|end| end - now), progress)?;
-        render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
-        let rendered =
-            bilux_transport::render_from(from, scene, camera, self.renders(), &render, progress, observer)?;
-        self.completed(rendered, features)
-    }
-
-    /// The time that a limit leaves to other work than rendering, as far as it is spent by now or known.
-    pub(crate) fn time_aside(&self, now: Instant) -> Duration {
-        now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time()
-    }
-
-    /// The features of surfaces, if they are wanted, in a part of the time that the picture may take.
-    pub(crate) fn features_within(
-        &self,
-        time: Option<Duration>,
-        progress: &dyn Progress,
-    ) -> Result<Option<Features>, Error> {
-        if !self.features {
-            return Ok(None);
-        }
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
-        let part = time.map(|time| time / FEATURES_PART);
-        Ok(bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?)
     }
 
     /// Adds to what was rendered whatever else the picture needs.

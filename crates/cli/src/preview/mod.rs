@@ -169,7 +169,7 @@ impl Preview {
                 for row in places(y, height, window.height) {
                     for column in places(x, width, window.width) {
                         let light = film.pixel(window.x + column, window.y + row);
-                        sum = sum + if light.is_finite() { light } else { Rgb::BLACK };
+                        sum += if light.is_finite() { light } else { Rgb::BLACK };
                         count += 1.0;
                     }
                 }

@@ -136,7 +136,12 @@ pub(crate) const CASES: &[Case] = &[
         &[("out.png.checkpoint", b"no checkpoint")],
         "render triangle.obj -o out.png --resume",
     ),
-    Case::command("two scenes that are watched", 2, "render triangle.obj triangle.obj -o {stem}.png --watch"),
+    Case::file(
+        "two scenes that are watched",
+        2,
+        &[("a.toml", BALL)],
+        "render a.toml triangle.obj -o {stem}.png --watch",
+    ),
     Case::command("standard input that is watched", 2, "render - -o out.png --watch"),
     Case::command("a watched picture without a name", 2, "render triangle.obj -o - --watch"),
     Case::command("a preview that there is not", 2, "render triangle.obj -o out.png --preview=ascii"),
