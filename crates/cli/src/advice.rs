@@ -96,6 +96,9 @@ impl Line {
             "farm" if name.starts_with('-') => {
                 Some("options of `bilux render` come last, after `--`: `… -- --spp 64`".to_owned())
             }
+            "serve" if name == "--turntable" => {
+                Some("drag the picture to see the model from all around".to_owned())
+            }
             "list" if !name.starts_with('-') => Some("name only the list: all of it is printed".to_owned()),
             // An option is not meant as the name of a file.
             command if suggested.contains("as a value") => {
