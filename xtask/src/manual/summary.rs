@@ -47,7 +47,9 @@ pub(super) fn read(text: &str) -> Result<Summary> {
             if summary.chapters().any(|other| other.path == chapter.path) {
                 bail!("{}:{}: {} is listed twice", super::SUMMARY, number + 1, chapter.path);
             }
-            summary.parts.last_mut().map(|part| part.chapters.push(chapter));
+            if let Some(part) = summary.parts.last_mut() {
+                part.chapters.push(chapter);
+            }
         }
     }
     Ok(summary)

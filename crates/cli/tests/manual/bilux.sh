@@ -28,12 +28,17 @@ case " $* " in
     " render "*" --spp "* | " render "*" --noise "* | " render "*" --time-limit "* | " render "*" --samples "* | " render "*" --fast "*) ;;
     " render "*) set -- "$@" --time-limit 0.3 ;;
 esac
-# A server runs until somebody ends it.
-if [ "$command" = serve ]; then
-    "$BILUX" "$@" --port 0 &
-    sleep 1
-    kill -INT $!
-    wait $!
-    exit
-fi
+# A server runs until somebody ends it: here as soon as it has printed its address, or has ended by itself.
+case "$*" in
+    *--help*) ;;
+    "serve "*)
+        address=$(mktemp)
+        "$BILUX" "$@" --port 0 >"$address" &
+        while [ ! -s "$address" ] && kill -0 $! 2>/dev/null; do sleep 0.1; done
+        kill -TERM $! 2>/dev/null || true
+        rm "$address"
+        wait $!
+        exit
+        ;;
+esac
 exec "$BILUX" "$@"

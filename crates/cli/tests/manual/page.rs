@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn a_page_may_skip_what_stands_in_its_text() {
-        let page = "<!-- test: skip inline because of time -->\n`bilux bench rays -v`\n";
-        let action = Action::Skip { script: "bilux bench rays -v\n".into(), reason: "of time".into() };
+        let page = "<!-- test: skip inline because of time -->\n`bilux info rays -v`\n";
+        let action = Action::Skip { script: "bilux info rays -v\n".into(), reason: "of time".into() };
         assert_eq!(steps(page), [Step { line: 2, action }]);
     }
 }
