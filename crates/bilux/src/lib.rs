@@ -18,6 +18,8 @@
 pub mod budget;
 mod built;
 mod camera_choice;
+pub mod compositing;
+pub mod description;
 mod display;
 pub mod encoding;
 pub mod error;
@@ -48,6 +50,7 @@ pub use bilux_transport as transport;
 
 pub use bilux_transport::Silent as Quiet;
 pub use built::Built;
+pub use compositing::ExtraLayers;
 pub use display::Display;
 pub use error::Error;
 pub use job::Job;

@@ -17,6 +17,7 @@ pub mod serve;
 mod stats;
 mod targets;
 mod time_limit;
+mod written;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
