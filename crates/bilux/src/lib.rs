@@ -23,6 +23,7 @@ pub mod description;
 mod display;
 pub mod encoding;
 pub mod error;
+pub mod explain;
 pub mod fingerprint;
 pub mod job;
 mod layers;

@@ -3,6 +3,7 @@
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
 pub use crate::denoising::Denoise;
+pub use crate::explaining::Explain;
 pub use crate::farming::Farm;
 use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
@@ -86,11 +87,13 @@ pub enum Command {
     Serve(Box<Serve>),
     /// Show what is in a scene file
     Info(Info),
+    /// Say what is hard about a scene, and what would help
+    Explain(Box<Explain>),
     /// Convert a scene or a picture to another format
     Convert(Convert),
     /// Remove the noise from a picture
     Denoise(Denoise),
-    /// Measure how much a picture differs from a reference
+    /// Measure how much pictures differ from references
     Compare(Compare),
     /// Write a built-in scene to a file
     Generate(Generate),

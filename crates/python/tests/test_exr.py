@@ -91,7 +91,7 @@ def files(tmp_path_factory, command_line):
 def opened(files):
     """The header and the planes, by OpenEXR."""
     with OpenEXR.File(str(files / "all.exr"), separate_channels=True) as file:
-        return file.header(), {name: channel.pixels for name, channel in file.channels().items()}
+        return dict(file.header()), {name: channel.pixels for name, channel in file.channels().items()}
 
 
 def float_id(name):

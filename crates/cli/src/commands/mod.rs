@@ -5,6 +5,7 @@ pub mod bench;
 pub mod compare;
 pub mod convert;
 pub mod denoise;
+pub mod explain;
 pub mod farm;
 pub mod generate;
 pub mod info;
