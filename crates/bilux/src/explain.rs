@@ -13,7 +13,7 @@ const DIRECTIONS: u32 = 8;
 /// Rays from each light.
 const LIGHT_RAYS: u32 = 256;
 /// The maximum number of lights that rays are traced from: those that come first.
-const MOST_LIGHTS: usize = 64;
+const MAX_LIGHTS: usize = 64;
 /// Many lights: more than are all sampled at each event of a path.
 const MANY_LIGHTS: usize = 16;
 /// A texture of more texels than this on a side is huge.
@@ -99,7 +99,7 @@ impl Job {
         let shines = |light: &&bilux_scene::scene::SceneLight| light.light.power(&bounds) > 0.0;
         let lights: Vec<_> = scene.lights().iter().filter(shines).collect();
         let mut onto_glass: Vec<(String, f32)> = Vec::new();
-        for (i, light) in lights.iter().take(MOST_LIGHTS).enumerate() {
+        for (i, light) in lights.iter().take(MAX_LIGHTS).enumerate() {
             let share = self.first_onto_glass(&mut tracer, &*light.light, i as u32);
             if share > 0.0 {
                 let name =

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 
 /// The camera rays of each pixel: at least this many, even where the picture has fewer samples, since coverage is
 /// counted in them.
-pub const LEAST_SAMPLES: u32 = 16;
+pub const MIN_SAMPLES: u32 = 16;
 /// And at most this many.
-pub const MOST_SAMPLES: u32 = 128;
+pub const MAX_SAMPLES: u32 = 128;
 /// The number of ids that a pixel can have; those that cover less of it are left out.
 pub const RANKS: usize = 6;
 
@@ -77,13 +77,13 @@ pub fn visible(
     progress: &dyn Progress,
 ) -> Result<Option<Visible>, RenderError> {
     settings.check()?;
-    let least = if integrator.is_random() { LEAST_SAMPLES } else { 1 };
-    let samples = if wanted.ids.is_empty() { samples.min(LEAST_SAMPLES) } else { samples };
+    let least = if integrator.is_random() { MIN_SAMPLES } else { 1 };
+    let samples = if wanted.ids.is_empty() { samples.min(MIN_SAMPLES) } else { samples };
     let look = Look {
         eye: CameraRays::new(scene, camera, integrator, settings),
         camera,
         wanted,
-        samples: samples.clamp(least, MOST_SAMPLES),
+        samples: samples.clamp(least, MAX_SAMPLES),
     };
     let window = settings.window();
     let of_tile = |tile: Window| (!progress.is_cancelled()).then(|| look.tile(tile));

@@ -5,7 +5,7 @@ mod common;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{Quat, Vec2, Vec3};
 use bilux_scene::{Scene, SceneBuilder};
-use bilux_transport::visible::{LEAST_SAMPLES, Moment, Wanted};
+use bilux_transport::visible::{MIN_SAMPLES, Moment, Wanted};
 use bilux_transport::{RenderSettings, Silent, Visible, Window, visible};
 use common::{ball, built, diffuse, floor, integrator, look, put, still_life};
 
@@ -89,7 +89,7 @@ fn the_same_for_any_number_of_threads_and_any_part() {
     let all = seen(&scene, &RenderSettings { threads: 1, ..base.clone() }, &wanted);
     assert!(seen(&scene, &RenderSettings { threads: 3, ..base.clone() }, &wanted) == all);
     assert!(seen(&scene, &RenderSettings { samples: 3..5, ..base.clone() }, &wanted) == all);
-    let few = RenderSettings { spp: LEAST_SAMPLES, samples: 0..1, ..base.clone() };
+    let few = RenderSettings { spp: MIN_SAMPLES, samples: 0..1, ..base.clone() };
     assert!(seen(&scene, &few, &wanted) == all, "a picture of few samples has no rougher edges");
     let crop = Window { x: 7, y: 5, width: 20, height: 11 };
     let part = seen(&scene, &RenderSettings { crop: Some(crop), ..base }, &wanted);

@@ -21,6 +21,11 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     for name in &arguments.aov {
         aovs::find(name, &from_flag("--aov"))?;
     }
+    if arguments.samples.is_some() && layers(arguments).iter().any(|aov| aov.is_light()) {
+        bail!(
+            "--aov direct, indirect and groups need all samples: leave out --samples, or divide the picture by --crop"
+        );
+    }
     if !arguments.aov.is_empty() && arguments.output == Path::new("-") {
         bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
     }

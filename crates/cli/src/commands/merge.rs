@@ -6,7 +6,7 @@ use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use anyhow::Context;
 use bilux::Display;
-use bilux::description::{SETTINGS, is_handed_on};
+use bilux::description::{SETTINGS, SOFTWARE, is_handed_on};
 use bilux::pictures::formats::format_of_path;
 use bilux::pictures::{Limits, Picture};
 use bilux::transport::{Film, JoinedLayers, Window};
@@ -33,7 +33,9 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
         let next = Film::from_partial(&picture).with_context(|| part.display().to_string())?;
         layers.add(&picture, &next);
         for (key, value) in picture.metadata.iter().filter(|(key, _)| is_handed_on(key)) {
-            described.entry(key.clone()).or_insert_with(|| value.clone());
+            // As EXR calls it.
+            let key = if key == "software" { SOFTWARE } else { key };
+            described.entry(key.to_owned()).or_insert_with(|| value.clone());
         }
         match &mut joined {
             Some((film, _)) => film.merge(&next).with_context(|| part.display().to_string())?,
