@@ -78,6 +78,8 @@ fn options(settings: &Settings, spp: u32, denoiser: Option<&str>) -> String {
     ] {
         all.set(key, value);
     }
+    // Whoever gave them in another order gets the same text.
+    all.0.sort_by(|(a, ..), (b, ..)| a.cmp(b));
     let is_needed = |key: &str| !WITHOUT_EFFECT.contains(&key);
     let set = all.0.iter().filter(|(key, ..)| is_needed(key));
     set.map(|(key, value, _)| format!("--set {}", quoted(&format!("{key}={}", text(value)))))
