@@ -3,15 +3,13 @@
 use super::input::Input;
 use super::keeping::Keeping;
 use super::targets::{Target, is_stdout};
+use super::written::{self, is_part};
 use super::{DONE, aov, log, stats, time_limit};
-use crate::arguments::Render;
 use crate::preview::{Observers, Preview};
 use crate::progress::Report;
 use crate::{output, usage};
-use bilux::pictures::denoise::DenoiserChoice;
-use bilux::pictures::formats::{BitDepth, format_of_path};
-use bilux::{Job, Outcome};
-use std::path::Path;
+use bilux::Job;
+use bilux::pictures::formats::format_of_path;
 
 /// Renders a picture and writes it, with what belongs to it.
 pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
@@ -43,11 +41,13 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     }
     let rendered = input.begun.get().elapsed();
     let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
-    let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
+    let extra = aov::extra(arguments, job, &outcome, &report)?;
+    let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
+    let denoised = written::write(arguments, common, job, &outcome, (denoiser.as_ref(), &layers), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
-    let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
+    let all_aovs = aov::write(arguments, job, &outcome, (output, &layers), common, interrupt)?;
     let rendered = log::Rendered {
         job,
         outcome: &outcome,
@@ -68,7 +68,7 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     if !common.quiet {
         rendered.print(common.verbose);
     }
-    if outcome.rendered.cancelled || !all_aovs {
+    if outcome.rendered.cancelled || !all_aovs || extra.is_none() {
         keeping.report_stop(kept, common.quiet);
         return Ok(interrupt.exit_status());
     }
@@ -87,46 +87,4 @@ fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> 
     let text = serde_json::to_string_pretty(&stats)?;
     Ok(bilux::pictures::formats::write_atomically(path, text.as_bytes())
         .map_err(|error| error.in_file(path))?)
-}
-
-/// True if only a part of the picture is rendered.
-pub fn is_part(arguments: &Render) -> bool {
-    arguments.samples.is_some() || arguments.crop.is_some()
-}
-
-/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
-fn write(
-    input: &Input,
-    job: &Job,
-    outcome: &Outcome,
-    denoiser: Option<&DenoiserChoice>,
-    output: &Path,
-) -> anyhow::Result<bool> {
-    let arguments = input.arguments;
-    let is_exr = !is_stdout(output) && aov::is_exr(output);
-    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
-    let denoiser = denoiser.filter(|_| !is_part);
-    let mut picture = match denoiser {
-        Some(chosen) => outcome.denoised(chosen)?,
-        None if is_part => job.partial(outcome)?,
-        None => outcome.picture()?,
-    };
-    if is_exr {
-        outcome.push_layers(&mut picture, &aov::layers(arguments))?;
-        if denoiser.is_some() {
-            picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
-        }
-    }
-    let mut options = job.write_options_for(&picture)?;
-    if arguments.bits == "16" {
-        options.bit_depth = BitDepth::Sixteen;
-    }
-    options.quality = arguments.quality.unwrap_or(options.quality);
-    if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
-    } else {
-        super::warn_lost_alpha(&picture, output, options.behind, input.common)?;
-        bilux::pictures::write(output, &picture, &options)?;
-    }
-    Ok(denoiser.is_some())
 }

@@ -10,6 +10,7 @@ use bilux::checkpoint::checkpoint_path;
 use bilux::formats::ReadOptions;
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
+use bilux::transport::aovs::Aov;
 use bilux::watch::Watched;
 use bilux::{Built, Job, Series};
 use std::cell::{Cell, RefCell};
@@ -147,6 +148,21 @@ impl Input<'_> {
             job.count_work();
         }
         Ok(job)
+    }
+
+    /// Tells the job the next pose of a scene whose meshes move, if the layer of motion is wanted.
+    pub fn set_next_pose(
+        &self,
+        job: &mut Job,
+        scene: &SceneBuilder,
+        (user, series): (&Parameters, &Series),
+    ) -> anyhow::Result<()> {
+        if scene.inventory.moves() && aov::wants(self.arguments, Aov::Motion) {
+            let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
+            next.movement = scene.movement.clone();
+            job.moves_to(self.job(&next, user, series)?);
+        }
+        Ok(())
     }
 }
 

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod compare;
 pub mod convert;
 pub mod denoise;
+pub mod explain;
 pub mod farm;
 mod finishing;
 mod frames;
@@ -22,6 +23,7 @@ mod stats;
 mod targets;
 mod time_limit;
 mod watching;
+mod written;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};

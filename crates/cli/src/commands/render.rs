@@ -1,9 +1,10 @@
 //! `bilux render`: renders pictures of scenes.
 
-use super::finishing::{finish, is_part};
+use super::finishing::finish;
 use super::frames::FinishedFrames;
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
+use super::written::is_part;
 use super::{DONE, aov, keeping, log, report_notes, watching};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
@@ -161,6 +162,7 @@ fn render_scene(
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user, series)?;
     }
+    input.set_next_pose(&mut job, scene, (&user, series))?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     if common.verbose > 0 {
@@ -196,6 +198,7 @@ fn render_scene(
             job = input.job(&posed, &user, &series)?;
         }
         job.at_time(time);
+        input.set_next_pose(&mut job, scene, (&user, &series))?;
         let status = finish(input, &mut job, &numbered, build_seconds)?;
         if status != DONE {
             return Ok(status);
