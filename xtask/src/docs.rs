@@ -1,6 +1,7 @@
 //! `cargo xtask docs`: the library documentation, and the reference pages in `docs/reference/`, which are generated
 //! from the tables that the binary lists. `--check` only checks whether those pages are up to date.
 
+use crate::command_pages;
 use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -79,7 +80,14 @@ fn pages() -> Result<BTreeMap<String, String>> {
         let names: Vec<_> = rows.iter().map(|row| format!("`{}`", text_of(row, "name"))).collect();
         front += &format!("- [{title}]({name}.md): {}\n", names.join(", "));
     }
-    front += "- [JSON schema of scene files](scene.schema.json), for editors\n";
+    front += "- [JSON schema of scene files](scene.schema.json), for editors\n- Commands: ";
+    let mut links = Vec::new();
+    for command in command_pages::COMMANDS {
+        let path = format!("{}/{command}.md", command_pages::FOLDER);
+        links.push(format!("[`{command}`]({path})"));
+        pages.insert(path, command_pages::page(command, &bilux(&[command, "--help"])?));
+    }
+    front += &(links.join(", ") + "\n");
     pages.insert("README.md".to_owned(), front);
     pages.insert("scene.schema.json".to_owned(), bilux(&["schema"])?.trim_end().to_owned() + "\n");
     Ok(pages)
@@ -146,7 +154,8 @@ fn is_fresh(file: &std::io::Result<Vec<u8>>, page: &str) -> bool {
 
 fn write(pages: &BTreeMap<String, String>) -> Result<()> {
     let folder = root().join(FOLDER);
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {FOLDER}"))?;
+    fs::create_dir_all(folder.join(command_pages::FOLDER))
+        .with_context(|| format!("cannot make {FOLDER}"))?;
     for (name, page) in pages {
         fs::write(folder.join(name), page).with_context(|| format!("cannot write {FOLDER}/{name}"))?;
     }

@@ -2,12 +2,14 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod command_pages;
 mod contact_sheet;
 mod cpu_levels;
 mod dist;
 mod docs;
 mod instructions;
 mod licences;
+mod manual;
 mod mutants;
 mod package;
 mod process;
@@ -36,6 +38,7 @@ const CHORES: &[Chore] = &[
         run: licences::run,
     },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
+    Chore { name: "manual", summary: "the manual as web pages, in target/manual", run: manual::run },
     Chore { name: "contact-sheet", summary: "models next to their screenshots", run: contact_sheet::run },
     Chore {
         name: "dist",

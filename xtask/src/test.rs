@@ -19,6 +19,7 @@ const STEPS: &[Step] = &[
     Step { name: "python", run: |_| crate::python::test() },
     Step { name: "instructions", run: |_| crate::instructions::run(&[]) },
     Step { name: "reference", run: |_| crate::docs::check_reference() },
+    Step { name: "manual", run: |_| crate::manual::run(&["--check".to_owned()]) },
     Step { name: "doc", run: |_| crate::docs::library() },
 ];
 

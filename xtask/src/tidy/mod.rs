@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: the repository's own rules, one per file; the table is [`RULES`].
 
 mod changelog;
+mod chapters;
 mod circles;
 mod citations;
 mod dependencies;
@@ -40,6 +41,7 @@ const RULES: &[Rule] = &[
     Rule { name: "portable", check: portable::check },
     Rule { name: "citations", check: citations::check },
     Rule { name: "links", check: links::check },
+    Rule { name: "chapters", check: chapters::check },
     Rule { name: "registries", check: registries::check },
     Rule { name: "manifests", check: manifests::check },
     Rule { name: "directions", check: directions::check },
