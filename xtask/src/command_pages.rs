@@ -8,6 +8,7 @@ pub(crate) const COMMANDS: &[&str] = &[
     "render",
     "serve",
     "info",
+    "explain",
     "convert",
     "denoise",
     "compare",

@@ -14,6 +14,7 @@ mod mutants;
 mod package;
 mod process;
 mod python;
+mod strips;
 mod test;
 mod tidy;
 mod viewer;
@@ -39,6 +40,11 @@ const CHORES: &[Chore] = &[
     },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
     Chore { name: "manual", summary: "the manual as web pages, in target/manual", run: manual::run },
+    Chore {
+        name: "strips",
+        summary: "render what each parameter of materials, lights and textures does (minutes)",
+        run: strips::run,
+    },
     Chore { name: "contact-sheet", summary: "models next to their screenshots", run: contact_sheet::run },
     Chore {
         name: "dist",

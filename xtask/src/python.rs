@@ -20,9 +20,16 @@ const BUILDERS: &[&str] = &["maturin>=1.7,<2"];
 const TESTERS: &[&str] = &["numpy", "pytest", "mypy", "trimesh", "rtree", "scipy", "tqdm"];
 
 /// What only some tests use, which skip aloud where it cannot be had: what runs jobs for farms, notebooks, their widgets,
-/// plots, videos, and the renderer that one page compares with.
-const EXTRAS: &[&str] =
-    &["openjd-cli", "nbclient ipykernel", "anywidget", "matplotlib", "imageio imageio-ffmpeg", "pyrender"];
+/// plots, videos, the renderer that one page compares with, and what reads EXR files as compositors do.
+const EXTRAS: &[&str] = &[
+    "openjd-cli",
+    "nbclient ipykernel",
+    "anywidget",
+    "matplotlib",
+    "imageio imageio-ffmpeg",
+    "pyrender",
+    "OpenEXR OpenImageIO mmh3",
+];
 
 /// What the tests of clusters use.
 const CLUSTER_TESTERS: &[&str] = &["numpy", "pytest", "ray>=2.9"];

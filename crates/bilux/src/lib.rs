@@ -18,9 +18,12 @@
 pub mod budget;
 mod built;
 mod camera_choice;
+pub mod compositing;
+pub mod description;
 mod display;
 pub mod encoding;
 pub mod error;
+pub mod explain;
 pub mod fingerprint;
 pub mod job;
 mod layers;
@@ -48,6 +51,7 @@ pub use bilux_transport as transport;
 
 pub use bilux_transport::Silent as Quiet;
 pub use built::Built;
+pub use compositing::ExtraLayers;
 pub use display::Display;
 pub use error::Error;
 pub use job::Job;

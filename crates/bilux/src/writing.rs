@@ -92,7 +92,8 @@ impl Job {
     /// # Errors
     /// If the file cannot be written.
     pub fn write(&self, outcome: &Outcome, path: &Path) -> Result<(), Error> {
-        let picture = outcome.picture()?;
+        let mut picture = outcome.picture()?;
+        self.describe(&mut picture, outcome, None);
         Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)
     }
 }

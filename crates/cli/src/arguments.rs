@@ -3,6 +3,7 @@
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
 pub use crate::denoising::Denoise;
+pub use crate::explaining::Explain;
 pub use crate::farming::Farm;
 use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
@@ -86,11 +87,13 @@ pub enum Command {
     Serve(Box<Serve>),
     /// Show what is in a scene file
     Info(Info),
+    /// Say what is hard about a scene, and what would help
+    Explain(Box<Explain>),
     /// Convert a scene or a picture to another format
     Convert(Convert),
     /// Remove the noise from a picture
     Denoise(Denoise),
-    /// Measure how much a picture differs from a reference
+    /// Measure how much pictures differ from references
     Compare(Compare),
     /// Write a built-in scene to a file
     Generate(Generate),
@@ -146,6 +149,7 @@ pub enum Command {
     bilux render fox.glb -o fox.png --animation Walk --at 0.5\n  \
     bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
     bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
+    bilux render scene.toml -o comp.exr --spp 64 --aov crypto_object,direct,indirect,groups,position\n  \
     bilux render scene.toml -o a.exr --samples 0..64    One half here,\n  \
     bilux render scene.toml -o b.exr --samples 64..128  and the other half elsewhere:\n  \
     bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
@@ -259,9 +263,8 @@ pub struct Render {
     /// The quality of a JPEG, from 1 to 100 [default: 92]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
     pub quality: Option<u8>,
-    /// Write more outputs (`bilux list aovs`): albedo, normal, depth, ids and variance become layers of an .exr (of
-    /// OUT.layers.exr if OUT is not an .exr), interval writes OUT.interval.exr, and strategies writes the folder
-    /// OUT.strategies
+    /// Write more outputs (`bilux list aovs`): most become layers of an .exr (of OUT.layers.exr if OUT is not an .exr),
+    /// interval writes OUT.interval.exr, and strategies writes the folder OUT.strategies
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', help_heading = help::OUTPUT)]
     pub aov: Vec<String>,
     /// Print one line of JSON per picture to standard output

@@ -5,20 +5,21 @@ use crate::values::parse_bound;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Measure how much a picture differs from a reference
+/// Measure how much pictures differ from references, one pair or two folders of them
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  bilux compare a.png reference.png\n  \
     bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png\n  \
+    bilux compare new/ reference/ --max-flip 0.02 --html report.html\n  \
     bilux list metrics    What is measured\n\n\
     Exit status:\n  \
     0  Every bound holds\n  \
     1  A bound does not hold\n  \
-    2  The pictures cannot be compared")]
+    2  Pictures cannot be compared, or have no partner")]
 pub struct Compare {
-    /// The picture to measure
+    /// The picture to measure, or a folder of pictures
     pub picture: PathBuf,
-    /// The reference picture
+    /// The reference picture, or a folder with one of the same name for each picture
     pub reference: PathBuf,
     /// The maximum mean FLIP error, from 0 to 1
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
@@ -44,6 +45,9 @@ pub struct Compare {
     /// Write a heat map of the FLIP error to this file
     #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
     pub heat_map: Option<PathBuf>,
+    /// Write a page to this file that shows the pictures side by side, flickering, and their errors
+    #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
+    pub html: Option<PathBuf>,
 }
 
 /// The heading of the options that decide the exit status.

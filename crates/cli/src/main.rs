@@ -11,6 +11,7 @@ mod choices;
 mod commands;
 mod comparison;
 mod denoising;
+mod explaining;
 mod farming;
 mod help;
 mod interrupt;
@@ -61,6 +62,7 @@ fn run(arguments: Arguments) -> anyhow::Result<u8> {
         Command::Render(render) => commands::render::run(&render, common),
         Command::Serve(serve) => commands::serve::run(*serve, common),
         Command::Info(info) => commands::info::run(&info, common),
+        Command::Explain(explain) => commands::explain::run(&explain, common),
         Command::Convert(convert) => commands::convert::run(&convert, common),
         Command::Denoise(denoise) => commands::denoise::run(&denoise, common),
         Command::Compare(compare) => commands::compare::run(&compare, common),

@@ -1,6 +1,6 @@
 //! Turns flags and `--set KEY=VALUE` into the same parameters that scene files use.
 
-use crate::arguments::Render;
+use crate::arguments::{Explain, Render};
 use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::Exposure;
@@ -48,6 +48,18 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
 pub fn serve(arguments: &Serve) -> anyhow::Result<Parameters> {
     let time = [("time", "--at", arguments.at.map(Value::from))];
     all(time.into_iter().chain(studio(&arguments.studio)), &arguments.set)
+}
+
+/// The settings on the command line that explains a scene.
+pub fn explain(arguments: &Explain) -> anyhow::Result<Parameters> {
+    let at = arguments.posed.at;
+    let time = [("time", "--at", (at != 0.0).then(|| Value::from(at)))];
+    let mut parameters = all(time.into_iter().chain(studio(&arguments.studio)), &arguments.set)?;
+    if parameters.find("integrator").is_none() {
+        // Whatever the scene file says: it is explained by what this one finds.
+        parameters.set("integrator", "auto");
+    }
+    Ok(parameters)
 }
 
 /// A setting, its flag, and its value if it is given.

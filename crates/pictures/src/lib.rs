@@ -24,6 +24,7 @@
 //! light. Files may come from untrusted sources: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
+pub mod cryptomatte;
 pub mod denoise;
 mod error;
 mod font;

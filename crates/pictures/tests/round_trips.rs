@@ -71,6 +71,23 @@ fn exr_keeps_floats_integers_layers_and_texts_to_the_bit() {
 }
 
 #[test]
+fn exr_keeps_matrices_as_numbers() {
+    let mut picture = noise(2, 2, &["R", "G", "B"]);
+    let numbers = (0..16).map(|i| (i as f32 / 3.0 - 2.0).to_string()).collect::<Vec<_>>().join(" ");
+    picture.metadata.insert("worldToCamera".to_owned(), numbers);
+    picture.metadata.insert("Software".to_owned(), "bilux".to_owned());
+    let back = round_trip("exr", &picture, &WriteOptions::default());
+    assert_eq!(back.metadata["worldToCamera"], picture.metadata["worldToCamera"]);
+    assert_eq!(back.metadata["software"], "bilux", "as the format calls it");
+    assert_eq!(back.to_rgb(), picture.to_rgb(), "the primaries are our own");
+    let again = round_trip("png", &back, &WriteOptions::default());
+    assert_eq!(again.metadata.into_iter().collect::<Vec<_>>(), [("Software".to_owned(), "bilux".to_owned())]);
+    picture.metadata.insert("worldToNDC".to_owned(), "no matrix".to_owned());
+    let error = write_bytes("exr", &picture, &WriteOptions::default()).unwrap_err().to_string();
+    assert!(error.contains("'worldToNDC'"), "{error}");
+}
+
+#[test]
 fn pfm_keeps_floats_to_the_bit() {
     for names in [&["R", "G", "B"][..], &["Y"]] {
         let mut picture = noise(13, 9, names);

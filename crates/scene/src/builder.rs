@@ -10,7 +10,7 @@ use crate::footprint;
 use crate::geometry::{Geometry, Placed};
 use crate::inventory::Inventory;
 use crate::kept::MeshPool;
-use crate::lights::BuiltLight;
+use crate::lights::{self, BuiltLight};
 use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec};
@@ -156,7 +156,7 @@ impl SceneBuilder {
             .map(|spec| parts.material(spec, &MaterialInputs::new(&self.textures, &self.materials)))
             .collect::<Result<_, _>>()?;
         let mut meshes = self.known_meshes(materials.len(), &mut parts.meshes)?;
-        let BuiltLights { lights, surfaces, panels, spheres, sphere_lights } =
+        let BuiltLights { lights, surfaces, panels, spheres, sphere_lights, groups } =
             self.build_lights(&mut materials, parts)?;
         for panel in &surfaces {
             meshes.push(parts.meshes.of(&panel.mesh, || Ok::<(), SceneError>(()))?);
@@ -184,8 +184,18 @@ impl SceneBuilder {
         let widths = self.stroke_widths.for_size(size);
         let geometry = Geometry::build(placed, spheres, widths, accel, &mut parts.trees)?;
         let (panels, known) = ((&panels[..], &sphere_lights[..]), &mut parts.mesh_lights);
-        let all = SceneParts::new(geometry, materials, lights, panels, cameras, filtered, known);
+        let mut all = SceneParts::new(geometry, materials, lights, panels, cameras, filtered, known);
+        all.group_surfaces(|object| match self.objects.get(object) {
+            Some(object) => [name_of(object), self.group_of(object)].map(str::to_owned),
+            None => groups.get(object - self.objects.len()).cloned().unwrap_or_default(),
+        });
         Ok(Scene::new(Arc::new(all), accel, shutter, &mut parts.top))
+    }
+
+    /// The layer of light of an object that emits some: that of all objects of its material, if this has a name.
+    fn group_of<'a>(&'a self, object: &'a Object) -> &'a str {
+        let material = self.materials.get(object.material).map_or("", |spec| &spec.name);
+        if material.is_empty() { name_of(object) } else { material }
     }
 
     /// The mesh of each object, once it has been checked.
@@ -218,26 +228,30 @@ impl SceneBuilder {
                 materials.push(parts.material(&black, &MaterialInputs::default())?);
                 Ok(materials.len() - 1)
             };
+        let (mut of_surfaces, mut of_spheres) = (Vec::new(), Vec::new());
         for spec in &self.lights {
+            let group = lights::group_of(spec);
+            let alone = |light| SceneLight { group: group.clone(), ..SceneLight::new(&spec.name, light) };
             match parts.light(spec, &self.textures)? {
-                BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),
-                BuiltLight::Several(lights) => {
-                    built.lights.extend(lights.into_iter().map(|light| SceneLight::new(&spec.name, light)));
-                }
+                BuiltLight::Light(light) => built.lights.push(alone(light)),
+                BuiltLight::Several(lights) => built.lights.extend(lights.into_iter().map(alone)),
                 BuiltLight::Surface { mesh, emission, sides, classic } => {
                     let material = glowing(parts, emission, sides)?;
                     if let Some(colour) = classic {
                         built.panels.push((self.objects.len() + built.surfaces.len(), colour));
                     }
                     built.surfaces.push(Object::new(&spec.name, mesh, material));
+                    of_surfaces.push([spec.name.clone(), group]);
                 }
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
                     let material = glowing(parts, emission, Sides::Both)? as u32;
                     built.spheres.push(PlacedSphere { centre, radius, material });
                     built.sphere_lights.push((spec.name.clone(), classic));
+                    of_spheres.push([spec.name.clone(), group]);
                 }
             }
         }
+        built.groups = [of_surfaces, of_spheres].concat();
         Ok(built)
     }
 }
@@ -254,6 +268,8 @@ struct BuiltLights {
     spheres: Vec<PlacedSphere>,
     /// The name of each sphere, and its classic colour if given.
     sphere_lights: Vec<(String, Option<Rgb>)>,
+    /// The names and the layers of light of the surfaces, then of the spheres.
+    groups: Vec<[String; 2]>,
 }
 
 fn fail(message: String) -> Result<(), SceneError> {

@@ -2,6 +2,7 @@
 //! own, points and lines in separate trees, and spheres in a last one.
 
 mod corners_in_world;
+mod moved;
 mod object_trees;
 mod still;
 mod still_triangles;

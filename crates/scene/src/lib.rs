@@ -43,7 +43,7 @@ pub use axis::{Axis, UpHint};
 pub use bilux_accel::{Counters, CpuLevel, Primitive, Query, Ray};
 pub use bsdf::{Bsdf, BsdfSample, TransportMode};
 pub use builder::{BuiltParts, Object, SceneBuilder};
-pub use cameras::{CAMERAS, Camera, CameraConnection, CameraSample};
+pub use cameras::{CAMERAS, Camera, CameraConnection, CameraMatrices, CameraSample};
 pub use change::{Change, Part, Which};
 pub use classic::{ClassicLight, ClassicMaterial};
 pub use error::{SceneError, Warning};

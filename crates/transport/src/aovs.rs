@@ -20,11 +20,47 @@ pub enum Aov {
     Ids,
     /// [`crate::push_variance`].
     Variance,
+    /// [`crate::Visible::position`].
+    Position,
+    /// [`crate::Visible::uv`].
+    Uv,
+    /// [`crate::Visible::motion`].
+    Motion,
+    /// [`crate::Visible::mattes`] of objects.
+    CryptoObject,
+    /// The same of materials.
+    CryptoMaterial,
+    /// The same of instances.
+    CryptoInstance,
+    /// [`crate::LightParts::by_events`]: light that scatters at most once.
+    Direct,
+    /// The rest of it.
+    Indirect,
+    /// [`crate::LightParts::groups`].
+    Groups,
+    /// [`crate::Film::samples`].
+    Samples,
 }
 
 impl Aov {
     /// The AOVs that are layers of the picture.
-    pub const ALL_LAYERS: [Aov; 5] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids, Aov::Variance];
+    pub const ALL_LAYERS: [Aov; 15] = [
+        Aov::Albedo,
+        Aov::Normal,
+        Aov::Depth,
+        Aov::Ids,
+        Aov::Variance,
+        Aov::Position,
+        Aov::Uv,
+        Aov::Motion,
+        Aov::CryptoObject,
+        Aov::CryptoMaterial,
+        Aov::CryptoInstance,
+        Aov::Direct,
+        Aov::Indirect,
+        Aov::Groups,
+        Aov::Samples,
+    ];
 
     /// The name of its layer, if it is one.
     pub fn layer(self) -> Option<&'static str> {
@@ -35,12 +71,42 @@ impl Aov {
             Aov::Depth => Some("depth"),
             Aov::Ids => Some("id"),
             Aov::Variance => Some("variance"),
+            Aov::Position => Some("position"),
+            Aov::Uv => Some("uv"),
+            Aov::Motion => Some("motion"),
+            Aov::CryptoObject => Some("CryptoObject"),
+            Aov::CryptoMaterial => Some("CryptoMaterial"),
+            Aov::CryptoInstance => Some("CryptoInstance"),
+            Aov::Direct => Some("direct"),
+            Aov::Indirect => Some("indirect"),
+            Aov::Groups => Some("group"),
+            Aov::Samples => Some("samples"),
         }
     }
 
-    /// True for properties of surfaces, whatever their lighting.
+    /// True for properties of surfaces, whatever their lighting, as [`crate::Features`] has them.
     pub fn is_feature(self) -> bool {
-        self.layer().is_some() && self != Aov::Variance
+        matches!(self, Aov::Albedo | Aov::Normal | Aov::Depth | Aov::Ids)
+    }
+
+    /// True for what [`crate::Visible`] has.
+    pub fn is_visible(self) -> bool {
+        matches!(self, Aov::Position | Aov::Uv | Aov::Motion) || self.is_matte()
+    }
+
+    /// True for Cryptomatte.
+    pub fn is_matte(self) -> bool {
+        matches!(self, Aov::CryptoObject | Aov::CryptoMaterial | Aov::CryptoInstance)
+    }
+
+    /// True for layers that are made once the picture is there.
+    pub fn is_extra(self) -> bool {
+        self.is_visible() || self.is_light() || self == Aov::Samples
+    }
+
+    /// True for parts of the picture's light, for which its samples are taken once more.
+    pub fn is_light(self) -> bool {
+        matches!(self, Aov::Direct | Aov::Indirect | Aov::Groups)
     }
 }
 
@@ -92,10 +158,48 @@ pub const AOVS: &[AovEntry] = &[
         "variance of each pixel's mean, estimated from two halves of the samples: variance.R, .G, .B; light-traced \
          samples separately, as light and light_variance",
     ),
+    layer(
+        Aov::Position,
+        "position",
+        "the first visible point in world space, in metres, 0 where nothing is visible: position.X, .Y, .Z",
+    ),
+    layer(Aov::Uv, "uv", "texture coordinates of that point: uv.U, uv.V"),
+    layer(
+        Aov::Motion,
+        "motion",
+        "how far that point moves until the next frame, in pixels, to the right and upwards: motion.X, .Y",
+    ),
+    matte(Aov::CryptoObject, "crypto_object", "Cryptomatte of objects by name: CryptoObject00.red, …"),
+    matte(
+        Aov::CryptoMaterial,
+        "crypto_material",
+        "Cryptomatte of materials by name: CryptoMaterial00.red, …",
+    ),
+    matte(
+        Aov::CryptoInstance,
+        "crypto_instance",
+        "Cryptomatte of every single object, by name and number: CryptoInstance00.red, …",
+    ),
+    layer(
+        Aov::Direct,
+        "direct",
+        "light that scatters at most once between a light and the camera, lights themselves included: direct.R, .G, .B",
+    ),
+    layer(Aov::Indirect, "indirect", "all other light; with direct it is the picture: indirect.R, .G, .B"),
+    layer(
+        Aov::Groups,
+        "groups",
+        "the light of each group of lights; together they are the picture: group_NAME.R, .G, .B",
+    ),
+    layer(Aov::Samples, "samples", "the number of samples of each pixel: samples.count"),
 ];
 
 const fn layer(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry {
     AovEntry { entry: Entry { name, summary, source: "", parameters: &[] }, aov }
+}
+
+const fn matte(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry {
+    AovEntry { entry: Entry { name, summary, source: "Friedman 2015", parameters: &[] }, aov }
 }
 
 /// The row with this name, requested at `at`.

@@ -52,6 +52,12 @@ impl<'a> CameraRays<'a> {
         CameraRays { emission: Emission::new(self.scene, guide), ..self }
     }
 
+    /// The same where [`crate::techniques::Contribution::origin`] is the index of a light. It changes no sample.
+    pub(crate) fn by_light(mut self) -> CameraRays<'a> {
+        self.emission.names_lights = true;
+        self
+    }
+
     /// Takes many of the integrator's samples at a time, if it can.
     pub(crate) fn queue(&self) -> Option<Box<dyn SampleQueue + 'a>> {
         self.integrator.queue(self.photons)
@@ -110,6 +116,7 @@ impl<'a> CameraRays<'a> {
             emission: &self.emission,
             photons: self.photons,
             events: None,
+            found: None,
         }
     }
 

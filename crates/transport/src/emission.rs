@@ -14,6 +14,8 @@ pub struct Emission {
     /// Their cumulative sums.
     cdf: Vec<f32>,
     guide: Option<Arc<Guide>>,
+    /// [`Start::cell`] is the index of the light.
+    pub(crate) names_lights: bool,
 }
 
 /// How often light subpaths are aimed at each cell of each light, in a grid on the unit square of
@@ -35,8 +37,14 @@ pub(crate) struct Start {
     pub(crate) light: usize,
     /// The ray; its `pdf_emission` is that of all choices together.
     pub(crate) ray: EmissionSample,
-    /// The cell of the guide that the ray belongs to; 0 without a guide.
+    /// The cell of the guide that the ray belongs to; 0 without a guide. Where light is sorted by lights, the index of
+    /// the light instead.
     pub(crate) cell: u16,
+}
+
+/// What stands for a light where light is sorted by lights; all lights from the 65535th on are one.
+pub(crate) fn light_number(light: usize) -> u16 {
+    u16::try_from(light).unwrap_or(u16::MAX)
 }
 
 impl Emission {
@@ -44,7 +52,7 @@ impl Emission {
     pub(crate) fn new(scene: &Scene, guide: Option<Arc<Guide>>) -> Emission {
         let bounds = scene.bounds();
         let probabilities = weights(scene.lights().iter().map(|l| l.light.power(&bounds)));
-        Emission { cdf: sums(&probabilities), probabilities, guide }
+        Emission { cdf: sums(&probabilities), probabilities, guide, names_lights: false }
     }
 
     /// Samples a light, and a ray from it.
@@ -77,7 +85,8 @@ impl Emission {
         let cell = self.guide.as_ref().and_then(|guide| guide.cell(scene, light, ray.p, ray.direction));
         let pdf_emission = self.pdf_through(cell, scene, light, ray.pdf_direct, ray.direction, ray.cos());
         let ray = EmissionSample { pdf_emission, ..ray };
-        (pdf_emission > 0.0).then_some(Start { light, ray, cell: cell.unwrap_or(0) as u16 })
+        let cell = if self.names_lights { light_number(light) } else { cell.unwrap_or(0) as u16 };
+        (pdf_emission > 0.0).then_some(Start { light, ray, cell })
     }
 
     /// The probability that an unaimed light subpath begins at a light.

@@ -6,11 +6,25 @@ use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
 /// Layers whose values are the same in every part that has the pixel.
-const EVEN: [&str; 4] = [COVERAGE, "albedo.", "normal.", "depth."];
+const EVEN: [&str; 11] = [
+    COVERAGE,
+    "albedo.",
+    "normal.",
+    "depth.",
+    "position.",
+    "uv.",
+    "motion.",
+    "Crypto",
+    "direct.",
+    "indirect.",
+    "group_",
+];
 /// How much of a pixel is not background.
 const COVERAGE: &str = "A";
 /// The same for integer layers.
 const IDS: &str = "id.";
+/// The number of samples of each pixel, which are added.
+const SAMPLES: &str = "samples.count";
 /// The variance of a pixel's mean, which falls as samples are merged.
 const VARIANCE: &str = "variance.";
 
@@ -22,6 +36,7 @@ pub struct JoinedLayers {
     integers: BTreeMap<String, Vec<u32>>,
     /// Samples of each pixel in the parts so far.
     samples: Vec<u32>,
+    has_samples: bool,
     left_out: bool,
 }
 
@@ -40,6 +55,7 @@ impl JoinedLayers {
         for channel in part.channels() {
             let name = channel.name.as_str();
             let is_even = is_even(name);
+            self.has_samples |= name == SAMPLES;
             if !is_even && (has_light || !name.starts_with(VARIANCE)) {
                 continue;
             }
@@ -81,6 +97,9 @@ impl JoinedLayers {
         for (name, kept) in &self.floats {
             picture.push_channel(name.as_str(), places(film).map(|at| kept[at]).collect())?;
         }
+        if self.has_samples {
+            picture.push_channel(SAMPLES, places(film).map(|at| self.samples[at] as f32).collect())?;
+        }
         for (name, kept) in &self.integers {
             picture.push_integer_plane(name.as_str(), places(film).map(|at| kept[at]).collect())?;
         }
@@ -100,7 +119,7 @@ impl JoinedLayers {
 }
 
 fn is_even(name: &str) -> bool {
-    EVEN.iter().any(|layer| if layer.ends_with('.') { name.starts_with(layer) } else { name == *layer })
+    EVEN.iter().any(|layer| if *layer == COVERAGE { name == *layer } else { name.starts_with(layer) })
 }
 
 /// Where the pixels of a film's window lie in the rows of the whole film.

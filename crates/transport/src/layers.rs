@@ -29,7 +29,7 @@ impl Strategy {
         self.edges + 1 + u32::from(self.merges) - self.s
     }
 
-    fn of(technique: Technique) -> Strategy {
+    pub(crate) fn of(technique: Technique) -> Strategy {
         match technique {
             Technique::Joined { s, t } => Strategy { edges: s + t - 1, merges: false, s },
             Technique::Merged { s, t } => Strategy { edges: s + t - 2, merges: true, s },

@@ -27,6 +27,19 @@ pub struct Task<'a, 's> {
     pub photons: Option<&'a Photons>,
     /// Events along the path, if they are recorded.
     pub events: Option<Vec<Event>>,
+    /// The light that the sample finds, light by light, if that is recorded.
+    pub found: Option<Vec<FoundLight>>,
+}
+
+/// Light that a sample has found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundLight {
+    /// Edges of its path, one more than the scattering events.
+    pub edges: u32,
+    /// The index of the light in [`Scene::lights`]; `None` for surfaces that shine without being one of these.
+    pub light: Option<usize>,
+    /// What it adds to the sample.
+    pub radiance: Rgb,
 }
 
 /// An event along the path of a sample.
@@ -92,6 +105,14 @@ impl<'s> Task<'_, 's> {
     #[inline]
     pub fn seen(&self, light: Rgb, is_split: bool) -> Rgb {
         if is_split { light * self.wavelength.weight } else { light }
+    }
+
+    /// Records light, if that is recorded at all.
+    #[inline]
+    pub(crate) fn find(&mut self, edges: u32, light: Option<usize>, radiance: Rgb) {
+        if let Some(found) = &mut self.found {
+            found.push(FoundLight { edges, light, radiance });
+        }
     }
 
     /// Records an event; if events are not recorded, `what` is not called.

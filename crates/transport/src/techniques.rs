@@ -39,7 +39,8 @@ pub(crate) struct Contribution<const N: usize = 1> {
     /// A factor on its weight, for the sake of the other technique that a camera subpath has for finding a light:
     /// [`favour`].
     pub(crate) favour: f32,
-    /// The cell in which its light subpath began: [`crate::emission::Start::cell`]; 0 where there was none.
+    /// The cell in which its light subpath began: [`crate::emission::Start::cell`]; without a light subpath, the
+    /// [number](crate::emission::light_number) of the light.
     pub(crate) origin: u16,
 }
 

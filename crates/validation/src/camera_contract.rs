@@ -7,12 +7,13 @@ use bilux_math::{DVec3, Vec2, Vec3, warp};
 use bilux_scene::{Camera, CameraSample, Ray};
 
 /// The checks, by name.
-pub const CHECKS: [(&str, Check); 5] = [
+pub const CHECKS: [(&str, Check); 6] = [
     ("points on a ray project to its film position", rays_come_back),
     ("the density matches that of neighbouring rays", density_is_that_of_rays),
     ("a ray reports its own density", rays_know_their_density),
     ("points of a plane are sampled as often as rays hit them", planes_are_sampled_as_hit),
     ("nothing behind the camera or off the film is visible", nothing_is_seen_elsewhere),
+    ("the matrices put points where the middle of the lens sees them", matrices_see_alike),
 ];
 
 /// One check of a camera at a time in seconds; an error describes what is wrong.
@@ -58,6 +59,29 @@ pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
         if film > on_film || !same_ray {
             let d = seen.film - sample.film;
             return Err(format!("{sample:?} at {t} comes back as {seen:?}: {d} off, {on_film:e} allowed"));
+        }
+    }
+    Ok(())
+}
+
+/// What compositors are told agrees with the rays through the middle of the lens.
+pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    let matrices = camera.matrices(time);
+    for (sample, _, t) in some(camera, 30, time) {
+        let ray = camera.ray(&CameraSample { lens: Vec2::ZERO, ..sample });
+        let point = at(&ray, t);
+        let on_film = matrices.to_film * point.extend(1.0);
+        let by_matrix = Vec2::new(on_film.x, on_film.y) / on_film.w;
+        let seen = camera.project(point, time).ok_or(format!("{point} is not seen"))?;
+        // Without the lens, rays of a small film go through few digits.
+        let allowed = 1e-4 * edge(camera, time);
+        if seen.distance(sample.film) > allowed || by_matrix.distance(sample.film) > allowed {
+            return Err(format!("{sample:?} at {t} is seen at {seen}, by the matrix at {by_matrix}"));
+        }
+        let depth = (point - at(&ray, 0.0)).dot(camera.forward(time));
+        let in_camera = (matrices.to_camera * point.extend(1.0)).z;
+        if (in_camera - depth).abs() > 1e-4 * (1.0 + depth.abs()) {
+            return Err(format!("{point} lies {in_camera} m ahead, not {depth}"));
         }
     }
     Ok(())

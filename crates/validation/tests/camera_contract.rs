@@ -2,7 +2,9 @@
 
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::cameras::{CameraSpec, build};
-use bilux_scene::{CAMERAS, Camera, CameraConnection, CameraSample, Parameters, Ray, Span, Spec, Value};
+use bilux_scene::{
+    CAMERAS, Camera, CameraConnection, CameraMatrices, CameraSample, Parameters, Ray, Span, Spec, Value,
+};
 use bilux_validation::camera_contract::CHECKS;
 use std::sync::Arc;
 
@@ -76,6 +78,14 @@ impl Camera for BuggyCamera {
         self.camera.density(ray, t)
     }
 
+    fn project(&self, p: Vec3, time: f32) -> Option<Vec2> {
+        (self.defect)(&*self.camera, p, Vec2::ZERO, time).map(|seen| seen.film)
+    }
+
+    fn matrices(&self, time: f32) -> CameraMatrices {
+        self.camera.matrices(time)
+    }
+
     fn height_at(&self, p: Vec3, time: f32) -> f32 {
         self.camera.height_at(p, time)
     }
@@ -133,6 +143,15 @@ const PLANTED: &[(&str, &str, &str, Defect)] = &[
                 let middle = c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time });
                 c.connect(Vec3::from(middle.at(1.0)), lens, time)
             })
+        },
+    ),
+    (
+        "a film 2% too wide",
+        "mirrored",
+        "the matrices put points where the middle of the lens sees them",
+        |c, from, lens, time| {
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { film: seen.film * 1.02, ..seen })
         },
     ),
     (

@@ -58,6 +58,8 @@ pub struct Job {
     pub(crate) notes: Vec<String>,
     /// The ground of which only the shadow is in the picture.
     pub(crate) catcher: Option<ShadowCatcher>,
+    /// The next frame, if its meshes have another pose.
+    pub(crate) next_pose: Option<Box<Job>>,
 }
 
 impl Job {
@@ -150,6 +152,7 @@ impl Job {
             source: completed,
             notes,
             catcher,
+            next_pose: None,
             fingerprint: OnceLock::new(),
             plan: OnceLock::new(),
             accel,
@@ -367,7 +370,7 @@ impl Job {
             picture.push_channel("A", coverage.clone())?;
         }
         self.display()?.record(&mut picture);
-        picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
+        self.describe(&mut picture, outcome, None);
         Ok(picture)
     }
 }

@@ -87,7 +87,7 @@ impl Job {
     }
 
     /// The integrator that takes the samples.
-    pub(super) fn renders(&self) -> &dyn PixelIntegrator {
+    pub(crate) fn renders(&self) -> &dyn PixelIntegrator {
         self.chosen().map_or(&*self.integrator, |plan| &*plan.integrator)
     }
 

@@ -247,6 +247,8 @@ pub struct Settings {
     pub background: Background,
     /// Whether bytes are proportional to light.
     pub linear_transfer: bool,
+    /// What files and users said, from which all of this follows.
+    pub given: Parameters,
 }
 
 impl Settings {
@@ -320,6 +322,7 @@ impl Settings {
             tonemap: reader.text("tonemap"),
             denoise: reader.text("denoise"),
             linear_transfer: reader.text("transfer") == "linear",
+            given: all.clone(),
         })
     }
 }

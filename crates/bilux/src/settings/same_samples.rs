@@ -23,6 +23,7 @@ impl Settings {
                 linear_transfer: false,
                 camera_at: Default::default(),
                 background,
+                given: Default::default(),
                 ..settings.clone()
             };
             format!("{plain:?}")

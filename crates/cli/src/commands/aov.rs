@@ -1,5 +1,6 @@
 //! `--aov`: what a render writes besides its picture.
 
+use super::written::Layers;
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
@@ -12,13 +13,18 @@ use bilux::scene::SceneError;
 use bilux::strategies::{Light, picture, sheet};
 use bilux::transport::aovs::{self, AOVS, Aov};
 use bilux::transport::{Interval, Strategies, integrators, strategies::MAX_EDGES};
-use bilux::{Job, Outcome};
+use bilux::{ExtraLayers, Job, Outcome};
 use std::path::{Path, PathBuf};
 
 /// Checks, before any work, that the outputs asked for exist and have a place to go.
 pub fn check(arguments: &Render) -> anyhow::Result<()> {
     for name in &arguments.aov {
         aovs::find(name, &from_flag("--aov"))?;
+    }
+    if arguments.samples.is_some() && layers(arguments).iter().any(|aov| aov.is_light()) {
+        bail!(
+            "--aov direct, indirect and groups need all samples: leave out --samples, or divide the picture by --crop"
+        );
     }
     if !arguments.aov.is_empty() && arguments.output == Path::new("-") {
         bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
@@ -32,7 +38,7 @@ pub fn layers(arguments: &Render) -> Vec<Aov> {
 }
 
 /// True if this output was asked for.
-fn wants(arguments: &Render, aov: Aov) -> bool {
+pub fn wants(arguments: &Render, aov: Aov) -> bool {
     arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
 }
 
@@ -46,6 +52,7 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
     }
+    job.check_layers(&layers(arguments)).context("--aov").map_err(usage::wrong)?;
     job.with_layers(&layers(arguments));
     if wants(arguments, Aov::Interval) {
         job.with_interval().map_err(usage::wrong)?;
@@ -53,22 +60,52 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Makes the layers that are made once the picture is there; `None` if that was interrupted.
+pub fn extra(
+    arguments: &Render,
+    job: &Job,
+    outcome: &Outcome,
+    report: &Report,
+) -> anyhow::Result<Option<ExtraLayers>> {
+    let layers = layers(arguments);
+    let extra = job.extra_layers(outcome, &layers, report)?;
+    if extra.is_none() {
+        output::eprint(format_args!(
+            "interrupted, so these layers are missing: {}",
+            layers
+                .iter()
+                .filter(|aov| aov.is_extra())
+                .filter_map(|aov| aov.layer())
+                .collect::<Vec<_>>()
+                .join(", ")
+        ));
+    }
+    Ok(extra)
+}
+
 /// Renders and writes the outputs besides the picture; returns false if it was stopped.
 pub fn write(
     arguments: &Render,
     job: &Job,
     outcome: &Outcome,
-    output: &Path,
+    (output, layers): (&Path, &Layers),
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
     if let Some(interval) = &outcome.rendered.interval {
         write_interval(interval, output, common)?;
     }
-    let layers = layers(arguments);
-    if !layers.is_empty() && !is_exr(output) {
+    if !layers.kept.is_empty() && !is_exr(output) {
         let path = output.with_extension("layers.exr");
-        bilux::pictures::write(&path, &outcome.layered(&layers)?, &WriteOptions::default())?;
+        let mut picture = outcome.layered(layers.kept)?;
+        if let Some(extra) = layers.extra {
+            extra.push(&mut picture)?;
+        }
+        job.describe(&mut picture, outcome, None);
+        bilux::pictures::write(&path, &picture, &WriteOptions::default())?;
+    }
+    if layers.extra.is_none() {
+        return Ok(false);
     }
     if !wants(arguments, Aov::Strategies) || outcome.rendered.cancelled {
         return Ok(!outcome.rendered.cancelled);

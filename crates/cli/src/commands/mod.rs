@@ -5,6 +5,7 @@ pub mod bench;
 pub mod compare;
 pub mod convert;
 pub mod denoise;
+pub mod explain;
 pub mod farm;
 pub mod generate;
 pub mod info;
@@ -17,6 +18,7 @@ pub mod serve;
 mod stats;
 mod targets;
 mod time_limit;
+mod written;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};

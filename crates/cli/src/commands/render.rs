@@ -1,6 +1,7 @@
 //! `bilux render`: renders pictures of scenes.
 
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
+use super::written::{self, is_part};
 use super::{
     DONE, aov, check_choices, load, log, read_options_with, report_notes, report_warnings, stats, time_limit,
 };
@@ -13,11 +14,11 @@ use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::formats::ReadOptions;
-use bilux::pictures::denoise::DenoiserChoice;
-use bilux::pictures::formats::{BitDepth, format_of_path};
+use bilux::pictures::formats::format_of_path;
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
-use bilux::{Built, Job, Outcome, Series};
+use bilux::transport::aovs::Aov;
+use bilux::{Built, Job, Series};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -198,6 +199,23 @@ impl Input<'_> {
     }
 }
 
+impl Input<'_> {
+    /// Tells the job the next pose of a scene whose meshes move, if the layer of motion is wanted.
+    fn set_next_pose(
+        &self,
+        job: &mut Job,
+        scene: &SceneBuilder,
+        (user, series): (&Parameters, &Series),
+    ) -> anyhow::Result<()> {
+        if scene.inventory.moves() && aov::wants(self.arguments, Aov::Motion) {
+            let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
+            next.movement = scene.movement.clone();
+            job.moves_to(self.job(&next, user, series)?);
+        }
+        Ok(())
+    }
+}
+
 fn render_one(
     target: &Target,
     user: &Parameters,
@@ -255,6 +273,7 @@ fn render_scene(
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user, series)?;
     }
+    input.set_next_pose(&mut job, scene, (&user, series))?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     if common.verbose > 0 {
@@ -285,6 +304,7 @@ fn render_scene(
             job = input.job(&posed, &user, &series)?;
         }
         job.at_time(time);
+        input.set_next_pose(&mut job, scene, (&user, &series))?;
         let status = finish(input, &mut job, &numbered(target, frame), build_seconds)?;
         if status != DONE {
             return Ok(status);
@@ -307,11 +327,13 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let seconds = report.finish();
     let rendered = input.begun.get().elapsed();
     let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
-    let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
+    let extra = aov::extra(arguments, job, &outcome, &report)?;
+    let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
+    let denoised = written::write(arguments, common, job, &outcome, (denoiser.as_ref(), &layers), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
-    let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
+    let all_aovs = aov::write(arguments, job, &outcome, (output, &layers), common, interrupt)?;
     let rendered = log::Rendered {
         job,
         outcome: &outcome,
@@ -355,46 +377,4 @@ fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> 
     let text = serde_json::to_string_pretty(&stats)?;
     Ok(bilux::pictures::formats::write_atomically(path, text.as_bytes())
         .map_err(|error| error.in_file(path))?)
-}
-
-/// True if only a part of the picture is rendered.
-fn is_part(arguments: &Render) -> bool {
-    arguments.samples.is_some() || arguments.crop.is_some()
-}
-
-/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
-fn write(
-    input: &Input,
-    job: &Job,
-    outcome: &Outcome,
-    denoiser: Option<&DenoiserChoice>,
-    output: &Path,
-) -> anyhow::Result<bool> {
-    let arguments = input.arguments;
-    let is_exr = !is_stdout(output) && aov::is_exr(output);
-    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
-    let denoiser = denoiser.filter(|_| !is_part);
-    let mut picture = match denoiser {
-        Some(chosen) => outcome.denoised(chosen)?,
-        None if is_part => job.partial(outcome)?,
-        None => outcome.picture()?,
-    };
-    if is_exr {
-        outcome.push_layers(&mut picture, &aov::layers(arguments))?;
-        if denoiser.is_some() {
-            picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
-        }
-    }
-    let mut options = job.write_options_for(&picture)?;
-    if arguments.bits == "16" {
-        options.bit_depth = BitDepth::Sixteen;
-    }
-    options.quality = arguments.quality.unwrap_or(options.quality);
-    if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
-    } else {
-        super::warn_lost_alpha(&picture, output, options.behind, input.common)?;
-        bilux::pictures::write(output, &picture, &options)?;
-    }
-    Ok(denoiser.is_some())
 }

@@ -61,9 +61,12 @@ const HOLDS: MaterialSupport = MaterialSupport {
                 "emission_scale",
             ],
         ),
-        ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
-        ("diffuse", &["reflectance", "emission"]),
-        ("mirror", &["reflectance", "emission"]),
+        (
+            "phong",
+            &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "emission_scale", "thin"],
+        ),
+        ("diffuse", &["reflectance", "emission", "emission_scale"]),
+        ("mirror", &["reflectance", "emission", "emission_scale"]),
         ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
         ("dielectric", &["eta", "tint"]),
     ],
@@ -126,8 +129,9 @@ fn write_material(
             out.extend_from_slice(b"illum 1\n");
         }
     }
-    let glow = if texture(spec, "emission").is_some() { "emission_scale" } else { "emission" };
-    if let Some(emission) = colour(spec, glow).filter(|c| !c.is_black()) {
+    // The colour is white where a texture is given.
+    let scale = colour(spec, "emission_scale").unwrap_or(Rgb::WHITE);
+    if let Some(emission) = colour(spec, "emission").map(|c| c * scale).filter(|c| !c.is_black()) {
         push_colour(out, "Ke", emission);
     }
     for (map, keys) in

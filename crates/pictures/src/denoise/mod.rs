@@ -47,6 +47,8 @@ pub trait Denoiser {
 
 /// A chosen denoiser, with its expected time and advice.
 pub struct DenoiserChoice {
+    /// Its name in [`DENOISERS`].
+    pub name: &'static str,
     /// The denoiser.
     pub denoiser: Box<dyn Denoiser>,
     /// Approximate run time.
@@ -120,7 +122,7 @@ pub fn denoiser(name: &str, task: &Task) -> Result<DenoiserChoice, PictureError>
                 );
                 advice = advice.or(Some(longer));
             }
-            Ok(denoiser) => return Ok(DenoiserChoice { denoiser, time, advice }),
+            Ok(denoiser) => return Ok(DenoiserChoice { name: row.entry.name, denoiser, time, advice }),
             Err(missing) if is_auto => advice = advice.or(Some(missing).filter(|_| !task.sandboxed)),
             Err(missing) => return Err(PictureError::NoDenoiser { what: missing }),
         }

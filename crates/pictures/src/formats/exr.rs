@@ -203,10 +203,15 @@ impl Frame {
         }
         for header in &meta.headers {
             for (name, value) in header.all_named_attributes() {
-                if let (AttributeValue::Text(value), false) = (value, name == b"name") {
-                    let name = String::from_utf8_lossy(name).into_owned();
-                    picture.metadata.entry(name).or_insert_with(|| text(&value));
-                }
+                let value = match value {
+                    AttributeValue::Text(value) if name != b"name" => text(&value),
+                    AttributeValue::Matrix4x4(numbers) if is_matrix(name) => {
+                        numbers.map(|c| c.to_string()).join(" ")
+                    }
+                    _ => continue,
+                };
+                let name = String::from_utf8_lossy(name).into_owned();
+                picture.metadata.entry(name).or_insert(value);
             }
         }
         Ok(picture)
@@ -273,6 +278,11 @@ fn unsupported(what: String, advice: &'static str) -> PictureError {
 
 fn text(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+/// True for the matrices that metadata keep.
+fn is_matrix(name: &[u8]) -> bool {
+    exr_write::MATRICES.iter().any(|matrix| matrix.as_bytes() == name)
 }
 
 /// A channel's name prefixed with that of its part, unless it already is.

@@ -5,6 +5,7 @@
 
 use super::WriteOptions;
 use super::exr::FORMAT;
+use super::primaries::REC709;
 use crate::{Alpha, ColourSpace, Picture, PictureError};
 use ::exr::compression::Compression;
 use ::exr::math::Vec2;
@@ -30,6 +31,9 @@ const BLOCK_ROWS: usize = 16;
 /// The library's text attributes, which may hold arbitrary text.
 const STANDARD_TEXTS: [&str; 7] =
     ["owner", "comments", "capDate", "software", "view", "renderingTransform", "lookModTransform"];
+
+/// Attributes that are matrices, and in our metadata their sixteen numbers.
+pub(super) const MATRICES: [&str; 2] = ["worldToCamera", "worldToNDC"];
 
 pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let linear = picture.colour_space == ColourSpace::LinearRec709 && picture.alpha == Alpha::Premultiplied;
@@ -112,6 +116,11 @@ fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureE
         bytes.extend_from_slice(value);
     };
     attribute("channels", "chlist", &channel_list(planes));
+    attribute(
+        "chromaticities",
+        "chromaticities",
+        &floats(&REC709.as_flattened().iter().map(|c| *c as f32).collect::<Vec<_>>()),
+    );
     attribute("compression", "compression", &[3]);
     attribute("dataWindow", "box2i", &window);
     attribute("displayWindow", "box2i", &window);
@@ -120,11 +129,26 @@ fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureE
     attribute("screenWindowCenter", "v2f", &[0; 8]);
     attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
     for (key, value) in &picture.metadata {
+        if let Some(matrix) = MATRICES.contains(&&key[..]).then(|| matrix(value)).flatten() {
+            attribute(key, "m44f", &floats(&matrix));
+            continue;
+        }
+        let key = if key == "Software" { "software" } else { key };
         check_text(key, value)?;
         attribute(key, "string", value.as_bytes());
     }
     bytes.push(0);
     Ok(bytes)
+}
+
+/// Sixteen numbers of a text, if that is what it has.
+fn matrix(text: &str) -> Option<Vec<f32>> {
+    let numbers: Option<Vec<f32>> = text.split(' ').map(|number| number.parse().ok()).collect();
+    numbers.filter(|numbers| numbers.len() == 16)
+}
+
+fn floats(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
 }
 
 fn channel_list(planes: &[Plane]) -> Vec<u8> {

@@ -156,9 +156,11 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
     // A fifth larger than with the best compression, in a fifth of its time.
     encoder.set_compression(Compression::Fast);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    for (keyword, text) in &picture.metadata {
+    for (keyword, text) in picture.metadata.iter().filter(|(keyword, _)| !is_of_layers(keyword)) {
         let plain = text.chars().all(|letter| u32::from(letter) < 256);
-        let (keyword, text) = (keyword.clone(), text.clone());
+        // As EXR and as PNG call it.
+        let keyword = if keyword == "software" { "Software" } else { keyword };
+        let (keyword, text) = (keyword.to_owned(), text.clone());
         let added =
             if plain { encoder.add_text_chunk(keyword, text) } else { encoder.add_itxt_chunk(keyword, text) };
         added.map_err(unwritable)?;
@@ -167,6 +169,11 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
     writer.write_image_data(&samples).map_err(unwritable)?;
     writer.finish().map_err(unwritable)?;
     Ok(bytes)
+}
+
+/// True for metadata of layers, which the format does not hold, and of views, which nobody looks for there.
+fn is_of_layers(keyword: &str) -> bool {
+    keyword.starts_with("cryptomatte/") || keyword.starts_with("worldTo")
 }
 
 fn unwritable(error: ::png::EncodingError) -> PictureError {

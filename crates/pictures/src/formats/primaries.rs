@@ -7,7 +7,7 @@ use crate::picture::qualified;
 pub(super) type Primaries = [[f64; 2]; 4];
 
 /// Rec. 709 with D65: the default for a file without chromaticities.
-const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
+pub(super) const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 /// Smaller differences are roundings of the same primaries.
 const SAME: f64 = 1e-3;

@@ -9,8 +9,9 @@ pub use pinhole::Pinhole;
 use crate::error::SceneError;
 use crate::parameters::{Parameters, Reader, Spec};
 use bilux_accel::Ray;
+use bilux_math::glam::Vec4;
 use bilux_math::registry::Entry;
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A sample of the film, the lens and time.
@@ -38,6 +39,24 @@ pub struct CameraConnection {
     pub density: f32,
 }
 
+/// How compositors place points of the world in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraMatrices {
+    /// To the space of the camera: x to the right, y upwards, z forwards, in metres.
+    pub to_camera: Mat4,
+    /// To the film, 0..=1 on both axes, y downwards, with z and w for the division by w. [OpenEXR]
+    pub to_film: Mat4,
+}
+
+impl CameraMatrices {
+    /// Those of a camera at a position with these axes, whose film is given in the camera's own space.
+    fn new(position: Vec3, [right, up, forward]: [Vec3; 3], film: Mat4) -> CameraMatrices {
+        let rotation = Mat4::from_cols(right.extend(0.0), up.extend(0.0), forward.extend(0.0), Vec4::W);
+        let to_camera = rotation.transpose() * Mat4::from_translation(-position);
+        CameraMatrices { to_camera, to_film: film * to_camera }
+    }
+}
+
 impl CameraConnection {
     /// The connection, if its point is on the film and its density is finite.
     fn on_film(self) -> Option<CameraConnection> {
@@ -56,6 +75,11 @@ pub trait Camera: Send + Sync {
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
     /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;
+    /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
+    /// the film. `None` behind the camera.
+    fn project(&self, p: Vec3, time: f32) -> Option<Vec2>;
+    /// The transforms of points in the world at a time in seconds.
+    fn matrices(&self, time: f32) -> CameraMatrices;
     /// The height of the film's view at a point, in metres perpendicular to the axis, at a time in seconds. Divided by
     /// the number of pixel rows, it is the width of a pixel there.
     fn height_at(&self, p: Vec3, time: f32) -> f32;

@@ -1,11 +1,11 @@
 //! `orthographic`: parallel rays, as in a plan.
 
 use super::perspective::{MIRRORED, vector};
-use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
+use super::{Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, around, look};
 use crate::error::SceneError;
 use bilux_accel::Ray;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 pub(super) const ENTRY: CameraEntry = CameraEntry {
@@ -101,6 +101,37 @@ impl Camera for Orthographic {
 
     fn density(&self, ray: &Ray, _t: f32) -> f32 {
         self.density_of(&self.key_at(ray.time))
+    }
+
+    fn project(&self, p: Vec3, time: f32) -> Option<Vec2> {
+        let Key { position, axes: [right, up, _], half_height } = self.key_at(time);
+        let away = p - position;
+        let seen = Vec2::new(away.dot(right) / self.aspect, -away.dot(up)) / half_height;
+        Some(seen * 0.5 + 0.5)
+    }
+
+    fn matrices(&self, time: f32) -> CameraMatrices {
+        let Key { position, axes, half_height } = self.key_at(time);
+        let half = 0.5 / half_height;
+        let film = Mat4::from_cols_array(&[
+            half / self.aspect,
+            0.0,
+            0.0,
+            0.0, //
+            0.0,
+            -half,
+            0.0,
+            0.0, //
+            0.0,
+            0.0,
+            1.0,
+            0.0, //
+            0.5,
+            0.5,
+            0.0,
+            1.0,
+        ]);
+        CameraMatrices::new(position, axes, film)
     }
 
     fn height_at(&self, _p: Vec3, time: f32) -> f32 {

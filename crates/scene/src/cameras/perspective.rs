@@ -1,12 +1,12 @@
 //! `perspective`: a pinhole, or a thin lens if an aperture is given.
 
-use super::{Camera, CameraConnection, CameraEntry, CameraSample, Pinhole, around, look};
+use super::{Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, Pinhole, around, look};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::tan;
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 pub(super) const ENTRY: CameraEntry = CameraEntry {
@@ -205,6 +205,39 @@ impl Camera for Perspective {
         let (key, [_, _, forward]) = self.key_at(ray.time);
         let cos = Vec3::from(ray.direction).dot(forward);
         if cos > 0.0 { key.density(self.aspect, cos, t * t) } else { 0.0 }
+    }
+
+    fn project(&self, p: Vec3, time: f32) -> Option<Vec2> {
+        let (key, [right, up, forward]) = self.key_at(time);
+        let away = p - key.position;
+        let depth = away.dot(forward);
+        let seen = Vec2::new(away.dot(right) / self.aspect, -away.dot(up)) / (depth * key.tan_half_fov);
+        (depth > 0.0).then(|| seen * 0.5 + 0.5)
+    }
+
+    fn matrices(&self, time: f32) -> CameraMatrices {
+        let (key, axes) = self.key_at(time);
+        let half = 0.5 / key.tan_half_fov;
+        // The plane at 1 m is at 0, what is infinitely far away at 1.
+        let film = Mat4::from_cols_array(&[
+            half / self.aspect,
+            0.0,
+            0.0,
+            0.0, //
+            0.0,
+            -half,
+            0.0,
+            0.0, //
+            0.5,
+            0.5,
+            1.0,
+            1.0, //
+            0.0,
+            0.0,
+            -1.0,
+            0.0,
+        ]);
+        CameraMatrices::new(key.position, axes, film)
     }
 
     fn height_at(&self, p: Vec3, time: f32) -> f32 {

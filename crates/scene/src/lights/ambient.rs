@@ -15,7 +15,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         name: "ambient",
         summary: "the constant light Ia of Equation 1, in cast, whitted and cook only",
         source: "Phong 1975",
-        parameters: &[colour("colour", "light that reaches every point equally", "", "0.3")],
+        parameters: &[colour("colour", "light that reaches every point equally", "", "0.3"), super::GROUP],
     },
     build: |reader, _| Ok(BuiltLight::Light(Arc::new(Ambient { colour: reader.colour("colour") }))),
 };

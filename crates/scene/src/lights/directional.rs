@@ -3,8 +3,8 @@
 use super::distant::{Across, disc_pdf_area, ray};
 use super::sun::Sun;
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
-    colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -30,6 +30,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
                 default: "0",
             },
             CLASSIC,
+            GROUP,
         ],
     },
     build: |reader, _| {

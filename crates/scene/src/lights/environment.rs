@@ -43,6 +43,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
                 kind: ParameterKind::Bool,
                 default: "false",
             },
+            super::GROUP,
         ],
     },
     build: |reader, textures| {

@@ -34,7 +34,7 @@ pub use sphere::SphereLight;
 
 use crate::error::SceneError;
 use crate::mesh::Mesh;
-use crate::parameters::{Reader, Spec};
+use crate::parameters::{Reader, Spec, Value};
 use crate::texture::Texture;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec3};
@@ -105,6 +105,14 @@ pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<BuiltLight, Scene
     (row.build)(&Reader::new(spec, &row.entry)?, textures)
 }
 
+/// The layer of light that a light belongs to.
+pub(crate) fn group_of(spec: &Spec) -> String {
+    match spec.parameters.find(GROUP.name) {
+        Some((Value::Text(group), _)) if group != GROUP.default => group.clone(),
+        _ => spec.name.clone(),
+    }
+}
+
 /// The colour for Equations 1 and 2 of a light that emits `intensity` (W/sr) from `position`.
 fn classic_colour_of(intensity: Rgb, position: Vec3, bounds: &Aabb) -> Rgb {
     let nearest = bounds.radius().max(f32::MIN_POSITIVE) * 0.25;
@@ -118,6 +126,14 @@ const CLASSIC: Parameter = Parameter {
     unit: "",
     kind: ParameterKind::Colour { min: -1.0, max: 1e6 },
     default: "-1",
+};
+
+const GROUP: Parameter = Parameter {
+    name: "group",
+    summary: "the layer of light that it belongs to in pictures with --aov groups; name stands for the light's own",
+    unit: "",
+    kind: ParameterKind::Text,
+    default: "name",
 };
 
 /// The parameter [`CLASSIC`], if it is given.

@@ -1,8 +1,8 @@
 //! `point`: light from a point, the same in all directions.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
-    colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
@@ -21,6 +21,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             vector("position", "position", "0 5 0"),
             colour("intensity", "intensity in every direction", "W/sr", "100"),
             CLASSIC,
+            GROUP,
         ],
     },
     build: |reader, _| {

@@ -1,6 +1,6 @@
 //! `rect`: a flat, visible panel that emits light and casts soft shadows.
 
-use super::{BuiltLight, CLASSIC, LightEntry, Sides, colour, given_classic, vector};
+use super::{BuiltLight, CLASSIC, GROUP, LightEntry, Sides, colour, given_classic, vector};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -31,6 +31,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
                 default: "both",
             },
             CLASSIC,
+            GROUP,
         ],
     },
     build: |reader, _| {

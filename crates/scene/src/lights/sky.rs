@@ -28,6 +28,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             ),
             number("sun_scale", "factor on the sun only", "", [0.0, 1e6], "1"),
             number("sun_diameter", "angular diameter of the sun", "degrees", [0.01, 90.0], "0.533"),
+            super::GROUP,
         ],
     },
     build: |reader, _| {

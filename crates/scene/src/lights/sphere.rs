@@ -4,8 +4,8 @@
 //! far away. [Shirley 1996, 4.2] The density of a point on it therefore depends on the receiver.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
-    colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -38,6 +38,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
                 "0",
             ),
             CLASSIC,
+            GROUP,
         ],
     },
     build: |reader, _| {

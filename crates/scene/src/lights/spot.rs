@@ -1,8 +1,8 @@
 //! `spot`: light from a point into a cone, with a soft edge.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, Light, LightEntry, LightSample, LightTracing,
-    colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -25,6 +25,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             angle("angle", "angle from the axis to the edge of the cone", "30"),
             angle("inner_angle", "angle from the axis at which it begins to fade", "25"),
             CLASSIC,
+            GROUP,
         ],
     },
     build: |reader, _| {

@@ -17,7 +17,7 @@ pub(super) const EMISSION: Parameter = Parameter {
     default: "0",
 };
 
-/// A factor on an emission texture.
+/// A factor on the emission.
 pub(super) const EMISSION_SCALE: Parameter = Parameter {
     name: "emission_scale",
     summary: "factor on the emission",
@@ -47,7 +47,8 @@ pub(super) struct SurfaceEmission {
 /// Reads the emission of a material, if it has any.
 pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Option<SurfaceEmission>, SceneError> {
     let picture = texture(reader, "emission", inputs)?;
-    let scale = reader.colour(if picture.is_some() { "emission_scale" } else { "emission" });
+    // White where a texture is given.
+    let scale = reader.colour("emission") * reader.colour("emission_scale");
     let brightest = picture.as_deref().map_or(scale, |picture| brightest(picture) * scale);
     let sides = Sides::from_name(&reader.text("emission_sides"));
     let map = ColourMap { colour: scale, texture: picture };

@@ -18,6 +18,8 @@ use std::sync::Arc;
 pub struct SceneLight {
     /// The user's name for it; may be empty.
     pub name: String,
+    /// The layer of light that it belongs to; may be empty.
+    pub group: String,
     /// The light.
     pub light: Arc<dyn Light>,
     /// Its colour in `cast`, `whitted` and `cook`.
@@ -26,7 +28,7 @@ pub struct SceneLight {
 
 impl SceneLight {
     pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
-        SceneLight { name: name.to_owned(), light, classic_colour: Rgb::BLACK }
+        SceneLight { name: name.to_owned(), group: name.to_owned(), light, classic_colour: Rgb::BLACK }
     }
 }
 
@@ -130,6 +132,18 @@ impl SceneParts {
             disperses,
             absorbs,
             shading,
+        }
+    }
+
+    /// Sets the layers of light that objects and spheres belong to, as far as they emit any, and names for those without.
+    pub(crate) fn group_surfaces(&mut self, name_and_group_of: impl Fn(usize) -> [String; 2]) {
+        for (object, light) in self.object_lights.iter().enumerate() {
+            let Some(light) = light.map(|light| &mut self.lights[light as usize]) else { continue };
+            let [name, group] = name_and_group_of(object);
+            light.group = group;
+            if light.name.is_empty() {
+                light.name = name;
+            }
         }
     }
 }

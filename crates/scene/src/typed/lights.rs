@@ -9,6 +9,8 @@ typed! {
         intensity: bilux_math::Rgb,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Distant light: parallel rays, or those of a disc such as the sun.
     Directional = "directional" {
@@ -20,6 +22,8 @@ typed! {
         diameter: f32,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Spotlight: a point light that shines into a cone, with a soft edge.
     Spot = "spot" {
@@ -35,6 +39,8 @@ typed! {
         inner_angle: f32,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Rectangular area light, visible to the camera.
     Rect = "rect" {
@@ -52,6 +58,8 @@ typed! {
         sides: &str,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Spherical area light, visible to the camera.
     Sphere = "sphere" {
@@ -65,6 +73,8 @@ typed! {
         intensity: bilux_math::Rgb,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Environment light: a constant colour, a vertical gradient, or an environment map.
     Environment = "environment" {
@@ -82,6 +92,8 @@ typed! {
         ground: bilux_math::Rgb,
         /// Shown in place of the environments that light the scene; it lights nothing itself; default `false`.
         backdrop: bool,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// Analytic daylight sky with the sun, clear or hazy.
     Sky = "sky" {
@@ -99,10 +111,14 @@ typed! {
         sun_scale: f32,
         /// Angular diameter of the sun (degrees); default `0.533`.
         sun_diameter: f32,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
     /// The constant light Ia of Equation 1, in cast, whitted and cook only.
     Ambient = "ambient" {
         /// Light that reaches every point equally; default `0.3`.
         colour: bilux_math::Rgb,
+        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        group: &str,
     }
 }

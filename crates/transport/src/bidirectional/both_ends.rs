@@ -8,7 +8,7 @@ use super::connect::{Connection, merged, to_light, to_vertex};
 use super::{CameraSubpath, Partial, Vertex, Walk, emitted, from_infinity, light_vertices, show_to_camera};
 use crate::photons::Photons;
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts};
+use crate::techniques::{Lanes, Step, Tally, Technique, TechniqueCounts};
 use bilux_scene::Ray;
 
 /// One subpath from each end, and all that they find.
@@ -84,12 +84,9 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             walk.partial = z.partial;
         }
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
-            let seen = || Contribution::only(walk.seen(task) * hit.radiance);
-            let technique = Technique::Joined { s: 0, t: z.count() };
-            tally.add_sample(
-                technique,
-                &if z.depth == 0 { seen() } else { hit.by(walk.seen(task), &z.partial) },
-            );
+            let (seen, technique) = (walk.seen(task), Technique::Joined { s: 0, t: z.count() });
+            let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
+            tally.add_sample(technique, &found);
         }
         if z.depth >= task.max_depth {
             return false;

@@ -1,6 +1,7 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
+use crate::emission::light_number;
 use crate::media::Media;
 use crate::photons::Photons;
 use crate::shadow_rays::ShadowRays;
@@ -103,6 +104,7 @@ pub(crate) fn to_light<const N: usize>(
     let found = Contribution {
         others: Lanes::ONE * ratio + from_light,
         favour: favour(ratio),
+        origin: light_number(index),
         ..Contribution::only(light)
     };
     let technique = Technique::Joined { s: 1, t: z.count() };

@@ -1,6 +1,7 @@
 //! Emitters that a camera subpath hits by chance (s = 0).
 
 use super::{Partial, Walk};
+use crate::emission::light_number;
 use crate::task::Task;
 use crate::techniques::{Contribution, Lanes, favour};
 use bilux_math::{Rgb, Vec3};
@@ -13,19 +14,27 @@ pub(crate) struct EmitterHit {
     /// Over area; from infinity, over solid angle.
     pdf_direct: f32,
     pdf_emission: f32,
+    /// [`light_number`].
+    light: u16,
 }
 
 impl EmitterHit {
     /// What no other technique finds.
-    fn only(radiance: Rgb) -> EmitterHit {
-        EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
+    fn only(radiance: Rgb, light: Option<usize>) -> EmitterHit {
+        let light = light.map_or(u16::MAX, light_number);
+        EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0, light }
+    }
+
+    /// The contribution along a camera subpath with the throughput `beta`, where no other technique finds it.
+    pub(crate) fn alone<const N: usize>(&self, beta: Rgb) -> Contribution<N> {
+        Contribution { origin: self.light, ..Contribution::only(beta * self.radiance) }
     }
 
     /// The contribution along a camera subpath with the throughput `beta`.
     pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
         let picked = partial.d_vcm * self.pdf_direct;
         let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
-        Contribution { favour: favour(picked), others, ..Contribution::only(beta * self.radiance) }
+        Contribution { favour: favour(picked), others, ..self.alone(beta) }
     }
 }
 
@@ -42,11 +51,12 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
             continue;
         }
         if walk.depth == 0 || light.is_backdrop() {
-            visit(EmitterHit::only(radiance));
+            visit(EmitterHit::only(radiance, Some(index)));
             continue;
         }
         let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
-        visit(EmitterHit { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
+        let pdf_direct = pdf * task.lights.probability(index);
+        visit(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) });
     }
 }
 
@@ -58,12 +68,13 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Emitte
         return None;
     }
     let Some(index) = scene.light_index_of(surface.object) else {
-        return Some(EmitterHit::only(radiance));
+        return Some(EmitterHit::only(radiance, None));
     };
     let light = &scene.lights()[index].light;
     // As the previous vertex would have sampled it.
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
-    Some(EmitterHit { radiance, pdf_direct: pdf_area * task.lights.probability(index), pdf_emission })
+    let pdf_direct = pdf_area * task.lights.probability(index);
+    Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) })
 }

@@ -80,6 +80,12 @@ pub fn with_strategies() -> impl Iterator<Item = &'static str> {
     INTEGRATORS.iter().map(|row| row.entry.name).filter(has_them)
 }
 
+/// Names of the integrators whose light can be divided into parts.
+pub fn with_light_parts() -> impl Iterator<Item = &'static str> {
+    let has_them = |name: &&str| build(&Spec::new("", name)).is_ok_and(|one| one.has_light_parts());
+    INTEGRATORS.iter().map(|row| row.entry.name).filter(has_them)
+}
+
 fn find_at(name: &str, span: &bilux_scene::parameters::Span) -> Result<&'static IntegratorEntry, SceneError> {
     let names = INTEGRATORS.iter().map(|row| row.entry.name);
     INTEGRATORS

@@ -198,7 +198,9 @@ impl Path {
                 Some((from, _)) => light.le_and_pdf(from, direction),
                 None => (light.le(direction), 0.0),
             };
-            sum += self.seen_of(task, walk, (index, light), found);
+            let seen = self.seen_of(task, walk, (index, light), found);
+            task.find(walk.depth + 1, Some(index), task.seen(walk.beta, walk.is_split) * seen);
+            sum += seen;
         }
         let light = task.seen(walk.beta, walk.is_split) * sum;
         task.note_vertex(walk.depth, || {
@@ -234,7 +236,8 @@ impl Path {
         if radiance.is_black() {
             return radiance;
         }
-        let seen = match (walk.last, task.scene().light_index_of(surface.object)) {
+        let index = task.scene().light_index_of(surface.object);
+        let seen = match (walk.last, index) {
             (Some((from, pdf)), Some(index)) => {
                 let light = &task.scene().lights()[index].light;
                 let direction = Vec3::from(walk.ray.direction);
@@ -244,6 +247,7 @@ impl Path {
             _ => radiance,
         };
         let light = task.seen(walk.beta, walk.is_split) * seen;
+        task.find(walk.depth + 1, index, light);
         task.note_vertex(walk.depth, || {
             let vertex = PathVertex { kind: VertexKind::Emitter, at: surface.p, light };
             (vertex, format!("hits a light at {}", surface.p))
@@ -269,6 +273,7 @@ impl Path {
             Some(connection) => {
                 let light_brought = connection.trace(task);
                 connection.note(task, depth, seen * light_brought);
+                task.find(depth + 2, Some(light), seen * light_brought);
                 sum + light_brought
             }
             None => sum,

@@ -80,14 +80,14 @@ impl CameraSubpath for PhotonGathering<'_> {
     fn escape(&self, walk: &Walk, task: &Task, tally: &mut impl Tally<1>) {
         let technique = Technique::Joined { s: 0, t: walk.count() };
         from_infinity(task, walk, |hit| {
-            tally.add_sample(technique, &Contribution::only(walk.seen(task) * hit.radiance));
+            tally.add_sample(technique, &hit.alone(walk.seen(task)));
         });
     }
 
     fn arrive(&self, walk: &mut Walk, z: &mut Vertex, task: &mut Task, tally: &mut impl Tally<1>) -> bool {
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
             let technique = Technique::Joined { s: 0, t: z.count() };
-            tally.add_sample(technique, &Contribution::only(walk.seen(task) * hit.radiance));
+            tally.add_sample(technique, &hit.alone(walk.seen(task)));
         }
         task.sampler.enter(u64::from(z.depth) + 1);
         z.depth < task.max_depth

@@ -101,14 +101,15 @@ impl Document<'_> {
         if let Some(normals) = self.normals(&principled, "normal", writing)? {
             out["normalTexture"] = normals;
         }
+        let scale = colour(&principled, "emission_scale").unwrap_or(Rgb::WHITE);
         if let Some(picture) =
             texture(&principled, "emission").and_then(|i| self.scene.textures.get(i)).cloned()
         {
-            let emission = emission(self, colour(&principled, "emission_scale").unwrap_or(Rgb::WHITE));
+            let emission = emission(self, scale);
             merge(&mut out, emission);
             out["emissiveTexture"] = self.colours(&picture, &Channel::Even(1.0), writing)?;
         } else if let Some(light) = colour(&principled, "emission").filter(|light| !light.is_black()) {
-            let emission = emission(self, light);
+            let emission = emission(self, light * scale);
             merge(&mut out, emission);
         }
         Ok(out)

@@ -63,7 +63,7 @@ impl Document<'_> {
     fn radiance(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Option<String>, FormatError> {
         let scale = colour(spec, "emission_scale").unwrap_or(Rgb::WHITE);
         let Some(index) = texture(spec, "emission") else {
-            let light = colour(spec, "emission").filter(|light| !light.is_black());
+            let light = colour(spec, "emission").map(|light| light * scale).filter(|light| !light.is_black());
             return Ok(light.map(|light| rgb("L", light)));
         };
         let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };

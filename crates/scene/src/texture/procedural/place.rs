@@ -16,11 +16,11 @@ const fn number(name: &'static str, summary: &'static str, default: &'static str
 }
 
 pub(super) const fn u_scale(default: &'static str) -> Parameter {
-    number("u_scale", "factor on u: how often the texture repeats across", default)
+    number("u_scale", "factor on u: the number of periods across; gradients have only one", default)
 }
 
 pub(super) const fn v_scale(default: &'static str) -> Parameter {
-    number("v_scale", "factor on v: how often it repeats upwards", default)
+    number("v_scale", "factor on v: the same upwards", default)
 }
 
 pub(super) const U_OFFSET: Parameter = number("u_offset", "offset added to u afterwards", "0");

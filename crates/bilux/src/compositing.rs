@@ -1,0 +1,297 @@
+//! Layers for compositors that are made once the picture is there: what is visible where, and the light in parts.
+
+use crate::{Error, Job, Outcome};
+use bilux_math::Rgb;
+use bilux_pictures::Picture;
+use bilux_pictures::cryptomatte::Cryptomatte;
+use bilux_scene::SceneBuilder;
+use bilux_transport::aovs::Aov;
+use bilux_transport::visible::{Moment, Ranks, Wanted};
+use bilux_transport::{Film, LightDivision, Progress, RenderSettings, Stop, Visible, light_parts};
+use std::collections::{BTreeMap, HashMap};
+
+/// The maximum number of groups of lights: each is a picture of its own.
+pub const MAX_GROUPS: usize = 64;
+
+/// The group of what shines without being a light of the scene.
+const OTHERS: &str = "others";
+
+/// Layers besides those that rendering itself gives ([`Job::extra_layers`]).
+pub struct ExtraLayers(Picture);
+
+impl ExtraLayers {
+    /// Adds them, and their metadata, to a picture of the same window.
+    ///
+    /// # Errors
+    /// If the picture has a different size, or already has such layers.
+    pub fn push(&self, picture: &mut Picture) -> Result<(), Error> {
+        for channel in self.0.channels() {
+            picture.push_channel(channel.name.clone(), channel.samples.clone())?;
+        }
+        picture.metadata.extend(self.0.metadata.clone());
+        Ok(())
+    }
+}
+
+impl Job {
+    /// Sets the next frame of a scene whose meshes move, for the layer of motion. Other movement is known without it.
+    pub fn moves_to(&mut self, next: Job) {
+        self.next_pose = Some(Box::new(next));
+    }
+
+    /// Checks, before any work, that the layers can be made.
+    ///
+    /// # Errors
+    /// If the integrator cannot divide its light, there are too many groups of lights, or only some samples are taken.
+    pub fn check_layers(&self, wanted: &[Aov]) -> Result<(), Error> {
+        let Some(aov) = wanted.iter().find(|aov| aov.is_light()) else { return Ok(()) };
+        if !self.integrator.has_light_parts() {
+            let others: Vec<&str> = bilux_transport::integrators::with_light_parts().collect();
+            return Err(Error::Settings(format!(
+                "the integrator '{}' cannot divide its light into parts ({}): choose one of {}",
+                self.settings.integrator.entry.name,
+                aov.layer().unwrap_or_default(),
+                others.join(", ")
+            )));
+        }
+        if self.render.samples != (0..self.render.spp) {
+            let message = "parts of the light need all samples: leave out the range of samples, or the layers \
+                           direct, indirect and groups";
+            return Err(Error::Settings(message.to_owned()));
+        }
+        let groups = LightGroups::of(self).names.len();
+        if wanted.contains(&Aov::Groups) && groups > MAX_GROUPS {
+            return Err(Error::Settings(format!(
+                "the scene has {groups} groups of lights, and each takes a picture of its own; the maximum is \
+                 {MAX_GROUPS}: give lights the same 'group' in the scene file"
+            )));
+        }
+        Ok(())
+    }
+
+    /// The wanted layers that are made after the picture, of the samples that it has. `None` if that was interrupted, as the
+    /// picture may have been.
+    ///
+    /// # Errors
+    /// As [`Job::check_layers`]; or if memory is short.
+    pub fn extra_layers(
+        &self,
+        outcome: &Outcome,
+        wanted: &[Aov],
+        progress: &dyn Progress,
+    ) -> Result<Option<ExtraLayers>, Error> {
+        let film = &outcome.rendered.film;
+        let window = film.window();
+        let mut layers = Picture::new(window.width as usize, window.height as usize)?;
+        let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
+        if let Some(reached) = outcome.rendered.reached {
+            (settings.spp, settings.samples) = (reached.spp, 0..reached.spp);
+        }
+        if wanted.contains(&Aov::Samples) {
+            let count = |i| {
+                let (x, y) = window.position(i);
+                film.samples(x, y) as f32
+            };
+            layers.push_channel("samples.count", (0..window.pixels()).map(count).collect())?;
+        }
+        if wanted.iter().any(|aov| aov.is_visible())
+            && !self.push_visible(&mut layers, &settings, wanted, progress)?
+        {
+            return Ok(None);
+        }
+        if wanted.iter().any(|aov| aov.is_light())
+            && (outcome.rendered.cancelled || !self.push_light(&mut layers, &settings, wanted, progress)?)
+        {
+            return Ok(None);
+        }
+        Ok(Some(ExtraLayers(layers)))
+    }
+
+    /// False if it was interrupted.
+    fn push_visible(
+        &self,
+        layers: &mut Picture,
+        settings: &RenderSettings,
+        wanted: &[Aov],
+        progress: &dyn Progress,
+    ) -> Result<bool, Error> {
+        let mut mattes: Vec<(Cryptomatte, Vec<u32>)> = Vec::new();
+        for aov in wanted.iter().filter(|aov| aov.is_matte()) {
+            let mut matte = Cryptomatte::new(aov.layer().unwrap_or_default());
+            let ids = self.names(*aov).iter().map(|name| matte.add(name)).collect();
+            mattes.push((matte, ids));
+        }
+        let next = self.next_pose.as_deref().unwrap_or(self);
+        let time = self.settings.time + 1.0 / self.settings.fps;
+        let moment = Moment { scene: &next.scene, camera: &*next.camera, time };
+        let what = Wanted {
+            position: wanted.contains(&Aov::Position),
+            uv: wanted.contains(&Aov::Uv),
+            motion: wanted.contains(&Aov::Motion).then_some(moment),
+            ids: mattes.iter().map(|(_, ids)| ids.clone()).collect(),
+        };
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, self.renders());
+        let samples = settings.spp;
+        let seen = bilux_transport::visible(scene, camera, integrator, settings, (&what, samples), progress)?;
+        let Some(seen) = seen else { return Ok(false) };
+        push_points(layers, &seen)?;
+        for ((matte, _), pixels) in mattes.iter().zip(&seen.mattes) {
+            let pixels: &[Ranks] = pixels;
+            matte.push(layers, pixels)?;
+        }
+        Ok(true)
+    }
+
+    /// The same for parts of the light.
+    fn push_light(
+        &self,
+        layers: &mut Picture,
+        settings: &RenderSettings,
+        wanted: &[Aov],
+        progress: &dyn Progress,
+    ) -> Result<bool, Error> {
+        self.check_layers(wanted)?;
+        let by_events = wanted.contains(&Aov::Direct) || wanted.contains(&Aov::Indirect);
+        let mut division = LightDivision { by_events, ..LightDivision::default() };
+        let groups = LightGroups::of(self);
+        if wanted.contains(&Aov::Groups) {
+            division.groups.clone_from(&groups.of_lights);
+            division.group_count = groups.names.len() as u32;
+        }
+        let (scene, camera) = (&self.scene, &*self.camera);
+        let parts = light_parts(scene, camera, self.renders(), settings, &division, progress)?;
+        let Some(parts) = parts else { return Ok(false) };
+        let mut push = |layer: &str, film: &Film| -> Result<(), Error> {
+            let window = film.window();
+            let light = |i| {
+                let (x, y) = window.position(i);
+                film.pixel(x, y)
+            };
+            let pixels: Vec<Rgb> = (0..window.pixels()).map(light).collect();
+            Ok(layers.push_rgb(layer, &pixels)?)
+        };
+        for (film, (aov, layer)) in
+            parts.by_events.iter().flatten().zip([(Aov::Direct, "direct"), (Aov::Indirect, "indirect")])
+        {
+            if wanted.contains(&aov) {
+                push(layer, film)?;
+            }
+        }
+        let named = groups.layers();
+        for (film, (layer, _)) in parts.groups.iter().zip(&named) {
+            push(layer, film)?;
+        }
+        if wanted.contains(&Aov::Groups) {
+            layers.metadata.extend(named.into_iter().map(|(layer, name)| (format!("bilux.{layer}"), name)));
+        }
+        Ok(true)
+    }
+
+    /// What each object and each sphere of the scene is called in a matte.
+    fn names(&self, aov: Aov) -> Vec<String> {
+        let geometry = self.scene.geometry();
+        let count = geometry.objects().len() + geometry.spheres().len();
+        let objects =
+            (0..count as u32).map(|object| match self.completed_scene().objects.get(object as usize) {
+                Some(_) => object_name(self.completed_scene(), object as usize),
+                None => match self.scene.light_of(object).map(|light| &*light.name) {
+                    None | Some("") => "light".to_owned(),
+                    Some(name) => name.to_owned(),
+                },
+            });
+        match aov {
+            Aov::CryptoMaterial => {
+                (0..count as u32).map(|i| self.material_name(geometry.material_of(i))).collect()
+            }
+            Aov::CryptoInstance => {
+                let mut seen: HashMap<String, usize> = HashMap::new();
+                let numbered = |name: String| {
+                    let number = seen.entry(name.clone()).or_default();
+                    *number += 1;
+                    format!("{name}#{number}")
+                };
+                objects.map(numbered).collect()
+            }
+            _ => objects.collect(),
+        }
+    }
+
+    fn material_name(&self, material: u32) -> String {
+        match self.completed_scene().materials.get(material as usize).map(|spec| &*spec.name) {
+            None => "light".to_owned(),
+            Some("") => format!("material {material}"),
+            Some(name) => name.to_owned(),
+        }
+    }
+}
+
+fn object_name(scene: &SceneBuilder, object: usize) -> String {
+    let given = &scene.objects[object];
+    let names = [&given.name, &given.mesh.name];
+    let name = names.into_iter().find(|name| !name.is_empty()).cloned();
+    name.unwrap_or_else(|| format!("object {object}"))
+}
+
+fn push_points(layers: &mut Picture, seen: &Visible) -> Result<(), Error> {
+    for (axis, name) in ["position.X", "position.Y", "position.Z"].into_iter().enumerate() {
+        push_some(layers, name, seen.position.iter().map(|p| p[axis]).collect())?;
+    }
+    for (axis, name) in ["uv.U", "uv.V"].into_iter().enumerate() {
+        push_some(layers, name, seen.uv.iter().map(|uv| uv[axis]).collect())?;
+    }
+    for (axis, name) in ["motion.X", "motion.Y"].into_iter().enumerate() {
+        push_some(layers, name, seen.motion.iter().map(|motion| motion[axis]).collect())?;
+    }
+    Ok(())
+}
+
+/// Adds a plane that was asked for.
+fn push_some(layers: &mut Picture, name: &str, samples: Vec<f32>) -> Result<(), Error> {
+    if samples.is_empty() { Ok(()) } else { Ok(layers.push_channel(name, samples)?) }
+}
+
+/// The groups of a scene's lights.
+struct LightGroups {
+    /// The group of each light.
+    of_lights: Vec<u32>,
+    /// In order of the first light of each.
+    names: Vec<String>,
+}
+
+impl LightGroups {
+    fn of(job: &Job) -> LightGroups {
+        let scene = &job.scene;
+        let (mut of_lights, mut names) = (Vec::new(), Vec::<String>::new());
+        let mut known: HashMap<&str, u32> = HashMap::new();
+        for (i, light) in scene.lights().iter().enumerate() {
+            let group = *known.entry(&light.group).or_insert_with(|| {
+                let unnamed = || format!("light {}", i + 1);
+                names.push(if light.group.is_empty() { unnamed() } else { light.group.clone() });
+                names.len() as u32 - 1
+            });
+            of_lights.push(group);
+        }
+        let shines =
+            |i: usize| scene.geometry().objects()[i].gives_light && scene.light_index_of(i as u32).is_none();
+        // The last group gets what belongs to no light.
+        if (0..scene.geometry().objects().len()).any(shines) || names.is_empty() {
+            names.push(OTHERS.to_owned());
+        }
+        LightGroups { of_lights, names }
+    }
+
+    /// The name of the layer of each group, with the group's own name. Layers have only letters, digits and underscores,
+    /// which every compositor takes.
+    fn layers(&self) -> Vec<(String, String)> {
+        let mut taken: BTreeMap<String, usize> = BTreeMap::new();
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let layer = |name: &String| {
+            let stem: String = name.chars().map(plain).take(100).collect();
+            let count = taken.entry(stem.to_lowercase()).or_default();
+            *count += 1;
+            let layer = if *count == 1 { format!("group_{stem}") } else { format!("group_{stem}__{count}") };
+            (layer, name.clone())
+        };
+        self.names.iter().map(layer).collect()
+    }
+}

@@ -1,0 +1,30 @@
+//! The options of `bilux explain`.
+
+use crate::choices::Posed;
+use crate::help;
+use crate::studio::StudioArguments;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Say what is hard about a scene, what `auto` makes of it, and what would help
+#[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
+#[command(after_help = "Examples:\n  \
+    bilux explain scene.toml\n  \
+    bilux explain model.glb --json\n  \
+    bilux explain scene.toml --set camera=1")]
+pub struct Explain {
+    /// The scene file (`bilux list formats`)
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Print JSON instead of text
+    #[arg(long, help_heading = help::OUTPUT)]
+    pub json: bool,
+    /// Change any setting of the picture (`bilux list settings`)
+    #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
+    pub set: Vec<String>,
+    #[command(flatten)]
+    pub studio: StudioArguments,
+    #[command(flatten)]
+    pub posed: Posed,
+}

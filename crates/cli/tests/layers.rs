@@ -1,0 +1,161 @@
+//! Layers for compositors, what pictures say about themselves, folders that are compared, and scenes that are explained.
+
+use bilux::pictures::{Picture, read};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+const LAYERS: &str = "position,uv,motion,crypto_object,crypto_instance,direct,indirect,groups,samples";
+
+fn run(folder: &Path, command: &str) -> Output {
+    let mut bilux = Command::new(env!("CARGO_BIN_EXE_bilux"));
+    bilux.current_dir(folder).args(command.split_whitespace()).output().unwrap()
+}
+
+#[track_caller]
+fn done(folder: &Path, command: &str) -> String {
+    let output = run(folder, command);
+    assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A ball and a lamp over a floor.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let scene = "[camera]\nposition = [0, 2, 6]\nlook_at = [0, 0.5, 0]\n\n\
+        [[model]]\nshape = \"floor\"\nname = \"ground\"\n\n\
+        [[model]]\nshape = \"sphere\"\nname = \"ball\"\ntranslate = [0, 1, 0]\n\n\
+        [[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [2, 4, 3]\n\n\
+        [[light]]\nkind = \"environment\"\ngroup = \"the sky\"\nradiance = 0.2\n";
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    folder
+}
+
+fn opened(path: &Path, name: &str) -> Picture {
+    read(path.join(name)).unwrap()
+}
+
+#[test]
+fn layers_of_parts_are_those_of_the_whole() {
+    let folder = folder();
+    let path = folder.path();
+    let base = format!("render scene.toml -i bdpt --size 32x24 --spp 4 -q --aov {LAYERS}");
+    done(path, &format!("{base} -o whole.exr --threads 1"));
+    done(path, &format!("{base} -o again.exr --threads 3 --accel brute"));
+    assert!(fs::read(path.join("whole.exr")).unwrap() == fs::read(path.join("again.exr")).unwrap());
+    for (part, crop) in [("a.exr", "0,0,32,10"), ("b.exr", "0,10,32,14")] {
+        done(path, &format!("{base} -o {part} --crop {crop}"));
+    }
+    done(path, "merge a.exr b.exr -o joined.exr -q");
+    let (whole, joined) = (opened(path, "whole.exr"), opened(path, "joined.exr"));
+    let layers = whole.channels().iter().filter(|channel| channel.name.contains('.'));
+    assert!(layers.clone().count() > 40);
+    for channel in layers {
+        let bits = |samples: &[f32]| samples.iter().map(|s| s.to_bits()).collect::<Vec<_>>();
+        let other = joined.channel(&channel.name).unwrap_or_else(|| panic!("{} is lost", channel.name));
+        assert!(bits(&channel.samples) == bits(other), "{}", channel.name);
+    }
+    for (key, value) in &whole.metadata {
+        assert_eq!(joined.metadata.get(key), Some(value), "{key}");
+    }
+    assert_eq!(whole.metadata["bilux.group_the_sky"], "the sky");
+    // Half of the samples are not what the settings would make.
+    done(path, "render scene.toml -i path --size 32x24 --spp 4 -q --samples 0..2 -o half.exr");
+    done(path, "merge half.exr -o half.png -q");
+    assert!(!opened(path, "half.png").metadata.contains_key("bilux.settings"));
+}
+
+#[test]
+fn what_a_picture_says_makes_it_again() {
+    let folder = folder();
+    let path = folder.path();
+    done(
+        path,
+        "render scene.toml -o first.png --size 24x16 --spp 3 --seed 7 -i path --exposure 0.5 --noise 0.0001 -q",
+    );
+    let first = opened(path, "first.png");
+    assert!(first.metadata["Software"].starts_with("Bilux "));
+    let options = &first.metadata["bilux.settings"];
+    assert!(
+        options.contains("seed=7") && options.contains("exposure=0.5") && !options.contains(" noise="),
+        "{options}"
+    );
+    done(path, &format!("render scene.toml -o again.png -q {options}"));
+    // What the first says of its noise, the second does not know.
+    let again = opened(path, "again.png");
+    assert_eq!(first.to_rgb(), again.to_rgb());
+    assert_eq!(options, &again.metadata["bilux.settings"]);
+}
+
+#[test]
+fn layers_that_cannot_be_made_are_refused_before_the_work() {
+    let folder = folder();
+    let path = folder.path();
+    for (options, said) in [
+        ("-i sppm --aov direct", "auto, path, bdpt, vcm"),
+        ("-i path --samples 0..1 --spp 2 --aov groups", "all samples"),
+    ] {
+        let output = run(path, &format!("render scene.toml -o out.exr --size 8x8 {options}"));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
+        assert!(!path.join("out.exr").exists());
+    }
+}
+
+#[test]
+fn folders_are_compared_in_pairs() {
+    let folder = folder();
+    let path = folder.path();
+    for (name, seed) in [("new", 1), ("old", 2)] {
+        fs::create_dir(path.join(name)).unwrap();
+        done(
+            path,
+            &format!("render scene.toml -o {name}/noisy.png --size 24x16 --spp 1 -i path -q --seed {seed}"),
+        );
+        done(path, &format!("render scene.toml -o {name}/same.png --size 24x16 --spp 1 -i path -q"));
+    }
+    fs::write(path.join("new/notes.txt"), "no picture").unwrap();
+    let table = done(path, "compare new old");
+    let rows: Vec<&str> = table.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert_eq!(rows, ["picture", "noisy.png", "same.png"], "the worst first");
+    assert_eq!(run(path, "compare new old --max-flip 0.0001").status.code(), Some(1));
+    let json = String::from_utf8(run(path, "compare new old --json").stdout).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(
+        (json["pairs"][1]["name"].as_str(), json["pairs"][1]["max"].as_f64()),
+        (Some("same.png"), Some(0.0))
+    );
+
+    fs::copy(path.join("new/same.png"), path.join("new/<b>&.png")).unwrap();
+    let output = run(path, "compare new old --html page.html");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.code() == Some(2) && error.contains("<b>&.png: there is no such picture"),
+        "{error}"
+    );
+    let page = fs::read_to_string(path.join("page.html")).unwrap();
+    assert_eq!(page.matches("data:image/png;base64,").count(), 6);
+    assert!(page.contains("&lt;b&gt;&amp;.png") && !page.contains("<b>&"), "names of strangers stay text");
+
+    fs::create_dir(path.join("empty")).unwrap();
+    for wrong in ["new empty", "new new/same.png", "new old --heat-map heat.png"] {
+        assert_eq!(run(path, &format!("compare {wrong}")).status.code(), Some(2), "{wrong}");
+    }
+}
+
+#[test]
+fn scenes_are_explained() {
+    let folder = folder();
+    let path = folder.path();
+    let text = done(path, "explain scene.toml --set size=32x24");
+    assert!(text.contains("What auto found") && text.contains("it renders with '"), "{text}");
+    let json: serde_json::Value =
+        serde_json::from_str(&done(path, "explain scene.toml --set size=32x24 --json")).unwrap();
+    assert_eq!(json["measures"]["lights"], 2);
+    assert!(json["choice"]["candidates"].as_array().unwrap().len() > 4);
+    let dark = "[[model]]\nshape = \"sphere\"\n";
+    fs::write(path.join("dark.toml"), dark).unwrap();
+    let text = done(path, "explain dark.toml --set size=32x24 --set integrator=path");
+    assert!(text.contains("the integrator is 'path'"), "{text}");
+}

@@ -1,0 +1,302 @@
+//! The light of a picture in parts: what scatters at most once and the rest, and the light of each group of lights.
+//!
+//! The samples of the picture are taken once more, along the same paths, and every piece of light goes to the films of the
+//! parts that it belongs to. So the parts add up to the picture, but for the steps of the films.
+
+use crate::bidirectional::BothEnds;
+use crate::camera_rays::CameraRays;
+use crate::error::{FilmError, RenderError};
+use crate::film::{Film, scale_exponent};
+use crate::integrators::path::Path;
+use crate::layers::Strategy;
+use crate::photon_tracing::iterations;
+use crate::photons::{Merging, Photons};
+use crate::pixel_integrator::PixelIntegrator;
+use crate::progress::Progress;
+use crate::settings::{RenderSettings, threads};
+use crate::splats::{Iterations, Splats};
+use crate::task::FoundLight;
+use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
+use crate::window::{TILE, Window};
+use bilux_math::{Rgb, Vec2};
+use bilux_scene::{Camera, Scene, Tracer};
+use rayon::prelude::*;
+use std::any::Any;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// The largest number of lights that can be told apart.
+pub const MAX_LIGHTS: usize = u16::MAX as usize;
+
+/// Edges of the longest paths of direct light: the light scatters once.
+const DIRECT_EDGES: u32 = 2;
+
+/// How the light of a picture is divided.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LightDivision {
+    /// By scattering events: what a path brings after at most one of them, or after more.
+    pub by_events: bool,
+    /// By lights: the group of each light of the scene. Empty if light is not divided so.
+    pub groups: Vec<u32>,
+    /// The number of groups. What shines without being a light of the scene is in the last.
+    pub group_count: u32,
+}
+
+/// The parts.
+pub struct LightParts {
+    /// Light that scatters at most once on its way, and the rest, if they were asked for.
+    pub by_events: Option<[Film; 2]>,
+    /// The light of each group.
+    pub groups: Vec<Film>,
+}
+
+impl dyn PixelIntegrator {
+    /// True when its light can be divided into parts ([`light_parts`]), or that of whatever it chooses.
+    pub fn has_light_parts(&self) -> bool {
+        self.chooser().is_some() || self.has_strategies() || self.is_path()
+    }
+
+    fn is_path(&self) -> bool {
+        (self as &dyn Any).is::<Path>()
+    }
+}
+
+/// Takes the requested samples again, and divides their light. `None` when it was cancelled, or the integrator has no parts
+/// ([`has_light_parts`](trait.PixelIntegrator.html)).
+///
+/// # Errors
+/// As [`crate::render()`].
+pub fn light_parts(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    division: &LightDivision,
+    progress: &dyn Progress,
+) -> Result<Option<LightParts>, RenderError> {
+    settings.check()?;
+    let pool = threads(settings)?;
+    let plan = pool.install(|| integrator.plan(scene, camera, &settings.for_planning()));
+    let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
+    if !integrator.has_light_parts() {
+        return Ok(None);
+    }
+    let whole = Window::whole(settings.width, settings.height);
+    let tiles = if integrator.splats() { whole } else { settings.window() }.tiles(TILE);
+    progress.begin(settings.sample_count(integrator));
+    let sums = Sums::new(scene, settings, division)?;
+    for samples in iterations(integrator, &settings.samples) {
+        pool.install(|| {
+            let rays = || CameraRays::new(scene, camera, integrator, settings).by_light();
+            let photons = sums.photons(&rays(), &whole.tiles(TILE), samples.start)?;
+            let mut eye = rays();
+            eye.photons = photons.as_ref();
+            tiles.par_iter().try_for_each(|tile| sums.add_tile(&eye, *tile, &samples, progress))
+        })?;
+    }
+    if progress.is_cancelled() { Ok(None) } else { Ok(Some(sums.parts(integrator)?)) }
+}
+
+/// What was found so far.
+struct Sums<'a> {
+    settings: &'a RenderSettings,
+    division: &'a LightDivision,
+    scale: i32,
+    /// The light of each part, in the pixel of the camera subpath.
+    films: Mutex<Vec<Film>>,
+    /// The splats of each part.
+    splats: Mutex<Vec<Iterations>>,
+}
+
+impl LightDivision {
+    /// The number of parts: two by events, and one for each group.
+    fn count(&self) -> usize {
+        if self.by_events { 2 + self.group_count as usize } else { self.group_count as usize }
+    }
+
+    /// The parts of light of a light, along a path of so many edges.
+    fn parts(&self, edges: u32, light: Option<usize>) -> impl Iterator<Item = usize> {
+        let by_events = self.by_events.then_some(usize::from(edges > DIRECT_EDGES));
+        let group = light.and_then(|light| self.groups.get(light).copied());
+        let last = self.group_count.checked_sub(1);
+        let group = group.or(last).map(|group| self.count() - self.group_count as usize + group as usize);
+        by_events.into_iter().chain(group)
+    }
+}
+
+impl<'a> Sums<'a> {
+    fn new(
+        scene: &Scene,
+        settings: &'a RenderSettings,
+        division: &'a LightDivision,
+    ) -> Result<Sums<'a>, FilmError> {
+        let scale = scale_exponent(scene);
+        let film = |_| Film::windowed(settings.width, settings.height, settings.window(), scale);
+        let films = (0..division.count()).map(film).collect::<Result<_, _>>()?;
+        Ok(Sums { settings, division, scale, films: Mutex::new(films), splats: Mutex::default() })
+    }
+
+    /// The photons of an iteration, if there are any. Where these are shown to the camera, their splats are kept.
+    fn photons(
+        &self,
+        eye: &CameraRays,
+        tiles: &[Window],
+        iteration: u32,
+    ) -> Result<Option<Photons>, FilmError> {
+        let Some(merging) = eye.integrator.merging() else { return Ok(None) };
+        let shown = Merging::shows_photons(merging);
+        if shown {
+            self.make_room_for_splats()?;
+        }
+        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+        let visitor = shown.then_some(self);
+        Ok(Some(Photons::trace(eye, merging, tiles, iteration, techniques, visitor).0))
+    }
+
+    fn make_room_for_splats(&self) -> Result<(), FilmError> {
+        let mut splats = self.splats.lock().unwrap_or_else(PoisonError::into_inner);
+        while splats.len() < self.division.count() {
+            splats.push(Iterations::new(self.settings.window().pixels(), usize::MAX)?);
+        }
+        Ok(())
+    }
+
+    fn add_tile(
+        &self,
+        eye: &CameraRays,
+        tile: Window,
+        samples: &Range<u32>,
+        progress: &dyn Progress,
+    ) -> Result<(), FilmError> {
+        let mut tracer = Tracer::new(eye.scene, false);
+        let wanted = tile.intersection(&self.settings.window());
+        let mut films = vec![Film::part(self.scale); self.division.count()];
+        films.iter_mut().for_each(|film| film.restart(wanted));
+        let both_ends = eye.integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(eye.photons));
+        let mut tally = self.tally();
+        for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
+            if progress.is_cancelled() {
+                return Ok(());
+            }
+            let is_wanted = wanted.index(x, y).is_some();
+            for sample in samples.clone() {
+                tally.begin(x, y, sample);
+                tally.take(eye, both_ends.as_ref(), &mut tracer, is_wanted);
+                if is_wanted {
+                    tally.add_to(&mut films);
+                }
+            }
+        }
+        progress.advance(tile.pixels() as u64 * samples.len() as u64, tracer.counters.rays);
+        let mut all = self.films.lock().unwrap_or_else(PoisonError::into_inner);
+        all.iter_mut().zip(&films).for_each(|(film, part)| film.absorb(part));
+        drop(all);
+        if eye.integrator.splats() {
+            self.make_room_for_splats()?;
+            self.take(0, tally);
+        }
+        Ok(())
+    }
+
+    fn parts(self, integrator: &dyn PixelIntegrator) -> Result<LightParts, FilmError> {
+        let mut films = self.films.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let splats = self.splats.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let shows_photons = integrator.merging().is_some_and(Merging::shows_photons);
+        if integrator.splats() || shows_photons {
+            for (film, splats) in films.iter_mut().zip(splats) {
+                film.add_iterations(splats, self.settings.samples.len() as u32)?;
+            }
+        }
+        let groups = films.split_off(films.len() - self.division.group_count as usize);
+        let by_events = <[Film; 2]>::try_from(films).ok();
+        Ok(LightParts { by_events, groups })
+    }
+}
+
+impl<'a> LightPathVisitor<1> for Sums<'a> {
+    type Tally = PartTally<'a>;
+
+    fn tally(&self) -> PartTally<'a> {
+        let splats = Splats::new(self.settings, self.settings.window(), self.scale);
+        let (division, count) = (self.division, self.division.count());
+        let (here, found) = (vec![Rgb::BLACK; count], Vec::new());
+        PartTally { division, place: [0; 3], sum: Rgb::BLACK, here, splats: vec![splats; count], found }
+    }
+
+    fn begin(tally: &mut PartTally<'a>, x: u32, y: u32, sample: u32) {
+        tally.begin(x, y, sample);
+    }
+
+    fn take(&self, _tile: usize, mut tally: PartTally<'a>) {
+        let mut sums = self.splats.lock().unwrap_or_else(PoisonError::into_inner);
+        for (sum, splats) in sums.iter_mut().zip(&mut tally.splats) {
+            sum.take(&mut splats.deposits);
+        }
+    }
+}
+
+/// The light of one sample, part by part.
+struct PartTally<'a> {
+    division: &'a LightDivision,
+    /// Column, row and index of the sample.
+    place: [u32; 3],
+    /// All light in the sample's own pixel.
+    sum: Rgb,
+    here: Vec<Rgb>,
+    splats: Vec<Splats<'a>>,
+    /// Memory for what a path finds.
+    found: Vec<FoundLight>,
+}
+
+impl PartTally<'_> {
+    fn begin(&mut self, x: u32, y: u32, sample: u32) {
+        (self.place, self.sum) = ([x, y, sample], Rgb::BLACK);
+        self.here.fill(Rgb::BLACK);
+        self.splats.iter_mut().for_each(|splats| splats.begin(x, y, sample));
+    }
+
+    /// Takes the sample.
+    fn take<'s>(
+        &mut self,
+        eye: &CameraRays<'s>,
+        both_ends: Option<&BothEnds>,
+        tracer: &mut Tracer<'s>,
+        is_wanted: bool,
+    ) {
+        let [x, y, sample] = self.place;
+        let (ray, mut task) = eye.sample(tracer, x, y, sample);
+        if let Some(both_ends) = both_ends {
+            both_ends.sample(&ray, is_wanted, &mut task, self);
+        } else if is_wanted {
+            self.found.clear();
+            task.found = Some(std::mem::take(&mut self.found));
+            self.sum = eye.integrator.radiance(&ray, &mut task);
+            self.found = task.found.take().unwrap_or_default();
+            for FoundLight { edges, light, radiance } in &self.found {
+                self.division.parts(*edges, *light).for_each(|part| self.here[part] += *radiance);
+            }
+        }
+    }
+
+    /// Adds the sample to the films. One that is not finite is left out of all parts, as out of the picture.
+    fn add_to(&self, films: &mut [Film]) {
+        let [x, y, sample] = self.place;
+        for (film, &light) in films.iter_mut().zip(&self.here) {
+            film.add(x, y, sample, if self.sum.is_finite() { light } else { self.sum });
+        }
+    }
+}
+
+impl Tally<1> for PartTally<'_> {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution) {
+        let (edges, light) = (Strategy::of(technique).edges, found.weighted());
+        self.sum += light;
+        self.division.parts(edges, Some(found.origin.into())).for_each(|part| self.here[part] += light);
+    }
+
+    fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
+        let (edges, light) = (Strategy::of(technique).edges, found.weighted());
+        let parts = self.division.parts(edges, Some(found.origin.into()));
+        parts.for_each(|part| self.splats[part].add(film, light));
+    }
+}

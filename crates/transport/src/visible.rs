@@ -1,0 +1,205 @@
+//! What the camera sees first, for compositors: where its surfaces are, how they move over the picture, and how much of
+//! each pixel each object covers.
+//!
+//! As for [`crate::features()`], this takes a pass of its own with the camera rays of the picture's first samples. Mirrors
+//! and glass are surfaces like any other.
+
+use crate::camera_rays::CameraRays;
+use crate::error::{FilmError, RenderError};
+use crate::film::zeroed;
+use crate::pixel_integrator::PixelIntegrator;
+use crate::progress::Progress;
+use crate::settings::{RenderSettings, threads};
+use crate::window::{TILE, Window};
+use bilux_accel::Hit;
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::{Camera, Ray, Scene, Surface, Tracer};
+use rayon::prelude::*;
+
+/// The camera rays of each pixel: at least this many, even where the picture has fewer samples, since coverage is
+/// counted in them.
+pub const MIN_SAMPLES: u32 = 16;
+/// And at most this many.
+pub const MAX_SAMPLES: u32 = 128;
+/// The number of ids that a pixel can have; those that cover less of it are left out.
+pub const RANKS: usize = 6;
+
+/// What is wanted.
+#[derive(Clone, Default)]
+pub struct Wanted<'a> {
+    /// [`Visible::position`].
+    pub position: bool,
+    /// [`Visible::uv`].
+    pub uv: bool,
+    /// [`Visible::motion`], to this moment.
+    pub motion: Option<Moment<'a>>,
+    /// For each [`Visible::mattes`], the ids of the scene's objects and spheres; 0 for none.
+    pub ids: Vec<Vec<u32>>,
+}
+
+/// The scene at another time.
+#[derive(Clone, Copy)]
+pub struct Moment<'a> {
+    /// The scene, of the same meshes.
+    pub scene: &'a Scene,
+    /// Its camera.
+    pub camera: &'a dyn Camera,
+    /// The time, in seconds.
+    pub time: f32,
+}
+
+/// What is seen; planes of the window in rows, the top row first, and empty if they were not asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Visible {
+    /// The point of the first sample that hits something, in world space, in metres; 0 where none does.
+    pub position: Vec<Vec3>,
+    /// Its texture coordinates.
+    pub uv: Vec<Vec2>,
+    /// How far it moves over the picture until the other moment, in pixels: to the right, and upwards.
+    pub motion: Vec<Vec2>,
+    /// The ids of each pixel, those that cover most of it first, with the fractions that they cover, 0..=1.
+    pub mattes: Vec<Vec<Ranks>>,
+}
+
+/// Ids and the fractions of a pixel that they cover.
+pub type Ranks = [(u32, f32); RANKS];
+
+/// Looks at each pixel; `None` when it was cancelled. `samples` is the number of samples that the picture has.
+///
+/// # Errors
+/// When the size or the crop is invalid, or there is not enough memory or no threads.
+pub fn visible(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    (wanted, samples): (&Wanted, u32),
+    progress: &dyn Progress,
+) -> Result<Option<Visible>, RenderError> {
+    settings.check()?;
+    let least = if integrator.is_random() { MIN_SAMPLES } else { 1 };
+    let samples = if wanted.ids.is_empty() { samples.min(MIN_SAMPLES) } else { samples };
+    let look = Look {
+        eye: CameraRays::new(scene, camera, integrator, settings),
+        camera,
+        wanted,
+        samples: samples.clamp(least, MAX_SAMPLES),
+    };
+    let window = settings.window();
+    let of_tile = |tile: Window| (!progress.is_cancelled()).then(|| look.tile(tile));
+    let tiles: Option<Vec<Vec<Seen>>> =
+        threads(settings)?.install(|| window.tiles(TILE).into_par_iter().map(of_tile).collect());
+    let Some(tiles) = tiles else { return Ok(None) };
+    Ok(Some(look.assembled(window, tiles)?))
+}
+
+/// Everything that stays the same while the pixels are looked at.
+struct Look<'a> {
+    eye: CameraRays<'a>,
+    camera: &'a dyn Camera,
+    wanted: &'a Wanted<'a>,
+    samples: u32,
+}
+
+/// A pixel.
+#[derive(Clone, Default)]
+struct Seen {
+    first: Option<(Surface, Vec2)>,
+    mattes: Vec<Ranks>,
+}
+
+impl<'a> Look<'a> {
+    fn tile(&self, tile: Window) -> Vec<Seen> {
+        let mut tracer = Tracer::new(self.eye.scene, false);
+        let mut counts = vec![Vec::new(); self.wanted.ids.len()];
+        (0..tile.pixels()).map(|i| self.pixel(tile.position(i), &mut tracer, &mut counts)).collect()
+    }
+
+    /// Takes the samples of a pixel. `counts` is memory for its ids.
+    fn pixel(&self, (x, y): (u32, u32), tracer: &mut Tracer<'a>, counts: &mut [Vec<(u32, u32)>]) -> Seen {
+        let rays: Vec<Ray> =
+            (0..self.samples).map(|sample| self.eye.sample(tracer, x, y, sample).0).collect();
+        let mut hits = vec![None; rays.len()];
+        tracer.hits(&rays, &mut hits);
+        counts.iter_mut().for_each(Vec::clear);
+        let mut seen = Seen::default();
+        for (ray, hit) in rays.iter().zip(&hits) {
+            let Some(hit) = hit else { continue };
+            if seen.first.is_none() {
+                let surface = tracer.surface(ray, hit);
+                seen.first = Some((surface, self.motion(hit, &surface)));
+            }
+            let object = self.eye.scene.geometry().object_of(hit) as usize;
+            for (counts, ids) in counts.iter_mut().zip(&self.wanted.ids) {
+                count(counts, ids.get(object).copied().unwrap_or_default());
+            }
+        }
+        seen.mattes = counts.iter_mut().map(|counts| ranked(counts, self.samples)).collect();
+        seen
+    }
+
+    /// How far the point moves over the picture, in pixels.
+    fn motion(&self, hit: &Hit, surface: &Surface) -> Vec2 {
+        let Some(next) = &self.wanted.motion else { return Vec2::ZERO };
+        let opens = self.eye.scene.shutter()[0];
+        // As it was when the shutter opened, so that all samples of a pixel move over the same time.
+        let here = self.eye.scene.geometry();
+        let [from, to] = here.moved(hit, surface.p, next.scene.geometry(), [opens, next.time]);
+        let from = self.camera.project(from, opens);
+        let Some((from, to)) = from.zip(next.camera.project(to, next.time)) else { return Vec2::ZERO };
+        let settings = self.eye.settings;
+        (to - from) * Vec2::new(settings.width as f32, -(settings.height as f32))
+    }
+
+    fn assembled(&self, window: Window, tiles: Vec<Vec<Seen>>) -> Result<Visible, FilmError> {
+        let wants = |wanted: bool| if wanted { window.pixels() } else { 0 };
+        let mut all = Visible {
+            position: zeroed(wants(self.wanted.position))?,
+            uv: zeroed(wants(self.wanted.uv))?,
+            motion: zeroed(wants(self.wanted.motion.is_some()))?,
+            mattes: Vec::new(),
+        };
+        for _ in &self.wanted.ids {
+            all.mattes.push(zeroed(window.pixels())?);
+        }
+        for (tile, pixels) in window.tiles(TILE).into_iter().zip(tiles) {
+            for (i, seen) in pixels.into_iter().enumerate() {
+                let (x, y) = tile.position(i);
+                let Some(at) = window.index(x, y) else { continue };
+                if let Some((surface, motion)) = seen.first {
+                    put(&mut all.position, at, surface.p);
+                    put(&mut all.uv, at, surface.uv);
+                    put(&mut all.motion, at, motion);
+                }
+                all.mattes.iter_mut().zip(seen.mattes).for_each(|(matte, ranks)| put(matte, at, ranks));
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// Sets a value, if the plane was asked for.
+fn put<T>(plane: &mut [T], at: usize, value: T) {
+    if let Some(place) = plane.get_mut(at) {
+        *place = value;
+    }
+}
+
+/// Counts one more sample of an id; 0 is none.
+fn count(counts: &mut Vec<(u32, u32)>, id: u32) {
+    match counts.iter_mut().find(|(known, _)| *known == id) {
+        _ if id == 0 => {}
+        Some((_, count)) => *count += 1,
+        None => counts.push((id, 1)),
+    }
+}
+
+/// The ids that cover most; those that cover as much by their numbers.
+fn ranked(counts: &mut [(u32, u32)], samples: u32) -> Ranks {
+    counts.sort_unstable_by_key(|&(id, count)| (std::cmp::Reverse(count), id));
+    let mut ranks = Ranks::default();
+    for (rank, &(id, count)) in ranks.iter_mut().zip(counts.iter()) {
+        *rank = (id, count as f32 / samples as f32);
+    }
+    ranks
+}
