@@ -140,7 +140,9 @@ fn parameter(parameter: &Value) -> String {
 /// The parameters of a row that have strips, with the paths of these.
 fn strips_of<'a>(table: &'a str, row: &'a Value) -> impl Iterator<Item = (&'a str, String)> {
     let has_strips = strips::TABLES.contains(&table);
-    let parameters = row["parameters"].as_array().into_iter().flatten().filter(move |_| has_strips);
+    // A name changes nothing that a picture could show.
+    let is_shown = move |parameter: &&Value| has_strips && text_of(parameter, "values") != "text";
+    let parameters = row["parameters"].as_array().into_iter().flatten().filter(is_shown);
     parameters.map(move |parameter| {
         let name = text_of(parameter, "name");
         (name, strips::path(table, text_of(row, "name"), name))

@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::process::Command;
 
-/// What drives browsers. It downloads none by itself.
-const DRIVERS: &[&str] = &["playwright"];
+/// What drives browsers, which downloads none by itself; and what checks that everybody can use the page.
+const DRIVERS: &[&str] = &["playwright", "axe-playwright-python"];
 
 /// The names of Chromium on various systems.
 const BROWSERS: &[&str] = &["chromium", "chromium-browser", "google-chrome", "chrome"];

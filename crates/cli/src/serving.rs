@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \
     bilux serve model.glb                        Watch it at the address that is printed; Ctrl-C ends it\n  \
-    bilux serve scene.toml --port 8000 --edit    Change materials too\n  \
+    bilux serve scene.toml --port 8000 --edit    Change materials, lights and cameras too\n  \
     bilux serve model.glb --listen 0.0.0.0       Let other machines watch, who know the whole address\n  \
     ssh -L 8000:localhost:8000 server bilux serve model.glb --port 8000")]
 pub struct Serve {
@@ -25,7 +25,7 @@ pub struct Serve {
     /// The address to listen on; anywhere but on this machine alone, the address that is printed has a secret in it
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", help_heading = help::COMMON_OPTIONS)]
     pub listen: IpAddr,
-    /// Let those who watch change materials; the scene file stays as it is
+    /// Let those who watch change materials, lights and cameras, and drop other files in; the scene file stays as it is
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,
     /// The time to show, in seconds, for animated scenes [default: 0]

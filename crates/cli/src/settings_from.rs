@@ -5,7 +5,7 @@ use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::Exposure;
 use anyhow::Context;
-use bilux::scene::{Parameters, Span, Value};
+use bilux::scene::{Change, Parameters, Part, Span, Value, Which};
 
 /// The render settings on the command line.
 pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
@@ -105,8 +105,13 @@ pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
                                   settings` lists the keys"
         )
     })?;
+    Ok((key.trim().to_owned(), value_of(value)))
+}
+
+/// A value as a scene file would hold it: true, 3, 0.5, `1,2,3` or text.
+fn value_of(value: &str) -> Value {
     let parts: Vec<&str> = value.trim_matches(['[', ']']).split(',').map(str::trim).collect();
-    let value = match parts.as_slice() {
+    match parts.as_slice() {
         [one] => scalar(one),
         many => {
             let values: Vec<Value> = many.iter().map(|part| scalar(part)).collect();
@@ -116,8 +121,30 @@ pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
                 Value::List(values)
             }
         }
+    }
+}
+
+/// Parses `PART:NAME:KEY=VALUE`. Names may have colons and equals signs in them; keys have neither.
+pub fn change_of(text: &str) -> anyhow::Result<Change> {
+    let is_key = |key: &str| !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    let parts = text.split_once(':').and_then(|(part, rest)| {
+        let ends = rest.match_indices('=').map(|(end, _)| (&rest[..end], &rest[end + 1..]));
+        let mut found = ends.filter_map(|(named, value)| Some((named.rsplit_once(':')?, value)));
+        let ((name, key), value) = found.find(|((_, key), _)| is_key(key))?;
+        Some((Part::named(part)?, name, key, value))
+    });
+    let (part, name, key, value) = parts.with_context(|| {
+        format!(
+            "--change {text}: write material, light or camera, then its name or its number, then KEY=VALUE: \
+             --change material:Paint:base_color=0.8,0,0"
+        )
+    })?;
+    let which = match name.parse() {
+        Ok(number) => Which::Number(number),
+        Err(_) => Which::Name(name.to_owned()),
     };
-    Ok((key.trim().to_owned(), value))
+    let at = from_flag(&format!("--change {}:{name}:{key}", part.name()));
+    Ok(Change { part, which, key: key.to_owned(), value: value_of(value), at })
 }
 
 fn scalar(text: &str) -> Value {

@@ -1,6 +1,6 @@
 //! The options for the studio around a model.
 
-use crate::settings_from::from_flag;
+use crate::settings_from::{change_of, from_flag};
 use crate::values::{parse_focal, parse_zoom};
 use crate::{help, usage};
 use anyhow::{Context, bail};
@@ -50,6 +50,10 @@ pub struct StudioArguments {
     /// backdrop, if the file has neither camera nor lights]
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
+    /// Change a parameter of a material, a light or a camera, named by its name or by its number from 0, such as
+    /// light:0:intensity=5 or material:Paint:base_color=0.8,0,0
+    #[arg(long = "change", value_name = "PART:NAME:KEY=VALUE", help_heading = help::WHAT)]
+    pub change: Vec<String>,
 }
 
 impl StudioArguments {
@@ -70,6 +74,9 @@ impl StudioArguments {
         if let Some(picture) = self.picture_behind() {
             bilux::presets::set_background(scene, picture, options).context("--background")?;
         }
+        for change in &self.change {
+            change_of(change).and_then(|change| Ok(change.make(scene)?)).map_err(usage::wrong)?;
+        }
         Ok(())
     }
 
@@ -79,7 +86,7 @@ impl StudioArguments {
         self.background.as_deref().filter(|text| !is_setting(text)).map(Path::new)
     }
 
-    /// Refuses a background that is neither a setting nor the name of a picture.
+    /// Refuses a background that is neither a setting nor the name of a picture, and changes that cannot be read.
     pub fn check(&self) -> anyhow::Result<()> {
         let is_picture =
             |path: &&Path| path.exists() || bilux::pictures::format_named(extension(path)).is_some();
@@ -89,7 +96,7 @@ impl StudioArguments {
                 text.display()
             );
         }
-        Ok(())
+        self.change.iter().try_for_each(|change| change_of(change).map(drop))
     }
 
     /// Checks, before any work, that the pictures that options name can be opened.

@@ -113,3 +113,27 @@ fn a_camera_is_moved_by_options() {
     let wrong = bilux(&["render", &scene, "-o", "x.png", "--eye", "1,2"]).output().unwrap();
     assert!(String::from_utf8_lossy(&wrong.stderr).contains("write X,Y,Z"), "{wrong:?}");
 }
+
+#[test]
+fn a_change_on_the_command_line_is_that_of_an_overlay() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let box_of_cornell = file("cornell.toml");
+    assert!(bilux(&["generate", "cornell", "-o", &box_of_cornell]).output().unwrap().status.success());
+    let overlay = "base = \"cornell.toml\"\n[[change]]\nlight = \"lamp\"\nradiance = [3, 8.5, 20]\n\
+                   [[change]]\ncamera = 0\nfov = 50\n";
+    std::fs::write(file("edited.toml"), overlay).unwrap();
+    let picture = |scene: &str, changes: &[&str]| {
+        let out = file("out.png");
+        let common = ["render", scene, "-o", &out, "--size", "24x20", "--spp", "2", "-i", "path", "--quiet"];
+        let done = bilux(&common).args(changes).output().unwrap();
+        assert!(done.status.success(), "{done:?}");
+        std::fs::read(out).unwrap()
+    };
+    let changed = picture(
+        &box_of_cornell,
+        &["--change", "light:lamp:radiance=3,8.5,20", "--change", "camera:0:fov=50"],
+    );
+    assert!(changed == picture(&file("edited.toml"), &[]));
+    assert!(changed != picture(&box_of_cornell, &[]));
+}

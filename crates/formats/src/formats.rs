@@ -243,7 +243,10 @@ fn flow(
         ReadFormat::Whole(read) => read(reading, source)?,
         ReadFormat::Flowing(read) => read(reading, source, from)?,
     };
-    scene.up = row.up;
+    // A scene that is based on another one keeps what that file says.
+    if scene.up == UpHint::default() {
+        scene.up = row.up;
+    }
     reading.settle(spent, textures, &scene);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),

@@ -38,5 +38,5 @@ pub use error::FormatError;
 pub use formats::{
     SCENE_FORMATS, SceneFormatEntry, check_not_read, format_named, format_of_path, read, read_bytes, write,
 };
-pub use native::{SHAPES, ShapeEntry, toml_schema};
+pub use native::{SHAPES, ShapeEntry, overlay, toml_schema};
 pub use options::{Glass, ReadOptions, WriteOptions};

@@ -3,6 +3,7 @@
 mod common;
 
 use bilux_math::motion::{Motion, MotionKey};
+use bilux_math::transcendental::tan;
 use bilux_math::{Quat, Vec2, Vec3};
 use bilux_scene::{Scene, SceneBuilder};
 use bilux_transport::visible::{MIN_SAMPLES, Moment, Wanted};
@@ -40,7 +41,7 @@ fn motion_is_in_pixels_to_the_right_and_upwards() {
     let found = seen(&scene, &settings, &wanted);
     let (middle, below) = (20 * 41 + 20, 38 * 41 + 20);
     // A quarter of a metre, a little nearer than 8 metres.
-    let metre = 41.0 / (2.0 * 7.5 * 20f32.to_radians().tan());
+    let metre = 41.0 / (2.0 * 7.5 * tan(20f32.to_radians()));
     assert!(found.motion[middle].distance(Vec2::new(0.0, 0.25 * metre)) < 0.1, "{}", found.motion[middle]);
     assert_eq!(found.motion[below], Vec2::ZERO, "the floor does not move at all");
     assert!((found.position[below].y + 2.0).abs() < 1e-4);
@@ -56,7 +57,7 @@ fn a_moving_camera_moves_everything() {
     let moment = Moment { scene: &here, camera: &*there.cameras()[0].1, time: 0.0 };
     let wanted = Wanted { motion: Some(moment), ..Wanted::default() };
     let found = seen(&here, &RenderSettings::new(41, 41, 1), &wanted);
-    let metre = 41.0 / (2.0 * 7.5 * 20f32.to_radians().tan());
+    let metre = 41.0 / (2.0 * 7.5 * tan(20f32.to_radians()));
     let middle = found.motion[20 * 41 + 20];
     assert!(middle.distance(Vec2::new(-0.1 * metre, 0.0)) < 0.05, "{middle}: it moves to the left");
     assert!(found.position.is_empty() && found.uv.is_empty(), "only what was asked for");

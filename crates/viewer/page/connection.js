@@ -51,7 +51,7 @@ export class Connection extends EventTarget {
     const blob = new Blob([new Uint8Array(buffer, 4 + length)], { type: header.type });
     try {
       header.bitmap = await createImageBitmap(blob);
-      this.#say("frame", header);
+      this.#say(header.side === "other" ? "other" : "frame", header);
     } finally {
       this.send("seen", { frame: header.frame });
     }

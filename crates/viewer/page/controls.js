@@ -1,124 +1,9 @@
-// The controls, made from the tables that the server sends: names, help, units and ranges are theirs.
+// The controls of the picture, made from the tables that the server sends.
 
 import { byId, element, title } from "./element.js";
+import { control } from "./inputs.js";
 
 const form = byId("controls");
-// A slider covers this many stops on each side.
-const STOPS = 8;
-// Wider ranges get no slider.
-const SLIDER = 100;
-
-let last = 0;
-
-// A control for a parameter of a table: `change` is called with a new value. Returns a row, and a function that shows a value.
-export function control(parameter, change) {
-  const { name, summary, unit, kind } = parameter;
-  const id = `control-${++last}`;
-  const help = unit ? `${summary} (${unit})` : summary;
-  const made = MAKERS[kind]?.(parameter, id, change);
-  if (!made) return null;
-  const label = element("label", { for: id, title: help }, title(name));
-  const row = element("div", { class: "row", "data-setting": name, title: help }, label, made.element);
-  row.append(element("span", { id: `${id}-help`, class: "unseen" }, help));
-  for (const input of row.querySelectorAll("input, select")) input.setAttribute("aria-describedby", `${id}-help`);
-  return { row, show: made.show, name };
-}
-
-const busy = (input) => document.activeElement === input;
-
-const MAKERS = {
-  choice({ choices }, id, change) {
-    const options = choices.map((choice) => element("option", { value: choice.name, title: choice.summary }, choice.name));
-    const select = element("select", { id, onchange: () => change(select.value) }, ...options);
-    const hint = element("p", { class: "hint" });
-    const show = (value) => {
-      select.value = value;
-      hint.textContent = choices.find((choice) => choice.name === select.value)?.summary ?? "";
-      hint.hidden = !hint.textContent;
-    };
-    return { element: withHint(select, hint), show };
-  },
-
-  switch(_, id, change) {
-    const box = element("input", { id, type: "checkbox", onchange: () => change(box.checked) });
-    return { element: box, show: (value) => (box.checked = value === true || value === "true") };
-  },
-
-  integer: (parameter, id, change) => number(parameter, id, change, 1),
-
-  number({ unit, min, max, ...rest }, id, change) {
-    if (unit === "EV") return slider({ min: -STOPS, max: STOPS, hard: [min, max], ...rest }, id, change, 0.1);
-    if (max - min <= SLIDER) return slider({ min, max, hard: [min, max], ...rest }, id, change, (max - min) / 200);
-    return number({ min, max, ...rest }, id, change, "any");
-  },
-
-  text(_, id, change) {
-    const input = element("input", { id, type: "text", spellcheck: "false", onchange: () => change(input.value) });
-    return { element: input, show: (value) => busy(input) || (input.value = value) };
-  },
-
-  colour({ max }, id, change) {
-    const input = element("input", { id, type: "color", oninput: () => change(toLinear(input.value)) });
-    const show = (value) => {
-      const list = typeof value === "string" ? value.split(" ").map(Number) : [value].flat();
-      const is_colour = list.every((part) => typeof part === "number") && Math.max(...list) <= Math.min(max, 1);
-      input.disabled = !is_colour;
-      if (is_colour && !busy(input)) input.value = fromLinear(list.length === 1 ? [list[0], list[0], list[0]] : list);
-    };
-    return { element: input, show };
-  },
-};
-
-function withHint(input, hint) {
-  return element("div", {}, input, hint);
-}
-
-function number({ min, max }, id, change, step) {
-  const commit = () => input.reportValidity() && input.value !== "" && change(input.valueAsNumber);
-  const input = element("input", { id, type: "number", min, max, step, onchange: commit });
-  return { element: input, show: (value) => busy(input) || (input.value = value) };
-}
-
-function slider({ name, min, max, hard }, id, change, step) {
-  const round = (value) => Number(value.toPrecision(6));
-  const range = element("input", {
-    id, type: "range", min, max, step,
-    oninput: () => {
-      exact.value = range.value;
-      change(round(range.valueAsNumber));
-    },
-  });
-  const exact = element("input", {
-    type: "number", min: hard[0], max: hard[1], step: "any", "aria-label": `${title(name)}, as a number`,
-    onchange: () => exact.reportValidity() && exact.value !== "" && change(exact.valueAsNumber),
-  });
-  const show = (value) => {
-    const is_number = Number.isFinite(Number(value)) && typeof value !== "object";
-    range.disabled = exact.disabled = !is_number;
-    if (!is_number) return;
-    if (!busy(range)) range.value = value;
-    if (!busy(exact)) exact.value = round(Number(value));
-  };
-  return { element: element("div", { class: "pair" }, range, exact), show };
-}
-
-// #rrggbb to linear light, and back.
-function toLinear(text) {
-  const channel = (at) => {
-    const x = parseInt(text.slice(at, at + 2), 16) / 255;
-    return Number((x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4).toPrecision(5));
-  };
-  return [channel(1), channel(3), channel(5)];
-}
-
-export function fromLinear(list) {
-  const channel = (x) => {
-    const y = Math.max(0, Math.min(1, x));
-    const encoded = y <= 0.0031308 ? y * 12.92 : 1.055 * y ** (1 / 2.4) - 0.055;
-    return Math.round(encoded * 255).toString(16).padStart(2, "0");
-  };
-  return "#" + list.map(channel).join("");
-}
 
 // All controls of the picture.
 export class Controls {
@@ -144,7 +29,8 @@ export class Controls {
     this.#own = { name: "", controls: [], place: element("div") };
     this.#cameras = "";
     form.replaceChildren();
-    for (const { name, settings } of catalogue.groups) {
+    // The time has a place of its own.
+    for (const { name, settings } of catalogue.groups.filter(({ name }) => name !== "Time")) {
       const group = element("fieldset", {}, element("legend", {}, name));
       for (const parameter of settings) {
         if (parameter.name === "camera") {

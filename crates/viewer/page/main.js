@@ -1,20 +1,28 @@
 // Puts the page together.
 
+import { Accelerators } from "./accelerators.js";
+import { Compare } from "./compare.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { Drop } from "./drop.js";
+import { Edits } from "./edits.js";
 import { byId, large } from "./element.js";
-import { Materials } from "./materials.js";
 import { Navigation } from "./navigation.js";
 import { Pick } from "./pick.js";
 import { PictureView } from "./picture.js";
 import { Status } from "./status.js";
+import { Time } from "./time.js";
 
 const connection = new Connection();
 const picture = new PictureView(connection);
 const pick = new Pick(connection, picture);
-new Status(connection);
+const status = new Status(connection);
 new Controls(connection, picture);
-new Materials(connection);
+new Edits(connection);
+new Time(connection);
+new Compare(connection, picture);
+new Accelerators(connection);
+new Drop(connection, (problem) => status.tell(problem));
 new Navigation(connection, picture, { pick: (at) => pick.at(at), clear: () => pick.clear() });
 
 connection.addEventListener("state", ({ detail: state }) => {
@@ -23,7 +31,6 @@ connection.addEventListener("state", ({ detail: state }) => {
   const count = (n, one) => `${large(n).trim()} ${n === 1 ? one : `${one}s`}`;
   byId("contents").textContent = `${count(state.triangles, "triangle")}, ${count(state.objects, "object")}`;
   byId("command").textContent = state.command;
-  byId("command-hint").textContent = state.can_undo ? "Without the edits of materials." : "";
 });
 
 byId("copy").addEventListener("click", async () => {

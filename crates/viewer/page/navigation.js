@@ -37,7 +37,7 @@ export class Navigation {
   }
 
   #press(event) {
-    if (event.target.closest("#status, #problem")) return;
+    if (event.target.closest("#status, #problem, #divider")) return;
     view.setPointerCapture(event.pointerId);
     this.#pointers.set(event.pointerId, [event.clientX, event.clientY]);
     this.#dragged = this.#pointers.size > 1 ? CLICK : 0;

@@ -1,7 +1,7 @@
 // What is at a pixel, and the paths of light that reach it.
 
 import { byId, element, plain } from "./element.js";
-import { fromLinear } from "./controls.js";
+import { fromLinear } from "./inputs.js";
 import { LEGEND, drawPaths } from "./paths.js";
 
 const section = byId("pick");

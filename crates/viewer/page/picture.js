@@ -7,7 +7,6 @@ const overlay = byId("overlay");
 const view = byId("view");
 
 export class PictureView extends EventTarget {
-  // Where the picture is in the view, in CSS pixels.
   #place = { x: 0, y: 0, width: 1, height: 1 };
   #full = null;
   #frame = 0;
@@ -31,6 +30,11 @@ export class PictureView extends EventTarget {
     const bounds = view.getBoundingClientRect();
     const at = [(x - bounds.x - this.#place.x) / this.#place.width, (y - bounds.y - this.#place.y) / this.#place.height];
     return at.every((part) => part >= 0 && part < 1) ? at : null;
+  }
+
+  // Where the picture is in the view, in CSS pixels.
+  get place() {
+    return this.#place;
   }
 
   get height() {

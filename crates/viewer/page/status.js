@@ -9,12 +9,12 @@ export class Status {
 
   constructor(connection) {
     connection.addEventListener("frame", ({ detail }) => this.#frame(detail));
-    connection.addEventListener("state", ({ detail }) => this.#tell(detail.problem ?? ""));
-    connection.addEventListener("error", ({ detail }) => this.#tell(detail?.message ?? ""));
+    connection.addEventListener("state", ({ detail }) => this.tell(detail.problem ?? ""));
+    connection.addEventListener("error", ({ detail }) => this.tell(detail?.message ?? ""));
     connection.addEventListener("lost", () => {
-      this.#tell("The viewer does not answer. Is it still running? This page connects again as soon as it does.");
+      this.tell("The viewer does not answer. Is it still running? This page connects again as soon as it does.");
     });
-    connection.addEventListener("connected", () => this.#tell(""));
+    connection.addEventListener("connected", () => this.tell(""));
   }
 
   #frame({ samples, total, noise, rate, rays, choice, preview, rests }) {
@@ -28,7 +28,7 @@ export class Status {
     this.rested = rests;
   }
 
-  #tell(problem) {
+  tell(problem) {
     if (problem === this.#problem) return;
     this.#problem = problem;
     const shown = byId("problem");

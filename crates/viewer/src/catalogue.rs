@@ -3,16 +3,20 @@
 use bilux::accel::ACCELERATORS;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use bilux::pictures::TONEMAPS;
-use bilux::scene::materials::MATERIALS;
+use bilux::scene::{CAMERAS, LIGHTS, MATERIALS};
 use bilux::settings::RENDER;
 use bilux::transport::aovs::AOVS;
 use bilux::transport::integrators::INTEGRATORS;
 use serde_json::{Value, json};
 
+/// The name of the heat map of the accelerator.
+pub(crate) const VISITS: &str = "visits";
+
 /// The settings that the page offers, in groups.
 const GROUPS: &[(&str, &[&str])] = &[
     ("Light", &["integrator", "max_depth", "spp", "seed"]),
     ("Camera and studio", &["camera", "ground", "background"]),
+    ("Time", &["time", "shutter"]),
     ("Display", &["exposure", "auto_exposure", "tonemap", "denoise"]),
     ("Speed", &["accel"]),
 ];
@@ -31,11 +35,23 @@ pub(crate) fn catalogue() -> Value {
         "say": "catalogue",
         "groups": GROUPS.iter().map(group).collect::<Vec<_>>(),
         "integrators": INTEGRATORS.iter().map(|row| entry(&row.entry)).collect::<Vec<_>>(),
-        "materials": MATERIALS.iter().map(|row| entry(&row.entry)).collect::<Vec<_>>(),
-        "layers": AOVS.iter().filter(|row| row.aov.is_feature()).map(|row| row.entry).map(|row| {
-            json!({ "name": row.name, "summary": row.summary })
-        }).collect::<Vec<_>>(),
+        "parts": {
+            "material": MATERIALS.iter().map(|row| entry(&row.entry)).collect::<Vec<_>>(),
+            "light": LIGHTS.iter().map(|row| entry(&row.entry)).collect::<Vec<_>>(),
+            "camera": CAMERAS.iter().map(|row| entry(&row.entry)).collect::<Vec<_>>(),
+        },
+        "layers": layers(),
     })
+}
+
+/// What can be shown in the place of the picture.
+fn layers() -> Vec<Value> {
+    let features =
+        AOVS.iter().filter(|row| row.aov.is_feature()).map(|row| (row.entry.name, row.entry.summary));
+    let visits = "what the accelerator does for the ray of each pixel: nodes that it visits and triangles that it tests, \
+                  from none (black) to 65,536 (pale yellow), on a logarithmic scale";
+    let all = features.chain([(VISITS, visits)]);
+    all.map(|(name, summary)| json!({ "name": name, "summary": summary })).collect()
 }
 
 fn entry(entry: &Entry) -> Value {
@@ -55,6 +71,7 @@ fn parameter(p: &Parameter) -> Value {
         ParameterKind::Colour { min, max } | ParameterKind::ColourTexture { min, max } => {
             json!({ "kind": "colour", "min": min, "max": max })
         }
+        ParameterKind::Vector => json!({ "kind": "vector" }),
         ParameterKind::Choice(words) => json!({ "kind": "choice", "choices": named(words) }),
         ParameterKind::Text => match choices(p.name) {
             Some(choices) => json!({ "kind": "choice", "choices": choices }),

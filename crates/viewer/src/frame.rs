@@ -3,6 +3,7 @@
 use bilux::Error;
 use bilux::pictures::{Picture, WriteOptions, write_bytes};
 use serde_json::{Value, json};
+use std::time::Duration;
 
 /// The quality of JPEGs of pictures that soon give way to better ones.
 const QUALITY: u8 = 82;
@@ -18,12 +19,16 @@ pub(crate) struct Frame {
 /// What is known of a frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Facts {
+    /// Which of two pictures it is: `own`, or the `other` one that it is compared with.
+    pub(crate) side: &'static str,
     /// Counts the pictures that were begun: frames of one picture refine each other.
     pub(crate) picture: u64,
     /// Samples of each pixel.
     pub(crate) samples: u32,
     /// Samples of each pixel that there will be.
     pub(crate) total: u32,
+    /// Seconds that its samples took.
+    pub(crate) seconds: f64,
     /// Samples a second, all pixels together.
     pub(crate) rate: f64,
     /// Rays a second.
@@ -38,8 +43,22 @@ pub(crate) struct Facts {
     pub(crate) rests: bool,
     /// What the integrator has chosen, if it chooses.
     pub(crate) choice: Option<String>,
+    /// How far two pictures that are compared are from each other, relative to their light.
+    pub(crate) difference: Option<f64>,
     /// Where the camera is: position, then the point that it looks at.
     pub(crate) eye: [[f64; 3]; 2],
+}
+
+impl Facts {
+    /// The same facts of a picture with so many samples and rays, which took this time.
+    pub(crate) fn of(mut self, picture: &Picture, samples: u32, rays: u64, time: Duration) -> Facts {
+        let seconds = time.as_secs_f64();
+        let pixels = picture.width() as f64 * picture.height() as f64;
+        (self.samples, self.seconds) = (samples, seconds);
+        self.rate = pixels * f64::from(samples) / seconds.max(1e-6);
+        self.rays = rays as f64 / seconds.max(1e-6);
+        self
+    }
 }
 
 impl Frame {
@@ -67,12 +86,14 @@ impl Frame {
 fn header(number: u64, picture: &Picture, format: &str, full: [u32; 2], facts: &Facts) -> Value {
     json!({
         "frame": number,
+        "side": facts.side,
         "picture": facts.picture,
         "type": format!("image/{format}"),
         "size": [picture.width(), picture.height()],
         "full": full,
         "samples": facts.samples,
         "total": facts.total,
+        "seconds": facts.seconds,
         "rate": facts.rate,
         "rays": facts.rays,
         "noise": facts.noise,
@@ -80,6 +101,7 @@ fn header(number: u64, picture: &Picture, format: &str, full: [u32; 2], facts: &
         "shown": facts.shown,
         "rests": facts.rests,
         "choice": facts.choice,
+        "difference": facts.difference,
         "eye": facts.eye,
     })
 }

@@ -1,7 +1,8 @@
 //! What those who watch ask for, until the render takes it. However much they ask for, it takes a bounded amount of
 //! memory: moves add up, a later value of a setting replaces an earlier one, and questions that are too many are refused.
 
-use crate::message::{Move, Question, Request};
+use crate::dropped::Dropped;
+use crate::message::{Move, Other, Question, Request};
 use bilux::scene::Parameters;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -23,6 +24,14 @@ pub(crate) struct Waiting {
     pub(crate) settings: Parameters,
     /// What is shown: the picture, or one of its layers.
     pub(crate) shown: Option<String>,
+    /// What the picture is compared with; nothing if inside there is nothing.
+    pub(crate) compared: Option<Option<Other>>,
+    /// Whether differences are shown.
+    pub(crate) differences: Option<bool>,
+    /// The variant of materials.
+    pub(crate) variant: Option<String>,
+    /// A file that was dropped in.
+    pub(crate) dropped: Option<Dropped>,
     /// Edits, in order.
     pub(crate) edits: Vec<Request>,
     /// Questions, in order.
@@ -34,17 +43,21 @@ pub(crate) struct Waiting {
 impl Waiting {
     /// True if the render is to stop what it does: the picture changes, or somebody waits for a pixel.
     fn interrupts(&self) -> bool {
-        self.changes_picture() || self.questions.iter().any(|it| matches!(it, Question::Pick { .. }))
+        self.changes_picture() || self.questions.iter().any(|it| !matches!(it, Question::Save { .. }))
     }
 
     /// True if it changes the picture.
-    fn changes_picture(&self) -> bool {
+    pub(crate) fn changes_picture(&self) -> bool {
         !self.moves.is_empty()
             || self.size.is_some()
             || !self.settings.0.is_empty()
             || self.shown.is_some()
             || !self.edits.is_empty()
             || self.reload
+            || self.compared.is_some()
+            || self.differences.is_some()
+            || self.variant.is_some()
+            || self.dropped.is_some()
     }
 }
 
@@ -81,6 +94,11 @@ impl Inbox {
                 waiting.settings.set(&key, value);
             }
             Request::Show(what) => waiting.shown = Some(what),
+            Request::Compare(other) => waiting.compared = Some(other),
+            Request::Differences(are_shown) => waiting.differences = Some(are_shown),
+            Request::Variant(name) => waiting.variant = Some(name),
+            // Whoever has dropped an earlier one is told that it was not opened.
+            Request::Open(dropped) => waiting.dropped = Some(dropped),
             edit @ (Request::Edit { .. } | Request::Undo | Request::Redo) => {
                 if waiting.edits.len() >= MOVES {
                     return full();

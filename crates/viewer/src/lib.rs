@@ -5,6 +5,7 @@
 //! whenever the browser has seen the one before, so that a slow browser neither slows the render nor takes memory.
 
 mod catalogue;
+mod dropped;
 mod error;
 mod eye;
 mod frame;
@@ -16,5 +17,5 @@ mod stage;
 mod watch;
 
 pub use error::ViewerError;
-pub use options::Options;
+pub use options::{Opening, Options};
 pub use server::Server;

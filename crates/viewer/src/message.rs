@@ -1,6 +1,7 @@
 //! What a browser says, in JSON: each message is an object whose `do` names what is asked for.
 
-use bilux::scene::Value;
+use crate::dropped::Dropped;
+use bilux::scene::{Part, Value};
 use serde_json::Value as Json;
 use tokio::sync::{mpsc, oneshot};
 
@@ -34,10 +35,12 @@ pub(crate) enum Request {
     Set(String, Value),
     /// Show the picture or one of its layers.
     Show(String),
-    /// Change a parameter of a material.
+    /// Change a parameter of a material, a light or a camera.
     Edit {
-        /// The number of the material.
-        material: usize,
+        /// What is changed.
+        part: Part,
+        /// Its number.
+        number: usize,
         /// The parameter.
         key: String,
         /// Its value.
@@ -47,10 +50,27 @@ pub(crate) enum Request {
     Undo,
     /// Make the last edit that was undone again.
     Redo,
+    /// Compare the picture with another one; `None` ends that.
+    Compare(Option<Other>),
+    /// While two pictures are compared, show where they differ in the place of the other one.
+    Differences(bool),
+    /// Open the scene with this variant of its materials.
+    Variant(String),
+    /// Open a file that was dropped in.
+    Open(Dropped),
     /// Answer a question.
     Ask(Question),
     /// Open the scene again.
     Reload,
+}
+
+/// What the picture is compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Other {
+    /// The same with another setting.
+    Setting(String, Value),
+    /// The scene before it was edited.
+    Unedited,
 }
 
 /// A question about the picture, and where its answer goes.
@@ -71,6 +91,16 @@ pub(crate) enum Question {
         format: &'static str,
         /// Where the bytes go, or what went wrong.
         to: oneshot::Sender<Result<Vec<u8>, String>>,
+    },
+    /// The scene as it was edited, as an overlay of its file.
+    Overlay {
+        /// Where it goes.
+        to: oneshot::Sender<String>,
+    },
+    /// How fast is each accelerator?
+    Measure {
+        /// Where the answers go, one for each accelerator.
+        answers: Answers,
     },
 }
 
@@ -136,10 +166,17 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
         "set" => asked(Request::Set(text_of(&json, "key")?, value(&json["value"])?)),
         "show" => asked(Request::Show(text_of(&json, "what")?)),
         "edit" => asked(Request::Edit {
-            material: json["material"].as_u64().ok_or("'edit' needs the number of a material")? as usize,
+            part: json["part"].as_str().and_then(Part::named).ok_or("'edit' needs a part of the scene")?,
+            number: json["number"].as_u64().ok_or("'edit' needs the number of a part")? as usize,
             key: text_of(&json, "key")?,
             value: value(&json["value"])?,
         }),
+        "compare" => asked(Request::Compare(other(&json)?)),
+        "differences" => {
+            asked(Request::Differences(json["show"].as_bool().ok_or("'differences' needs 'show'")?))
+        }
+        "variant" => asked(Request::Variant(text_of(&json, "name")?)),
+        "measure" => asked(Request::Ask(Question::Measure { answers: answers.clone() })),
         "undo" => asked(Request::Undo),
         "redo" => asked(Request::Redo),
         "pick" => {
@@ -147,6 +184,16 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
             asked(Request::Ask(Question::Pick { at: place(&json)?, paths, answers: answers.clone() }))
         }
         _ => Err(format!("there is no '{}' to do", shortened(what))),
+    }
+}
+
+/// What is compared: another value of a setting, the scene without edits, or nothing.
+fn other(json: &Json) -> Result<Option<Other>, String> {
+    match json["with"].as_str() {
+        Some("setting") => Ok(Some(Other::Setting(text_of(json, "key")?, value(&json["value"])?))),
+        Some("unedited") => Ok(Some(Other::Unedited)),
+        Some("nothing") => Ok(None),
+        _ => Err("'compare' is with a 'setting', 'unedited' or with 'nothing'".to_owned()),
     }
 }
 
@@ -241,7 +288,11 @@ mod tests {
             (r#"{"do":"pick","at":[1,0.5]}"#, "below 1"),
             (r#"{"do":"set","key":"","value":1}"#, "key"),
             (r#"{"do":"set","key":"a","value":{}}"#, "a value is"),
-            (r#"{"do":"edit","material":-1,"key":"a","value":1}"#, "number of a material"),
+            (r#"{"do":"edit","part":"material","number":-1,"key":"a","value":1}"#, "number of a part"),
+            (r#"{"do":"edit","part":"wall","number":0,"key":"a","value":1}"#, "a part of the scene"),
+            (r#"{"do":"compare","key":"a","value":1}"#, "'compare' is with"),
+            (r#"{"do":"differences"}"#, "'show'"),
+            (r#"{"do":"variant"}"#, "'name'"),
         ] {
             let error = parsed(text).err().unwrap_or_default();
             assert!(error.contains(part), "{text}: {error}");
@@ -256,8 +307,8 @@ mod tests {
 
         #[test]
         fn any_fields_are_read_or_refused(
-            what in "(orbit|look|pan|fly|approach|focus|size|set|show|edit|pick|seen|home)",
-            key in "(by|at|to|key|what|value|material|frame|paths)",
+            what in "(orbit|look|pan|fly|approach|focus|size|set|show|edit|pick|seen|home|compare|differences|variant)",
+            key in "(by|at|to|key|what|value|number|frame|paths|with|show|name)",
             value in "(-?[0-9]{1,30}(\\.[0-9]{1,5})?(e-?[0-9]{1,3})?|\\[[0-9,.-]{0,20}\\]|\"[a-z]{0,9}\"|true|null|\\{\\})",
         ) {
             let _ = parsed(&format!(r#"{{"do":"{what}","{key}":{value}}}"#));

@@ -2,19 +2,33 @@
 
 use bilux::scene::{Parameters, SceneBuilder};
 use std::net::SocketAddr;
+use std::path::PathBuf;
 
-/// Opens the scene, again whenever its files have changed. The error is a message for people.
-pub(crate) type Open = Box<dyn Fn() -> Result<SceneBuilder, String> + Send>;
+/// Opens a scene, again whenever its files have changed. The error is a message for people.
+pub(crate) type Open = Box<dyn Fn(&Opening) -> Result<SceneBuilder, String> + Send>;
+
+/// What is opened, and how.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Opening {
+    /// A file in the place of the scene that the viewer was started with.
+    pub file: Option<PathBuf>,
+    /// The variant of its materials, by name, if another one than at the start.
+    pub variant: Option<String>,
+    /// The time in seconds at which it is posed, if another one than at the start.
+    pub time: Option<f32>,
+}
 
 /// What a viewer shows, to whom.
 pub struct Options {
     /// Where it listens; port 0 is any that is free. Anywhere but on the loopback interface, the address that it prints
     /// has a random token in it, without which nothing is served.
     pub address: SocketAddr,
-    /// What the page is titled: the scene's name.
+    /// What the page is titled: the name of the scene's file.
     pub title: String,
-    /// Whether those who watch may change materials.
+    /// Whether those who watch may change materials, lights and cameras, and drop files in.
     pub may_edit: bool,
+    /// Whether files that are dropped in may be kept in a temporary folder while they are shown.
+    pub may_drop: bool,
     /// The settings that the user asks for.
     pub settings: Parameters,
     /// The memory that the picture may take, in bytes.

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 BILUX, CHROMIUM, FOLDER = sys.argv[1], sys.argv[2], Path(sys.argv[3])
@@ -119,6 +120,15 @@ def desktop(browser: Browser, viewer: Viewer) -> None:
     page.context.close()
 
 
+def accessible(page: Page) -> None:
+    """The accessibility checker axe finds nothing serious."""
+    # What a canvas shows through is no background that it could judge.
+    found = Axe().run(page, options={"rules": {"region": {"enabled": True}}}).response["violations"]
+    serious = [it for it in found if it["impact"] in ("serious", "critical")]
+    shown = [(it["id"], it["help"], [node["html"][:160] for node in it["nodes"][:4]]) for it in serious]
+    assert serious == [], shown
+
+
 def pick(page: Page) -> None:
     page.mouse.click(330, 560)
     expect(page.locator("#pick")).to_contain_text("95% interval")
@@ -137,8 +147,9 @@ def pick(page: Page) -> None:
 def edits(browser: Browser, viewer: Viewer) -> None:
     page = opened(browser, viewer, 1280, 1000, "light")
     at_least(page, 4)
-    section = page.locator("#materials")
+    section = page.locator("#edits")
     expect(section).to_be_visible()
+    page.get_by_label("What", exact=True).select_option("material 0")
     page.get_by_label("Reflectance", exact=True).evaluate(
         "input => { input.value = '#2050d0'; input.dispatchEvent(new Event('input', { bubbles: true })); }"
     )
@@ -147,10 +158,133 @@ def edits(browser: Browser, viewer: Viewer) -> None:
     at_least(page, 8)
     section.scroll_into_view_if_needed()
     shot(page, "materials")
+    before_and_after(page)
     undo.click()
     expect(undo).to_be_disabled()
+    # Lights: a colour, and how strong it is.
+    page.get_by_label("What", exact=True).select_option("light 0")
+    strength = page.get_by_label("Radiance, strength", exact=True)
+    strength.fill("60")
+    strength.press("Enter")
+    expect(page.locator("#command")).to_contain_text("--change light:lamp:radiance=60")
+    page.get_by_label("What", exact=True).select_option("camera 0")
+    fov = page.get_by_label("Fov, as a number", exact=True)
+    fov.fill("55")
+    fov.press("Enter")
+    expect(page.locator("#command")).to_contain_text("--change camera:front:fov=55")
+    saved(page)
+    accessible(page)
+    dropped(page)
     assert page.wrongs == [], page.wrongs
     page.context.close()
+
+
+def before_and_after(page: Page) -> None:
+    page.get_by_label("With", exact=True).select_option("unedited")
+    expect(page.locator("#divider")).to_be_visible(timeout=30_000)
+    expect(page.locator("#side-other")).to_have_text("Before the edits")
+    page.get_by_label("With", exact=True).select_option("")
+    expect(page.locator("#divider")).to_be_hidden()
+
+
+def saved(page: Page) -> None:
+    """The overlay that is saved makes a picture."""
+    with page.expect_download() as saved:
+        page.click("#save-overlay")
+    overlay = FOLDER / "edited.toml"
+    overlay.write_text(Path(saved.value.path()).read_text())
+    assert 'base = "cornell.toml"' in overlay.read_text(), overlay.read_text()
+    rendered = [BILUX, "render", overlay, "-o", FOLDER / "edited.png", "--size", "64x64", "--spp", "1"]
+    subprocess.run(rendered, check=True, capture_output=True)
+
+
+def dropped(page: Page) -> None:
+    page.set_input_files("#open-file", FOLDER / "edited.toml")
+    expect(page.locator("#problem")).to_contain_text("cornell.toml")
+    expect(page.locator("#title")).to_have_text("cornell.toml")
+    triangle = FOLDER / "triangle.obj"
+    triangle.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    # As when it is dropped from a folder of the desktop.
+    page.evaluate(
+        """text => {
+            const all = new DataTransfer();
+            all.items.add(new File([text], "triangle.obj"));
+            document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: all, bubbles: true, cancelable: true }));
+        }""",
+        triangle.read_text(),
+    )
+    expect(page.locator("#title")).to_have_text("triangle.obj")
+    at_least(page, 2)
+    # The browser itself reports the answer that refuses the other file.
+    page.wrongs[:] = [wrong for wrong in page.wrongs if "422" not in wrong]
+
+
+def compares(browser: Browser, viewer: Viewer) -> None:
+    page = opened(browser, viewer, 1280, 900, "dark")
+    at_least(page, 2)
+    page.get_by_label("With", exact=True).select_option("integrator")
+    page.get_by_label("Integrator on the right", exact=True).select_option("bdpt")
+    divider = page.locator("#divider")
+    expect(divider).to_be_visible(timeout=60_000)
+    expect(page.locator("#side-other")).to_have_text("Integrator: bdpt")
+    expect(page.locator("#compare .plot polyline.own")).to_be_attached(timeout=60_000)
+    expect(page.locator("#compare .plot polyline.other")).to_be_attached(timeout=60_000)
+    page.wait_for_timeout(6000)
+    page.locator("#compare").scroll_into_view_if_needed()
+    shot(page, "compare")
+    # The divider, by the keyboard and by the mouse.
+    divider.focus()
+    page.keyboard.press("ArrowRight")
+    expect(divider).to_have_attribute("aria-valuenow", "52")
+    page.keyboard.press("Home")
+    expect(divider).to_have_attribute("aria-valuenow", "0")
+    box = divider.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, 300)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 300, 300, steps=4)
+    page.mouse.up()
+    assert 10 < int(divider.get_attribute("aria-valuenow")) < 60
+    expect(page.locator("#command")).not_to_contain_text("--eye")
+    page.get_by_label("Differences", exact=True).check()
+    expect(page.locator("#side-other")).to_have_text("Differences")
+    page.wait_for_timeout(3000)
+    shot(page, "differences")
+    accessible(page)
+    page.get_by_label("With", exact=True).select_option("")
+    expect(divider).to_be_hidden()
+    # Accelerators beside each other, and the work of the one that is chosen.
+    page.get_by_role("button", name="Measure all").click()
+    expect(page.locator("#accelerators tbody tr")).to_have_count(8, timeout=60_000)
+    page.get_by_label("Accel", exact=True).select_option("bsp")
+    page.get_by_label("Visits", exact=True).check(force=True)
+    page.wait_for_timeout(1500)
+    page.locator("#accelerators").scroll_into_view_if_needed()
+    shot(page, "accelerators")
+    assert page.wrongs == [], page.wrongs
+    page.context.close()
+
+
+def plays(browser: Browser) -> None:
+    """A scene that moves has a time, which goes on by itself."""
+    moving = FOLDER / "moving.toml"
+    moving.write_text(
+        '[camera]\nposition = [0, 1, 6]\n[[light]]\nkind = "environment"\n[[model]]\nshape = "box"\n'
+        "keyframes = [{ time = 0 }, { time = 2, rotate = [0, 90, 0] }]\n"
+    )
+    with Viewer(moving, "--set", "integrator=cast") as viewer:
+        page = opened(browser, viewer, 900, 700, "light")
+        at_least(page, 1)
+        still = pixels(page)
+        page.get_by_role("button", name="Play").click()
+        page.wait_for_function("() => Number(document.getElementById('time-range').value) > 0.3", timeout=20_000)
+        page.get_by_role("button", name="Pause").click()
+        expect(page.locator("#command")).to_contain_text("--at")
+        assert pixels(page) != still
+        page.get_by_label("Time, as a number of seconds", exact=True).fill("1.5")
+        page.get_by_label("Time, as a number of seconds", exact=True).press("Enter")
+        expect(page.locator("#command")).to_contain_text("--at 1.5")
+        assert page.wrongs == [], page.wrongs
+        page.context.close()
 
 
 def phone(browser: Browser, viewer: Viewer) -> None:
@@ -167,6 +301,12 @@ def phone(browser: Browser, viewer: Viewer) -> None:
     expect(page.locator("#pick")).to_contain_text("Pixel")
     page.locator("#pick").scroll_into_view_if_needed()
     shot(page, "phone-pick")
+    page.get_by_label("With", exact=True).select_option("integrator")
+    expect(page.locator("#divider")).to_be_visible(timeout=60_000)
+    page.wait_for_timeout(3000)
+    shot(page, "phone-compare")
+    page.get_by_label("With", exact=True).select_option("")
+    accessible(page)
     assert page.wrongs == [], page.wrongs
     page.context.close()
 
@@ -195,10 +335,11 @@ def names(browser: Browser, viewer: Viewer) -> None:
         ".map((it) => it.outerHTML)"
     )
     assert nameless == [], nameless
+    accessible(page)
     ids = page.locator("[id]").evaluate_all("all => all.map((it) => it.id)")
     assert len(ids) == len(set(ids)), "ids occur once"
     seen = set()
-    for _ in range(60):
+    for _ in range(70):
         page.keyboard.press("Tab")
         seen.add(page.evaluate("() => document.activeElement.id || document.activeElement.textContent"))
     for wanted in ("view", "fold", "save-png", "save-exr", "copy", "command"):
@@ -219,6 +360,9 @@ def main() -> None:
             reload(browser, viewer, scene)
         with Viewer(scene, "--edit", "--set", "integrator=path") as viewer:
             edits(browser, viewer)
+        with Viewer(scene, "--set", "integrator=path") as viewer:
+            compares(browser, viewer)
+        plays(browser)
         browser.close()
     print(f"the viewer works in the browser; screenshots are in {FOLDER}")
 

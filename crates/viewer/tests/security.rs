@@ -125,7 +125,8 @@ fn malformed(numbers: &mut Numbers) -> String {
         r#"{"do":"set","key":"integrator","value":"path"}"#,
         r#"{"do":"size","to":[640,480]}"#,
         r#"{"do":"seen","frame":18446744073709551615}"#,
-        r#"{"do":"edit","material":0,"key":"reflectance","value":[1,1,1]}"#,
+        r#"{"do":"edit","part":"material","number":0,"key":"reflectance","value":[1,1,1]}"#,
+        r#"{"do":"compare","with":"setting","key":"integrator","value":"cast"}"#,
         r#"{"do":"approach","by":1.5}"#,
         r#"{"do":"show","what":"ids"}"#,
         r#"{"do":"fly","by":[1e308,-1e308,0]}"#,
@@ -158,7 +159,7 @@ fn malformed_messages_are_answered_and_harm_nobody() {
         client.send_bytes(vec![0, 1, 2]).await.unwrap();
         client.text("error", |_| true).await;
         let mut numbers = Numbers(7);
-        for _ in 0..20_000 {
+        for _ in 0..100_000 {
             client.send_text(&malformed(&mut numbers)).await.unwrap();
         }
         // It still answers both.
@@ -216,6 +217,63 @@ fn stalled_browsers_slow_nobody() {
         stalled.send(json!({ "do": "seen", "frame": frames[1] })).await;
         let newest = stalled.frame(|_| true).await.number("frame");
         assert!(newest > frames[1] + 10, "{newest} after {frames:?}");
+    });
+}
+
+/// The memory of this process, in bytes; 0 where the system does not say.
+fn memory() -> u64 {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok();
+    pages.and_then(|text| text.split(' ').nth(1)?.parse::<u64>().ok()).unwrap_or_default() * 4096
+}
+
+/// Moves the camera so often, as one client, while others watch; the time that takes.
+async fn orbits(client: &mut Client, count: i32) -> Duration {
+    let begun = Instant::now();
+    for i in 0..count {
+        client.send(json!({ "do": "orbit", "by": [if i % 2 == 0 { 9 } else { -9 }, 0] })).await;
+        let before = client.frame(|_| true).await.number("picture");
+        client.frame(|frame| frame.number("picture") > before || frame.rests()).await;
+    }
+    begun.elapsed()
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "the figures that the ADR states")]
+fn twenty_browsers_of_which_one_stalls_take_no_more_memory_with_time() {
+    const MOVES: i32 = 40;
+    let viewer = Viewer::start();
+    run(async {
+        let mut client = Client::connect(&viewer).await;
+        orbits(&mut client, MOVES).await;
+        let alone = orbits(&mut client, MOVES).await;
+        let _stalled = Client::connect(&viewer).await;
+        let mut watchers = tokio::task::JoinSet::new();
+        for _ in 0..18 {
+            let mut watcher = Client::connect(&viewer).await;
+            watchers.spawn(async move {
+                let mut frames = 0;
+                loop {
+                    match tokio::time::timeout(Duration::from_secs(3), watcher.frame(|_| true)).await {
+                        Ok(_) => frames += 1,
+                        Err(_) => return frames,
+                    }
+                }
+            });
+        }
+        orbits(&mut client, MOVES).await;
+        let early = memory();
+        let crowded = orbits(&mut client, MOVES).await;
+        for _ in 0..4 {
+            orbits(&mut client, MOVES).await;
+        }
+        let grown = memory().saturating_sub(early);
+        let frames: Vec<u32> = watchers.join_all().await;
+        let (least, most) = (frames.iter().min().unwrap(), frames.iter().max().unwrap());
+        println!("alone {alone:?}, with 20 {crowded:?}, {least} to {most} frames, {grown} bytes more");
+        assert!(grown < 16 << 20, "memory grows by {grown} bytes");
+        assert!(*least > 50 && *least * 2 > *most, "all get about as many frames: {frames:?}");
+        // Here all twenty share the cores with the render.
+        assert!(crowded < alone * 5 + Duration::from_secs(2), "{crowded:?} after {alone:?}");
     });
 }
 

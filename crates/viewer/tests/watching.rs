@@ -246,14 +246,13 @@ fn a_changed_file_is_shown_and_a_broken_one_leaves_the_old_picture() {
 
 #[test]
 fn materials_are_edited_only_if_that_is_allowed_and_edits_are_undone() {
-    let edit =
-        |value: f64| json!({ "do": "edit", "material": 0, "key": "reflectance", "value": [value, 0.2, 0.2] });
+    let edit = |value: f64| json!({ "do": "edit", "part": "material", "number": 0, "key": "reflectance", "value": [value, 0.2, 0.2] });
     let viewer = Viewer::start();
     run(async {
         let mut client = Client::connect(&viewer).await;
         client.send(edit(0.9)).await;
         let state = client.text("state", |state| state["problem"].is_string()).await;
-        assert!(state["problem"].as_str().unwrap().contains("--edit") && state["materials"] == json!([]));
+        assert!(state["problem"].as_str().unwrap().contains("--edit") && state["parts"] == json!({}));
     });
     let viewer = Viewer::with(bilux_viewer::Options { may_edit: true, ..options(cornell) });
     run(async {
@@ -263,7 +262,9 @@ fn materials_are_edited_only_if_that_is_allowed_and_edits_are_undone() {
         for value in [0.1, 0.5, 0.9] {
             client.send(edit(value)).await;
         }
-        client.text("state", |state| state["materials"][0]["parameters"]["reflectance"][0] == 0.9).await;
+        client
+            .text("state", |state| state["parts"]["material"][0]["parameters"]["reflectance"][0] == 0.9)
+            .await;
         let edited = client.frame(Frame::rests).await;
         assert_ne!(edited.bytes, first.bytes);
         client.send(json!({ "do": "undo" })).await;
@@ -273,9 +274,17 @@ fn materials_are_edited_only_if_that_is_allowed_and_edits_are_undone() {
         client.send(json!({ "do": "redo" })).await;
         client.text("state", |state| state["can_redo"] == false).await;
         assert!(client.frame(Frame::rests).await.bytes == edited.bytes);
-        client.send(json!({ "do": "edit", "material": 99, "key": "reflectance", "value": 0.1 })).await;
+        client
+            .send(
+                json!({ "do": "edit", "part": "material", "number": 99, "key": "reflectance", "value": 0.1 }),
+            )
+            .await;
         client.text("state", |state| state["problem"].is_string()).await;
-        client.send(json!({ "do": "edit", "material": 0, "key": "reflectanse", "value": 0.1 })).await;
+        client
+            .send(
+                json!({ "do": "edit", "part": "material", "number": 0, "key": "reflectanse", "value": 0.1 }),
+            )
+            .await;
         client
             .text("state", |state| state["problem"].as_str().is_some_and(|p| p.contains("reflectance")))
             .await;

@@ -128,6 +128,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         ("--preset", said(a.studio.preset.as_ref())),
         ("--env", file(&a.studio.env)),
         ("--background", said(a.studio.background.as_ref())),
+        ("--change", a.studio.change.join(" ")),
         ("--turntable", said(a.turntable)),
         ("--animation", said(a.choices.animation.as_ref())),
         ("--variant", said(a.choices.variant.as_ref())),

@@ -11,7 +11,7 @@ use crate::{output, settings_from, usage};
 use anyhow::bail;
 use bilux::formats::ReadOptions;
 use bilux::scene::SceneBuilder;
-use bilux_viewer::{Options, Server};
+use bilux_viewer::{Opening, Options, Server};
 use std::net::SocketAddr;
 use std::path::Path;
 
@@ -30,10 +30,14 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
         address: SocketAddr::new(arguments.listen, arguments.port),
         title: name.to_string_lossy().into_owned(),
         may_edit: arguments.edit,
+        // The sandbox was entered before there was a folder to allow.
+        may_drop: !common.sandbox,
         settings,
         max_memory: common.max_memory,
         command: command(&arguments),
-        open: Box::new(move || open(&arguments, &read).map_err(|error| format!("{error:#}"))),
+        open: Box::new(move |opening| {
+            open_again(&arguments, &read, opening).map_err(|error| format!("{error:#}"))
+        }),
     };
     let server = Server::start(options)?;
     output::print(server.address())?;
@@ -49,6 +53,18 @@ fn open(arguments: &Serve, read: &ReadOptions) -> anyhow::Result<SceneBuilder> {
     check_choices(&scene, &arguments.choices).map_err(usage::wrong)?;
     arguments.studio.set_up(&mut scene, read)?;
     Ok(scene)
+}
+
+/// Opens the scene, or another file in its place, as those who watch ask for it.
+fn open_again(arguments: &Serve, read: &ReadOptions, opening: &Opening) -> anyhow::Result<SceneBuilder> {
+    let mut read = read.clone();
+    read.time = opening.time.unwrap_or(read.time);
+    read.variant = opening.variant.clone().or(read.variant);
+    let Some(file) = &opening.file else { return open(arguments, &read) };
+    // The choices are those among what is in the scene that the viewer was started with.
+    read.animation = None;
+    read.variant = opening.variant.clone();
+    load(file, &read)
 }
 
 /// Under `--sandbox`: allows reading the scene, its folder and the files that options name. Nothing is written.
@@ -69,6 +85,9 @@ fn command(arguments: &Serve) -> Vec<String> {
             words.extend([option.to_owned(), value]);
         }
     };
+    for change in &studio.change {
+        say("--change", Some(change.clone()));
+    }
     let StudioArguments { env, preset, .. } = studio;
     say("--env", env.as_ref().map(|path| path.display().to_string()));
     say("--background", studio.picture_behind().map(|path| path.display().to_string()));

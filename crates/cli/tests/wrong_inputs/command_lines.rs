@@ -16,6 +16,12 @@ pub(crate) const CASES: &[Case] = &[
     Case::command("an accelerator that is misspelt", 2, "render triangle.obj -o out.png --accel bhv"),
     Case::command("a setting that is misspelt", 2, "render triangle.obj -o out.png --set max_dept=3"),
     Case::command("a setting without a value", 2, "render triangle.obj -o out.png --set max_depth"),
+    Case::command("a change without a value", 2, "render triangle.obj -o out.png --change material:default"),
+    Case::command(
+        "a change of what is not there",
+        2,
+        "render triangle.obj -o out.png --change light:0:intensity=5",
+    ),
     Case::command("a preset that is misspelt", 2, "render triangle.obj -o out.png --preset cours"),
     Case::command("a layer that is misspelt", 2, "render triangle.obj -o out.png --spp 1 --aov albdo"),
     Case::command(

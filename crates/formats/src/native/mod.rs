@@ -1,12 +1,13 @@
 //! The native scene file, in TOML. See `docs/formats/scene-toml.md`.
 //!
 //! The reader first parses a file and its includes. It then collects settings, materials and models from each part
-//! in turn, so their order in the files does not matter. Finally it replaces materials.
+//! in turn, so their order in the files does not matter. Finally it replaces materials, and makes changes.
 
 mod document;
 mod include;
 mod merge;
 mod model;
+mod overlay;
 mod pictures;
 mod place;
 mod replace;
@@ -16,6 +17,7 @@ mod shapes;
 mod specs;
 mod write;
 
+pub use overlay::overlay;
 pub use schema::toml_schema;
 pub use shapes::{SHAPES, ShapeEntry};
 
@@ -52,8 +54,16 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
 
 /// True if a line opens one of the tables that only scenes have.
 fn sniff(bytes: &[u8]) -> bool {
-    let tables =
-        ["[[model]]", "[[material]]", "[[light]]", "[camera]", "[[camera]]", "[render]", "[[replace]]"];
+    let tables = [
+        "[[model]]",
+        "[[material]]",
+        "[[light]]",
+        "[camera]",
+        "[[camera]]",
+        "[render]",
+        "[[replace]]",
+        "[[change]]",
+    ];
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
     start.lines().any(|line| tables.contains(&line.trim()))
 }

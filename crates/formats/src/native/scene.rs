@@ -2,7 +2,7 @@
 
 use super::document::{Item, Table};
 use super::include::{Part, gather};
-use super::specs;
+use super::{overlay, specs};
 use crate::FormatError;
 use crate::reading::{Reading, Source, default_material};
 use crate::text::whole_file;
@@ -17,13 +17,18 @@ pub(super) const MAX_NAMES: usize = 100;
 const MAX_SETTINGS: usize = 1000;
 
 /// The keys of the top level.
-pub(super) const KEYS: [&str; 7] = ["include", "render", "camera", "light", "material", "model", "replace"];
+pub(super) const KEYS: [&str; 9] =
+    ["include", "base", "render", "camera", "light", "material", "model", "replace", "change"];
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let parts = gather(reading, source)?;
+    let base = match parts.iter().find_map(|part| part.root.find("base")) {
+        Some(item) => overlay::base(reading, item, &parts)?,
+        None => SceneBuilder::default(),
+    };
     let mut native = Native {
         reading,
-        scene: SceneBuilder::default(),
+        scene: base,
         materials: HashMap::new(),
         default_material: None,
         brought: HashMap::new(),
@@ -48,6 +53,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         replaced.extend(part.root.tables("replace")?);
     }
     native.replace(&replaced)?;
+    for part in &parts {
+        native.change(part)?;
+    }
     let mut scene = native.scene;
     if scene.objects.is_empty() && scene.lights.is_empty() {
         scene.warn("it has no [[model]], so there is nothing to render: add one", whole_file(source.name));

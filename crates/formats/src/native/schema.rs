@@ -5,6 +5,7 @@ use super::place::KEYFRAME_KEYS;
 use super::shapes::SHAPES;
 use super::specs::CHANNELS;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::change::Part;
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES};
 use serde_json::{Map, Value, json};
@@ -31,6 +32,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
                 "type": "array",
                 "items": { "type": "string" },
             },
+            "base": described("string", "the scene file, relative to this one, that [render] and [[change]] change"),
             "render": {
                 "description": "the render settings",
                 "type": "object",
@@ -42,6 +44,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
             "material": list(materials),
             "model": list(model()),
             "replace": list(replacement()),
+            "change": list(changed()),
         },
         "$defs": { "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None) },
     })
@@ -206,6 +209,21 @@ fn replacement() -> Value {
         },
         "required": ["with"],
         "anyOf": [{ "required": ["material"] }, { "required": ["object"] }],
+    })
+}
+
+/// `[[change]]`: changes parameters of a material, a light or a camera.
+fn changed() -> Value {
+    let parts = Part::ALL.map(Part::name);
+    let which = |part: &str| {
+        let description = format!("the name of the {part} that is changed, or its number from 0");
+        (part.to_owned(), json!({ "type": ["string", "integer"], "minimum": 0, "description": description }))
+    };
+    json!({
+        "description": "parameters of a material, a light or a camera to change",
+        "type": "object",
+        "properties": parts.map(which).into_iter().collect::<Map<_, _>>(),
+        "oneOf": parts.map(|part| json!({ "required": [part] })),
     })
 }
 

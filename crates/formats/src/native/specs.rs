@@ -95,7 +95,7 @@ impl Native<'_, '_> {
     }
 
     /// The value of a parameter; `None` for a missing texture, so that the default applies.
-    fn value(
+    pub(super) fn value(
         &mut self,
         key: &str,
         kind: Option<ParameterKind>,

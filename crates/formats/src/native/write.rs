@@ -67,13 +67,16 @@ fn parameters(
 ) -> Result<(), FormatError> {
     for (key, value, _) in &parameters.0 {
         if let Some(value) = value_text(value, scene, writing)? {
-            let bare =
-                key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') && !key.is_empty();
-            let key = if bare { key.clone() } else { quoted(key) };
+            let key = if is_bare(key) { key.clone() } else { quoted(key) };
             out.push_str(&format!("{key} = {value}\n"));
         }
     }
     Ok(())
+}
+
+/// True if a key needs no quotes.
+pub(super) fn is_bare(key: &str) -> bool {
+    key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') && !key.is_empty()
 }
 
 fn write_camera(
@@ -207,7 +210,7 @@ fn texture_text(
 }
 
 /// The shortest text of a number that parses back to the same value; as an f32 if it is one.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     let narrow = x as f32;
     match x {
         x if x.is_nan() => "nan".to_owned(),
@@ -217,7 +220,7 @@ fn number(x: f64) -> String {
 }
 
 /// Text in quotes, as TOML requires.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     let mut out = String::from('"');
     for letter in text.chars() {
         match letter {

@@ -574,7 +574,10 @@ fn the_schema_knows_what_the_reader_knows() {
         assert!(text.contains(&format!("\"{word}\"")), "{word}");
     }
     let keys: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["include", "render", "camera", "light", "material", "model", "replace"]);
+    assert_eq!(
+        keys,
+        ["include", "base", "render", "camera", "light", "material", "model", "replace", "change"]
+    );
 }
 
 #[test]

@@ -106,3 +106,80 @@ fn the_overlay_comes_first_and_takes_precedence() {
     let lights: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
     assert_eq!((cameras, lights, scene.objects.len()), (vec!["ours", "theirs"], vec!["ours", "theirs"], 1));
 }
+
+#[test]
+fn a_change_gives_parameters_new_values_and_keeps_the_others() {
+    let floor = "[[material]]\nname = \"oak\"\nkind = \"diffuse\"\nreflectance = 0.5\nroughness = 0.25\n\
+        [[light]]\nname = \"lamp\"\nkind = \"point\"\n[camera]\nfov = 50\n";
+    let changed = |changes: &str| over_a_car(&format!("include = [\"car.obj\"]\n{floor}{changes}"));
+    let scene = changed(
+        "[[change]]\nmaterial = \"oak\"\nreflectance = [0.1, 0.2, 0.3]\n[[change]]\nlight = 0\nintensity = 7\n\
+         [[change]]\ncamera = 0\nfov = 20\n[[change]]\nmaterial = \"Paint\"\nkd = 0.75\n",
+    )
+    .unwrap();
+    let material = |name: &str| scene.materials.iter().find(|spec| spec.name == name).unwrap();
+    assert_eq!(
+        (material("oak").number("roughness"), material("Paint").number("kd")),
+        (Some(0.25), Some(0.75))
+    );
+    assert_eq!(material("oak").colour("reflectance").unwrap().to_array(), [0.1, 0.2, 0.3]);
+    assert_eq!(scene.lights[0].number("intensity"), Some(7.0));
+    assert_eq!(scene.cameras[0].spec.number("fov"), Some(20.0));
+    for (wrong, part) in [
+        ("[[change]]\nmaterial = \"oka\"\nreflectance = 1\n", "did you mean 'oak'"),
+        ("[[change]]\nlight = 3\nintensity = 1\n", "there is no light 3"),
+        ("[[change]]\nmaterial = \"oak\"\nreflektance = 1\n", "'reflectance'"),
+        ("[[change]]\nreflectance = 1\n", "one of material, light or camera"),
+        ("[[change]]\nmaterial = 0\nlight = 0\n", "one of material, light or camera"),
+        ("[[change]]\nmaterial = -1\nreflectance = 1\n", "a number from 0"),
+        ("[[change]]\nmaterial = \"oak\"\nreflectance = 2\n", "from 0 to 1"),
+    ] {
+        let error = changed(wrong).expect_err(wrong).to_string();
+        assert!(error.contains(part) && error.contains("scene.toml:"), "{error}");
+    }
+}
+
+#[test]
+fn a_scene_with_a_base_is_that_scene() {
+    let base = |toml: &str| over_a_car(&format!("base = \"car.obj\"\n{toml}"));
+    let scene = base("[render]\nspp = 3\n[[change]]\nmaterial = \"Paint\"\nkd = 0.5\n").unwrap();
+    assert_eq!((scene.objects.len(), scene.materials.len()), (3, 3));
+    assert_eq!(scene.up, bilux_scene::UpHint::Usually(bilux_scene::Axis::Y), "as in an .obj");
+    assert_eq!(scene.settings.find("spp").unwrap().0, &bilux_scene::Value::Integer(3));
+    assert!(scene.environment_unspecified == base("").unwrap().environment_unspecified);
+    for (wrong, part) in [
+        ("base = \"scene.toml\"\n", "based on itself"),
+        ("base = \"none.obj\"\n", "none.obj"),
+        ("base = \"a.mtl\"\n", "a.mtl"),
+        ("base = \"car.obj\"\n[[light]]\nkind = \"point\"\n", "no key 'light' of a scene with a base"),
+        ("base = \"car.obj\"\ninclude = [\"other.toml\"]\n", "other.toml"),
+        ("base = 3\n", "text in quotes"),
+    ] {
+        let error = over_a_car(wrong).expect_err(wrong).to_string();
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn an_overlay_that_is_written_is_read_again() {
+    use bilux_scene::{Change, Parameters, Part, Span, Value, Which};
+    let change = |which: Which, key: &str, value: Value| {
+        let (part, key, at) = (Part::Material, key.to_owned(), Span::default());
+        Change { part, which, key, value, at }
+    };
+    let name = |name: &str| Which::Name(name.to_owned());
+    let mut settings = Parameters::default();
+    settings.set("tonemap", "a \"curve\"");
+    let changes = [
+        change(name("Paint"), "kd", Value::triple([0.1, 0.25, 1.0])),
+        change(name("Paint"), "exponent", Value::Integer(9)),
+        change(Which::Number(0), "kd", Value::Number(0.2)),
+    ];
+    let text = bilux_formats::overlay("car.obj", &settings, &changes);
+    let scene = over_a_car(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    assert_eq!(scene.settings.find("tonemap").unwrap().0, &Value::from("a \"curve\""));
+    assert_eq!(scene.materials[0].number("kd"), Some(0.2));
+    let paint = scene.materials.iter().find(|spec| spec.name == "Paint").unwrap();
+    assert_eq!(paint.colour("kd").unwrap().to_array(), [0.1, 0.25, 1.0]);
+    assert_eq!(text.matches("[[change]]").count(), 2, "{text}");
+}

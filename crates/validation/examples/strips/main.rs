@@ -14,7 +14,7 @@ use bilux::Job;
 use bilux::formats::{ReadOptions, read_bytes};
 use bilux::pictures::{WriteOptions, label, side_by_side, stacked, to_display, tone_map, write};
 use bilux::prelude::*;
-use bilux_math::registry::{Entry, Parameter};
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::lights::LIGHTS;
 use bilux_scene::materials::MATERIALS;
 use bilux_scene::texture::TEXTURES;
@@ -53,7 +53,8 @@ fn main() -> Result<(), Failure> {
     for (table, entry) in materials.chain(textures).chain(lights) {
         for parameter in entry.parameters {
             let path = format!("{}/{}-{}.jpg", folder(table), entry.name, parameter.name);
-            if path.contains(&only) {
+            // A name changes nothing that a picture could show.
+            if path.contains(&only) && parameter.kind != ParameterKind::Text {
                 let path = out.join(path);
                 fs::create_dir_all(path.parent().unwrap_or(&out))?;
                 strip(table, &entry, parameter, spp, files.path(), &path)

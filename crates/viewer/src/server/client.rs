@@ -1,6 +1,7 @@
 //! One browser: what it says goes to the inbox, and it gets the newest frame whenever it has seen the ones before.
 
 use super::Shared;
+use crate::frame::Frame;
 use crate::message::{Answers, Message, parse};
 use axum::extract::ws::{self, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
@@ -30,6 +31,7 @@ pub(super) async fn serve(socket: WebSocket, shared: &Shared) {
     let mut writer = Writer {
         sink,
         frames: shared.outlets.frames.subscribe(),
+        other: shared.outlets.other.subscribe(),
         state: shared.outlets.state.subscribe(),
         answers: waiting,
         seen: last_seen,
@@ -80,7 +82,8 @@ async fn read(
 /// Sends to a browser.
 struct Writer {
     sink: SplitSink<WebSocket, ws::Message>,
-    frames: watch::Receiver<Option<std::sync::Arc<crate::frame::Frame>>>,
+    frames: watch::Receiver<Option<std::sync::Arc<Frame>>>,
+    other: watch::Receiver<Option<std::sync::Arc<Frame>>>,
     state: watch::Receiver<std::sync::Arc<str>>,
     answers: mpsc::Receiver<String>,
     seen: watch::Receiver<u64>,
@@ -91,6 +94,7 @@ struct Writer {
 impl Writer {
     async fn run(&mut self) -> Result<(), Closed> {
         self.frames.mark_changed();
+        self.other.mark_changed();
         self.state.mark_changed();
         loop {
             let is_ready = (self.under_way.len() as u64) < UNDER_WAY;
@@ -112,13 +116,21 @@ impl Writer {
                 changed = self.frames.changed(), if is_ready => {
                     changed.map_err(|_| Closed)?;
                     let frame = self.frames.borrow_and_update().clone();
-                    if let Some(frame) = frame {
-                        self.under_way.push(frame.number);
-                        self.send(ws::Message::Binary(frame.message.clone())).await?;
-                    }
+                    self.send_frame(frame).await?;
+                }
+                changed = self.other.changed(), if is_ready => {
+                    changed.map_err(|_| Closed)?;
+                    let frame = self.other.borrow_and_update().clone();
+                    self.send_frame(frame).await?;
                 }
             }
         }
+    }
+
+    async fn send_frame(&mut self, frame: Option<std::sync::Arc<Frame>>) -> Result<(), Closed> {
+        let Some(frame) = frame else { return Ok(()) };
+        self.under_way.push(frame.number);
+        self.send(ws::Message::Binary(frame.message.clone())).await
     }
 
     async fn send(&mut self, message: ws::Message) -> Result<(), Closed> {

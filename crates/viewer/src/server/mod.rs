@@ -3,6 +3,7 @@
 mod client;
 mod guard;
 mod page;
+mod upload;
 
 use crate::ViewerError;
 use crate::catalogue::catalogue;
@@ -15,7 +16,7 @@ use axum::Router;
 use axum::extract::{State, WebSocketUpgrade};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{get, post};
 use axum::serve::ListenerExt;
 use bilux::watch::Watched;
 use guard::Guard;
@@ -51,6 +52,8 @@ struct Shared {
     outlets: Arc<Outlets>,
     clients: AtomicUsize,
     catalogue: String,
+    /// Whether files may be dropped in.
+    may_drop: bool,
 }
 
 impl Server {
@@ -68,6 +71,7 @@ impl Server {
             outlets: outlets.clone(),
             clients: AtomicUsize::new(0),
             catalogue: catalogue().to_string(),
+            may_drop: options.may_edit && options.may_drop,
         };
         let (opened, is_open) = std::sync::mpsc::channel();
         let (mail, files) = (inbox.clone(), watched.clone());
@@ -159,6 +163,8 @@ fn router(guard: Guard, shared: Arc<Shared>) -> Router {
         .route(&format!("{prefix}/socket"), get(socket))
         .route(&format!("{prefix}/picture.png"), get(|shared: State<Arc<Shared>>| save(shared, "png")))
         .route(&format!("{prefix}/picture.exr"), get(|shared: State<Arc<Shared>>| save(shared, "exr")))
+        .route(&format!("{prefix}/overlay.toml"), get(overlay))
+        .route(&format!("{prefix}/open/{{name}}"), post(upload::open))
         .with_state(shared);
     guard.around(files)
 }
@@ -188,6 +194,23 @@ struct Place(Arc<Shared>);
 impl Drop for Place {
     fn drop(&mut self) {
         self.0.clients.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// The scene with its edits as a file to keep.
+async fn overlay(State(shared): State<Arc<Shared>>) -> Response {
+    let (to, saved) = oneshot::channel();
+    let failed = |message: String| (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response();
+    if let Err(message) = shared.inbox.post(Request::Ask(Question::Overlay { to })) {
+        return failed(message);
+    }
+    let headers = [
+        (header::CONTENT_TYPE, "application/toml"),
+        (header::CONTENT_DISPOSITION, "attachment; filename=\"edited.toml\""),
+    ];
+    match saved.await {
+        Ok(text) => (headers, text).into_response(),
+        Err(_) => failed("the viewer is closing".to_owned()),
     }
 }
 

@@ -1,11 +1,13 @@
 //! Answers to questions about the picture.
 
+use super::measure::Measurement;
 use super::show::Shown;
-use super::{Level, Stage, pick};
+use super::{Level, SCENE, Stage, command, pick};
 use crate::message::Question;
 use bilux::Error;
 use bilux::pictures::write_bytes;
 use serde_json::json;
+use std::path::Path;
 
 impl Stage {
     /// Answers all questions that there is a picture for; the others wait for it.
@@ -25,9 +27,32 @@ impl Stage {
                     // Whoever has asked may have gone.
                     let _ = to.send(self.saved(format).map_err(|error| error.to_string()));
                 }
+                Question::Overlay { to } => {
+                    // Whoever has asked may have gone.
+                    let _ = to.send(self.overlay());
+                }
+                Question::Measure { answers } => {
+                    let inbox = self.inbox.clone();
+                    self.measurement = Some(Measurement::begin(self.session.job(), answers, inbox));
+                }
                 early => self.questions.push(early),
             }
         }
+    }
+
+    /// The scene with its edits, as an overlay of its file, which lies in the same folder.
+    fn overlay(&self) -> String {
+        let (words, changes) = (self.words(), self.edits.changes(self.session.scene()));
+        let asked = self.asked();
+        let base = Path::new(words.get(SCENE).map_or("", String::as_str)).file_name().unwrap_or_default();
+        let settings = command::settings(&self.session, &asked);
+        let mut own = words.clone();
+        if let Some(scene) = own.get_mut(SCENE) {
+            "edited.toml".clone_into(scene);
+        }
+        let rest: Vec<&str> = own.iter().map(String::as_str).collect();
+        let how = format!("# {} -o picture.png\n", rest.join(" ").replace('\n', " "));
+        how + &bilux::formats::overlay(&base.to_string_lossy(), &settings, &changes)
     }
 
     /// The picture as a file of this format.

@@ -1,7 +1,7 @@
 //! The command line that makes the picture that is shown.
 
 use bilux::Session;
-use bilux::scene::{Parameters, Value};
+use bilux::scene::{Change, Parameters, Value, Which};
 
 /// Settings that have an option of their own; all others are set by `--set`.
 const OPTIONS: &[(&str, &str)] = &[
@@ -26,17 +26,38 @@ const OPTIONS: &[(&str, &str)] = &[
     ("threads", "--threads"),
 ];
 
-/// The command line that renders the picture of a session as far as it is, from the words that open its scene and the
-/// user's settings.
-pub(super) fn command(words: &[String], session: &Session, user: &Parameters) -> String {
+/// Settings that are not the user's: they say how far the picture is.
+const OF_THE_PICTURE: [&str; 5] = ["size", "spp", "noise", "time_limit", "denoise"];
+
+/// The settings that make the picture of a session as far as it is.
+pub(super) fn settings(session: &Session, user: &Parameters) -> Parameters {
+    let own = session.job().settings();
+    let mut all = user.clone();
+    all.0.retain(|(key, ..)| !OF_THE_PICTURE.contains(&key.as_str()));
+    all.set("size", format!("{}x{}", own.width, own.height));
+    all.set("spp", Value::Integer(i64::from(session.samples().max(1))));
+    all.set("denoise", own.denoise.as_str());
+    all
+}
+
+/// The command line that renders the picture of a session as far as it is, from the words that open its scene, the user's
+/// settings, and the changes of the scene.
+pub(super) fn command(words: &[String], session: &Session, user: &Parameters, changes: &[Change]) -> String {
     let settings = session.job().settings();
     let mut line = words.to_vec();
+    for Change { part, which, key, value, .. } in changes {
+        let which = match which {
+            Which::Number(number) => number.to_string(),
+            Which::Name(name) => name.clone(),
+        };
+        line.extend(["--change".to_owned(), format!("{}:{which}:{key}={}", part.name(), text(value))]);
+    }
     let mut say = |option: &str, value: String| line.extend([option.to_owned(), value]);
     say("-o", "picture.png".to_owned());
     say("--size", format!("{}x{}", settings.width, settings.height));
     say("--spp", session.samples().max(1).to_string());
     for (key, value, _) in &user.0 {
-        if ["size", "spp", "noise", "time_limit", "denoise"].contains(&key.as_str()) {
+        if OF_THE_PICTURE.contains(&key.as_str()) {
             continue;
         }
         let value = text(value);

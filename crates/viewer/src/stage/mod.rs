@@ -5,7 +5,12 @@
 
 mod answers;
 mod command;
+mod comparing;
+mod comparison;
 mod edits;
+mod json;
+mod measure;
+mod opening;
 mod pace;
 mod paths;
 mod pick;
@@ -14,25 +19,35 @@ mod requests;
 mod settings;
 mod show;
 mod state;
+mod visits;
 
 use crate::ViewerError;
+use crate::dropped::Kept;
 use crate::eye::Eye;
 use crate::frame::{Facts, Frame};
 use crate::inbox::Inbox;
 use crate::message::Question;
-use crate::options::Options;
+use crate::options::{Opening, Options};
 use bilux::Session;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
-use bilux::scene::{Parameters, Value};
+use bilux::scene::{Parameters, SceneBuilder, Value};
 use bilux::transport::NoiseMeter;
 use bilux::transport::aovs::Aov;
 use bilux::watch::Watched;
+use comparison::Comparison;
 use edits::Edits;
+use measure::Measurement;
 use pace::Pace;
 use show::Shown;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
+
+/// The place of the scene's file in [`Options::command`].
+const SCENE: usize = 2;
+
+/// How often it looks whether a measurement is over.
+const LOOKS: Duration = Duration::from_millis(30);
 
 /// The maximum number of samples of each pixel, if neither the user nor the scene says it.
 const SAMPLES: i64 = 1024;
@@ -41,13 +56,16 @@ const SAMPLES: i64 = 1024;
 pub(crate) struct Outlets {
     /// The newest frame.
     pub(crate) frames: watch::Sender<Option<Arc<Frame>>>,
+    /// The newest frame of the picture that it is compared with.
+    pub(crate) other: watch::Sender<Option<Arc<Frame>>>,
     /// The newest state, in JSON.
     pub(crate) state: watch::Sender<Arc<str>>,
 }
 
 impl Default for Outlets {
     fn default() -> Outlets {
-        Outlets { frames: watch::Sender::new(None), state: watch::Sender::new("".into()) }
+        let (frames, other) = (watch::Sender::new(None), watch::Sender::new(None));
+        Outlets { frames, other, state: watch::Sender::new("".into()) }
     }
 }
 
@@ -64,6 +82,18 @@ enum Level {
 pub(crate) struct Stage {
     options: Options,
     session: Session,
+    /// The scene as it was opened.
+    unedited: SceneBuilder,
+    /// What was opened, and how.
+    opening: Opening,
+    /// The time in seconds that the scene was opened at.
+    first_time: f32,
+    /// The file that was dropped in, while it is shown.
+    kept: Option<Kept>,
+    /// The picture that this one is compared with.
+    comparison: Option<Comparison>,
+    /// Accelerators that are being measured.
+    measurement: Option<Measurement>,
     /// The settings that the user and those who watch ask for.
     user: Parameters,
     shown: Shown,
@@ -112,12 +142,12 @@ impl Stage {
         outlets: Arc<Outlets>,
         watched: Arc<Watched>,
     ) -> Result<Stage, ViewerError> {
-        let scene = (options.open)().map_err(ViewerError::Open)?;
+        let scene = (options.open)(&Opening::default()).map_err(ViewerError::Open)?;
         watched.add(&scene.files);
-        let user = options.settings.clone();
+        let (user, unedited) = (options.settings.clone(), scene.clone());
         let session = Session::within(scene, &settings::with_defaults(&user), options.max_memory)?;
         let settings = session.job().settings();
-        let size = [settings.width, settings.height];
+        let (size, first_time) = ([settings.width, settings.height], settings.time);
         let task = Task { threads: settings.threads, ..Task::default() };
         let for_previews = denoiser("builtin", &task).map_err(bilux::Error::from)?;
         let (now, home) = (Instant::now(), Eye::of(session.job()));
@@ -126,6 +156,12 @@ impl Stage {
             eye: home,
             options,
             session,
+            unedited,
+            opening: Opening::default(),
+            first_time,
+            kept: None,
+            comparison: None,
+            measurement: None,
             user,
             shown: Shown::Picture,
             layers: Vec::new(),
@@ -140,7 +176,7 @@ impl Stage {
             edits: Edits::default(),
             problem: None,
             rests: false,
-            facts: Facts::default(),
+            facts: Facts { side: "own", ..Facts::default() },
             frame: 0,
             last_shown: now,
             entering: Duration::ZERO,
@@ -164,7 +200,13 @@ impl Stage {
                 return;
             }
             self.serve(waiting);
-            if self.is_watched() && !self.rests {
+            if self.is_measuring() || !self.is_watched() {
+                continue;
+            }
+            if self.is_turn_of_other() {
+                let worked = self.work_on_other();
+                self.note_other_problem(worked);
+            } else if !self.rests {
                 let worked = self.work();
                 self.note_problem(worked);
             }
@@ -173,7 +215,17 @@ impl Stage {
 
     /// How long it may wait for requests; `None` for as long as there is none.
     fn may_wait(&self) -> Option<Duration> {
-        if self.rests || !self.is_watched() { None } else { Some(Duration::ZERO) }
+        match self.rests && !self.is_turn_of_other() || !self.is_watched() {
+            _ if self.measurement.is_some() => Some(LOOKS),
+            true => None,
+            false => Some(Duration::ZERO),
+        }
+    }
+
+    /// True while accelerators are measured: the render would slow them.
+    fn is_measuring(&mut self) -> bool {
+        self.measurement = self.measurement.take().filter(Measurement::goes_on);
+        self.measurement.is_some()
     }
 
     /// True if anybody sees what is rendered.
@@ -186,6 +238,14 @@ impl Stage {
         if let Err(error) = result {
             self.problem = Some(error.to_string());
             self.rests = true;
+            self.publish_state();
+        }
+    }
+
+    /// Keeps why nothing is compared any more, for the page.
+    fn note_other_problem(&mut self, result: Result<(), bilux::Error>) {
+        if let Err(error) = result {
+            self.problem = Some(format!("cannot compare: {error}"));
             self.publish_state();
         }
     }

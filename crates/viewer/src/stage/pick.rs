@@ -1,5 +1,6 @@
 //! What is at a pixel, and how light gets there.
 
+use super::json::value_json;
 use super::paths;
 use bilux::math::Vec2;
 use bilux::scene::{CameraSample, SceneBuilder, Surface, Tracer};
@@ -61,18 +62,4 @@ fn surface_json(scene: &SceneBuilder, surface: &Surface) -> Value {
         "distance": surface.t,
         "uv": surface.uv.to_array(),
     })
-}
-
-/// A value for the page.
-pub(super) fn value_json(value: &bilux::scene::Value) -> Value {
-    use bilux::scene::Value as V;
-    match value {
-        V::Bool(yes) => json!(yes),
-        V::Integer(i) => json!(i),
-        V::Number(x) => json!(x),
-        V::Text(text) => json!(text),
-        V::List(list) => list.iter().map(value_json).collect(),
-        V::Texture(_) => json!({ "texture": true }),
-        V::Material(index) => json!({ "material": index }),
-    }
 }

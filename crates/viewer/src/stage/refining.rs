@@ -11,14 +11,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long a step of the picture takes: then requests are looked at.
-const STEP: Duration = Duration::from_millis(60);
+pub(super) const STEP: Duration = Duration::from_millis(60);
 /// How often a picture that gets better is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(250);
 /// How long nothing has changed when the picture itself is begun: some integrators then choose their strategies first.
 const SETTLED: Duration = Duration::from_millis(180);
 
 /// Stops a step whose picture is out of date.
-struct Interruptible<'a>(&'a Inbox);
+pub(super) struct Interruptible<'a>(pub(super) &'a Inbox);
 
 impl Progress for Interruptible<'_> {
     fn begin(&self, _samples: u64) {}
@@ -34,6 +34,7 @@ impl Stage {
     /// Begins the picture anew, with small pictures first, unless what has changed is only how it is displayed.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         (self.rests, self.changed) = (false, Instant::now());
+        self.other_is_out_of_date(false);
         let full = Settings::of(self.session.scene(), &self.settings_for(Level::Full))?;
         let has_samples = self.level == Level::Full && self.session.samples() > 0;
         if has_samples && full.takes_samples_of(self.session.job().settings()) {
@@ -102,6 +103,10 @@ impl Stage {
                 if is_done || is_more || self.is_due() {
                     self.rests = is_done;
                     self.publish()?;
+                    if let (true, Some(it)) = (is_done, &mut self.comparison) {
+                        // How far the two are from each other in the end.
+                        it.is_shown = false;
+                    }
                     self.answer_waiting();
                 }
                 Ok(())
@@ -141,21 +146,17 @@ impl Stage {
             self.facts.noise =
                 self.meter.look(&outcome.rendered.film, self.session.samples()).or(self.facts.noise);
         }
-        let seconds = self.worked.as_secs_f64().max(1e-6);
-        let pixels = picture.width() as f64 * picture.height() as f64;
         let point = |p: bilux::math::DVec3| p.to_array();
         let facts = Facts {
             shown: self.shown.name(),
-            samples: self.session.samples(),
             total: job.samples_per_pixel(),
-            rate: pixels * f64::from(self.session.samples()) / seconds,
-            rays: outcome.rendered.counters.rays as f64 / seconds,
             is_preview,
             rests: self.rests,
             choice: outcome.rendered.choice.as_ref().map(ToString::to_string),
             eye: self.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
             ..self.facts.clone()
-        };
+        }
+        .of(&picture, self.session.samples(), outcome.rendered.counters.rays, self.worked);
         self.frame += 1;
         let frame = Frame::new(self.frame, &picture, &options, self.size, &facts)?;
         self.facts = facts;

@@ -1,38 +1,58 @@
 //! What those who watch ask for: moves, settings, layers, edits, another scene.
 
+use super::Stage;
 use super::show::{FOR_DENOISERS, Shown};
-use super::{Stage, settings};
 use crate::eye::{Eye, point_at};
 use crate::inbox::{QUESTIONS, Waiting};
 use crate::message::{Move, Request};
-use bilux::pictures::denoise::{Task, denoiser};
+use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
 use bilux::scene::{Parameters, Span, Value};
 use bilux::transport::aovs::Aov;
-use bilux::{Edit, Session};
+use bilux::{Edit, Settings};
 
 impl Stage {
     /// Does what is asked for. What cannot be done keeps nothing else from being done: others may have asked for that.
     pub(super) fn serve(&mut self, waiting: Waiting) {
-        let Waiting { moves, size, settings, shown, edits, questions, reload } = waiting;
-        let changes = !moves.is_empty() || !settings.0.is_empty() || !edits.is_empty();
-        if changes || size.is_some() || shown.is_some() || reload {
-            self.problem = None;
+        let changes_picture = waiting.changes_picture();
+        let Waiting { moves, size, settings, shown, edits, questions, reload, .. } = waiting;
+        if changes_picture {
+            (self.problem, self.measurement) = (None, None);
+            if let Some(dropped) = waiting.dropped {
+                let opened = self.open(dropped);
+                self.note(opened);
+            }
+            if let Some(variant) = waiting.variant {
+                let chosen = self.choose_variant(variant);
+                self.note(chosen);
+            }
             if reload {
                 let reloaded = self.reload();
                 self.note(reloaded);
             }
             moves.iter().for_each(|it| self.make_move(it));
             self.size = size.unwrap_or(self.size);
-            let set = self.set(settings);
+            let set = self.set(settings).and_then(|()| self.pose());
             self.note(set);
             let showed = self.show(shown);
             self.note(showed);
+            let are_edited = !edits.is_empty();
             for edit in edits {
                 let edited = self.edit(edit);
                 self.note(edited);
             }
+            if let Some(other) = waiting.compared {
+                let compared = self.compare(other);
+                self.note(compared);
+            }
+            self.other_is_out_of_date(are_edited);
+            if let Some(are_shown) = waiting.differences {
+                self.show_differences(are_shown);
+            }
             let begun = self.begin().map_err(|error| error.to_string());
             self.note(begun);
+            if (are_edited || moves.contains(&Move::Home)) && !self.is_moved {
+                self.go_home(true);
+            }
             self.publish_state();
         }
         // What waits for a picture is asked again by those who still want it.
@@ -86,28 +106,18 @@ impl Stage {
     /// Makes an edit.
     fn edit(&mut self, edit: Request) -> Result<(), String> {
         if !self.options.may_edit {
-            return Err("this viewer is read-only: start it with --edit to change materials".to_owned());
+            return Err("this viewer is read-only: start it with --edit to change the scene".to_owned());
         }
         let session = &mut self.session;
         let edited = match edit {
-            Request::Edit { material, key, value } => self.edits.change(session, material, &key, value),
+            Request::Edit { part, number, key, value } => {
+                self.edits.change(session, (part, number), &key, value)
+            }
             Request::Undo => self.edits.undo(session),
             Request::Redo => self.edits.redo(session),
             _ => Ok(()),
         };
         edited.map_err(|error| error.to_string())
-    }
-
-    /// Opens the scene again; if that fails, everything stays as it is.
-    fn reload(&mut self) -> Result<(), String> {
-        let scene = (self.options.open)()?;
-        self.watched.add(&scene.files);
-        let settings = settings::with_defaults(&self.user);
-        let session = Session::within(scene, &settings, self.options.max_memory);
-        self.session = session.map_err(|error| error.to_string())?;
-        (self.edits, self.layers) = Default::default();
-        self.go_home(!self.is_moved);
-        self.choose_layers().map_err(|error| error.to_string())
     }
 
     /// True if the camera is inside of the scene, as in a room.
@@ -117,7 +127,7 @@ impl Stage {
     }
 
     /// Sees where the scene has its camera, and goes there if wanted.
-    fn go_home(&mut self, goes: bool) {
+    pub(super) fn go_home(&mut self, goes: bool) {
         self.home = Eye::of(self.session.job());
         if goes {
             (self.eye, self.is_moved) = (self.home, false);
@@ -126,13 +136,16 @@ impl Stage {
 
     /// Looks for the denoiser that the settings ask for.
     pub(super) fn choose_denoiser(&mut self) -> Result<(), bilux::Error> {
-        let settings = self.session.job().settings();
-        let name = settings.denoise.as_str();
-        self.denoiser = match name {
+        self.denoiser = self.denoiser_for(self.session.job().settings())?;
+        self.choose_layers()
+    }
+
+    /// The denoiser that settings ask for.
+    pub(super) fn denoiser_for(&self, settings: &Settings) -> Result<Option<DenoiserChoice>, bilux::Error> {
+        Ok(match settings.denoise.as_str() {
             "off" | "display" => None,
             name => Some(denoiser(name, &Task { threads: settings.threads, ..Task::default() })?),
-        };
-        self.choose_layers()
+        })
     }
 
     /// Keeps the layers that are shown, or that a denoiser looks at.
@@ -205,10 +218,11 @@ mod tests {
             address: "127.0.0.1:0".parse().unwrap(),
             title: String::new(),
             may_edit: false,
+            may_drop: false,
             settings,
             max_memory: 1 << 30,
             command: Vec::new(),
-            open: Box::new(|| bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())),
+            open: Box::new(|_| bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())),
         };
         let inbox = Arc::new(crate::inbox::Inbox::default());
         let mut stage = Stage::new(options, inbox, Arc::default(), Arc::default()).unwrap();

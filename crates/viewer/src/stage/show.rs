@@ -1,5 +1,7 @@
 //! What is shown: the picture, denoised or not, or one of its layers as colours.
 
+use super::visits;
+use crate::catalogue::VISITS;
 use bilux::math::Rgb;
 use bilux::math::hash::hash_words;
 use bilux::pictures::denoise::DenoiserChoice;
@@ -18,13 +20,17 @@ pub(super) enum Shown {
     Picture,
     /// A layer of it.
     Layer(Aov),
+    /// A heat map of what the accelerator does for the ray of each pixel.
+    Visits,
 }
 
 impl Shown {
-    /// What has this name: `picture`, or a layer of [`AOVS`].
+    /// What has this name: `picture`, a layer of [`AOVS`], or [`VISITS`].
     pub(super) fn named(name: &str) -> Option<Shown> {
-        if name == "picture" {
-            return Some(Shown::Picture);
+        match name {
+            "picture" => return Some(Shown::Picture),
+            VISITS => return Some(Shown::Visits),
+            _ => {}
         }
         let row = AOVS.iter().find(|row| row.entry.name == name && row.aov.is_feature())?;
         Some(Shown::Layer(row.aov))
@@ -34,6 +40,7 @@ impl Shown {
     pub(super) fn name(self) -> &'static str {
         match self {
             Shown::Picture => "picture",
+            Shown::Visits => VISITS,
             Shown::Layer(aov) => AOVS.iter().find(|row| row.aov == aov).map_or("", |row| row.entry.name),
         }
     }
@@ -48,6 +55,9 @@ impl Shown {
         outcome: &Outcome,
         denoiser: Option<&DenoiserChoice>,
     ) -> Result<(Picture, WriteOptions), Error> {
+        if self == Shown::Visits {
+            return Ok((visits::picture(job)?, WriteOptions::default()));
+        }
         if let (Shown::Layer(aov), Some(features)) = (self, &outcome.features) {
             let size = [features.window.width as usize, features.window.height as usize];
             let mut picture = Picture::from_rgb(size[0], size[1], colours(aov, features))?;

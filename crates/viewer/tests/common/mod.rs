@@ -68,10 +68,11 @@ pub(crate) fn options(open: impl Fn() -> Result<SceneBuilder, String> + Send + '
         address: "127.0.0.1:0".parse().unwrap(),
         title: "cornell".to_owned(),
         may_edit: false,
+        may_drop: false,
         settings,
         max_memory: 1 << 30,
         command: ["bilux", "render", "cornell.toml"].map(str::to_owned).to_vec(),
-        open: Box::new(open),
+        open: Box::new(move |_| open()),
     }
 }
 
@@ -202,4 +203,18 @@ pub(crate) async fn get(host: &str, path: &str, named: &str, headers: &str) -> (
     stream.read_to_end(&mut answer).await.unwrap();
     let end = answer.windows(4).position(|part| part == b"\r\n\r\n").expect("an answer has headers");
     (String::from_utf8_lossy(&answer[..end]).into_owned(), answer[end + 4..].to_vec())
+}
+
+/// Sends a file by HTTP; the whole answer.
+pub(crate) async fn post(host: &str, path: &str, headers: &str, body: &[u8]) -> String {
+    use tokio::io::{AsyncReadExt, AsyncWriteExt};
+    let mut stream = TcpStream::connect(host).await.unwrap();
+    let length = body.len();
+    let head = format!(
+        "POST {path} HTTP/1.1\r\nHost: {host}\r\n{headers}Content-Length: {length}\r\nConnection: close\r\n\r\n"
+    );
+    stream.write_all(&[head.as_bytes(), body].concat()).await.unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).await.unwrap();
+    String::from_utf8_lossy(&answer).into_owned()
 }
