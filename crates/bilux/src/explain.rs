@@ -276,7 +276,8 @@ mod tests {
         let lit = explained(&dark);
         assert!(lit.measures.lights > 0 && lit.choice.is_some());
         assert!(!lit.findings.iter().any(|finding| finding.what.contains("black")));
-        dark.lights.clear();
+        // Without any light, the studio would bring its own.
+        dark.lights = vec![bilux_scene::Spec::new("off", "point").with("intensity", 0.0f32)];
         dark.materials.iter_mut().for_each(|spec| spec.parameters.set("emission", 0.0f32));
         let found = explained(&dark);
         assert_eq!(found.measures.lights, 0);
@@ -288,7 +289,10 @@ mod tests {
         use bilux_scene::{Object, Spec};
         let mut scene = generated("cornell");
         scene.lights = vec![
-            Spec::new("bulb", "sphere").with("position", Vec3::new(0.0, 1.0, 0.0)).with("radius", 0.05f32),
+            Spec::new("bulb", "sphere")
+                .with("position", Vec3::new(0.0, 1.0, 0.0))
+                .with("radius", 0.05f32)
+                .with("radiance", 50.0f32),
         ];
         let glass = scene.add_material(Spec::new("", "dielectric"));
         let ball = bilux_scene::generators::shapes::icosphere(Vec3::new(0.0, 1.0, 0.0), 0.15, 3);
