@@ -44,7 +44,7 @@ pub struct CameraConnection {
 pub struct CameraMatrices {
     /// To the space of the camera: x to the right, y upwards, z forwards, in metres.
     pub to_camera: Mat4,
-    /// To the film, 0..=1 on both axes, y downwards, with z and w for the division by w. [OpenEXR]
+    /// To the film, 0..=1 on both axes, y downwards, with z and w for the division by w. \[OpenEXR\]
     pub to_film: Mat4,
 }
 

@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn the_page_fetches_nothing() {
-        assert!(!PAGE.contains("http") && PAGE.contains("default-src 'none'"));
+        assert!(!PAGE.contains("://") && PAGE.contains("default-src 'none'"));
         assert_eq!(PAGE.matches("<!-- pairs -->").count(), 1);
     }
 }
