@@ -228,6 +228,7 @@ pub(crate) fn with_layers(
     if let Some(interval) = &outcome.rendered.interval {
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
+    job.describe(&mut picture, &outcome, denoiser.as_ref().map(|chosen| chosen.name));
     let settings = job.settings();
     Ok(Rendered {
         picture,
