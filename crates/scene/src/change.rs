@@ -171,7 +171,9 @@ mod tests {
         for (name, kind) in [("red", "diffuse"), ("twin", "diffuse"), ("twin", "diffuse"), ("7", "diffuse")] {
             scene.add_material(Spec::new(name, kind));
         }
-        scene.add_material(Spec::new("both", "mix").with("a", Value::Material(3)).with("b", Value::Material(3)));
+        scene.add_material(
+            Spec::new("both", "mix").with("a", Value::Material(3)).with("b", Value::Material(3)),
+        );
         scene.add_light(Spec::new("lamp", "point"));
         scene.cameras.push(CameraSpec::new(Spec::new("", "perspective")));
         scene
