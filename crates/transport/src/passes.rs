@@ -117,9 +117,13 @@ impl JobSamples {
     /// Column, row and index of each.
     fn all(&self) -> Vec<(u32, u32, u32)> {
         let JobSamples { tile, samples } = self;
-        let rows = tile.y..tile.y + tile.height;
-        let pixels = rows.flat_map(|y| (tile.x..tile.x + tile.width).map(move |x| (x, y)));
-        pixels.flat_map(|(x, y)| samples.clone().map(move |i| (x, y, i))).collect()
+        let mut all = Vec::with_capacity(tile.width as usize * tile.height as usize * samples.len());
+        for y in tile.y..tile.y + tile.height {
+            for x in tile.x..tile.x + tile.width {
+                all.extend(samples.clone().map(|i| (x, y, i)));
+            }
+        }
+        all
     }
 }
 

@@ -12,9 +12,9 @@ use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, R
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use crate::texture::{Texels, Texture};
-use bilux_math::transcendental::{acos, atan2, sin_cos, sin_cos_f64};
+use bilux_math::transcendental::{acos_without_branch, sin_cos_f64, sin_cos_of_turns, turns_of_point};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use std::sync::Arc;
 
 /// An environment map as a light.
@@ -23,7 +23,7 @@ pub(super) struct EnvironmentMap {
     /// The texels are used as they are stored.
     is_plain: bool,
     scale: Rgb,
-    /// The rotation of the map, as a fraction of a whole turn.
+    /// The rotation of the map, as a fraction of a whole turn, 0..1.
     turn: f32,
     is_backdrop: bool,
     /// Cells per row, and rows.
@@ -64,6 +64,12 @@ fn decoded(texture: Arc<Texture>) -> Arc<Texture> {
     Arc::new(Texture::new(&texture.name, width, height, texture.texels().collect(), texture.is_data))
 }
 
+/// An angle in whole turns, without its whole part.
+fn within_turn(turns: f32) -> f32 {
+    let rest = turns - turns.floor();
+    if rest < 1.0 { rest } else { 0.0 }
+}
+
 impl EnvironmentMap {
     /// A map whose colours are multiplied by `scale`, rotated to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
@@ -76,7 +82,7 @@ impl EnvironmentMap {
             is_plain: has_plain_floats(&texture),
             texture,
             scale,
-            turn: rotation / TAU,
+            turn: within_turn(rotation / TAU),
             is_backdrop,
             columns,
             rows,
@@ -153,9 +159,20 @@ impl EnvironmentMap {
     }
 
     /// The position of a direction in the map, 0..=1 from the left and from the top.
+    #[inline(always)]
     fn place(&self, direction: Vec3) -> Vec2 {
-        let u = 0.5 + atan2(direction.x, -direction.z) / TAU - self.turn;
-        Vec2::new(u - u.floor(), acos(direction.y.clamp(-1.0, 1.0)) / PI)
+        let u = 0.5 + turns_of_point(-direction.z, direction.x) - self.turn;
+        let down = acos_without_branch(direction.y.clamp(-1.0, 1.0)) * FRAC_1_PI;
+        Vec2::new(if u < 0.0 { u + 1.0 } else { u }, down)
+    }
+
+    /// [`EnvironmentMap::place`] for up to [`MANY`] directions, in a loop that the compiler vectorises.
+    fn places(&self, directions: &[[f32; MANY]; 3], places: &mut [[f32; MANY]; 2]) {
+        for i in 0..MANY {
+            let [x, y, z] = [directions[0][i], directions[1][i], directions[2][i]];
+            let place = self.place(Vec3::new(x, y, z));
+            (places[0][i], places[1][i]) = (place.x, place.y);
+        }
     }
 
     /// Density over solid angle; zero where there is no map.
@@ -186,16 +203,23 @@ impl EnvironmentMap {
 
     /// [`EnvironmentMap::sample`] in a cell.
     fn sample_in(&self, cells: &Distribution2d, cell: Cell) -> Option<(Vec3, Vec2, f32)> {
-        let Cell { row, column, right, down } = cell;
-        let (top, bottom) = (self.heights[row], self.heights[row + 1]);
-        let y = top + (bottom - top) * down;
-        let turned = (column as f64 + right) / self.columns as f64;
-        let (sin, cos) = sin_cos((turned as f32 + self.turn - 0.5) * TAU);
-        let r = (1.0 - y * y).max(0.0).sqrt() as f32;
-        let direction = Vec3::new(r * sin, y as f32, -r * cos).normalize();
+        let direction = self.direction_in(cell);
         let place = self.place(direction);
         let pdf = self.pdf_at(cells, place);
         (pdf > 0.0).then_some((direction, place, pdf))
+    }
+
+    /// The direction to a point of a cell.
+    #[inline(always)]
+    fn direction_in(&self, Cell { row, column, right, down }: Cell) -> Vec3 {
+        let (top, bottom) = (self.heights[row], self.heights[row + 1]);
+        let y = top + (bottom - top) * down;
+        let turned = ((column as f64 + right) / self.columns as f64) as f32 + self.turn;
+        let turned = if turned > 1.0 { turned - 1.0 } else { turned };
+        // The middle of the map, half a turn from its edge, is at -z.
+        let (sin, cos) = sin_cos_of_turns(turned);
+        let r = (1.0 - y * y).max(0.0).sqrt() as f32;
+        Vec3::new(-r * sin, y as f32, r * cos).normalize()
     }
 }
 
@@ -212,22 +236,27 @@ impl Light for EnvironmentMap {
             return samples.resize(receivers.len(), None);
         }
         let (mut cells, mut points) = ([Cell::default(); MANY], [Vec2::ZERO; MANY]);
-        let mut places = [Vec2::ZERO; MANY];
+        let (mut directions, mut places) = ([[0.0; MANY]; 3], [[0.0; MANY]; 2]);
         for receivers in receivers.chunks(MANY) {
             points.iter_mut().zip(receivers).for_each(|(point, receiver)| *point = receiver.u);
             self.asked.choose_each(&points[..receivers.len()], &mut cells);
-            let begin = samples.len();
-            for (cell, place) in cells[..receivers.len()].iter().zip(&mut places) {
-                let sample = self.sample_in(&self.asked, *cell).map(|(wi, at, pdf_solid_angle)| {
-                    *place = at;
-                    let (li, n_light) = (Rgb::BLACK, Vec3::ZERO);
-                    LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 }
-                });
-                samples.push(sample);
+            for (i, cell) in cells[..receivers.len()].iter().enumerate() {
+                let [x, y, z] = self.direction_in(*cell).to_array();
+                (directions[0][i], directions[1][i], directions[2][i]) = (x, y, z);
             }
-            for (sample, place) in samples[begin..].iter_mut().zip(&places) {
+            self.places(&directions, &mut places);
+            let begin = samples.len();
+            let place = |i: usize| Vec2::new(places[0][i], places[1][i]);
+            samples.extend((0..receivers.len()).map(|i| {
+                let wi = Vec3::new(directions[0][i], directions[1][i], directions[2][i]);
+                let pdf_solid_angle = self.pdf_at(&self.asked, place(i));
+                let (li, n_light) = (Rgb::BLACK, Vec3::ZERO);
+                let sample = LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 };
+                (pdf_solid_angle > 0.0).then_some(sample)
+            }));
+            for (i, sample) in samples[begin..].iter_mut().enumerate() {
                 if let Some(sample) = sample {
-                    sample.li = self.le_at(*place);
+                    sample.li = self.le_at(place(i));
                 }
             }
         }
@@ -263,14 +292,18 @@ impl Light for EnvironmentMap {
             return found.resize(rays.len(), (Rgb::BLACK, 0.0));
         }
         let is_sampled = !self.is_backdrop && !self.asked.is_empty();
-        let mut places = [Vec2::ZERO; MANY];
+        let (mut directions, mut places) = ([[0.0; MANY]; 3], [[0.0; MANY]; 2]);
         for rays in rays.chunks(MANY) {
-            places.iter_mut().zip(rays).for_each(|(place, ray)| *place = self.place(ray.1));
+            for (i, ray) in rays.iter().enumerate() {
+                (directions[0][i], directions[1][i], directions[2][i]) = ray.1.into();
+            }
+            self.places(&directions, &mut places);
             let begin = found.len();
-            found.extend(places[..rays.len()].iter().map(|place| (self.le_at(*place), 0.0)));
-            for ((found, place), ray) in found[begin..].iter_mut().zip(&places).zip(rays) {
+            let place = |i: usize| Vec2::new(places[0][i], places[1][i]);
+            found.extend((0..rays.len()).map(|i| (self.le_at(place(i)), 0.0)));
+            for (i, (found, ray)) in found[begin..].iter_mut().zip(rays).enumerate() {
                 if is_sampled && ray.0.is_some() {
-                    found.1 = self.pdf_at(&self.asked, *place);
+                    found.1 = self.pdf_at(&self.asked, place(i));
                 }
             }
         }

@@ -225,6 +225,9 @@ impl SceneParts {
             }
             hit = next(&Ray { t_min: hit.t, t_max, exclude: hit.primitive(), ..*ray })?;
         }
+        if backs.is_empty() {
+            return None;
+        }
         let surface = self.geometry.surface(ray, &hit);
         let n = self.normal_towards(&surface, -direction);
         backs.iter().all(|back| back.is_shell_of(surface.p, n)).then_some(hit)

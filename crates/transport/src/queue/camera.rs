@@ -16,11 +16,13 @@ pub(super) fn camera_rays(
 ) {
     let level = scene.cpu_level();
     let (mut film, mut directions) = ([Column::ZERO; 2], ZERO3);
+    let mut samplers = Vec::with_capacity(LANES);
     for samples in samples.chunks(LANES) {
         let (mut streams, mut reversed_indices) = ([0; LANES], [0; LANES]);
-        let sampler = |&(x, y, index): &(u32, u32, u32)| rays.sampler(x, y, index);
-        for (i, sample) in samples.iter().enumerate() {
-            (streams[i], reversed_indices[i]) = sampler(sample).state();
+        samplers.clear();
+        samplers.extend(samples.iter().map(|&(x, y, index)| rays.sampler(x, y, index)));
+        for (i, sampler) in samplers.iter().enumerate() {
+            (streams[i], reversed_indices[i]) = sampler.state();
         }
         run_at(level, Places { streams: &streams, reversed_indices: &reversed_indices, u: &mut film });
         for (i, &(x, y, _)) in samples.iter().enumerate() {
@@ -28,10 +30,10 @@ pub(super) fn camera_rays(
             (film[0].0[i], film[1].0[i]) = (point.x, point.y);
         }
         run_at(level, Directions { pinhole: &rays.pinhole, film: &film, directions: &mut directions });
-        for (i, sample) in samples.iter().enumerate() {
+        for (i, (sample, sampler)) in samples.iter().zip(samplers.drain(..)).enumerate() {
             let direction: Vec3 = vec3(&directions, i);
             let ray = Ray::new(rays.pinhole.position.to_array(), direction.to_array());
-            each(*sample, sampler(sample), scene.from_camera(Ray { time: rays.time, ..ray }));
+            each(*sample, sampler, scene.from_camera(Ray { time: rays.time, ..ray }));
         }
     }
 }

@@ -43,6 +43,8 @@ pub(crate) struct PathQueue {
     active: Vec<u32>,
     /// Indices of the paths that have ended: others take their places.
     free: Vec<u32>,
+    /// Whether each path goes on after the current event.
+    goes_on: Vec<bool>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
     escapes: Escapes,
@@ -92,16 +94,16 @@ impl PathQueue {
                 return true;
             }
             self.advance(path, &mut task);
+            self.goes_on.clear();
+            self.goes_on.resize(self.state.paths.len(), false);
             for &index in &self.active {
-                self.state.paths[index as usize].goes_on = true;
+                self.goes_on[index as usize] = true;
             }
             // Those that were active before.
-            for &index in &self.state.next {
-                let one = &mut self.state.paths[index as usize];
-                if !std::mem::take(&mut one.goes_on) {
-                    add(one.sample, one.walk.light);
-                    self.free.push(index);
-                }
+            for &index in self.state.next.iter().filter(|&&index| !self.goes_on[index as usize]) {
+                let one = &self.state.paths[index as usize];
+                add(one.sample, one.walk.light);
+                self.free.push(index);
             }
         }
     }
@@ -110,8 +112,8 @@ impl PathQueue {
     fn begin<'a>(&mut self, rays: &CameraRays<'a>, samples: &[(u32, u32, u32)], task: &mut Task<'_, 'a>) {
         let mut begin = |tracer: &mut Tracer, sample, ray: Ray, sampler, wavelength| {
             let walk = Walk::new(&ray, Media::at_start(tracer, &ray));
-            let (direct, beta, goes_on) = (Rgb::BLACK, Rgb::WHITE, false);
-            let path = QueuedPath { walk, sampler, wavelength, direct, beta, sample, goes_on };
+            let (direct, beta) = (Rgb::BLACK, Rgb::WHITE);
+            let path = QueuedPath { walk, sampler, wavelength, direct, beta, sample };
             match self.free.pop() {
                 Some(index) => {
                     self.state.paths[index as usize] = path;

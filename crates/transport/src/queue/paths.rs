@@ -18,7 +18,6 @@ pub(super) struct QueuedPath {
     pub(super) beta: Rgb,
     /// The sample that it belongs to: a pixel's column and row, and an index.
     pub(super) sample: (u32, u32, u32),
-    pub(super) goes_on: bool,
 }
 
 impl QueuedPath {
