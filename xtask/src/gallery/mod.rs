@@ -87,7 +87,7 @@ impl Studio {
         let mut render = Command::new(&self.bilux);
         render.current_dir(scene.parent().context("a scene lies in a folder")?);
         render.arg("render").arg(&scene).arg("-o").arg(&out).args(picture.options.split_whitespace());
-        run_process(render.args(["--progress", "none"]))?;
+        run_process(render.args(["--progress", "none", "--checkpoint", "off"]))?;
         Ok(true)
     }
 
