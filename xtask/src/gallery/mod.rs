@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     for pair in arguments.chunks(2) {
         match pair {
             [name, word] if name == "--only" => only = word,
-            [name, folder] if name == "--scenes" => models = PathBuf::from(folder),
+            [name, folder] if name == "--scenes" => models = std::path::absolute(folder)?,
             _ => bail!("the options are `--only WORD` and `--scenes FOLDER`"),
         }
     }
@@ -58,37 +58,36 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let scenes = target_folder().join("gallery");
     fs::create_dir_all(&scenes).with_context(|| format!("cannot make {}", scenes.display()))?;
     let studio = Studio { bilux: target_folder().join("release/bilux"), models, scenes };
-    let mut rendered = 0;
-    for picture in PICTURES.iter().filter(|picture| picture.file.contains(only)) {
-        rendered += usize::from(studio.render(picture).with_context(|| picture.file.to_owned())?);
+    let is_wanted = |file: &str| file.contains(only);
+    let mut files = PICTURES.iter().map(|row| row.file).chain(HEAT_MAPS.iter().map(|row| row.file));
+    if !files.any(is_wanted) {
+        bail!("no file name in {FOLDER} contains '{only}'");
     }
-    for map in HEAT_MAPS.iter().filter(|map| map.file.contains(only)) {
+    for picture in PICTURES.iter().filter(|picture| is_wanted(picture.file)) {
+        studio.render(picture).with_context(|| picture.file.to_owned())?;
+    }
+    for map in HEAT_MAPS.iter().filter(|map| is_wanted(map.file)) {
         let path = |file: &str| root().join(FOLDER).join(file);
         let mut compare = Command::new(&studio.bilux);
         compare.arg("compare").args([path(map.picture), path(map.reference)]).arg("--heat-map");
         run_process(compare.arg(path(map.file)))?;
-        rendered += 1;
     }
-    match rendered {
-        0 => bail!("no picture was rendered: `--only` has to be a part of a file name in {FOLDER}"),
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 impl Studio {
-    /// Renders a picture. Returns whether its scene is there.
-    fn render(&self, picture: &table::Picture) -> Result<bool> {
+    /// Renders a picture, or says that its model is missing.
+    fn render(&self, picture: &table::Picture) -> Result<()> {
         let Some(scene) = self.scene(picture.scene)? else {
             println!("SKIPPED: {}: its model is not in {}", picture.file, self.models.display());
-            return Ok(false);
+            return Ok(());
         };
         let out = root().join(FOLDER).join(picture.file);
         fs::create_dir_all(out.parent().unwrap_or(&out))?;
         let mut render = Command::new(&self.bilux);
         render.current_dir(scene.parent().context("a scene lies in a folder")?);
         render.arg("render").arg(&scene).arg("-o").arg(&out).args(picture.options.split_whitespace());
-        run_process(render.args(["--progress", "none", "--checkpoint", "off"]))?;
-        Ok(true)
+        run_process(render.args(["--progress", "none", "--checkpoint", "off"]))
     }
 
     /// The path of a scene, which is made if need be; none for a model that is missing.
