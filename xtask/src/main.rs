@@ -7,6 +7,7 @@ mod contact_sheet;
 mod cpu_levels;
 mod dist;
 mod docs;
+mod gallery;
 mod instructions;
 mod licences;
 mod manual;
@@ -44,6 +45,11 @@ const CHORES: &[Chore] = &[
         name: "strips",
         summary: "render what each parameter of materials, lights and textures does (minutes)",
         run: strips::run,
+    },
+    Chore {
+        name: "gallery",
+        summary: "render the pictures of the manual (minutes; `--only WORD` for some of them)",
+        run: gallery::run,
     },
     Chore { name: "contact-sheet", summary: "models next to their screenshots", run: contact_sheet::run },
     Chore {

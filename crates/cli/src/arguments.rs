@@ -84,17 +84,17 @@ pub enum ProgressStyle {
 pub enum Command {
     /// Render pictures of scenes
     Render(Box<Render>),
-    /// Watch a scene in the browser while it is rendered
+    /// Watch a scene in the browser while it renders
     Serve(Box<Serve>),
     /// Show what is in a scene file
     Info(Info),
-    /// Say what is hard about a scene, and what would help
+    /// Explain why a scene is slow or noisy, and what would help
     Explain(Box<Explain>),
     /// Convert a scene or a picture to another format
     Convert(Convert),
     /// Remove the noise from a picture
     Denoise(Denoise),
-    /// Measure how much pictures differ from references
+    /// Compare pictures with references, by FLIP and other metrics
     Compare(Compare),
     /// Write a built-in scene to a file
     Generate(Generate),
@@ -151,7 +151,7 @@ pub enum Command {
     bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
     bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
     bilux render scene.toml -o comp.exr --spp 64 --aov crypto_object,direct,indirect,groups,position\n  \
-    bilux render scene.toml -o scene.png --noise 0.5% --resume    Go on if it was interrupted\n  \
+    bilux render scene.toml -o scene.png --noise 0.5% --resume    Resume if it was interrupted\n  \
     bilux render scene.toml -o draft.png --fast --watch --preview\n  \
     bilux render scene.toml -o a.exr --spp 128 --samples 0..64    One half here,\n  \
     bilux render scene.toml -o b.exr --spp 128 --samples 64..128  and the other half elsewhere:\n  \
@@ -161,7 +161,7 @@ pub enum Command {
     1         Something failed\n  \
     2         The command line is wrong\n  \
     124       --timeout ended it; the picture so far is saved\n  \
-    130, 143  Ctrl-C or SIGTERM ended it; the picture so far is saved, and --resume goes on\n  \
+    130, 143  Ctrl-C or SIGTERM ended it; the picture so far is saved, and --resume continues\n  \
     141       The reader of standard output closed it")]
 pub struct Render {
     /// The scene files to render (`bilux list formats`); `-` reads a scene from standard input
@@ -178,7 +178,7 @@ pub struct Render {
     /// seconds, whichever comes first]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::COMMON_OPTIONS)]
     pub spp: Option<u32>,
-    /// Stop when the noise is, on average, at most this fraction of the light, such as 2% or 0.02; 2% looks smooth
+    /// Stop when the average noise is at most this fraction of the light, such as 2% or 0.02; 2% looks smooth
     #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::COMMON_OPTIONS)]
     pub noise: Option<f32>,
     /// Finish within this time, including reading and denoising; if that is impossible, Bilux says why

@@ -13,7 +13,7 @@ pub struct Choices {
     /// The material variant to show, by name or by number from 0 [default: the materials of the meshes]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub variant: Option<String>,
-    /// How to interpret glass whose thickness the file does not give
+    /// How to treat glass if the file does not say whether it is solid or thin-walled
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
     /// Give the file's point lights this radius, in metres, which softens their shadows [default: 0]

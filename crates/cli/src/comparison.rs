@@ -5,7 +5,7 @@ use crate::values::parse_bound;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Measure how much pictures differ from references, one pair or two folders of them
+/// Compare pictures with references, by FLIP and other metrics: one pair, or two folders
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  bilux compare a.png reference.png\n  \
@@ -15,11 +15,11 @@ use std::path::PathBuf;
     Exit status:\n  \
     0  Every bound holds\n  \
     1  A bound does not hold\n  \
-    2  Pictures cannot be compared, or have no partner")]
+    2  Pictures cannot be compared, or one has no counterpart")]
 pub struct Compare {
     /// The picture to measure, or a folder of pictures
     pub picture: PathBuf,
-    /// The reference picture, or a folder with one of the same name for each picture
+    /// The reference picture, or a folder of references with the same names as the pictures
     pub reference: PathBuf,
     /// The maximum mean FLIP error, from 0 to 1
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
@@ -45,7 +45,7 @@ pub struct Compare {
     /// Write a heat map of the FLIP error to this file
     #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
     pub heat_map: Option<PathBuf>,
-    /// Write a page to this file that shows the pictures side by side, flickering, and their errors
+    /// Write an HTML page with the pictures side by side and flickering, and with their errors
     #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
     pub html: Option<PathBuf>,
 }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:\n  bilux denoise noisy.exr -o clean.exr\n  \
     bilux denoise noisy.exr -o clean.png --tonemap agx\n  \
     bilux denoise photo.png -o clean.png --by builtin\n\n\
-    The layers albedo, normal, depth and variance of an .exr help a lot. This writes them:\n  \
+    The result is much better if the .exr has the layers albedo, normal, depth and variance. To write them:\n  \
     bilux render scene.toml -o noisy.exr --aov albedo,normal,depth,variance")]
 pub struct Denoise {
     /// The noisy picture

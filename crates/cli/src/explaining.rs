@@ -6,7 +6,7 @@ use crate::studio::StudioArguments;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Say what is hard about a scene, what `auto` makes of it, and what would help
+/// Explain why a scene is slow or noisy, what `auto` chooses for it, and what would help
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \

@@ -9,28 +9,28 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \
-    bilux farm walk.toml --frames 0-47 --chunks 8 -o job           Six frames a task\n  \
-    bilux farm model.glb --chunks 16 -o job -- --spp 1024          64 samples a task, and a merge\n  \
+    bilux farm walk.toml --frames 0-47 --chunks 8 -o job           Six frames per task\n  \
+    bilux farm model.glb --chunks 16 -o job -- --spp 1024          64 samples per task, then merge\n  \
     bilux farm model.glb --chunks 4 -o job -- --spp 256 --size 1920x1080 --env sunset.hdr\n  \
-    openjd run job/template.yaml --step Merge --run-dependencies   Run all of it here\n\n\
-    What follows `--` are options of `bilux render`, which every task gets; those before it are for this\n\
-    command alone, such as --max-memory and --strict.\n\n\
-    The folder then has the files of the scene, a job template in the form of Open Job Description (OpenJD), a job \
-    array for Slurm, and a README that says how to run them, or the same with GNU parallel.")]
+    openjd run job/template.yaml --step Merge --run-dependencies   Run the whole job here\n\n\
+    Every task passes the options after `--` to `bilux render`; options before it, such as --max-memory and \
+    --strict, are for this command only.\n\n\
+    The folder contains the scene's files, an Open Job Description (OpenJD) template, a Slurm job array, and a README \
+    that explains how to run the job with either of them or with GNU parallel.")]
 pub struct Farm {
-    /// The scene file; it and every file that it names are copied into the folder
+    /// The scene file; it is copied into the folder with every file that it refers to
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The folder to make
+    /// The folder to create
     #[arg(short, long, value_name = "DIR", help_heading = help::COMMON_OPTIONS)]
     pub output: PathBuf,
     /// The number of tasks, at most 1024
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_chunks, help_heading = help::COMMON_OPTIONS)]
     pub chunks: u32,
-    /// Render frames A to B, inclusive, some in each task [default: one picture, some of its samples in each task]
+    /// Render frames A to B, inclusive, divided among the tasks [default: one picture, whose samples are divided]
     #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::COMMON_OPTIONS)]
     pub frames: Option<(u32, u32)>,
-    /// The name of the picture, or of the frames with `{frame}` for their number [default: the scene's name, and .png]
+    /// The name of the picture, or of the frames, where `{frame}` is their number [default: the scene's name and .png]
     #[arg(long, value_name = "NAME", help_heading = help::OUTPUT)]
     pub picture: Option<String>,
     /// Options of `bilux render`

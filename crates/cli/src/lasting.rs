@@ -9,17 +9,16 @@ use std::time::Duration;
 /// How a render is kept, continued, repeated and shown.
 #[derive(Args)]
 pub struct Lasting {
-    /// Save a checkpoint in OUT.checkpoint each time that SECONDS have passed, and at Ctrl-C, from which --resume goes on;
-    /// off saves none [default: 60]
+    /// Save a checkpoint for --resume to OUT.checkpoint every SECONDS, and at Ctrl-C; off saves none [default: 60]
     #[arg(long, value_name = "SECONDS|off", allow_hyphen_values = true, value_parser = parse_checkpoint, help_heading = help::SPEED)]
     pub checkpoint: Option<Checkpoints>,
-    /// Go on with a render that was interrupted or killed: the picture has the same bytes as one that was not
+    /// Resume a render that was interrupted or killed; the picture has the same bytes as without the interruption
     #[arg(long, help_heading = help::SPEED)]
     pub resume: bool,
-    /// Render again whenever the scene file or one that it names changes; Ctrl-C ends
+    /// Render again whenever the scene file, or a file that it refers to, changes; Ctrl-C ends this
     #[arg(long, conflicts_with_all = ["resume", "checkpoint", "frames", "turntable", "replay"], help_heading = help::OUTPUT)]
     pub watch: bool,
-    /// Show the picture in the terminal while it is rendered, as coloured blocks or by the protocol of the terminal
+    /// Show the picture in the terminal while it renders, as coloured blocks or with the terminal's graphics protocol
     #[arg(long, value_name = "auto|blocks|kitty|iterm|sixel", num_args = 0..=1, default_missing_value = "auto",
         require_equals = true, value_parser = PreviewChoice::parse, help_heading = help::OUTPUT)]
     pub preview: Option<PreviewChoice>,

@@ -18,13 +18,13 @@ use std::path::PathBuf;
     bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           Write meshes and rays for other programs\n  \
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
-    bilux bench load                                   On files of 100 MB that it generates\n  \
+    bilux bench load                                   On generated files of 100 MB\n  \
     bilux bench load scan.ply house.glb --json\n  \
-    bilux bench render --report measured               Ten minutes, and a page of pictures\n  \
+    bilux bench render --report measured               Writes a page of pictures; ten minutes\n  \
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
     bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,auto:path-photons\n  \
-    bilux bench models                                 At most a dozen models, in five minutes\n  \
-    bilux bench speed --json                           Speed and size against their goals, in ten minutes\n  \
+    bilux bench models                                 Up to a dozen models, in five minutes\n  \
+    bilux bench speed --json                           Speed and size, in ten minutes\n  \
     bilux bench speed --rows box,model --model WaterBottle.gltf --python venv/bin/python")]
 pub struct Bench {
     /// The benchmark to run

@@ -7,25 +7,25 @@ use clap::Args;
 use std::net::IpAddr;
 use std::path::PathBuf;
 
-/// Watch a scene in the browser while it is rendered
+/// Watch a scene in the browser while it renders
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \
-    bilux serve model.glb                        Watch it at the address that is printed; Ctrl-C ends it\n  \
-    bilux serve scene.toml --port 8000 --edit    Change materials, lights and cameras too\n  \
-    bilux serve model.glb --listen 0.0.0.0       Let other machines watch, who know the whole address\n  \
+    bilux serve model.glb                        Open the address that it prints; Ctrl-C ends it\n  \
+    bilux serve scene.toml --port 8000 --edit    Also change materials, lights and cameras\n  \
+    bilux serve model.glb --listen 0.0.0.0       Let anyone watch who has the full address\n  \
     ssh -L 8000:localhost:8000 server bilux serve model.glb --port 8000")]
 pub struct Serve {
     /// The scene file (`bilux list formats`)
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The port to listen on; 0 chooses one that is free
+    /// The port to listen on; 0 picks a free one
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = help::COMMON_OPTIONS)]
     pub port: u16,
-    /// The address to listen on; anywhere but on this machine alone, the address that is printed has a secret in it
+    /// The address to listen on; if other machines can reach it, the printed address contains a secret token
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", help_heading = help::COMMON_OPTIONS)]
     pub listen: IpAddr,
-    /// Let those who watch change materials, lights and cameras, and drop other files in; the scene file stays as it is
+    /// Let viewers change materials, lights and cameras, and drop in other files; the scene file is not modified
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,
     /// The time to show, in seconds, for animated scenes [default: 0]

@@ -26,8 +26,8 @@ pub struct StudioArguments {
     /// Magnify the picture by this factor [default: 1]
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = parse_zoom, help_heading = help::STUDIO)]
     pub zoom: Option<f32>,
-    /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none turns
-    /// the studio's lights off for a glTF file with lights of its own
+    /// Light the scene with a longitude-latitude environment map (.hdr, .exr or any other picture); none turns the
+    /// studio's lights off for a glTF file with lights of its own
     #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
     /// The background: transparent, a colour (white, grey, black, '#rrggbb' or R,G,B from 0 to 1) or a picture; it

@@ -163,11 +163,11 @@ pub const AOVS: &[AovEntry] = &[
         "position",
         "the first visible point in world space, in metres, 0 where nothing is visible: position.X, .Y, .Z",
     ),
-    layer(Aov::Uv, "uv", "texture coordinates of that point: uv.U, uv.V"),
+    layer(Aov::Uv, "uv", "texture coordinates of the first visible point: uv.U, uv.V"),
     layer(
         Aov::Motion,
         "motion",
-        "how far that point moves until the next frame, in pixels, to the right and upwards: motion.X, .Y",
+        "motion vectors to the next frame, in pixels, to the right and upwards: motion.X, .Y",
     ),
     matte(Aov::CryptoObject, "crypto_object", "Cryptomatte of objects by name: CryptoObject00.red, …"),
     matte(
@@ -178,18 +178,22 @@ pub const AOVS: &[AovEntry] = &[
     matte(
         Aov::CryptoInstance,
         "crypto_instance",
-        "Cryptomatte of every single object, by name and number: CryptoInstance00.red, …",
+        "Cryptomatte of each instance, by name and number: CryptoInstance00.red, …",
     ),
     layer(
         Aov::Direct,
         "direct",
-        "light that scatters at most once between a light and the camera, lights themselves included: direct.R, .G, .B",
+        "direct light, scattered at most once, and visible emitters: direct.R, .G, .B",
     ),
-    layer(Aov::Indirect, "indirect", "all other light; with direct it is the picture: indirect.R, .G, .B"),
+    layer(
+        Aov::Indirect,
+        "indirect",
+        "indirect light; direct and indirect add up to the picture: indirect.R, .G, .B",
+    ),
     layer(
         Aov::Groups,
         "groups",
-        "the light of each group of lights; together they are the picture: group_NAME.R, .G, .B",
+        "the contribution of each light group; they add up to the picture: group_NAME.R, .G, .B",
     ),
     layer(Aov::Samples, "samples", "the number of samples of each pixel: samples.count"),
 ];

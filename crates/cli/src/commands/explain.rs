@@ -1,4 +1,4 @@
-//! `bilux explain`: what is hard about a scene, and what would help.
+//! `bilux explain`: why a scene is slow or noisy, and what would help.
 
 use super::{DONE, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Explain};
@@ -68,12 +68,12 @@ fn as_text(scene: &Path, job: &Job, found: &Explanation) -> String {
     let mut lines = vec!["What auto found".to_owned()];
     match &found.choice {
         None => lines.push(format!(
-            "  nothing: the integrator is '{}', which does not choose",
+            "  nothing: the integrator is '{}', and only 'auto' chooses",
             job.settings().integrator.entry.name
         )),
         Some(choice) => {
             lines.push(format!(
-                "  it renders with '{}'; to the same noise, its rivals take this long:",
+                "  it renders with '{}'; relative time of each candidate to the same noise:",
                 choice.best().name
             ));
             for candidate in &choice.candidates {
@@ -91,9 +91,9 @@ fn as_text(scene: &Path, job: &Job, found: &Explanation) -> String {
     }
     lines.extend(["".to_owned(), "What the scene is like".to_owned()]);
     lines.extend(facts(&found.measures).into_iter().map(|fact| format!("  {fact}")));
-    lines.extend(["".to_owned(), "What is hard about it, and what helps".to_owned()]);
+    lines.extend(["".to_owned(), "What makes it difficult, and what helps".to_owned()]);
     if found.findings.is_empty() {
-        lines.push("  nothing was found".to_owned());
+        lines.push("  nothing found".to_owned());
     }
     for finding in &found.findings {
         lines.push(format!("  - {}", finding.what));

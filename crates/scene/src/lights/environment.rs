@@ -38,7 +38,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             sky("ground", "radiance from straight below; -1 uses 'radiance'"),
             Parameter {
                 name: "backdrop",
-                summary: "shown in place of the environments that light the scene; it lights nothing itself",
+                summary: "show it to the camera in place of the environments that light the scene; it lights nothing itself",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "false",

@@ -130,7 +130,7 @@ const CLASSIC: Parameter = Parameter {
 
 const GROUP: Parameter = Parameter {
     name: "group",
-    summary: "the layer of light that it belongs to in pictures with --aov groups; name stands for the light's own",
+    summary: "the light group that it belongs to, for --aov groups; name stands for the light's own name",
     unit: "",
     kind: ParameterKind::Text,
     default: "name",

@@ -13,7 +13,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         summary: "rectangular area light, visible to the camera",
         source: "",
         parameters: &[
-            vector("position", "its centre", "0 5 0"),
+            vector("position", "centre", "0 5 0"),
             vector("edge_u", "edge from one side to the other", "1 0 0"),
             vector("edge_v", "edge from one end to the other", "0 0 1"),
             colour("radiance", "emitted radiance; or give 'intensity'", "W/(m² sr)", "0"),

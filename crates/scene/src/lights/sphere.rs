@@ -22,7 +22,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         summary: "spherical area light, visible to the camera",
         source: "Shirley 1996",
         parameters: &[
-            vector("position", "its centre", "0 5 0"),
+            vector("position", "centre", "0 5 0"),
             Parameter {
                 name: "radius",
                 summary: "radius; above 0",

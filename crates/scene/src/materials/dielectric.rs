@@ -73,8 +73,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 
 pub(super) const PRIORITY: Parameter = Parameter {
     name: "priority",
-    summary: "where dielectrics overlap, the one with the highest priority fills the overlap, and eta is relative to \
-              air; 0 ignores overlaps",
+    summary: "nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is \
+              relative to air; 0 ignores overlaps",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
     default: "0",

@@ -125,7 +125,7 @@ pub fn as_principled(spec: &Spec) -> Option<Spec> {
 
 const ABSORPTION: Parameter = Parameter {
     name: "absorption",
-    summary: "absorption inside, by Beer's law",
+    summary: "absorption coefficient inside (Beer-Lambert law)",
     unit: "1/m",
     kind: ParameterKind::Colour { min: 0.0, max: 1e6 },
     default: "0",

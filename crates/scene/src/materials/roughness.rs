@@ -72,7 +72,7 @@ impl Roughness {
 pub(super) const fn roughness(default: &'static str) -> Parameter {
     Parameter {
         name: "roughness",
-        summary: "surface roughness: 0 is polished; the square root of GGX's alpha",
+        summary: "microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha",
         unit: "",
         kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
         default,

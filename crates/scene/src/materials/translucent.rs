@@ -22,7 +22,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("reflectance", "fraction of the light that is reflected", "0.4"),
             reflectance(
                 "transmittance",
-                "fraction that leaves on the other side; where the two are more than 1 together, both are scaled down",
+                "fraction of the light that is transmitted diffusely; both are scaled down if they sum to more than 1",
                 "0.4",
             ),
             EMISSION,

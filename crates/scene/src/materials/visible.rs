@@ -10,7 +10,7 @@ use bilux_math::registry::{Parameter, ParameterKind};
 /// Shared by materials that light does not enter.
 pub(super) const VISIBLE_SIDES: Parameter = Parameter {
     name: "visible_sides",
-    summary: "the sides that the camera sees: both, or the front, from which a triangle's corners run \
+    summary: "the sides that the camera sees: both, or the front, where a triangle's vertices run \
               counter-clockwise; light reaches both",
     unit: "",
     kind: ParameterKind::Choice(Sides::NAMES),

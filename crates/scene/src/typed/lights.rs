@@ -9,7 +9,7 @@ typed! {
         intensity: bilux_math::Rgb,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Distant light: parallel rays, or those of a disc such as the sun.
@@ -22,7 +22,7 @@ typed! {
         diameter: f32,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Spotlight: a point light that shines into a cone, with a soft edge.
@@ -39,12 +39,12 @@ typed! {
         inner_angle: f32,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Rectangular area light, visible to the camera.
     Rect = "rect" {
-        /// Its centre (m); default `0 5 0`.
+        /// Centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
         /// Edge from one side to the other (m); default `1 0 0`.
         edge_u: bilux_math::Vec3,
@@ -58,12 +58,12 @@ typed! {
         sides: &str,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Spherical area light, visible to the camera.
     Sphere = "sphere" {
-        /// Its centre (m); default `0 5 0`.
+        /// Centre (m); default `0 5 0`.
         position: bilux_math::Vec3,
         /// Radius; above 0 (m); default `0.5`.
         radius: f32,
@@ -73,7 +73,7 @@ typed! {
         intensity: bilux_math::Rgb,
         /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
         classic: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Environment light: a constant colour, a vertical gradient, or an environment map.
@@ -90,9 +90,9 @@ typed! {
         horizon: bilux_math::Rgb,
         /// Radiance from straight below; -1 uses 'radiance' (W/(m² sr)); default `-1`.
         ground: bilux_math::Rgb,
-        /// Shown in place of the environments that light the scene; it lights nothing itself; default `false`.
+        /// Show it to the camera in place of the environments that light the scene; it lights nothing itself; default `false`.
         backdrop: bool,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// Analytic daylight sky with the sun, clear or hazy.
@@ -111,14 +111,14 @@ typed! {
         sun_scale: f32,
         /// Angular diameter of the sun (degrees); default `0.533`.
         sun_diameter: f32,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
     /// The constant light Ia of Equation 1, in cast, whitted and cook only.
     Ambient = "ambient" {
         /// Light that reaches every point equally; default `0.3`.
         colour: bilux_math::Rgb,
-        /// The layer of light that it belongs to in pictures with --aov groups; name stands for the light's own; default `name`.
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
 }

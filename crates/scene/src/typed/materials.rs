@@ -17,7 +17,7 @@ typed! {
         reflectivity: f32,
         /// Refractive index of the inside relative to the outside; default `1.5`.
         eta: f32,
-        /// Absorption inside, by Beer's law (1/m); default `0`.
+        /// Absorption coefficient inside (Beer-Lambert law) (1/m); default `0`.
         absorption: bilux_math::Rgb,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin: bool,
@@ -29,7 +29,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -48,11 +48,11 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
-        /// The sides that the camera sees: both, or the front, from which a triangle's corners run counter-clockwise; light reaches both: `both`, `front`; default `both`.
+        /// The sides that the camera sees: both, or the front, where a triangle's vertices run counter-clockwise; light reaches both: `both`, `front`; default `both`.
         visible_sides: &str,
         /// Normal map in tangent space, with green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
@@ -63,13 +63,13 @@ typed! {
     Translucent = "translucent" {
         /// Fraction of the light that is reflected; default `0.4`.
         reflectance: impl Into<crate::Value>,
-        /// Fraction that leaves on the other side; where the two are more than 1 together, both are scaled down; default `0.4`.
+        /// Fraction of the light that is transmitted diffusely; both are scaled down if they sum to more than 1; default `0.4`.
         transmittance: impl Into<crate::Value>,
         /// Emitted radiance (W/(m² sr)); default `0`.
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -88,11 +88,11 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
-        /// The sides that the camera sees: both, or the front, from which a triangle's corners run counter-clockwise; light reaches both: `both`, `front`; default `both`.
+        /// The sides that the camera sees: both, or the front, where a triangle's vertices run counter-clockwise; light reaches both: `both`, `front`; default `both`.
         visible_sides: &str,
         /// Normal map in tangent space, with green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
@@ -111,7 +111,7 @@ typed! {
         reflectance: impl Into<crate::Value>,
         /// With 'reflectance': factor on Schlick's approximation at 82 degrees; default `1`.
         edge: bilux_math::Rgb,
-        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0.3`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0.3`.
         roughness: impl Into<crate::Value>,
         /// Anisotropy: how much smoother the surface is along its tangent than across it; default `0`.
         anisotropy: impl Into<crate::Value>,
@@ -119,7 +119,7 @@ typed! {
         rotation: f32,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
-        /// The sides that the camera sees: both, or the front, from which a triangle's corners run counter-clockwise; light reaches both: `both`, `front`; default `both`.
+        /// The sides that the camera sees: both, or the front, where a triangle's vertices run counter-clockwise; light reaches both: `both`, `front`; default `both`.
         visible_sides: &str,
         /// Normal map in tangent space, with green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
@@ -136,13 +136,13 @@ typed! {
         dispersion: f32,
         /// Factor on reflected and transmitted light; white for real glass; default `1`.
         tint: impl Into<crate::Value>,
-        /// Absorption inside, by Beer's law (1/m); default `0`.
+        /// Absorption coefficient inside (Beer-Lambert law) (1/m); default `0`.
         absorption: bilux_math::Rgb,
-        /// Where dielectrics overlap, the one with the highest priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
+        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
         priority: i32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin: bool,
-        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0`.
         roughness: impl Into<crate::Value>,
         /// Anisotropy: how much smoother the surface is along its tangent than across it; default `0`.
         anisotropy: impl Into<crate::Value>,
@@ -171,7 +171,7 @@ typed! {
         specular_weight: impl Into<crate::Value>,
         /// Colour of specular reflection; of metal, near grazing angles; default `1`.
         specular_color: impl Into<crate::Value>,
-        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0.3`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0.3`.
         specular_roughness: impl Into<crate::Value>,
         /// Refractive index of the non-metallic part; default `1.5`.
         specular_ior: impl Into<crate::Value>,
@@ -191,13 +191,13 @@ typed! {
         transmission_dispersion_abbe_number: f32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin_walled: bool,
-        /// Where dielectrics overlap, the one with the highest priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
+        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
         priority: i32,
         /// Weight of the clear coat; default `0`.
         coat_weight: impl Into<crate::Value>,
         /// Colour of light that passes the coat and returns; default `1`.
         coat_color: impl Into<crate::Value>,
-        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0`.
         coat_roughness: impl Into<crate::Value>,
         /// Refractive index of the coat; default `1.6`.
         coat_ior: impl Into<crate::Value>,
@@ -225,11 +225,11 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
-        /// The sides that the camera sees: both, or the front, from which a triangle's corners run counter-clockwise; light reaches both: `both`, `front`; default `both`.
+        /// The sides that the camera sees: both, or the front, where a triangle's vertices run counter-clockwise; light reaches both: `both`, `front`; default `both`.
         visible_sides: &str,
         /// Normal map in tangent space, with green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,

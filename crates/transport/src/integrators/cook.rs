@@ -19,7 +19,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             SHADOW_RULE,
             SHADOWS,
             CUTOFF,
-            extent("extent", "factor on all extents below"),
+            extent("extent", "factor on all the fractions below"),
             extent("pixel", "fraction of the pixel filter that samples cover"),
             extent("gloss", "fraction of the materials' gloss that reflected rays cover"),
             extent("translucency", "fraction of the materials' translucency that refracted rays cover"),

@@ -18,8 +18,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         parameters: &[
             Parameter {
                 name: "sampling",
-                summary: "how direct light is sampled: by multiple importance sampling (mis), only by the lights, or \
-                          only by the BSDF",
+                summary: "how direct light is sampled: by the lights and the BSDF with multiple importance sampling \
+                          (mis), by the lights only, or by the BSDF only (scattering)",
                 unit: "",
                 kind: ParameterKind::Choice(&["mis", "lights", "scattering"]),
                 default: "mis",

@@ -1,4 +1,4 @@
-//! The job's README: how to run it with a farm that knows OpenJD, with Slurm, and with GNU parallel.
+//! The job's README: how to run it with OpenJD, Slurm, or GNU parallel.
 
 use super::FarmJob;
 use super::shell::{PROGRAM, merge, render};
@@ -23,23 +23,24 @@ pub(super) fn of(job: &FarmJob) -> String {
         ),
     };
     format!(
-        "# {}\n\nThis folder was written by `bilux farm`. It is complete: put it where every node can read and write it, \
-         with the\nprogram `bilux` of the same version on each node's `PATH`, or its path in the variable `BILUX`. Run the \
-         commands here.\n{}\n\
-         ## A farm that knows OpenJD\nSubmit `template.yaml`. To check it, and to run all of it on this machine:\n\n\
+        "# {}\n\nThis folder was written by `bilux farm`. It is self-contained: put it where every node can read and write \
+         it.\nEach node needs the same version of `bilux` on its `PATH`, or the program's path in the variable `BILUX`. Run \
+         these commands in\nthis folder.\n{}\n\
+         ## OpenJD\nSubmit `template.yaml` to the farm. To check it, and to run the whole job on this machine:\n\n\
          ```sh\nopenjd check template.yaml\nopenjd run template.yaml {steps} -p Bilux=\"$(command -v \"${{BILUX:-bilux}}\")\"\n```\n\n\
          ## Slurm\n```sh\n{slurm}```\n\n\
-         ## GNU parallel\nThis runs one task at a time, on all cores. `--sshlogin node1,node2 --workdir \"$PWD\"` spreads \
+         ## GNU parallel\nThis runs one task at a time, on all cores. `--sshlogin node1,node2 --workdir \"$PWD\"` distributes \
          them over nodes.\n\n\
          ```sh\nparallel -j1 -q {PROGRAM} {command} ::: \\\n  {}{parallel}\n```\n\n\
-         A task that is repeated writes the same file again, and a file is complete or not there at all. So a task that has \
-         failed,\nor was too slow, can be given out once more.\n",
+         A task writes its file completely or not at all, and a repeated task writes the same bytes. So you can run a failed or \
+         slow task\nagain, even while the first attempt is running.\n",
         job.name,
         match job.split {
-            Split::Frames(_) => "The frames go to `pictures`, with the bytes that one machine would write.\n",
+            Split::Frames(_) =>
+                "The frames go to `pictures`, with the same bytes as a render on one machine.\n",
             Split::Samples(_) =>
-                "Each task writes a part of the picture's samples to `parts`; merged, they are the picture that one \
-                 machine would\nrender, to the byte. It goes to `pictures`.\n",
+                "Each task writes some of the picture's samples to `parts`. The merge step writes the picture to \
+                 `pictures`, with the\nsame bytes as a render on one machine.\n",
         },
         ranges.join(" ")
     )

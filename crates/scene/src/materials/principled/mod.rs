@@ -176,7 +176,7 @@ const fn index(name: &'static str, summary: &'static str, default: &'static str)
     Parameter { name, summary, unit: "", kind, default }
 }
 
-const ROUGHNESS: &str = "surface roughness: 0 is polished; the square root of GGX's alpha";
+const ROUGHNESS: &str = "microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha";
 
 const fn number(name: &'static str, summary: &'static str, max: f64, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::NumberTexture { min: 0.0, max }, default }
