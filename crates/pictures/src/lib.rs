@@ -39,11 +39,11 @@ pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
     BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
-    guarded_decoding, is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically,
-    write_bytes,
+    guarded_decoding, is_decoding, read, read_bytes, read_crop, read_crop_bytes, read_rgba8, read_with,
+    write, write_atomically, write_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};
 pub use panels::{downscaled, label, side_by_side, stacked};
-pub use picture::{Alpha, Channel, ColourSpace, IntegerPlane, NonFinite, Picture};
+pub use picture::{Alpha, Channel, ColourSpace, Crop, IntegerPlane, NonFinite, Picture};
 pub use tonemap::{TONEMAPS, ToneMapEntry, auto_exposure, to_display, tone_map};

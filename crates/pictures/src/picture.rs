@@ -25,6 +25,19 @@ pub struct Picture {
     pub alpha: Alpha,
     /// Texts that are stored with the picture, if its format can hold them.
     pub metadata: BTreeMap<String, String>,
+    /// Which part of a larger picture this is, if it is one. Only EXR stores it.
+    pub crop: Option<Crop>,
+}
+
+/// The place of a picture in a larger one: the data window of an EXR in its display window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// The column of its left edge, in pixels.
+    pub x: usize,
+    /// The row of its upper edge.
+    pub y: usize,
+    /// Columns and rows of the larger picture.
+    pub whole: [usize; 2],
 }
 
 /// One named plane.
@@ -93,6 +106,7 @@ impl Picture {
             colour_space: ColourSpace::default(),
             alpha: Alpha::default(),
             metadata: BTreeMap::new(),
+            crop: None,
         })
     }
 
@@ -279,6 +293,7 @@ impl Picture {
             colour_space: self.colour_space,
             alpha: self.alpha,
             metadata: BTreeMap::new(),
+            crop: self.crop,
         }
     }
 
