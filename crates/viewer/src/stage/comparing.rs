@@ -8,7 +8,7 @@ use super::{Level, Stage, settings};
 use crate::frame::{Facts, Frame};
 use crate::message::Other;
 use bilux::pictures::metrics::{HeatMap, Pair, heat_map};
-use bilux::pictures::{METRICS, Picture, WriteOptions};
+use bilux::pictures::{METRICS, Picture, WriteOptions, downscaled};
 use bilux::scene::Parameters;
 use bilux::transport::NoiseMeter;
 use bilux::{Budget, Edit, Error, Session};
@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 const SHOWN_EVERY: Duration = Duration::from_millis(400);
 /// How often the map of differences is made, which takes long.
 const MAPPED_EVERY: Duration = Duration::from_millis(1500);
+/// The largest number of its pixels: the map takes about 0.2 s then, and nothing interrupts it.
+const MAPPED_PIXELS: usize = 250_000;
 
 impl Stage {
     /// Compares the picture with another one, or with none.
@@ -165,6 +167,14 @@ impl Stage {
     }
 }
 
+/// The map of differences as people see them, of so many pixels that requests need not wait for it.
+fn map_of(a: &Picture, b: &Picture, options: &WriteOptions) -> Result<Picture, Error> {
+    let factor = (1..).find(|factor| a.pixel_count() / (factor * factor) <= MAPPED_PIXELS).unwrap_or(1);
+    let (a, b) = (downscaled(a, factor)?, downscaled(b, factor)?);
+    let pair = Pair::new(&a, &b, options.exposure, options.tone_map)?;
+    Ok(heat_map(&pair, HeatMap::Flip)?)
+}
+
 /// How far two pictures are from each other, relative to their light; and a map of that, as people see it, if wanted.
 fn differences(
     a: &Picture,
@@ -174,6 +184,6 @@ fn differences(
 ) -> Result<(Option<f64>, Option<Picture>), Error> {
     let pair = Pair::new(a, b, options.exposure, options.tone_map)?;
     let squared = METRICS.iter().find(|row| row.entry.name == "relmse").map(|row| (row.evaluate)(&pair));
-    let map = is_wanted.then(|| heat_map(&pair, HeatMap::Flip)).transpose()?;
+    let map = if is_wanted { Some(map_of(a, b, options)?) } else { None };
     Ok((squared.filter(|x| x.is_finite()).map(f64::sqrt), map))
 }
