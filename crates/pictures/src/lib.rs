@@ -24,6 +24,7 @@
 //! light. Files may come from untrusted sources: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
+mod crop;
 pub mod cryptomatte;
 pub mod denoise;
 mod error;
@@ -35,6 +36,7 @@ mod panels;
 mod picture;
 pub mod tonemap;
 
+pub use crop::Crop;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
@@ -45,5 +47,5 @@ pub use formats::{
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};
 pub use panels::{downscaled, label, side_by_side, stacked};
-pub use picture::{Alpha, Channel, ColourSpace, Crop, IntegerPlane, NonFinite, Picture};
+pub use picture::{Alpha, Channel, ColourSpace, IntegerPlane, NonFinite, Picture};
 pub use tonemap::{TONEMAPS, ToneMapEntry, auto_exposure, to_display, tone_map};

@@ -1,6 +1,7 @@
 //! Pictures as sets of planes: the type that every reader returns and every writer takes.
 
 use crate::PictureError;
+use crate::crop::Crop;
 use crate::limits::MAX_SIDE;
 use bilux_math::Rgb;
 use bilux_math::colour::{srgb_decode, srgb_encode};
@@ -27,17 +28,6 @@ pub struct Picture {
     pub metadata: BTreeMap<String, String>,
     /// Which part of a larger picture this is, if it is one. Only EXR stores it.
     pub crop: Option<Crop>,
-}
-
-/// The place of a picture in a larger one: the data window of an EXR in its display window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    /// The column of its left edge, in pixels.
-    pub x: usize,
-    /// The row of its upper edge.
-    pub y: usize,
-    /// Columns and rows of the larger picture.
-    pub whole: [usize; 2],
 }
 
 /// One named plane.

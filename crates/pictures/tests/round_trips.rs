@@ -3,8 +3,8 @@
 
 use bilux_math::Rgb;
 use bilux_pictures::{
-    Alpha, BitDepth, ColourSpace, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
-    read_bytes, write, write_bytes,
+    Alpha, BitDepth, ColourSpace, Crop, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
+    read_bytes, read_crop_bytes, write, write_bytes,
 };
 
 /// Values that a careless writer loses: signed zero, subnormal, huge, infinite, NaN.
