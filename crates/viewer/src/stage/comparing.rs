@@ -42,7 +42,7 @@ impl Stage {
     /// Shows where the two pictures differ, or the other one.
     pub(super) fn show_differences(&mut self, are_shown: bool) {
         if let Some(it) = &mut self.comparison {
-            (it.differences, it.is_shown) = (are_shown, false);
+            (it.differences, it.is_shown, it.is_due) = (are_shown, false, true);
         }
     }
 
@@ -58,7 +58,9 @@ impl Stage {
     /// True if the other picture is to be refined next: it has had less time than the picture.
     pub(super) fn is_turn_of_other(&self) -> bool {
         let Some(it) = self.comparison.as_ref().filter(|it| it.goes_on()) else { return false };
-        self.level == Level::Full && self.session.samples() > 0 && (self.rests || it.worked <= self.worked)
+        self.level == Level::Full
+            && self.session.samples() > 0
+            && (it.is_due || self.rests || it.worked <= self.worked)
     }
 
     /// Refines the other picture a little, and shows it. If that fails, nothing is compared any more.
@@ -74,6 +76,10 @@ impl Stage {
             self.bring_up_to_date(it)?;
         }
         let Some(session) = &mut it.session else { return Ok(()) };
+        if std::mem::take(&mut it.is_due) && session.samples() > 0 {
+            // Its next sample may take seconds.
+            return self.publish_other(it);
+        }
         let (begun, before) = (Instant::now(), session.samples());
         let budget = if before > 0 { Budget::Time(STEP) } else { Budget::Samples(1) };
         session.step(budget, &Interruptible(&self.inbox))?;
