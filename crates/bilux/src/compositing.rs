@@ -44,6 +44,12 @@ impl Job {
     /// # Errors
     /// If the integrator cannot divide its light, there are too many groups of lights, or only some samples are taken.
     pub fn check_layers(&self, wanted: &[Aov]) -> Result<(), Error> {
+        if wanted.iter().any(|aov| aov.needs_all_samples()) && self.render.samples != (0..self.render.spp) {
+            return Err(Error::Settings(format!(
+                "parts and costs of the light need all samples: leave out the range of samples, or the layers {}",
+                Aov::names_that_need_all_samples()
+            )));
+        }
         let Some(aov) = wanted.iter().find(|aov| aov.is_light()) else { return Ok(()) };
         if !self.integrator.has_light_parts() {
             let others: Vec<&str> = bilux_transport::integrators::with_light_parts().collect();
@@ -53,11 +59,6 @@ impl Job {
                 aov.layer().unwrap_or_default(),
                 others.join(", ")
             )));
-        }
-        if self.render.samples != (0..self.render.spp) {
-            let message = "parts of the light need all samples: leave out the range of samples, or the layers \
-                           direct, indirect and groups";
-            return Err(Error::Settings(message.to_owned()));
         }
         let groups = LightGroups::of(self).names.len();
         if wanted.contains(&Aov::Groups) && groups > MAX_GROUPS {
@@ -104,7 +105,37 @@ impl Job {
         {
             return Ok(None);
         }
+        if wanted.iter().any(|aov| aov.is_work())
+            && (outcome.rendered.cancelled || !self.push_work(&mut layers, &settings, wanted, progress)?)
+        {
+            return Ok(None);
+        }
         Ok(Some(ExtraLayers(layers)))
+    }
+
+    /// False if it was interrupted.
+    fn push_work(
+        &self,
+        layers: &mut Picture,
+        settings: &RenderSettings,
+        wanted: &[Aov],
+        progress: &dyn Progress,
+    ) -> Result<bool, Error> {
+        let with_accel = wanted.iter().any(|aov| aov.is_accel_work());
+        let (scene, camera) = (&self.scene, &*self.camera);
+        let work = bilux_transport::work(scene, camera, self.renders(), settings, with_accel, progress)?;
+        let Some(work) = work else { return Ok(false) };
+        for (aov, samples) in [
+            (Aov::Rays, work.rays),
+            (Aov::PathLength, work.path_length),
+            (Aov::Nodes, work.nodes),
+            (Aov::Tests, work.tests),
+        ] {
+            if let Some(layer) = aov.layer().filter(|_| wanted.contains(&aov)) {
+                layers.push_channel(format!("{layer}.mean"), samples)?;
+            }
+        }
+        Ok(true)
     }
 
     /// False if it was interrupted.

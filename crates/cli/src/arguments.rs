@@ -12,11 +12,11 @@ use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
-    parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
-    parse_time, parse_turntable, parse_vector,
+    parse_noise, parse_positive, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed,
+    parse_spp, parse_time, parse_turntable, parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Render physically based pictures of 3D scenes on the CPU
@@ -169,8 +169,8 @@ pub struct Render {
     pub scenes: Vec<PathBuf>,
     /// The picture to write, replacing an older one; its extension sets the format (`bilux list picture-formats`),
     /// `{stem}` stands for the scene's name, `{frame}` for the frame's number, and `-` writes a PNG to standard output
-    #[arg(short, long, value_name = "OUT", help_heading = help::COMMON_OPTIONS)]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "OUT", required_unless_present = "replay", help_heading = help::COMMON_OPTIONS)]
+    pub output: Option<PathBuf>,
     /// The width and height of the picture in pixels [default: 512x512]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub size: Option<String>,
@@ -282,9 +282,17 @@ pub struct Render {
     pub stats: Option<PathBuf>,
     #[command(flatten)]
     pub lasting: Lasting,
-    /// Trace one sample of a pixel again and print what happens along its path
+    /// Trace one sample of a pixel again and print what happens along its path; with --output, also render the picture and
+    /// draw the path into it
     #[arg(long, value_name = "X,Y,SAMPLE", allow_hyphen_values = true, value_parser = parse_replay, help_heading = help::OUTPUT)]
     pub replay: Option<[u32; 3]>,
+}
+
+impl Render {
+    /// The name of the picture. Where there is none, as with `--replay`, only text is written, to standard output.
+    pub fn output_or_stdout(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new("-"))
+    }
 }
 
 /// Show what is in a scene file
@@ -306,7 +314,8 @@ pub struct Info {
 #[command(help_template = help::TEMPLATE)]
 #[command(
     after_help = "Examples:\n  bilux convert model.obj -o model.glb\n  bilux convert sky.hdr -o sky.exr\n  \
-    bilux convert picture.exr -o picture.jpg --quality 80"
+    bilux convert picture.exr -o picture.jpg --quality 80\n  \
+    bilux convert scene.layers.exr -o rays.png --heat-map rays"
 )]
 pub struct Convert {
     /// The scene or picture to convert
@@ -320,6 +329,13 @@ pub struct Convert {
     /// The quality of a JPEG, from 1 to 100 [default: 92]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
     pub quality: Option<u8>,
+    /// Show one channel of a picture, such as rays.mean or depth.Z, in false colours: black for 0, through violet, red and
+    /// orange to pale yellow for its maximum. The name of a layer stands for its first channel
+    #[arg(long, value_name = "CHANNEL", help_heading = help::OUTPUT)]
+    pub heat_map: Option<String>,
+    /// The value that is pale yellow, so that several heat maps can be compared [default: the maximum of the picture]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true, requires = "heat_map", value_parser = parse_positive, help_heading = help::OUTPUT)]
+    pub heat_max: Option<f32>,
     #[command(flatten)]
     pub posed: Posed,
 }

@@ -69,6 +69,12 @@ pub fn parse_bound(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "write a number, such as 0.02".to_owned())
 }
 
+/// Parses the upper end of a scale.
+pub fn parse_positive(text: &str) -> Result<f32, String> {
+    let most = text.parse().ok().filter(|&most: &f32| most > 0.0 && most.is_finite());
+    most.ok_or_else(|| "write a number larger than 0, such as 100".to_owned())
+}
+
 /// Parses a focal length in millimetres.
 pub fn parse_focal(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())

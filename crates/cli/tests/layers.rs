@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-const LAYERS: &str = "position,uv,motion,crypto_object,crypto_instance,direct,indirect,groups,samples";
+const LAYERS: &str =
+    "position,uv,motion,crypto_object,crypto_instance,direct,indirect,groups,samples,rays,path_length";
 
 fn run(folder: &Path, command: &str) -> Output {
     let mut bilux = Command::new(env!("CARGO_BIN_EXE_bilux"));
@@ -95,12 +96,98 @@ fn layers_that_cannot_be_made_are_refused_before_the_work() {
     for (options, said) in [
         ("-i sppm --aov direct", "auto, path, bdpt, vcm"),
         ("-i path --samples 0..1 --spp 2 --aov groups", "all samples"),
+        ("-i path --samples 0..1 --spp 2 --aov rays", "all samples"),
+        ("--replay 1,1,0 --aov rays", "writes no layers"),
     ] {
         let output = run(path, &format!("render scene.toml -o out.exr --size 8x8 {options}"));
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
         assert!(!path.join("out.exr").exists());
     }
+}
+
+#[test]
+fn costs_are_layers_and_heat_maps() {
+    let folder = folder();
+    let path = folder.path();
+    let base = "render scene.toml -i path --size 32x24 --spp 4 -q --aov rays,path_length,nodes,tests";
+    done(path, &format!("{base} -o a.png --threads 1 --stats a.json"));
+    done(path, &format!("{base} -o b.png --threads 3"));
+    done(path, &format!("{base} -o kd.png --accel kd"));
+    assert!(fs::read(path.join("a.layers.exr")).unwrap() == fs::read(path.join("b.layers.exr")).unwrap());
+    let (bvh, kd) = (opened(path, "a.layers.exr"), opened(path, "kd.layers.exr"));
+    for same in ["rays.mean", "path_length.mean"] {
+        assert_eq!(bvh.channel(same).unwrap(), kd.channel(same).unwrap(), "{same}");
+    }
+    assert_ne!(bvh.channel("nodes.mean"), kd.channel("nodes.mean"));
+    // All rays of the picture are in the layer, and nothing else.
+    let stats: serde_json::Value = serde_json::from_slice(&fs::read(path.join("a.json")).unwrap()).unwrap();
+    let rays: f64 = bvh.channel("rays.mean").unwrap().iter().map(|&mean| f64::from(mean) * 4.0).sum();
+    assert_eq!(Some(rays.round() as u64), stats["rays"].as_u64(), "{stats}");
+
+    done(path, "convert a.layers.exr -o rays.png --heat-map rays -q");
+    done(path, "convert a.layers.exr -o scaled.png --heat-map rays.mean --heat-max 1000 -q");
+    let brightest = |name: &str| {
+        let colours = opened(path, name).to_rgb().unwrap();
+        colours.iter().map(|colour| colour.luminance()).fold(0.0, f32::max)
+    };
+    assert!(brightest("rays.png") > 0.9, "the maximum is pale yellow");
+    assert!(brightest("scaled.png") < 0.1, "of 1000 it is little");
+    for (options, status, said) in [
+        ("a.layers.exr -o x.png --heat-map rayz", 2, "did you mean 'rays.mean'?"),
+        ("a.layers.exr -o x.png --heat-map rays --heat-max 0", 2, "larger than 0"),
+        ("scene.toml -o x.obj --heat-map rays", 2, "of a picture"),
+    ] {
+        let output = run(path, &format!("convert {options}"));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(status) && error.contains(said), "{options}: {error}");
+    }
+}
+
+#[test]
+fn a_replayed_sample_is_drawn_into_the_picture() {
+    let folder = folder();
+    let path = folder.path();
+    let base = "render scene.toml -i path --size 64x48 --spp 4 -q";
+    let words = done(path, &format!("{base} --replay 32,20,0"));
+    assert!(words.contains("pixel 32,20 sample 0") && words.contains("radiance"), "{words}");
+    assert_eq!(fs::read_dir(path).unwrap().count(), 1, "without a name there is no picture");
+    done(path, &format!("{base} -o plain.png"));
+    assert_eq!(done(path, &format!("{base} --replay 32,20,0 -o drawn.png")), words);
+    let (plain, drawn) = (opened(path, "plain.png"), opened(path, "drawn.png"));
+    let (plain, drawn) = (plain.to_rgb().unwrap(), drawn.to_rgb().unwrap());
+    let changed = plain.iter().zip(&drawn).filter(|(a, b)| a != b).count();
+    assert!((20..1500).contains(&changed), "{changed} pixels of 3072 are drawn on");
+    // In a crop it is where it was in the whole.
+    done(path, &format!("{base} --replay 32,20,0 --crop 16,8,32,24 -o part.png"));
+    let part = opened(path, "part.png").to_rgb().unwrap();
+    let same = (0..32 * 24).filter(|i| part[*i] == drawn[(8 + i / 32) * 64 + 16 + i % 32]).count();
+    assert!(same > 32 * 24 * 9 / 10, "{same} pixels of {}", 32 * 24);
+    let output = run(path, &format!("{base} --replay 99,0,0 -o wrong.png"));
+    assert!(output.status.code() == Some(2) && !path.join("wrong.png").exists());
+    assert_eq!(run(path, "render scene.toml").status.code(), Some(2), "without --replay a name is needed");
+}
+
+#[test]
+fn crops_have_their_place_in_the_whole() {
+    let folder = folder();
+    let path = folder.path();
+    let base = "render scene.toml -i path --size 32x24 --spp 2 -q --aov depth";
+    done(path, &format!("{base} -o whole.exr"));
+    done(path, &format!("{base} -o part.exr --crop 9,5,16,18"));
+    let (whole, part) = (opened(path, "whole.exr"), opened(path, "part.exr"));
+    assert_eq!((part.width(), part.height()), (32, 24), "as compositors show it");
+    for (i, (a, b)) in whole.to_rgb().unwrap().into_iter().zip(part.to_rgb().unwrap()).enumerate() {
+        let is_within = (9..25).contains(&(i % 32)) && (5..23).contains(&(i / 32));
+        assert!(if is_within { a == b } else { b.max_channel() == 0.0 }, "pixel {i}");
+    }
+    // Converted, it stays what it is; compared, it lies over the whole.
+    done(path, "convert part.exr -o part.png -q");
+    assert_eq!((opened(path, "part.png").width(), opened(path, "part.png").height()), (16, 18));
+    done(path, "convert part.exr -o again.exr -q");
+    assert_eq!(opened(path, "again.exr").to_rgb(), part.to_rgb());
+    done(path, "compare part.exr again.exr --max-error 0");
+    assert_eq!(run(path, "compare part.exr whole.exr --max-error 0").status.code(), Some(1));
 }
 
 #[test]

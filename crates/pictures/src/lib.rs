@@ -24,6 +24,7 @@
 //! light. Files may come from untrusted sources: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
+mod crop;
 pub mod cryptomatte;
 pub mod denoise;
 mod error;
@@ -35,12 +36,13 @@ mod panels;
 mod picture;
 pub mod tonemap;
 
+pub use crop::Crop;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
     BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
-    guarded_decoding, is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically,
-    write_bytes,
+    guarded_decoding, is_decoding, read, read_bytes, read_crop, read_crop_bytes, read_rgba8, read_with,
+    write, write_atomically, write_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};

@@ -1,6 +1,7 @@
 //! Pictures as sets of planes: the type that every reader returns and every writer takes.
 
 use crate::PictureError;
+use crate::crop::Crop;
 use crate::limits::MAX_SIDE;
 use bilux_math::Rgb;
 use bilux_math::colour::{srgb_decode, srgb_encode};
@@ -25,6 +26,8 @@ pub struct Picture {
     pub alpha: Alpha,
     /// Texts that are stored with the picture, if its format can hold them.
     pub metadata: BTreeMap<String, String>,
+    /// Which part of a larger picture this is, if it is one. Only EXR stores it.
+    pub crop: Option<Crop>,
 }
 
 /// One named plane.
@@ -93,6 +96,7 @@ impl Picture {
             colour_space: ColourSpace::default(),
             alpha: Alpha::default(),
             metadata: BTreeMap::new(),
+            crop: None,
         })
     }
 
@@ -279,6 +283,7 @@ impl Picture {
             colour_space: self.colour_space,
             alpha: self.alpha,
             metadata: BTreeMap::new(),
+            crop: self.crop,
         }
     }
 

@@ -1,6 +1,8 @@
 //! Untrusted bytes: a picture or an error, never a panic, never more memory than allowed.
 
-use bilux_pictures::{Limits, PICTURE_FORMATS, Picture, PictureError, PictureFormatEntry, read_bytes};
+use bilux_pictures::{
+    Limits, PICTURE_FORMATS, Picture, PictureError, PictureFormatEntry, read_bytes, read_crop_bytes,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -23,6 +25,9 @@ fn check(row: &PictureFormatEntry, bytes: &[u8]) -> Result<(), TestCaseError> {
     match (row.read)(bytes, &LIMITS) {
         Ok(picture) => prop_assert!(bytes_of(&picture) <= LIMITS.max_bytes),
         Err(error) => prop_assert!(error.to_string().len() > 10),
+    }
+    if let Ok(part) = read_crop_bytes(bytes, Some(row.entry.name), &LIMITS) {
+        prop_assert!(bytes_of(&part) <= LIMITS.max_bytes);
     }
     Ok(())
 }

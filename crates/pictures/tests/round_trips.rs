@@ -3,8 +3,8 @@
 
 use bilux_math::Rgb;
 use bilux_pictures::{
-    Alpha, BitDepth, ColourSpace, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
-    read_bytes, write, write_bytes,
+    Alpha, BitDepth, ColourSpace, Crop, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
+    read_bytes, read_crop_bytes, write, write_bytes,
 };
 
 /// Values that a careless writer loses: signed zero, subnormal, huge, infinite, NaN.
@@ -67,6 +67,38 @@ fn exr_keeps_floats_integers_layers_and_texts_to_the_bit() {
         }
         assert_eq!(back.metadata, picture.metadata);
         assert_eq!(back.layers(), ["albedo", "depth", "normal", "sum.R"]);
+    }
+}
+
+#[test]
+fn exr_keeps_the_place_of_a_crop() {
+    let names = ["R", "G", "B", "A", "depth.Z"];
+    // Wider and higher than a block of rows, at places that are no multiple of one.
+    let mut picture = noise(21, 37, &names);
+    picture.push_integer_plane("id.object", (1..=21 * 37).collect()).unwrap();
+    picture.crop = Some(Crop { x: 5, y: 23, whole: [40, 64] });
+    let bytes = write_bytes("exr", &picture, &WriteOptions::default()).unwrap();
+    let limits = Limits::default();
+    let back = read_crop_bytes(&bytes, None, &limits).unwrap();
+    assert_eq!((back.width(), back.height(), back.crop), (21, 37, picture.crop));
+    let whole = read_bytes(&bytes, None, &limits).unwrap();
+    assert_eq!((whole.width(), whole.height(), whole.crop), (40, 64, None));
+    for name in names {
+        let (part, all) = (picture.channel(name).unwrap(), whole.channel(name).unwrap());
+        assert_eq!(bits(back.channel(name).unwrap()), bits(part), "{name}");
+        for (i, &sample) in all.iter().enumerate() {
+            let (x, y) = (i % 40, i / 40);
+            let is_within = (5..26).contains(&x) && (23..60).contains(&y);
+            let expected = if is_within { part[(y - 23) * 21 + x - 5] } else { 0.0 };
+            assert_eq!(sample.to_bits(), expected.to_bits(), "{name} at {x},{y}");
+        }
+    }
+    assert_eq!(back.integer_plane("id.object"), picture.integer_plane("id.object"));
+    // A place that is not within the larger picture is refused, not written.
+    for crop in [Crop { x: 20, y: 23, whole: [40, 64] }, Crop { x: 0, y: 0, whole: [usize::MAX, 64] }] {
+        picture.crop = Some(crop);
+        let error = write_bytes("exr", &picture, &WriteOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("not within a picture"), "{error}");
     }
 }
 

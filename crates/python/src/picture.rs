@@ -333,7 +333,10 @@ impl Picture {
 pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
     let file = without_gil(py, || std::fs::File::open(&path).map(drop));
     file.map_err(|error| unopened(&path, &error))?;
-    let picture = without_gil(py, || bilux::pictures::read(&path).map(bilux::pictures::Picture::into_linear));
+    let picture = without_gil(py, || {
+        bilux::pictures::read_crop(&path, &bilux::pictures::Limits::default())
+            .map(bilux::pictures::Picture::into_linear)
+    });
     Picture::of(py, &picture.map_err(of_picture)?, Display::default(), None)
 }
 

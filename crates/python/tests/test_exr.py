@@ -70,7 +70,7 @@ radiance = [0.1, 0.2, 0.4]
 
 LAYERS = (
     "albedo,normal,depth,ids,variance,position,uv,motion,crypto_object,crypto_material,crypto_instance,"
-    "direct,indirect,groups,samples"
+    "direct,indirect,groups,samples,rays,path_length,nodes,tests"
 )
 BALL = 'Teekanne "groß" \\ 🫖'
 
@@ -229,6 +229,47 @@ def test_motion_is_in_pixels_upwards(opened):
     expected = 1.2 / 24 / (2 * 6 * np.tan(np.radians(15))) * HEIGHT
     moving = planes["motion.Y"].max()
     assert expected * 0.95 < moving < expected * 1.1
+
+
+def test_a_crop_has_its_place_in_the_picture(files, command_line, opened):
+    x, y, width, height = 11, 7, 30, 29
+    part, base = files / "part.exr", ["--size", f"{WIDTH}x{HEIGHT}", "--spp", "16", "-i", "path", "-q"]
+    command_line("render", files / "scene.toml", "-o", part, *base, "--crop", f"{x},{y},{width},{height}", "--aov", "depth")
+    with OpenEXR.File(str(part), separate_channels=True) as file:
+        header, planes = dict(file.header()), {name: channel.pixels for name, channel in file.channels().items()}
+    window = [corner.tolist() for corner in header["dataWindow"]]
+    assert window == [[x, y], [x + width - 1, y + height - 1]]
+    assert [corner.tolist() for corner in header["displayWindow"]] == [[0, 0], [WIDTH - 1, HEIGHT - 1]]
+    _, whole = opened
+    for name in ("R", "G", "B", "depth.Z"):
+        assert planes[name].tobytes() == whole[name][y : y + height, x : x + width].tobytes(), name
+    spec = oiio.ImageBuf(str(part)).spec()
+    assert (spec.x, spec.y, spec.width, spec.height) == (x, y, width, height)
+    assert (spec.full_x, spec.full_y, spec.full_width, spec.full_height) == (0, 0, WIDTH, HEIGHT)
+    # Another program's file with such windows is read as the whole picture, and crops are merged to it.
+    other = files / "other.exr"
+    oiio.ImageBuf(str(part)).write(str(other))
+    command_line("convert", other, "-o", files / "other.pfm", "-q")
+    assert oiio.ImageBuf(str(files / "other.pfm")).spec().width == width
+    rest = [(0, 0, WIDTH, y), (0, y, x, height), (x + width, y, WIDTH - x - width, height)]
+    rest.append((0, y + height, WIDTH, HEIGHT - y - height))
+    parts = [part]
+    for i, crop in enumerate(rest):
+        parts.append(files / f"rest{i}.exr")
+        crop = ",".join(map(str, crop))
+        command_line("render", files / "scene.toml", "-o", parts[-1], *base, "--crop", crop, "--aov", "depth")
+    command_line("merge", *parts, "-o", files / "merged.exr", "-q")
+    merged = oiio.ImageBuf(str(files / "merged.exr"))
+    assert (merged.spec().x, merged.spec().width, merged.spec().height) == (0, WIDTH, HEIGHT)
+    pixels = merged.get_pixels(oiio.FLOAT)
+    for name in ("R", "G", "B", "depth.Z"):
+        assert pixels[:, :, merged.spec().channelnames.index(name)].tobytes() == whole[name].tobytes(), name
+
+
+def test_costs_are_counted(opened):
+    _, planes = opened
+    assert (planes["rays.mean"] >= 1).all() and (planes["path_length.mean"] >= 1).all()
+    assert (planes["nodes.mean"] >= planes["rays.mean"]).all() and planes["tests.mean"].max() > 0
 
 
 def test_samples_are_counted(opened):

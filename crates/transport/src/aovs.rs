@@ -40,11 +40,19 @@ pub enum Aov {
     Groups,
     /// [`crate::Film::samples`].
     Samples,
+    /// [`crate::Work::rays`].
+    Rays,
+    /// [`crate::Work::path_length`].
+    PathLength,
+    /// [`crate::Work::nodes`].
+    Nodes,
+    /// [`crate::Work::tests`].
+    Tests,
 }
 
 impl Aov {
     /// The AOVs that are layers of the picture.
-    pub const ALL_LAYERS: [Aov; 15] = [
+    pub const ALL_LAYERS: [Aov; 19] = [
         Aov::Albedo,
         Aov::Normal,
         Aov::Depth,
@@ -60,6 +68,10 @@ impl Aov {
         Aov::Indirect,
         Aov::Groups,
         Aov::Samples,
+        Aov::Rays,
+        Aov::PathLength,
+        Aov::Nodes,
+        Aov::Tests,
     ];
 
     /// The name of its layer, if it is one.
@@ -81,6 +93,10 @@ impl Aov {
             Aov::Indirect => Some("indirect"),
             Aov::Groups => Some("group"),
             Aov::Samples => Some("samples"),
+            Aov::Rays => Some("rays"),
+            Aov::PathLength => Some("path_length"),
+            Aov::Nodes => Some("nodes"),
+            Aov::Tests => Some("tests"),
         }
     }
 
@@ -101,12 +117,33 @@ impl Aov {
 
     /// True for layers that are made once the picture is there.
     pub fn is_extra(self) -> bool {
-        self.is_visible() || self.is_light() || self == Aov::Samples
+        self.is_visible() || self.is_light() || self.is_work() || self == Aov::Samples
     }
 
     /// True for parts of the picture's light, for which its samples are taken once more.
     pub fn is_light(self) -> bool {
         matches!(self, Aov::Direct | Aov::Indirect | Aov::Groups)
+    }
+
+    /// True for what [`crate::Work`] has: costs, for which the picture's samples are taken once more, too.
+    pub fn is_work(self) -> bool {
+        matches!(self, Aov::Rays | Aov::PathLength) || self.is_accel_work()
+    }
+
+    /// True for layers of all samples of the picture, which ranges of them cannot be merged to.
+    pub fn needs_all_samples(self) -> bool {
+        self.is_light() || self.is_work()
+    }
+
+    /// The names of those layers, for messages.
+    pub fn names_that_need_all_samples() -> String {
+        let rows = AOVS.iter().filter(|row| row.aov.needs_all_samples());
+        rows.map(|row| row.entry.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// True for the work of the accelerator.
+    pub fn is_accel_work(self) -> bool {
+        matches!(self, Aov::Nodes | Aov::Tests)
     }
 }
 
@@ -196,6 +233,27 @@ pub const AOVS: &[AovEntry] = &[
         "the contribution of each light group; they add up to the picture: group_NAME.R, .G, .B",
     ),
     layer(Aov::Samples, "samples", "the number of samples of each pixel: samples.count"),
+    layer(
+        Aov::Rays,
+        "rays",
+        "rays that a sample of the pixel traces on average, shadow rays included: rays.mean; its cost, counted and not \
+         clocked, so that it is the same on every machine",
+    ),
+    layer(
+        Aov::PathLength,
+        "path_length",
+        "surfaces that the paths of a sample reach on average, from the camera and from lights: path_length.mean",
+    ),
+    layer(
+        Aov::Nodes,
+        "nodes",
+        "nodes of the accelerator that the rays of a sample visit on average: nodes.mean; depends on --accel",
+    ),
+    layer(
+        Aov::Tests,
+        "tests",
+        "primitives that the rays of a sample are tested with on average: tests.mean; depends on --accel",
+    ),
 ];
 
 const fn layer(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry {

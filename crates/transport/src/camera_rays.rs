@@ -115,6 +115,7 @@ impl<'a> CameraRays<'a> {
             lights: &self.lights,
             emission: &self.emission,
             photons: self.photons,
+            vertices: 0,
             events: None,
             found: None,
         }

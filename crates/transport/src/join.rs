@@ -6,7 +6,7 @@ use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
 /// Layers whose values are the same in every part that has the pixel.
-const EVEN: [&str; 11] = [
+const EVEN: [&str; 15] = [
     COVERAGE,
     "albedo.",
     "normal.",
@@ -18,6 +18,10 @@ const EVEN: [&str; 11] = [
     "direct.",
     "indirect.",
     "group_",
+    "rays.",
+    "path_length.",
+    "nodes.",
+    "tests.",
 ];
 /// How much of a pixel is not background.
 const COVERAGE: &str = "A";

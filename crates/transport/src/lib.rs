@@ -56,6 +56,7 @@ mod task;
 mod techniques;
 pub mod visible;
 pub mod window;
+pub mod work;
 
 pub use batch_means::{BatchMeans, push_variance};
 pub use checkpoint::{Checkpoint, Observer, Standing, Unobserved};
@@ -90,3 +91,4 @@ pub use strategies::{Strategies, StrategyPicture, strategies};
 pub use task::{Event, FoundLight, PathVertex, Task, VertexKind};
 pub use visible::{Visible, visible};
 pub use window::{Coverage, Window};
+pub use work::{Work, work};

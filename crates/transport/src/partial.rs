@@ -5,7 +5,7 @@ use crate::failures::PixelFailures;
 use crate::film::{Film, zeroed};
 use crate::limits::{MAX_SAMPLES, SAMPLE_BITS};
 use crate::window::{Coverage, Window};
-use bilux_pictures::Picture;
+use bilux_pictures::{Crop, Picture};
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -46,7 +46,23 @@ impl Film {
     pub fn window_to_picture(&self, window: Window) -> Result<Picture, FilmError> {
         let pixels =
             (0..window.pixels()).map(|i| window.position(i)).map(|(x, y)| self.pixel(x, y)).collect();
-        Ok(Picture::from_rgb(window.width as usize, window.height as usize, pixels)?)
+        let mut picture = Picture::from_rgb(window.width as usize, window.height as usize, pixels)?;
+        picture.crop = self.place_of(window);
+        Ok(picture)
+    }
+
+    /// The place of its window, unless that is the whole film.
+    pub fn crop(&self) -> Option<Crop> {
+        self.place_of(self.window())
+    }
+
+    fn place_of(&self, window: Window) -> Option<Crop> {
+        let crop = Crop {
+            x: window.x as usize,
+            y: window.y as usize,
+            whole: [self.width() as usize, self.height() as usize],
+        };
+        (window != Window::whole(self.width(), self.height())).then_some(crop)
     }
 
     /// The film's window with everything that [`Film::from_partial`] needs to continue from here, to be written as EXR.
@@ -237,7 +253,7 @@ pub(crate) fn not_a_film(what: String) -> FilmError {
 mod tests {
     use super::*;
     use bilux_math::Rgb;
-    use bilux_pictures::{Limits, WriteOptions, read_bytes, write_bytes};
+    use bilux_pictures::{Limits, WriteOptions, read_crop_bytes, write_bytes};
 
     fn film(window: Window) -> Film {
         let mut film = Film::windowed(9, 7, window, 30).unwrap();
@@ -255,7 +271,7 @@ mod tests {
         let mut film = film(Window { x: 2, y: 1, width: 4, height: 3 });
         film.add(3, 2, 1, Rgb::grey(f32::NAN));
         let bytes = write_bytes("exr", &film.to_partial().unwrap(), &WriteOptions::default()).unwrap();
-        let read = read_bytes(&bytes, None, &Limits::default()).unwrap();
+        let read = read_crop_bytes(&bytes, None, &Limits::default()).unwrap();
         let back = Film::from_partial(&read).unwrap();
         assert_eq!(back, film);
         assert_eq!(back.sample_failures(), film.sample_failures());

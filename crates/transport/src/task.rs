@@ -25,6 +25,8 @@ pub struct Task<'a, 's> {
     pub emission: &'a Emission,
     /// The photons of this iteration's light subpaths, where subpaths are merged.
     pub photons: Option<&'a Photons>,
+    /// Surfaces that the sample's paths have reached so far. Queues do not count them.
+    pub vertices: u32,
     /// Events along the path, if they are recorded.
     pub events: Option<Vec<Event>>,
     /// The light that the sample finds, light by light, if that is recorded.

@@ -245,9 +245,11 @@ def compares(browser: Browser, viewer: Viewer) -> None:
     page.mouse.up()
     assert 10 < int(divider.get_attribute("aria-valuenow")) < 60
     expect(page.locator("#command")).not_to_contain_text("--eye")
+    wide = page.locator("#other").evaluate("canvas => canvas.width")
     page.get_by_label("Differences", exact=True).check()
     expect(page.locator("#side-other")).to_have_text("Differences")
-    page.wait_for_timeout(3000)
+    # The map has fewer pixels, and does not wait for the next sample of the other picture.
+    page.wait_for_function("wide => document.getElementById('other').width < wide", arg=wide, timeout=10_000)
     shot(page, "differences")
     accessible(page)
     page.get_by_label("With", exact=True).select_option("")

@@ -278,6 +278,55 @@ fn twenty_browsers_of_which_one_stalls_take_no_more_memory_with_time() {
 }
 
 #[test]
+fn browsers_that_are_lost_are_forgotten_and_the_others_go_on() {
+    let viewer = Viewer::start();
+    run(async {
+        let mut other = Client::connect(&viewer).await;
+        // More than there are places, each in the middle of something, and none says goodbye.
+        for i in 0..150 {
+            let mut lost = match Client::connect_as(&viewer, &[]).await {
+                Ok(client) => client,
+                Err(_) => {
+                    tokio::time::sleep(Duration::from_millis(50)).await;
+                    continue;
+                }
+            };
+            lost.send(json!({ "do": "orbit", "by": [1, 0] })).await;
+            if i % 2 == 0 {
+                lost.send(json!({ "do": "pick", "at": [0.5, 0.5], "paths": 64 })).await;
+            }
+            drop(lost);
+        }
+        let picture = other.frame(Frame::rests).await.number("picture");
+        other.send(json!({ "do": "orbit", "by": [5, 0] })).await;
+        other.frame(|frame| frame.rests() && frame.number("picture") > picture).await;
+        Client::connect(&viewer).await.frame(|_| true).await;
+    });
+}
+
+#[test]
+fn absurd_windows_are_limited_or_refused_and_the_old_picture_stays() {
+    let viewer = Viewer::start();
+    run(async {
+        let mut client = Client::connect(&viewer).await;
+        let before = client.frame(Frame::rests).await;
+        for size in [json!([0, 0]), json!([-640, 480]), json!("wide"), json!([1]), json!(null)] {
+            client.send(json!({ "do": "size", "to": size })).await;
+            client.text("error", |_| true).await;
+        }
+        client.send(json!({ "do": "show", "what": "picture" })).await;
+        let after = client.frame(Frame::rests).await;
+        assert_eq!(after.header["full"], before.header["full"]);
+        client.send(json!({ "do": "size", "to": [1e300, 1e300] })).await;
+        let largest = client.frame(|frame| frame.header["full"] != before.header["full"]).await;
+        let [width, height] = [0, 1].map(|side| largest.header["full"][side].as_u64().unwrap());
+        assert!(width <= 4096 && height <= 4096, "{width} x {height}");
+        client.send(json!({ "do": "size", "to": [48, 40] })).await;
+        client.frame(|frame| frame.header["full"] == json!([48, 40])).await;
+    });
+}
+
+#[test]
 fn browsers_that_are_too_many_are_refused_until_one_leaves() {
     let viewer = Viewer::start();
     run(async {

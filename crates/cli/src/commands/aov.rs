@@ -1,5 +1,6 @@
 //! `--aov`: what a render writes besides its picture.
 
+use super::targets::is_stdout;
 use super::written::Layers;
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
@@ -21,12 +22,13 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     for name in &arguments.aov {
         aovs::find(name, &from_flag("--aov"))?;
     }
-    if arguments.samples.is_some() && layers(arguments).iter().any(|aov| aov.is_light()) {
+    if arguments.samples.is_some() && layers(arguments).iter().any(|aov| aov.needs_all_samples()) {
         bail!(
-            "--aov direct, indirect and groups need all samples: leave out --samples, or divide the picture by --crop"
+            "these layers need all samples ({}): leave out --samples, or divide the picture by --crop",
+            Aov::names_that_need_all_samples()
         );
     }
-    if !arguments.aov.is_empty() && arguments.output == Path::new("-") {
+    if !arguments.aov.is_empty() && is_stdout(arguments.output_or_stdout()) {
         bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
     }
     Ok(())
@@ -93,7 +95,7 @@ pub fn write(
     interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
     if let Some(interval) = &outcome.rendered.interval {
-        write_interval(interval, output, common)?;
+        write_interval((interval, outcome), output, common)?;
     }
     if !layers.kept.is_empty() && !is_exr(output) {
         let path = output.with_extension("layers.exr");
@@ -119,7 +121,7 @@ pub fn write(
         output::eprint(format_args!("{}: interrupted, so it was not written", folder.display()));
         return Ok(false);
     };
-    write_strategies(&strategies, &folder, &job.write_options()?)?;
+    write_strategies((&strategies, outcome), &folder, &job.write_options()?)?;
     if !common.quiet {
         output::eprint(format_args!(
             "{}: {} strategies for paths of up to {MAX_EDGES} edges, {seconds:.2} s{}",
@@ -145,7 +147,11 @@ pub fn is_exr(path: &Path) -> bool {
 }
 
 /// Writes `OUT.interval.exr`.
-fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow::Result<()> {
+fn write_interval(
+    (interval, outcome): (&Interval, &Outcome),
+    output: &Path,
+    common: &Common,
+) -> anyhow::Result<()> {
     let path = output.with_extension("interval.exr");
     if interval.degrees_of_freedom() == 0 {
         output::warning(format_args!(
@@ -154,7 +160,9 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
         ));
         return Ok(());
     }
-    bilux::pictures::write(&path, &interval.to_picture()?, &WriteOptions::default())?;
+    let mut picture = interval.to_picture()?;
+    picture.crop = outcome.rendered.film.crop();
+    bilux::pictures::write(&path, &picture, &WriteOptions::default())?;
     if !common.quiet {
         output::eprint(format_args!(
             "{}: 95% intervals of {} samples in {} replicates",
@@ -167,13 +175,19 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
 }
 
 /// Writes `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets that show all of them.
-fn write_strategies(strategies: &Strategies, folder: &Path, options: &WriteOptions) -> anyhow::Result<()> {
+fn write_strategies(
+    (strategies, outcome): (&Strategies, &Outcome),
+    folder: &Path,
+    options: &WriteOptions,
+) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{}: cannot create the folder", folder.display()))?;
     for one in &strategies.pictures {
         for (light, end) in [(Light::Weighted, ""), (Light::Unweighted, "-unweighted")] {
             let path: PathBuf = folder.join(format!("{}{end}.exr", one.strategy));
-            bilux::pictures::write(path, &picture(strategies, one, light)?, options)?;
+            let mut picture = picture(strategies, one, light)?;
+            picture.crop = outcome.rendered.film.crop();
+            bilux::pictures::write(path, &picture, options)?;
         }
     }
     for light in Light::BOTH {

@@ -1,5 +1,6 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
+use super::heat_map::heat_map;
 use super::{
     DONE, check_choices, check_folder, check_not_input, check_quality, is_picture, load, read_options_with,
     report_warnings, warn_lost_alpha,
@@ -23,7 +24,10 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
             check_quality(arguments.quality, output).map_err(usage::wrong)?;
             confines.enter(common)?;
-            let picture = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
+            let mut picture = bilux::pictures::read_crop(input, &Limits::new(common.max_memory))?;
+            if let Some(channel) = &arguments.heat_map {
+                picture = heat_map(&picture, channel, arguments.heat_max, common.quiet)?;
+            }
             warn_lost_alpha(&picture, output, None, common)?;
             let mut options = bilux::pictures::WriteOptions::default();
             options.quality = arguments.quality.unwrap_or(options.quality);
@@ -33,6 +37,11 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             bilux::formats::format_of_path(output).map_err(usage::wrong)?;
             if arguments.quality.is_some() {
                 return Err(usage::wrong(anyhow!("--quality is only for JPEG pictures: leave it out")));
+            }
+            if arguments.heat_map.is_some() {
+                return Err(usage::wrong(anyhow!(
+                    "--heat-map is of a picture, not of a scene: leave it out"
+                )));
             }
             confines.enter(common)?;
             let scene =

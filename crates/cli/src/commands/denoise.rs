@@ -28,7 +28,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;
     confines.enter(common)?;
-    let noisy = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
+    let noisy = bilux::pictures::read_crop(input, &Limits::new(common.max_memory))?;
     let begun = Instant::now();
     let smooth = denoise(&noisy, &*chosen.denoiser)?;
     let seconds = begun.elapsed().as_secs_f64();

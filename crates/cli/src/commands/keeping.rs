@@ -16,7 +16,7 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     let flags =
         [("--resume", arguments.lasting.resume), ("--checkpoint", arguments.lasting.checkpoint.is_some())];
     for (flag, _) in flags.iter().filter(|(_, is_given)| *is_given) {
-        if is_stdout(&arguments.output) {
+        if is_stdout(arguments.output_or_stdout()) {
             bail!(
                 "{flag}: a checkpoint lies next to the picture, so the picture needs a file name: -o picture.png"
             );

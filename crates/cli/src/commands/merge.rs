@@ -29,7 +29,7 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     let mut joined: Option<(Film, Display)> = None;
     let mut described = BTreeMap::new();
     for part in &arguments.parts {
-        let picture = bilux::pictures::read_with(part, &Limits::new(common.max_memory))?;
+        let picture = bilux::pictures::read_crop(part, &Limits::new(common.max_memory))?;
         let next = Film::from_partial(&picture).with_context(|| part.display().to_string())?;
         layers.add(&picture, &next);
         for (key, value) in picture.metadata.iter().filter(|(key, _)| is_handed_on(key)) {

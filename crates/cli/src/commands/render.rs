@@ -5,7 +5,7 @@ use super::frames::FinishedFrames;
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
 use super::written::is_part;
-use super::{DONE, aov, keeping, log, report_notes, watching};
+use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
@@ -28,6 +28,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     aov::check(arguments).map_err(usage::wrong)?;
     keeping::check(arguments).map_err(usage::wrong)?;
     watching::check(arguments).map_err(usage::wrong)?;
+    replaying::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
     if let Some(curve) = arguments.tonemap.as_deref().filter(|name| *name != "auto") {
@@ -80,8 +81,8 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     for file in studio.env.as_deref().into_iter().chain(studio.picture_behind()) {
         confines = confines.reading(file);
     }
-    if !is_stdout(&arguments.output) {
-        confines = confines.writing(&arguments.output);
+    if let Some(output) = arguments.output.as_deref().filter(|output| !is_stdout(output)) {
+        confines = confines.writing(output);
     }
     // Those of frames have names of their own.
     let folders: BTreeSet<&Path> = targets.iter().map(|target| folder_of(&target.output)).collect();
@@ -151,7 +152,7 @@ fn render_scene(
     let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
     let mut user = user.clone();
-    let is_whole = !is_part(arguments) && arguments.replay.is_none();
+    let is_whole = !is_part(arguments) && (arguments.replay.is_none() || arguments.output.is_some());
     if arguments.fast {
         with_fast_budget(&scene.settings, &mut user);
     }
@@ -170,9 +171,8 @@ fn render_scene(
             .iter()
             .for_each(|note| output::eprint(format_args!("{}: {note}", target.output.display())));
     }
-    if let Some([x, y, sample]) = arguments.replay {
-        output::print(job.replay(x, y, sample).context("--replay")?)?;
-        return Ok(DONE);
+    if arguments.replay.is_some() {
+        return replaying::run(input, &mut job, &target.output);
     }
     if by_default && common.verbose > 0 {
         log::report_default_budget(&target.output);

@@ -23,7 +23,8 @@ const NAMES: [&str; 2] = ["stem", "frame"];
 /// Pairs every scene with the name of its picture.
 pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
     check_result(arguments)?;
-    check_names("-o", &arguments.output, arguments)?;
+    let pattern = arguments.output_or_stdout();
+    check_names("-o", pattern, arguments)?;
     if let Some(stats) = arguments.stats.as_deref().filter(|path| !is_stdout(path)) {
         check_names("--stats", stats, arguments)?;
         check_folder(stats)?;
@@ -33,7 +34,7 @@ pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
         let stem =
             scene.file_stem().filter(|_| !is_stdout(scene)).map_or("stdin".into(), |s| s.to_string_lossy());
         let named = |pattern: &Path| PathBuf::from(pattern.to_string_lossy().replace("{stem}", &stem));
-        let output = named(&arguments.output);
+        let output = named(pattern);
         if !is_stdout(&output) {
             check_output(&output, arguments)?;
         }
@@ -52,7 +53,7 @@ pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
 fn check_result(arguments: &Render) -> anyhow::Result<()> {
     let stats = arguments.stats.as_deref().is_some_and(is_stdout);
     let takers = [
-        ("-o -", is_stdout(&arguments.output)),
+        ("-o -", arguments.output.as_deref().is_some_and(is_stdout)),
         ("--json", arguments.json),
         ("--stats -", stats),
         ("--replay", arguments.replay.is_some()),

@@ -25,7 +25,7 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
         if arguments.scenes.iter().any(|scene| is_stdout(scene)) {
             bail!("--watch: a scene on standard input cannot be watched: name a file");
         }
-        if is_stdout(&arguments.output) {
+        if is_stdout(arguments.output_or_stdout()) {
             bail!("--watch: standard output takes one picture: name a file, such as -o picture.png");
         }
     }

@@ -5,7 +5,7 @@ use super::guard::guarded;
 use super::primaries::to_rec709;
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
-use crate::{Limits, Picture, PictureError};
+use crate::{Crop, Limits, Picture, PictureError};
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::math::Vec2;
@@ -30,7 +30,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: false,
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
-    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits, Wanted::DisplayWindow)),
     read_rgba8: None,
     write: Some(exr_write::write),
 };
@@ -40,13 +40,27 @@ pub(super) const FORMAT: &str = "EXR";
 /// No renderer writes this many, and each of them costs time whatever its size.
 const MAX_CHANNELS: usize = 4096;
 
-/// The picture is the content of the display window: outside a part's data window it is zero. If there are several
+/// What becomes the picture.
+#[derive(Clone, Copy, PartialEq)]
+enum Wanted {
+    /// The display window: outside a part's data window it is zero.
+    DisplayWindow,
+    /// The visible part of the data window, if the file has a single part.
+    DataWindow,
+}
+
+/// Reads what is visible of the data window ([`super::read_crop_bytes`]).
+pub(super) fn read_crop(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    guarded(FORMAT, || read(bytes, limits, Wanted::DataWindow))
+}
+
+/// If there are several
 /// parts, their names are prefixed to those of their channels, except for the first part with plain colours. Colours
 /// with other primaries are converted to Rec. 709; all other samples stay as they are.
-fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+fn read(bytes: &[u8], limits: &Limits, wanted: Wanted) -> Result<Picture, PictureError> {
     let header_fault = |error| explain(error, bytes, None);
     let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(header_fault)?;
-    let mut frame = Frame::new(reader.meta_data(), limits)?;
+    let mut frame = Frame::new(reader.meta_data(), limits, wanted)?;
     let meta = reader.meta_data().clone();
     for chunk in ::exr::block::reader::Reader::all_chunks(reader, false).map_err(header_fault)? {
         let chunk = chunk.map_err(header_fault)?;
@@ -77,9 +91,10 @@ fn place_of(block: &CompressedBlock) -> String {
     }
 }
 
-/// The display window, and the planes that receive the contents of the parts.
+/// The window that becomes the picture, and the planes that receive the contents of the parts.
 struct Frame {
     window: IntegerBounds,
+    crop: Option<Crop>,
     parts: Vec<Part>,
 }
 
@@ -103,12 +118,9 @@ enum Samples {
 
 impl Frame {
     /// Allocates all planes, after every size has been checked.
-    fn new(meta: &MetaData, limits: &Limits) -> Result<Frame, PictureError> {
+    fn new(meta: &MetaData, limits: &Limits, wanted: Wanted) -> Result<Frame, PictureError> {
         let channels: usize = meta.headers.iter().map(|header| header.channels.list.len()).sum();
-        let window = meta
-            .headers
-            .first()
-            .map_or(IntegerBounds::zero(), |header| header.shared_attributes.display_window);
+        let (window, crop) = window(meta, wanted);
         let (width, height) = (window.size.width() as u64, window.size.height() as u64);
         if channels > MAX_CHANNELS {
             return Err(unsupported(format!("a picture of {channels} channels"), "save fewer of them"));
@@ -143,10 +155,10 @@ impl Frame {
                 bytes_per_pixel: header.channels.bytes_per_pixel,
             });
         }
-        Ok(Frame { window, parts })
+        Ok(Frame { window, crop, parts })
     }
 
-    /// Copies the visible part of a block into the display window. In a block, each row has the samples of the first
+    /// Copies the visible part of a block into the window. In a block, each row has the samples of the first
     /// channel, then of the second, and so on.
     fn insert(&mut self, block: &UncompressedBlock) -> Result<(), PictureError> {
         let (width, height) = (self.window.size.width() as i64, self.window.size.height() as i64);
@@ -181,6 +193,7 @@ impl Frame {
 
     fn into_picture(self, meta: &MetaData) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(self.window.size.width(), self.window.size.height())?;
+        picture.crop = self.crop;
         let mut planes: Vec<Plane> = self.parts.into_iter().flat_map(|part| part.planes).collect();
         // The file stores them in the order of their names: A, B, G, R.
         planes.sort_by_cached_key(|plane| order(&plane.name));
@@ -216,6 +229,32 @@ impl Frame {
         }
         Ok(picture)
     }
+}
+
+/// The window that becomes the picture, and its place in the display window if it is smaller than that.
+fn window(meta: &MetaData, wanted: Wanted) -> (IntegerBounds, Option<Crop>) {
+    let whole = |header: &Header| header.shared_attributes.display_window;
+    let display = meta.headers.first().map_or(IntegerBounds::zero(), whole);
+    let ([header], Wanted::DataWindow) = (&meta.headers[..], wanted) else { return (display, None) };
+    // The part of the data window that is in the display window, along one axis: its begin and its length.
+    let along = |[shown, shown_length]: [i64; 2], [data, length]: [i64; 2]| {
+        let first = shown.max(data);
+        (first, (shown + shown_length).min(data + length) - first)
+    };
+    let (at, origin) = (display.position, header.own_attributes.layer_position);
+    let (size, data) = (display.size, header.layer_size);
+    let (x, columns) = along([at.x().into(), size.width() as i64], [origin.x().into(), data.width() as i64]);
+    let (y, rows) = along([at.y().into(), size.height() as i64], [origin.y().into(), data.height() as i64]);
+    let is_all = columns == size.width() as i64 && rows == size.height() as i64;
+    if is_all || columns <= 0 || rows <= 0 {
+        return (display, None);
+    }
+    let crop = Crop {
+        x: (x - i64::from(at.x())) as usize,
+        y: (y - i64::from(at.y())) as usize,
+        whole: [size.width(), size.height()],
+    };
+    (IntegerBounds::new((x as i32, y as i32), (columns as usize, rows as usize)), Some(crop))
 }
 
 impl Samples {

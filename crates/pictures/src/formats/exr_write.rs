@@ -6,7 +6,8 @@
 use super::WriteOptions;
 use super::exr::FORMAT;
 use super::primaries::REC709;
-use crate::{Alpha, ColourSpace, Picture, PictureError};
+use crate::limits::MAX_SIDE;
+use crate::{Alpha, ColourSpace, Crop, Picture, PictureError};
 use ::exr::compression::Compression;
 use ::exr::math::Vec2;
 use ::exr::meta::BlockDescription;
@@ -39,6 +40,7 @@ pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, Pict
     let linear = picture.colour_space == ColourSpace::LinearRec709 && picture.alpha == Alpha::Premultiplied;
     let picture = if linear { Cow::Borrowed(picture) } else { Cow::Owned(picture.clone().into_linear()) };
     let planes = sorted_planes(&picture)?;
+    let [_, top] = corner(&picture)?;
     let mut bytes = header_bytes(&picture, &planes)?;
     let header = library_header(&picture, &planes);
     let blocks = picture.height().div_ceil(BLOCK_ROWS);
@@ -54,11 +56,26 @@ pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, Pict
         let packed = Compression::ZIP16
             .compress_image_section_to_le(&header, data, section)
             .map_err(|error| unwritable(error.to_string()))?;
-        bytes.extend_from_slice(&(first as i32).to_le_bytes());
+        bytes.extend_from_slice(&(top + first as i32).to_le_bytes());
         bytes.extend_from_slice(&(packed.len() as i32).to_le_bytes());
         bytes.extend_from_slice(&packed);
     }
     Ok(bytes)
+}
+
+/// The left and upper corner of the picture in the larger one that it is a part of.
+fn corner(picture: &Picture) -> Result<[i32; 2], PictureError> {
+    let Some(Crop { x, y, whole }) = picture.crop else { return Ok([0; 2]) };
+    let fits = |at: usize, side: usize, whole: usize| {
+        whole as u64 <= MAX_SIDE && at.checked_add(side).is_some_and(|end| end <= whole)
+    };
+    if !fits(x, picture.width(), whole[0]) || !fits(y, picture.height(), whole[1]) {
+        let [width, height] = whole;
+        return Err(unwritable(format!(
+            "its place at {x},{y} is not within a picture of {width} x {height}"
+        )));
+    }
+    Ok([x as i32, y as i32])
 }
 
 /// All planes in the order of their names, as the format requires.
@@ -103,9 +120,14 @@ fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
 
 /// Everything before the offset table.
 fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureError> {
-    let right_bottom = [picture.width() as i32 - 1, picture.height() as i32 - 1];
-    let window =
-        [[0; 2], right_bottom].as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect::<Vec<u8>>();
+    let corner @ [left, top] = corner(picture)?;
+    let size = [picture.width(), picture.height()];
+    let window = |corners: [[i32; 2]; 2]| -> Vec<u8> {
+        corners.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect()
+    };
+    let data_window = window([corner, [left + size[0] as i32 - 1, top + size[1] as i32 - 1]]);
+    let whole = picture.crop.map_or(size, |crop| crop.whole);
+    let display_window = window([[0; 2], whole.map(|side| side as i32 - 1)]);
     let long = planes.iter().map(|plane| plane.name).chain(picture.metadata.keys().map(|key| &key[..]));
     let long_names = if long.into_iter().any(|name| name.len() > 31) { 0x400 } else { 0 };
     let mut bytes = vec![0x76, 0x2f, 0x31, 0x01];
@@ -122,8 +144,8 @@ fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureE
         &floats(&REC709.as_flattened().iter().map(|c| *c as f32).collect::<Vec<_>>()),
     );
     attribute("compression", "compression", &[3]);
-    attribute("dataWindow", "box2i", &window);
-    attribute("displayWindow", "box2i", &window);
+    attribute("dataWindow", "box2i", &data_window);
+    attribute("displayWindow", "box2i", &display_window);
     attribute("lineOrder", "lineOrder", &[0]);
     attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
     attribute("screenWindowCenter", "v2f", &[0; 8]);

@@ -130,6 +130,23 @@ pub fn read_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, Pic
     read_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
 }
 
+/// The same, but of a picture that is a part of a larger one only that part, with its place as [`Picture::crop`]. Otherwise it
+/// comes as the larger picture, which is black around it.
+pub fn read_crop(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, PictureError> {
+    let path = path.as_ref();
+    let bytes = disk::read_within(path, limits).map_err(|error| error.in_file(path))?;
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    read_crop_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
+}
+
+/// The same from memory, as [`read_bytes`].
+pub fn read_crop_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
+    match row_of(bytes, hint)? {
+        row if row.entry.name == exr::ENTRY.entry.name => exr::read_crop(bytes, limits),
+        row => (row.read)(bytes, limits),
+    }
+}
+
 /// Reads a picture from memory. `hint`, a format's name or extension, is used only if the first bytes do not
 /// determine the format.
 pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {

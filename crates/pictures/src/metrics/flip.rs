@@ -9,6 +9,7 @@ use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{exp_f64, powf_f64};
+use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The row of `flip`.
@@ -47,16 +48,20 @@ const FEATURE_WIDTH: f64 = 0.082;
 
 /// The error of every pixel, 0..=1, in rows.
 pub(super) fn map(pair: &Pair) -> Vec<f32> {
-    let sides = pair.shown.each_ref().map(|side| opponent(side, pair.width));
-    let lab = sides.each_ref().map(filtered_lab);
-    let features = sides.each_ref().map(|side| Features::new(&side[0]));
+    let seen = |side: &[Rgb]| {
+        let side = opponent(side, pair.width);
+        rayon::join(|| filtered_lab(&side), || Features::new(&side[0]))
+    };
+    let [a, b] = &pair.shown;
+    let ((lab_a, features_a), (lab_b, features_b)) = rayon::join(|| seen(a), || seen(b));
+    let (lab, features) = ([lab_a, lab_b], [features_a, features_b]);
     let most = powf_f64(hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0])), COLOUR_EXPONENT);
     let error = |i: usize| {
         let colour = redistributed(powf_f64(hyab(lab[0][i], lab[1][i]), COLOUR_EXPONENT), most);
         let feature = features[0].difference(&features[1], i);
         powf_f64(colour, 1.0 - feature) as f32
     };
-    (0..pair.width * pair.height).map(error).collect()
+    (0..pair.width * pair.height).into_par_iter().map(error).collect()
 }
 
 /// Rec. 709 primaries and D65, (0.31271, 0.32902), as rows for X, Y and Z.

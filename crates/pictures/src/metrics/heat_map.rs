@@ -20,8 +20,17 @@ pub fn heat_map(pair: &Pair, kind: HeatMap) -> Result<Picture, PictureError> {
         HeatMap::Flip => flip::map(pair),
         HeatMap::Absolute => absolute(pair),
     };
-    let colours = errors.into_iter().map(ramp).collect();
-    let mut picture = Picture::from_rgb(pair.width, pair.height, colours)?;
+    false_colours((pair.width, pair.height), &errors, 1.0)
+}
+
+/// Samples of so many columns and rows as colours of [`ramp`], from 0 to `most`, ready for a display.
+pub fn false_colours(
+    (width, height): (usize, usize),
+    samples: &[f32],
+    most: f32,
+) -> Result<Picture, PictureError> {
+    let share = |&sample: &f32| ramp(if sample == 0.0 { 0.0 } else { sample / most });
+    let mut picture = Picture::from_rgb(width, height, samples.iter().map(share).collect())?;
     picture.colour_space = ColourSpace::Srgb;
     Ok(picture)
 }

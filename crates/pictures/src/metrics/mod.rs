@@ -12,7 +12,7 @@ mod relmse;
 mod rmse;
 mod ssim;
 
-pub use heat_map::{HeatMap, heat_map, ramp};
+pub use heat_map::{HeatMap, false_colours, heat_map, ramp};
 
 use crate::tonemap::{TONEMAPS, ToneMapEntry, to_display};
 use crate::{Picture, PictureError};

@@ -130,6 +130,7 @@ impl<'w, const N: usize> Walk<'w, N> {
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
         let hit = task.tracer.closest(&self.ray);
         let vertex = hit.and_then(|surface| self.vertex_at(surface, task));
+        task.vertices += u32::from(vertex.is_some());
         let is_light = self.mode == TransportMode::Importance;
         let kind = if is_light { VertexKind::LightPath } else { VertexKind::Surface };
         match &vertex {

@@ -78,6 +78,7 @@ impl RayTree {
             task.note(node.depth, || format!("leaves the scene towards {direction}"));
             return task.scene().background(direction, node.depth);
         };
+        task.vertices += 1;
         let outside = surface.n_geom.dot(direction) <= 0.0;
         let material = task.scene().material(&surface);
         let sigma_a = if outside { node.sigma_a } else { material.sigma_a() };

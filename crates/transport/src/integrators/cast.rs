@@ -58,6 +58,7 @@ impl PixelIntegrator for Cast {
             task.note(0, || "leaves the scene".to_owned());
             return task.scene().background(direction, 0);
         };
+        task.vertices += 1;
         task.note(0, || format!("hits object {} at {}", surface.object, surface.p));
         let material = task.scene().material(&surface);
         let emission = task.scene().emission(&surface, -direction);

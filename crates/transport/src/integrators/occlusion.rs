@@ -41,6 +41,7 @@ impl PixelIntegrator for Occlusion {
             task.note(0, || "leaves the scene".to_owned());
             return Rgb::WHITE;
         };
+        task.vertices += 1;
         let faces_eye = surface.n_shade.dot(Vec3::from(ray.direction)) < 0.0;
         let normal = if faces_eye { surface.n_shade } else { -surface.n_shade };
         let wi = Frame::from_normal(normal).to_world(warp::sample_cosine_hemisphere(task.sampler.next_2d()));

@@ -94,6 +94,7 @@ impl PixelIntegrator for Path {
                 return walk.light;
             };
             walk.beta *= passed;
+            task.vertices += 1;
             if !self.interact(&mut walk, &surface, task) {
                 return walk.light;
             }

@@ -8,7 +8,7 @@ use super::{Level, Stage, settings};
 use crate::frame::{Facts, Frame};
 use crate::message::Other;
 use bilux::pictures::metrics::{HeatMap, Pair, heat_map};
-use bilux::pictures::{METRICS, Picture, WriteOptions};
+use bilux::pictures::{METRICS, Picture, WriteOptions, downscaled};
 use bilux::scene::Parameters;
 use bilux::transport::NoiseMeter;
 use bilux::{Budget, Edit, Error, Session};
@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 const SHOWN_EVERY: Duration = Duration::from_millis(400);
 /// How often the map of differences is made, which takes long.
 const MAPPED_EVERY: Duration = Duration::from_millis(1500);
+/// The largest number of its pixels: the map takes about 0.2 s then, and nothing interrupts it.
+const MAPPED_PIXELS: usize = 250_000;
 
 impl Stage {
     /// Compares the picture with another one, or with none.
@@ -40,7 +42,7 @@ impl Stage {
     /// Shows where the two pictures differ, or the other one.
     pub(super) fn show_differences(&mut self, are_shown: bool) {
         if let Some(it) = &mut self.comparison {
-            (it.differences, it.is_shown) = (are_shown, false);
+            (it.differences, it.is_shown, it.is_due) = (are_shown, false, true);
         }
     }
 
@@ -56,7 +58,9 @@ impl Stage {
     /// True if the other picture is to be refined next: it has had less time than the picture.
     pub(super) fn is_turn_of_other(&self) -> bool {
         let Some(it) = self.comparison.as_ref().filter(|it| it.goes_on()) else { return false };
-        self.level == Level::Full && self.session.samples() > 0 && (self.rests || it.worked <= self.worked)
+        self.level == Level::Full
+            && self.session.samples() > 0
+            && (it.is_due || self.rests || it.worked <= self.worked)
     }
 
     /// Refines the other picture a little, and shows it. If that fails, nothing is compared any more.
@@ -72,6 +76,10 @@ impl Stage {
             self.bring_up_to_date(it)?;
         }
         let Some(session) = &mut it.session else { return Ok(()) };
+        if std::mem::take(&mut it.is_due) && session.samples() > 0 {
+            // Its next sample may take seconds.
+            return self.publish_other(it);
+        }
         let (begun, before) = (Instant::now(), session.samples());
         let budget = if before > 0 { Budget::Time(STEP) } else { Budget::Samples(1) };
         session.step(budget, &Interruptible(&self.inbox))?;
@@ -165,6 +173,14 @@ impl Stage {
     }
 }
 
+/// The map of differences as people see them, of so many pixels that requests need not wait for it.
+fn map_of(a: &Picture, b: &Picture, options: &WriteOptions) -> Result<Picture, Error> {
+    let factor = (1..).find(|factor| a.pixel_count() / (factor * factor) <= MAPPED_PIXELS).unwrap_or(1);
+    let (a, b) = (downscaled(a, factor)?, downscaled(b, factor)?);
+    let pair = Pair::new(&a, &b, options.exposure, options.tone_map)?;
+    Ok(heat_map(&pair, HeatMap::Flip)?)
+}
+
 /// How far two pictures are from each other, relative to their light; and a map of that, as people see it, if wanted.
 fn differences(
     a: &Picture,
@@ -174,6 +190,6 @@ fn differences(
 ) -> Result<(Option<f64>, Option<Picture>), Error> {
     let pair = Pair::new(a, b, options.exposure, options.tone_map)?;
     let squared = METRICS.iter().find(|row| row.entry.name == "relmse").map(|row| (row.evaluate)(&pair));
-    let map = is_wanted.then(|| heat_map(&pair, HeatMap::Flip)).transpose()?;
+    let map = if is_wanted { Some(map_of(a, b, options)?) } else { None };
     Ok((squared.filter(|x| x.is_finite()).map(f64::sqrt), map))
 }

@@ -25,6 +25,8 @@ pub(super) struct Comparison {
     pub(super) worked: Duration,
     pub(super) last_shown: Instant,
     pub(super) is_shown: bool,
+    /// Whether it is to be shown at once, as it is: something else of it is asked for.
+    pub(super) is_due: bool,
 }
 
 impl Comparison {
@@ -42,6 +44,7 @@ impl Comparison {
             worked: Duration::ZERO,
             last_shown: Instant::now(),
             is_shown: false,
+            is_due: false,
         }
     }
 

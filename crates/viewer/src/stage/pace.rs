@@ -6,7 +6,7 @@ use std::time::Duration;
 const SOON: Duration = Duration::from_millis(40);
 
 /// The maximum divisor of width and height.
-const SMALLEST: u32 = 12;
+const SMALLEST: u32 = 16;
 
 /// What pictures have taken so far.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ mod tests {
         }
         assert_eq!(pace.divisor(size), 1);
         pace.learn(size, Duration::from_secs(9), Duration::from_secs(900));
-        assert_eq!(divided(size, pace.divisor(size)), [107, 60]);
+        assert_eq!(divided(size, pace.divisor(size)), [80, 45]);
         assert_eq!(divided([3, 1], 12), [1, 1]);
     }
 }

@@ -9,7 +9,7 @@ use crate::output;
 use crate::sandbox::SandboxPaths;
 use anyhow::bail;
 use bilux::pictures::metrics::{HeatMap, METRICS, Pair, Report, heat_map};
-use bilux::pictures::{Picture, TONEMAPS};
+use bilux::pictures::{Limits, Picture, TONEMAPS};
 use serde_json::Value;
 use std::path::Path;
 
@@ -94,7 +94,7 @@ struct Compared {
 impl Compared {
     /// Reads and compares them; warns of samples that are not finite.
     fn of(name: &str, picture: &Path, reference: &Path) -> anyhow::Result<Compared> {
-        let (picture, reference) = (bilux::pictures::read(picture)?, bilux::pictures::read(reference)?);
+        let (picture, reference) = read_pair(picture, reference)?;
         let report = bilux::pictures::compare(&picture, &reference)?;
         if report.non_finite != [0, 0] {
             let ([a, b], of) = (report.non_finite, if name.is_empty() { "" } else { ": " });
@@ -109,6 +109,19 @@ impl Compared {
         let pair = Pair::new(&self.picture, &self.reference, 0.0, &TONEMAPS[0])?;
         Ok(heat_map(&pair, HeatMap::Flip)?)
     }
+}
+
+/// Reads two pictures: of two crops only these, but as the picture that a crop belongs to if the other one is that.
+fn read_pair(picture: &Path, reference: &Path) -> anyhow::Result<(Picture, Picture)> {
+    let limits = Limits::default();
+    let (a, b) =
+        (bilux::pictures::read_crop(picture, &limits)?, bilux::pictures::read_crop(reference, &limits)?);
+    if [a.width(), a.height()] == [b.width(), b.height()]
+        && (a.crop == b.crop || a.crop.is_none() || b.crop.is_none())
+    {
+        return Ok((a, b));
+    }
+    Ok((bilux::pictures::read(picture)?, bilux::pictures::read(reference)?))
 }
 
 fn as_json(report: &Report) -> Value {

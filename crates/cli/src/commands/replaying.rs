@@ -1,0 +1,60 @@
+//! `--replay`: one sample again, in words and, with a name for a picture, drawn into that.
+
+use super::input::Input;
+use super::targets::is_stdout;
+use super::{DONE, aov};
+use crate::progress::Report;
+use crate::{output, usage};
+use anyhow::Context;
+use bilux::Job;
+use bilux::path_drawing::with_path;
+use bilux::pictures::formats::format_of_path;
+use bilux::pictures::{WriteOptions, to_display};
+use std::path::Path;
+
+/// Prints the sample, and draws it into the picture if that has a name.
+pub fn run(input: &Input, job: &mut Job, path: &Path) -> anyhow::Result<u8> {
+    let Input { arguments, common, interrupt, .. } = *input;
+    let [x, y, sample] = arguments.replay.unwrap_or_default();
+    let light_path = job.light_path(x, y, sample).context("--replay")?;
+    output::print(&light_path.replay)?;
+    if is_stdout(path) {
+        return Ok(DONE);
+    }
+    let denoiser = job.denoiser(format_of_path(path)?.for_display).map_err(usage::wrong)?;
+    let label = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let report = Report::new(&label, common, interrupt.clone());
+    interrupt.renders(true);
+    let outcome = job.render(&report)?;
+    let seconds = report.finish();
+    interrupt.renders(false);
+    let picture = match denoiser.filter(|_| !outcome.rendered.cancelled) {
+        Some(chosen) => outcome.denoised(&chosen)?,
+        None => outcome.picture()?,
+    };
+    let options = job.write_options_for(&picture)?;
+    let shown = to_display(&picture, options.exposure, options.tone_map)?;
+    let mut drawn = with_path(&shown, &light_path)?;
+    job.describe(&mut drawn, &outcome, None);
+    // Where there is nothing but the path, its exposure and its curve are in the picture already.
+    let options =
+        WriteOptions { quality: arguments.quality.unwrap_or(options.quality), ..WriteOptions::default() };
+    bilux::pictures::write(path, &drawn, &options)?;
+    if !common.quiet {
+        output::eprint(format_args!(
+            "{}: the path of sample {sample} of pixel {x},{y} drawn into the picture, {seconds:.2} s",
+            path.display()
+        ));
+    }
+    Ok(if outcome.rendered.cancelled { interrupt.exit_status() } else { DONE })
+}
+
+/// Refuses, before any work, what a drawn path does not go with.
+pub fn check(arguments: &crate::arguments::Render) -> anyhow::Result<()> {
+    if arguments.replay.is_some() && !aov::layers(arguments).is_empty() {
+        anyhow::bail!(
+            "--replay draws a path and writes no layers: leave out --aov, or render without --replay"
+        );
+    }
+    Ok(())
+}
