@@ -110,8 +110,7 @@ impl Writer {
                 }
                 changed = self.state.changed() => {
                     changed.map_err(|_| Closed)?;
-                    let state = self.state.borrow_and_update().to_string();
-                    self.send(state.into()).await?;
+                    self.send_state().await?;
                 }
                 changed = self.frames.changed(), if is_ready => {
                     changed.map_err(|_| Closed)?;
@@ -127,8 +126,17 @@ impl Writer {
         }
     }
 
+    async fn send_state(&mut self) -> Result<(), Closed> {
+        let state = self.state.borrow_and_update().to_string();
+        self.send(state.into()).await
+    }
+
+    /// Sends a frame, after the state if that was published before it.
     async fn send_frame(&mut self, frame: Option<std::sync::Arc<Frame>>) -> Result<(), Closed> {
         let Some(frame) = frame else { return Ok(()) };
+        if self.state.has_changed().map_err(|_| Closed)? {
+            self.send_state().await?;
+        }
         self.under_way.push(frame.number);
         self.send(ws::Message::Binary(frame.message.clone())).await
     }

@@ -250,9 +250,14 @@ impl Stage {
         }
     }
 
+    /// Publishes the state, if it is another one than before: each answers something for those who watch.
     fn publish_state(&mut self) {
         let state = state::state(self).to_string();
-        self.outlets.state.send_replace(state.into());
+        self.outlets.state.send_if_modified(|last| {
+            let is_new = **last != *state;
+            *last = state.into();
+            is_new
+        });
     }
 
     /// The settings that those who watch have asked for, with the camera where they have moved it.

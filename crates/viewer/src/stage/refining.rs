@@ -160,11 +160,12 @@ impl Stage {
         self.frame += 1;
         let frame = Frame::new(self.frame, &picture, &options, self.size, &facts)?;
         self.facts = facts;
-        self.outlets.frames.send_replace(Some(Arc::new(frame)));
-        self.last_shown = Instant::now();
         if self.rests {
+            // Before the frame: after a picture that rests, nothing more may come.
             self.publish_state();
         }
+        self.outlets.frames.send_replace(Some(Arc::new(frame)));
+        self.last_shown = Instant::now();
         Ok(())
     }
 }
