@@ -185,6 +185,8 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
         found.push(Finding { what, options, advice });
     };
     let percent = |share: f32| format!("{:.0}%", share * 100.0);
+    // What `auto` has chosen already only takes more time.
+    let by_auto = if choice.is_some() { "--noise 0.02 --time-limit 120" } else { "-i auto" };
     if m.surfaces == 0.0 {
         add(
             "the camera sees no surface at all".to_owned(),
@@ -203,7 +205,7 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
             "{} of the light of '{name}' meets glass or a mirror first, and surfaces behind that cannot be connected with it",
             percent(*share)
         );
-        add(what, &["-i auto"], None);
+        add(what, &[by_auto], None);
     }
     if let Some(open) = m.open.filter(|open| m.has_surroundings && *open < 0.1 && *open > 0.0) {
         let what = format!(
@@ -214,7 +216,7 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
     }
     if m.lights > MANY_LIGHTS {
         let what = format!("{} lights: each event of a path samples only some of them", m.lights);
-        add(what, &["-i auto"], None);
+        add(what, &[by_auto], None);
     }
     if m.backs > 0.02 {
         let what = format!("{} of the visible surfaces are opaque and show their backs", percent(m.backs));
@@ -235,10 +237,10 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
         let factor = slower(path, best);
         if factor > 1.5 {
             let what = format!(
-                "to the same noise, path tracing alone takes {factor:.1} times as long as '{}'",
+                "to the same noise, path tracing alone takes {factor:.1} times as long as '{}', which auto has chosen",
                 best.name
             );
-            add(what, &["-i auto"], None);
+            add(what, &[], None);
         }
         if best.lost > 1e-3 {
             let what = format!("'{}' cannot find {:.1}% of the light", best.name, best.lost * 100.0);
@@ -301,6 +303,10 @@ mod tests {
         let bulb = found.measures.onto_glass.iter().find(|(name, _)| name == "bulb");
         assert!(bulb.is_some_and(|(_, share)| *share > 0.99), "{:?}", found.measures);
         assert!(found.findings.iter().any(|finding| finding.what.contains("'bulb'")), "{:?}", found.findings);
+        let advises_auto = |found: &Explanation| found.findings.iter().any(|it| it.options == ["-i auto"]);
+        assert!(!advises_auto(&found), "auto is used already");
+        scene.settings.set("integrator", "path");
+        assert!(advises_auto(&explained(&scene)));
         scene.objects.pop();
         assert!(explained(&scene).measures.onto_glass.iter().all(|(name, _)| name != "bulb"));
     }

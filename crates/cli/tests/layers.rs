@@ -134,7 +134,8 @@ fn costs_are_layers_and_heat_maps() {
     assert!(brightest("rays.png") > 0.9, "the maximum is pale yellow");
     assert!(brightest("scaled.png") < 0.1, "of 1000 it is little");
     for (options, status, said) in [
-        ("a.layers.exr -o x.png --heat-map rayz", 2, "did you mean 'rays.mean'?"),
+        ("a.layers.exr -o x.png --heat-map rayz", 2, "did you mean 'rays'?"),
+        ("a.layers.exr -o x.png --heat-map rays.men", 2, "did you mean 'rays.mean'?"),
         ("a.layers.exr -o x.png --heat-map rays --heat-max 0", 2, "larger than 0"),
         ("scene.toml -o x.obj --heat-map rays", 2, "of a picture"),
     ] {

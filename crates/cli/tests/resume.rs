@@ -181,7 +181,7 @@ fn a_render_without_resume_keeps_the_checkpoint_until_it_has_got_further() {
     // A draft of the same picture, with fewer samples.
     let draft = line.replace("--spp 4000", "--spp 1");
     let said = stderr(&run(path, &format!("{draft} -o a.png")).success());
-    assert!(said.contains("--resume goes on from them"), "{said}");
+    assert!(said.contains("--resume continues from them"), "{said}");
     assert!(std::fs::read(&file).unwrap() == kept, "it is lost");
     // And one that is interrupted at once.
     assert!(!start_and_signal(

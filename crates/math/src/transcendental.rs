@@ -43,7 +43,7 @@ pub fn turns_of_point(x: f32, y: f32) -> f32 {
     let rest = if is_steep { (slope - 1.0) / (slope + 1.0) } else { slope };
     let z = rest * rest;
     let series = (8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1;
-    let angle = (series * z - 3.333_294_9e-1) * z * rest + rest;
+    let angle = (series * z - 3.333_295e-1) * z * rest + rest;
     let eighth = angle * (1.0 / std::f32::consts::TAU) + if is_steep { 0.125 } else { 0.0 };
     let quarter = if y.abs() > x.abs() { 0.25 - eighth } else { eighth };
     let half = if x < 0.0 { 0.5 - quarter } else { quarter };

@@ -2,8 +2,8 @@
 
 use crate::output;
 use crate::settings_from::from_flag;
-use bilux::pictures::Picture;
 use bilux::pictures::metrics::false_colours;
+use bilux::pictures::{Channel, Picture};
 use bilux::scene::SceneError;
 
 /// The channel of this name, or the first of the layer of this name, in false colours up to `most`, or to its own maximum.
@@ -14,7 +14,13 @@ pub fn heat_map(picture: &Picture, name: &str, most: Option<f32>, quiet: bool) -
     let is_wanted =
         |channel: &str| channel == name || channel.split_once('.').is_some_and(|(l, _)| l == name);
     let channel = picture.channels().iter().find(|channel| is_wanted(&channel.name)).ok_or_else(|| {
-        let names = picture.channels().iter().map(|channel| &*channel.name);
+        let short = |channel: &'_ Channel| match channel.name.split_once('.') {
+            Some((layer, _)) if !name.contains('.') => layer.to_owned(),
+            _ => channel.name.clone(),
+        };
+        let mut names: Vec<String> = picture.channels().iter().map(short).collect();
+        names.dedup();
+        let names = names.iter().map(String::as_str);
         SceneError::unknown("channel", name, names, &from_flag("--heat-map"))
     })?;
     let finite = channel.samples.iter().copied().filter(|sample| sample.is_finite());

@@ -53,7 +53,7 @@ impl Keeping {
             let read = SavedRender::read(&path, common.max_memory).map_err(bilux::Error::from)?;
             if !common.quiet {
                 output::eprint(format_args!(
-                    "{}: goes on from {} per pixel, after {:.0} s of work",
+                    "{}: resumes at {} per pixel, after {:.0} s of work",
                     output.display(),
                     samples(read.head.samples),
                     read.head.spent.as_secs_f64()
@@ -94,7 +94,7 @@ impl Keeping {
         let (Some(path), Some(kept)) = (&self.path, written) else { return };
         if !quiet && path.is_file() {
             output::eprint(format_args!(
-                "{}: {} per pixel; --resume goes on from there",
+                "{}: holds {} per pixel; add --resume to continue from there",
                 path.display(),
                 samples(kept)
             ));
@@ -125,8 +125,8 @@ fn warn_of_older(input: &Input, job: &Job, path: &Path, every: Checkpoints) -> a
         && job.identity().differences(&head.identity).is_empty()
     {
         warn(format!(
-            "{shown}: {} per pixel of this picture are there, and --resume goes on from them; without it this begins anew, and \
-             keeps them until it has got further",
+            "{shown}: this picture already has {} per pixel, and --resume continues from them; without --resume the render starts \
+             over, and keeps this file until it has more",
             samples(head.samples)
         ))?;
         return Ok(Some(head.samples));

@@ -41,7 +41,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     principled: Some(AsPrincipled {
         keeps: &["reflectance", "transmittance"],
-        differs: "a textured side gets only the light that the other leaves",
+        differs: "gives a textured side only the light that the other side leaves",
         convert,
     }),
 };

@@ -11,7 +11,7 @@ use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::IntoResponse;
-use std::net::SocketAddr;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 
 /// The number of random bytes in a token.
 const TOKEN: usize = 16;
@@ -56,12 +56,13 @@ impl Guard {
         Ok(Guard { address, token: Some(token) })
     }
 
-    /// The address of the page.
+    /// The address of the page. A server that listens on all addresses says the one by which other machines reach this one.
     pub(super) fn address(&self) -> String {
-        match &self.token {
-            Some(token) => format!("http://{}/{token}/", self.address),
-            None => format!("http://{}/", self.address),
+        let mut shown = self.address;
+        if shown.ip().is_unspecified() {
+            shown.set_ip(outward(shown.ip()).unwrap_or(Ipv4Addr::LOCALHOST.into()));
         }
+        format!("http://{shown}{}/", self.prefix())
     }
 
     /// What every path begins with.
@@ -138,6 +139,16 @@ fn is_same(given: &str, token: &str) -> bool {
     given.len() == token.len() && given.iter().zip(token).fold(0, |sum, (a, b)| sum | (a ^ b)) == 0
 }
 
+/// This machine's address on the way to others; `None` without a network. A datagram socket asks only the table of routes: it
+/// sends nothing. The addresses are of the ranges for documentation [RFC 5737, 3849].
+fn outward(unspecified: IpAddr) -> Option<IpAddr> {
+    let elsewhere = if unspecified.is_ipv4() { "192.0.2.1" } else { "2001:db8::1" };
+    let elsewhere: IpAddr = elsewhere.parse().ok()?;
+    let socket = UdpSocket::bind((unspecified, 0)).ok()?;
+    socket.connect((elsewhere, 9)).ok()?;
+    Some(socket.local_addr().ok()?.ip())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -162,6 +173,18 @@ mod tests {
             assert_eq!(guard.is_own_host(&headers(&[("host", host)])), is_own, "{host}");
         }
         assert!(!guard.is_own_host(&HeaderMap::new()));
+    }
+
+    #[test]
+    fn the_address_of_a_server_on_all_addresses_can_be_opened() {
+        for all in ["0.0.0.0:8000", "[::]:8000"] {
+            let guard = Guard::of(all.parse().unwrap()).unwrap();
+            let address = guard.address();
+            let (host, token) = address.strip_prefix("http://").unwrap().split_once('/').unwrap();
+            let host: SocketAddr = host.parse().unwrap();
+            assert!(!host.ip().is_unspecified() && host.port() == 8000, "{address}");
+            assert_eq!(token.len(), 2 * TOKEN + 1, "{address}");
+        }
     }
 
     #[test]
