@@ -140,7 +140,7 @@ fn is_same(given: &str, token: &str) -> bool {
 }
 
 /// This machine's address on the way to others; `None` without a network. A datagram socket asks only the table of routes: it
-/// sends nothing. The addresses are of the ranges for documentation [RFC 5737, 3849].
+/// sends nothing. The addresses are of ranges that nobody has: they are for documentation (RFC 5737, RFC 3849).
 fn outward(unspecified: IpAddr) -> Option<IpAddr> {
     let elsewhere = if unspecified.is_ipv4() { "192.0.2.1" } else { "2001:db8::1" };
     let elsewhere: IpAddr = elsewhere.parse().ok()?;
