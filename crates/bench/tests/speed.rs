@@ -54,7 +54,7 @@ fn rows_have_what_programs_ask_for() {
 #[test]
 fn rows_that_cannot_be_measured_say_what_they_need() {
     let report = quick(&["model", "studio", "rays"]);
-    assert_eq!(report.rows.len(), 6);
+    assert_eq!(report.rows.len(), 7);
     for row in &report.rows {
         assert!(row["ours"].is_null() && row["met"].is_null(), "{row}");
         let note = row["note"].as_str().unwrap();

@@ -185,7 +185,7 @@ fn findings(m: &Measures, choice: Option<&Choice>) -> Vec<Finding> {
         found.push(Finding { what, options, advice });
     };
     let percent = |share: f32| format!("{:.0}%", share * 100.0);
-    // What `auto` has chosen already only takes more time.
+    // Where `auto` has chosen already, only more samples help.
     let by_auto = if choice.is_some() { "--noise 0.02 --time-limit 120" } else { "-i auto" };
     if m.surfaces == 0.0 {
         add(

@@ -130,6 +130,8 @@ fn settings_change_what_is_shown_and_wrong_ones_change_nothing() {
         for (key, value) in [
             ("integrator", json!("psychic")),
             ("max_depth", json!(-1)),
+            // What is refused again is answered again: the page then shows the value that counts.
+            ("max_depth", json!(-1)),
             ("exposure", json!("bright")),
             ("threads", json!(1)),
             ("size", json!("9x9")),

@@ -14,7 +14,7 @@ pub fn heat_map(picture: &Picture, name: &str, most: Option<f32>, quiet: bool) -
     let is_wanted =
         |channel: &str| channel == name || channel.split_once('.').is_some_and(|(l, _)| l == name);
     let channel = picture.channels().iter().find(|channel| is_wanted(&channel.name)).ok_or_else(|| {
-        let short = |channel: &'_ Channel| match channel.name.split_once('.') {
+        let short = |channel: &Channel| match channel.name.split_once('.') {
             Some((layer, _)) if !name.contains('.') => layer.to_owned(),
             _ => channel.name.clone(),
         };

@@ -115,6 +115,8 @@ pub(crate) struct Stage {
     meter: NoiseMeter,
     edits: Edits,
     problem: Option<String>,
+    /// How many times requests were served: the state says so, and each time is another state.
+    served: u64,
     /// Whether nothing is to be done until something changes.
     rests: bool,
     facts: Facts,
@@ -175,6 +177,7 @@ impl Stage {
             meter: NoiseMeter::default(),
             edits: Edits::default(),
             problem: None,
+            served: 0,
             rests: false,
             facts: Facts { side: "own", ..Facts::default() },
             frame: 0,
@@ -250,7 +253,7 @@ impl Stage {
         }
     }
 
-    /// Publishes the state, if it is another one than before: each answers something for those who watch.
+    /// Publishes the state, unless it is published already: those who wait for an answer must not take an older one for it.
     fn publish_state(&mut self) {
         let state = state::state(self).to_string();
         self.outlets.state.send_if_modified(|last| {

@@ -17,6 +17,7 @@ impl Stage {
         let Waiting { moves, size, settings, shown, edits, questions, reload, .. } = waiting;
         if changes_picture {
             (self.problem, self.measurement) = (None, None);
+            self.served += 1;
             if let Some(dropped) = waiting.dropped {
                 let opened = self.open(dropped);
                 self.note(opened);

@@ -33,6 +33,7 @@ pub(super) fn state(stage: &Stage) -> Value {
         "curve": job.write_options().map(|options| options.tone_map.entry.name).unwrap_or_default(),
         "max_depth": used.max_depth,
         "command": command(&stage.words(), &stage.session, &stage.asked(), &changes),
+        "served": stage.served,
         "problem": stage.problem,
         "warnings": warnings(stage),
         "notes": job.notes(),
