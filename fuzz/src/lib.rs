@@ -1,7 +1,7 @@
 //! Shared code of the fuzz targets: read any bytes, within bounded memory, without a panic.
 
 /// Meshes and rays, on which all acceleration structures must agree.
-#[path = "../../crates/accel/tests/support/fuzzed.rs"]
+#[path = "../../crates/accel/tests/suite/support/fuzzed.rs"]
 pub mod rays;
 
 use bilux_formats::{FormatError, ReadOptions};

@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         return check_reference();
     }
     write(&pages()?)?;
-    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "typed", "every_material"];
+    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "every_material"];
     run_process(cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
     library()
 }

@@ -8,7 +8,7 @@
 //! one for the total; exits with 1 if a ray escaped.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/suite/support/mod.rs"]
 mod support;
 
 use bilux_accel::{Accelerator, Query};

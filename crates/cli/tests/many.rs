@@ -1,4 +1,5 @@
-//! Rendering many scenes in one process takes no more time than rendering each in a process of its own.
+//! Rendering many scenes in one process takes no more time than rendering each in a process of its own. This
+//! test has a binary of its own too, since it reads the CPU time of all children of its process.
 #![cfg(target_os = "linux")]
 
 use assert_cmd::Command;

@@ -1,7 +1,7 @@
 //! Renders a procedural scene: `picture SCENE INTEGRATOR SAMPLES SIZE OUT.png`, where SCENE is `still-life` (a plastic,
 //! a mirror and a glass ball) or a row of `bilux_scene::generators::GENERATORS`.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 use bilux_pictures::{WriteOptions, write};

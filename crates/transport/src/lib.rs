@@ -47,7 +47,7 @@ pub mod settings;
 pub mod shadow_catcher;
 mod shadow_rays;
 #[cfg(test)]
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
 mod shapes;
 mod splats;
 pub mod stop;

@@ -19,6 +19,7 @@ mod reading_order;
 mod registries;
 mod repository;
 mod rust_text;
+mod test_suites;
 mod unsafe_code;
 
 use anyhow::{Result, bail};
@@ -37,6 +38,7 @@ const RULES: &[Rule] = &[
     Rule { name: "function-length", check: function_length::check },
     Rule { name: "forbidden", check: forbidden::check },
     Rule { name: "ignored-tests", check: ignored_tests::check },
+    Rule { name: "test-suites", check: test_suites::check },
     Rule { name: "unsafe-code", check: unsafe_code::check },
     Rule { name: "portable", check: portable::check },
     Rule { name: "citations", check: citations::check },

@@ -11,7 +11,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/bench/src/rays/embree", "a rival's library, loaded at run time"),
     ("crates/pictures/src/denoise/oidn/library.rs", "a denoiser's library, loaded at run time"),
     ("crates/accel/src/bvh8/mapped.rs", "trees mapped from files"),
-    ("crates/accel/tests/places.rs", "a test that maps a tree"),
+    ("crates/accel/tests/suite/places.rs", "a test that maps a tree"),
     ("crates/transport/src/queue/lanes.rs", "loops over paths, compiled for each level of instructions"),
     ("crates/accel/src/bvh8/kernel/", "the wide tree's walk, a file for each level of instructions"),
 ];

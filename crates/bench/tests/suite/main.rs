@@ -1,0 +1,6 @@
+//! What the benchmarks measure, on scenes that take moments.
+
+mod build;
+mod rays;
+mod render;
+mod speed;

@@ -1,0 +1,8 @@
+//! The library as programs use it: sessions, parts of pictures, fingerprints, and its examples.
+
+mod examples;
+mod fingerprint;
+mod ground;
+mod own_light;
+mod parts;
+mod session;

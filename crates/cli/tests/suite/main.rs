@@ -1,0 +1,14 @@
+//! The program `bilux` as people and farms run it.
+
+mod bad_input;
+mod command_line;
+mod denoising;
+mod farm;
+mod layers;
+mod manual;
+mod output;
+mod overwriting;
+mod resume;
+mod serve;
+mod witness;
+mod wrong_inputs;

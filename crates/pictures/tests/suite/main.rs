@@ -1,0 +1,11 @@
+//! Picture files as users have them, tone curves, metrics and denoisers.
+
+mod corpus;
+mod denoise;
+mod hostile;
+mod jpeg_scans;
+mod metrics;
+mod round_trips;
+mod shared_files;
+mod textures_of_old;
+mod tone_maps;

@@ -1,0 +1,11 @@
+//! Scenes, from what describes them to what rays meet.
+
+mod conventions;
+mod generators;
+mod normal_maps;
+mod orientation;
+mod presets;
+mod rebuilding;
+mod scene;
+mod strokes;
+mod typed;

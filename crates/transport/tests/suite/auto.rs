@@ -1,0 +1,217 @@
+//! `auto`: its pilot's predictions come true, and it chooses what it should.
+
+use crate::common::statistics::{agreement, blocks};
+use crate::common::{
+    ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life, without_mirrors,
+};
+use bilux_math::Vec3;
+use bilux_scene::{Scene, SceneBuilder, Spec};
+use bilux_transport::{Choice, PixelIntegrator, RenderSettings, integrators};
+
+fn auto() -> Spec {
+    Spec::new("", "auto")
+}
+
+fn choice(scene: &Scene, spec: &Spec, settings: &RenderSettings) -> Choice {
+    shoot(scene, &*integrators::build(spec).unwrap(), settings).choice.unwrap()
+}
+
+/// Lit by a panel.
+fn corner() -> SceneBuilder {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0));
+    without_mirrors(panel.with("intensity", 10.0f32))
+}
+
+/// The sets that `auto` compares, in their order.
+const SETS: [&str; 8] =
+    ["path", "path-light", "bdpt", "path-few", "path-photons", "path-light-few", "path-light-photons", "vcm"];
+
+/// `auto` with a prescribed set, whatever its pilot predicts.
+fn reported(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
+    let spec = auto().with("techniques", techniques).with("radius", RADIUS).with("alpha", 1.0f32);
+    integrators::build(&spec.with("aim", aim)).unwrap()
+}
+
+const RADIUS: f32 = 0.012;
+
+/// Number of pixels of a film as small as a pilot.
+const PIXELS: usize = 128;
+
+/// As many samples as in a round of the pilot, so that their even distribution gains as much.
+fn film(seed: u64) -> RenderSettings {
+    RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 8, 8) }
+}
+
+/// The relative variance of a pixel, times its samples, as in [`Choice`].
+fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f64 {
+    let (mut sums, mut squares) = (vec![0.0; PIXELS], vec![0.0; PIXELS]);
+    for seed in 0..pictures {
+        for (i, pixel) in shoot(scene, integrator, &film(seed)).film.to_rgb().into_iter().enumerate() {
+            let light = f64::from(pixel.luminance());
+            sums[i] += light / pictures as f64;
+            squares[i] += light * light / pictures as f64;
+        }
+    }
+    let dark = 0.3 * sums.iter().sum::<f64>() / PIXELS as f64;
+    let of_block = |block: usize| {
+        let pixels: Vec<usize> = (0..PIXELS).filter(|i| i / 16 / 4 * 4 + i % 16 / 4 == block).collect();
+        let mean = pixels.iter().map(|&i| sums[i]).sum::<f64>() / 16.0;
+        let variance = pixels.iter().map(|&i| squares[i] - sums[i] * sums[i]).sum::<f64>() / 16.0;
+        variance * 8.0 * pictures as f64 / (pictures - 1) as f64 / (mean * mean + dark * dark)
+    };
+    (0..PIXELS / 16).map(of_block).sum::<f64>() / (PIXELS / 16) as f64
+}
+
+#[test]
+fn the_noise_of_every_set_is_predicted() {
+    let scene = built(&corner());
+    let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
+    let mut predicted = vec![0.0; SETS.len()];
+    for seed in 0..60 {
+        for (sum, candidate) in predicted.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
+            *sum += candidate.error / 60.0;
+        }
+    }
+    for (set, predicted) in SETS.into_iter().zip(predicted) {
+        let measured = measured(&scene, &*reported(set, false), 60);
+        let ratio = predicted / measured;
+        assert!((0.8..1.25).contains(&ratio), "{set}: predicted {predicted}, measured {measured}");
+    }
+}
+
+#[test]
+fn without_merging_it_has_the_same_mean_as_path() {
+    let mut builder = still_life();
+    builder.lights.retain(|light| light.kind != "spot");
+    let scene = built(&builder);
+    let auto = integrators::build(&auto().with("merge", "never")).unwrap();
+    let p = agreement(&blocks(&scene, &*integrator("path"), 0), &blocks(&scene, &*auto, 100));
+    assert!(p > 1e-4, "p = {p}");
+}
+
+#[test]
+fn open_daylight_is_left_to_path() {
+    let mut builder = corner();
+    builder.objects.remove(1);
+    builder.lights.clear();
+    sky(&mut builder, 1.0);
+    let settings = RenderSettings::new(128, 128, 1);
+    let choice = choice(&built(&builder), &auto(), &settings);
+    assert_eq!(choice.best().name, "path", "{choice}");
+    let film = |name: &str| shoot(&built(&builder), &*integrator(name), &settings).film;
+    assert!(film("auto") == film("path"), "then it is path, to the bit");
+}
+
+/// A glass ball above a floor, under a small light.
+fn burning_glass() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
+    let globe = ball(Vec3::new(0.0, 1.7, 0.0), 1.0, 24, true);
+    put(&mut builder, "glass", globe, Spec::new("", "dielectric"));
+    let light_spec =
+        Spec::new("", "rect").with("position", Vec3::new(0.5, 6.0, 0.5)).with("intensity", 40.0f32);
+    builder.lights.push(light_spec.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
+    look(&mut builder, Vec3::new(0.0, 3.0, 5.0), Vec3::ZERO, 40.0);
+    builder
+}
+
+#[test]
+fn a_caustic_is_worth_light_paths() {
+    let scene = built(&burning_glass());
+    let choice = choice(&scene, &auto(), &RenderSettings::new(128, 128, 1));
+    let path = &choice.candidates[0];
+    assert!(path.time_to_error() > 5.0 * choice.best().time_to_error(), "{choice}");
+}
+
+/// The burning glass under each kind of light that can be aimed: at the ball, even from infinity.
+fn lit_by(light: &str) -> SceneBuilder {
+    let mut builder = burning_glass();
+    let kept = std::mem::take(&mut builder.lights);
+    match light {
+        "rect" => builder.lights = kept,
+        "sun" => {
+            builder.lights.push(Spec::new("", "directional").with("direction", Vec3::new(-0.2, -1.0, -0.1)))
+        }
+        "sky" => sky(&mut builder, 1.0),
+        "sphere" => builder.lights.push(
+            Spec::new("", "sphere")
+                .with("position", Vec3::new(0.5, 6.0, 0.5))
+                .with("radius", 0.2f32)
+                .with("intensity", 40.0f32),
+        ),
+        kind => builder.lights.push(Spec::new("", kind).with("position", Vec3::new(0.5, 6.0, 0.5))),
+    }
+    builder
+}
+
+#[test]
+fn aimed_light_paths_find_the_same_light_with_less_noise() {
+    for light in ["rect", "sphere", "point", "spot", "sun", "sky"] {
+        let scene = built(&lit_by(light));
+        // `path` is no reference for what only light subpaths find.
+        let p = agreement(
+            &blocks(&scene, &*reported("bdpt", false), 0),
+            &blocks(&scene, &*reported("bdpt", true), 100),
+        );
+        assert!(p > 1e-4, "{light}: p = {p}");
+        if ["sphere", "spot"].contains(&light) {
+            continue;
+        }
+        let [plain, aimed] = [false, true].map(|aim| measured(&scene, &*reported("path-light", aim), 24));
+        // A sky has no caustics that camera subpaths would not find with less noise.
+        let bound = if light == "sky" { 2.0 } else { 1.05 };
+        assert!(aimed < bound * plain, "{light}: {aimed} with aim, {plain} without");
+    }
+}
+
+#[test]
+fn light_that_path_cannot_find_is_not_lost() {
+    let mut builder = mixed();
+    builder.lights.retain(|light| light.kind == "point");
+    let scene = built(&builder);
+    let settings = RenderSettings::new(192, 192, 1);
+    let chosen = choice(&scene, &auto().with("merge", "never"), &settings);
+    assert!(chosen.candidates[0].lost > 0.01 && chosen.best().name != "path", "{chosen}");
+    // Only photons find the mirror's caustic where it is reflected in the mirror itself.
+    assert!(chosen.candidates[2].lost > 1e-3 && chosen.candidates[5].lost < 1e-6, "{chosen}");
+    assert!(choice(&scene, &auto(), &settings).best().name.contains("photons"), "{chosen}");
+}
+
+#[test]
+fn merging_sets_are_refused_when_merging_is_off() {
+    let spec = auto().with("merge", "never");
+    let error = integrators::build(&spec.clone().with("techniques", "path-few")).err().unwrap().to_string();
+    assert!(error.contains("'path-few' needs vertex merging"), "{error}");
+    assert!(integrators::build(&spec.with("techniques", "bdpt")).is_ok());
+}
+
+#[test]
+fn a_camera_that_sees_nothing_gets_a_black_picture() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+    builder.lights.push(Spec::new("", "point").with("position", Vec3::Y));
+    look(&mut builder, Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.1), 40.0);
+    let scene = built(&builder);
+    for techniques in ["auto", "path-photons", "vcm"] {
+        let auto = integrators::build(&auto().with("techniques", techniques)).unwrap();
+        let film = shoot(&scene, &*auto, &RenderSettings::new(16, 8, 2)).film;
+        assert!(film.to_rgb().iter().all(|pixel| pixel.is_black()), "{techniques}");
+    }
+}
+
+#[test]
+fn the_choice_is_that_of_the_whole_film() {
+    let scene = built(&still_life());
+    let whole = RenderSettings { threads: 1, ..RenderSettings::new(40, 30, 8) };
+    let of = |settings: &RenderSettings| choice(&scene, &auto(), settings);
+    let wanted = of(&whole);
+    let crop = Some(bilux_transport::Window { x: 3, y: 4, width: 2, height: 5 });
+    for other in [
+        RenderSettings { threads: 3, ..whole.clone() },
+        RenderSettings { samples: 4..6, ..whole.clone() },
+        RenderSettings { spp: 99, ..whole.clone() },
+        RenderSettings { crop, ..whole.clone() },
+    ] {
+        assert_eq!(of(&other), wanted, "{other:?}");
+    }
+}

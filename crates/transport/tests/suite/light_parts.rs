@@ -1,0 +1,129 @@
+//! The light of a picture in parts: they add up to the picture, and each is what its lights alone would give.
+
+use crate::common::{built, diffuse, floor, integrator, look, mixed, put, shoot};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Scene, SceneBuilder, Spec, Value};
+use bilux_transport::{
+    Film, LightDivision, LightParts, RenderSettings, Silent, Window, integrators, light_parts,
+};
+
+/// By scattering events, and each light for itself; what shines otherwise belongs to one more group.
+fn division(scene: &Scene) -> LightDivision {
+    let lights = scene.lights().len() as u32;
+    LightDivision { by_events: true, groups: (0..lights).collect(), group_count: lights + 1 }
+}
+
+fn parts(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> LightParts {
+    let integrator = integrators::build(integrator).unwrap();
+    let (camera, division) = (&*scene.cameras()[0].1, division(scene));
+    light_parts(scene, camera, &*integrator, settings, &division, &Silent).unwrap().unwrap()
+}
+
+/// The largest difference between a picture and the sum of films, relative to the picture's own light.
+fn off(picture: &Film, films: &[Film]) -> f32 {
+    let window = picture.window();
+    let at = |i| {
+        let (x, y) = window.position(i);
+        let sum = films.iter().fold(Rgb::BLACK, |sum, film| sum + film.pixel(x, y));
+        let pixel = picture.pixel(x, y);
+        (0..3).map(|c| (sum[c] - pixel[c]).abs()).fold(0.0, f32::max) / (1.0 + pixel.max_channel())
+    };
+    (0..window.pixels()).map(at).fold(0.0, f32::max)
+}
+
+#[test]
+fn the_parts_add_up_to_the_picture() {
+    let mut builder = mixed();
+    // A lamp that camera paths hit, also in the mirror.
+    put(
+        &mut builder,
+        "lamp",
+        crate::common::ball(Vec3::new(0.2, 0.3, 1.2), 0.2, 8, true),
+        diffuse(0.1f32).with("emission", 3.0f32),
+    );
+    let scene = built(&builder);
+    let vcm = |joins: bool| Spec::new("", "vcm").with("radius", 0.02f32).with("joins", joins);
+    let photons = vcm(false).with("light_paths", Value::Integer(300));
+    let crop = Window { x: 5, y: 3, width: 17, height: 11 };
+    for integrator in [Spec::new("", "path"), Spec::new("", "bdpt"), vcm(true), vcm(false), photons] {
+        for (crop, samples) in [(None, 0..4), (Some(crop), 1..3)] {
+            let settings = RenderSettings { crop, samples, ..RenderSettings::new(32, 24, 4) };
+            let film = shoot(&scene, &*integrators::build(&integrator).unwrap(), &settings).film;
+            let found = parts(&scene, &integrator, &settings);
+            let by_events = found.by_events.unwrap();
+            for (name, error) in [("events", off(&film, &by_events)), ("groups", off(&film, &found.groups))] {
+                assert!(error < 1e-5, "{integrator:?} {crop:?} by {name}: {error}");
+            }
+            // The test would notice a part that is missing.
+            assert!(
+                off(&film, &by_events[..1]) > 1e-3 && off(&film, &by_events[1..]) > 1e-3,
+                "{integrator:?}"
+            );
+            for left_out in 0..scene.lights().len() {
+                let mut others = found.groups.clone();
+                others.remove(left_out);
+                assert!(off(&film, &others) > 1e-3, "{integrator:?} without light {left_out}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_auto_chooses_is_divided_too() {
+    let scene = built(&mixed());
+    let settings = RenderSettings::new(24, 16, 4);
+    let film = shoot(&scene, &*integrator("auto"), &settings).film;
+    let found = parts(&scene, &Spec::new("", "auto"), &settings);
+    assert!(off(&film, &found.by_events.unwrap()) < 1e-5 && off(&film, &found.groups) < 1e-5);
+}
+
+/// A floor under lights at these places.
+fn lit_from(places: &[[f32; 3]]) -> Scene {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 6.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    for at in places {
+        let light = Spec::new("", "point").with("position", Value::triple(*at));
+        builder.lights.push(light.with("intensity", 9.0f32));
+    }
+    look(&mut builder, Vec3::new(0.0, 3.0, 5.0), Vec3::ZERO, 40.0);
+    built(&builder)
+}
+
+/// Points and one event leave nothing to chance but the place in the pixel, which is the same for all.
+#[test]
+fn each_group_is_what_its_light_alone_gives() {
+    let (left, right) = ([-2.0, 1.5, 0.0], [2.0, 2.5, 1.0]);
+    let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(24, 16, 4) };
+    let found = parts(&lit_from(&[left, right]), &Spec::new("", "path"), &settings);
+    for (group, alone) in [(0, left), (1, right)] {
+        let film = shoot(&lit_from(&[alone]), &*integrator("path"), &settings).film;
+        assert!(off(&film, &found.groups[group..=group]) < 1e-5, "{group}");
+        assert!(off(&film, &found.groups[1 - group..=1 - group]) > 1e-2, "{group}");
+    }
+    let [direct, indirect] = found.by_events.unwrap();
+    assert!(direct.pixel(12, 8).g > 0.01);
+    assert!(indirect.to_rgb().iter().all(|light| light.is_black()), "the light scatters once");
+}
+
+#[test]
+fn the_same_for_any_number_of_threads() {
+    let scene = built(&mixed());
+    let films = |threads| {
+        let settings = RenderSettings { threads, ..RenderSettings::new(40, 24, 3) };
+        let LightParts { by_events, groups } = parts(&scene, &Spec::new("", "vcm"), &settings);
+        (by_events.unwrap(), groups)
+    };
+    assert!(films(1) == films(3));
+}
+
+#[test]
+fn those_that_cannot_divide_their_light_say_so() {
+    assert_eq!(integrators::with_light_parts().collect::<Vec<_>>(), ["auto", "path", "bdpt", "vcm"]);
+    let scene = lit_from(&[[0.0, 2.0, 0.0]]);
+    let (settings, division) = (RenderSettings::new(4, 4, 1), division(&scene));
+    let camera = &*scene.cameras()[0].1;
+    for name in ["cast", "light", "sppm", "occlusion"] {
+        let found = light_parts(&scene, camera, &*integrator(name), &settings, &division, &Silent);
+        assert!(found.unwrap().is_none(), "{name}");
+    }
+}

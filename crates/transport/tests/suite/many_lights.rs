@@ -1,0 +1,102 @@
+//! More lights than are all sampled, large and bright enough that paths hit them by chance: MIS weights must include
+//! how rarely each light is chosen.
+
+use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks};
+use crate::common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{SceneBuilder, Spec};
+use bilux_transport::{LightChoice, PixelIntegrator, RenderSettings, integrators};
+
+fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
+    integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
+}
+
+/// A floor, a wall, a diffuse and a glossy ball among six large panels close by, no two of which are equally bright,
+/// under a bright sky.
+fn large_lights() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    let wall = quad(Vec3::new(-2.0, 0.0, -1.6), Vec3::X * 4.0, Vec3::Y * 1.2);
+    put(&mut builder, "wall", wall, diffuse(Rgb::new(0.4, 0.6, 0.7)));
+    put(&mut builder, "ball", ball(Vec3::new(-0.7, 0.5, 0.2), 0.5, 10, true), diffuse(0.8f32));
+    let satin = Spec::new("", "phong").with("kd", 0.2f32).with("ks", 0.6f32).with("exponent", 30.0f32);
+    let satin = satin.with("reflectivity", 0.0f32);
+    put(&mut builder, "satin", ball(Vec3::new(0.7, 0.5, 0.0), 0.5, 10, true), satin);
+    for i in 0..6 {
+        let (column, row) = ((i % 3) as f32, (i / 3) as f32);
+        let place = Vec3::new(1.8 * column - 2.4, 1.6 + 0.2 * row, 1.7 * row - 1.5);
+        let panel = Spec::new("", "rect").with("position", place).with("radiance", 3.0 + i as f32);
+        builder.lights.push(panel.with("edge_u", Vec3::X * 1.3).with("edge_v", Vec3::Z * 1.3));
+    }
+    sky(&mut builder, 0.8);
+    look(&mut builder, Vec3::new(0.0, 1.3, 4.0), Vec3::new(0.0, 0.5, 0.0), 45.0);
+    builder
+}
+
+#[test]
+fn one_of_them_is_chosen_at_a_time() {
+    let choice = LightChoice::new(&built(&large_lights()));
+    assert!(!choice.takes_all());
+    let all: Vec<f32> = (0..7).map(|light| choice.probability(light)).collect();
+    assert!(
+        (all.iter().sum::<f32>() - 1.0).abs() < 1e-5 && all.iter().all(|&p| p > 0.01 && p < 0.9),
+        "{all:?}"
+    );
+}
+
+#[test]
+fn all_three_samplings_of_path_find_the_same_light_of_many_large_lights() {
+    let scene = built(&large_lights());
+    let of = |sampling: &str, seed: u64| blocks(&scene, &*path(sampling), seed);
+    let [mis, lights, scattering] =
+        [("mis", 0), ("lights", 100), ("scattering", 200)].map(|(s, seed)| of(s, seed));
+    for (name, a, b) in [
+        ("mis and lights", &mis, &lights),
+        ("mis and scattering", &mis, &scattering),
+        ("lights and scattering", &lights, &scattering),
+    ] {
+        let p = agreement(a, b);
+        assert!(p > UNLIKELY, "{name}: p = {p}");
+    }
+    // Negative control: light that is two hundredths too bright is detected.
+    let brighter: Vec<Vec<f64>> = mis.iter().map(|b| b.iter().map(|sum| sum * 1.02).collect()).collect();
+    assert!(agreement(&brighter, &scattering) < UNLIKELY);
+}
+
+#[test]
+fn many_large_lights_look_the_same_from_both_ends() {
+    let right = built(&large_lights());
+    assert_like_path("many large lights", &right, &["light", "bdpt", "vcm"]);
+    // Negative control: a sky that is a tenth darker.
+    let mut wrong = large_lights();
+    wrong.lights.last_mut().unwrap().parameters.set("radiance", 0.72f32);
+    assert_unlike_path(&right, &built(&wrong), &["bdpt"]);
+}
+
+/// A diffuse floor sees nothing but lights of radiance 1, some of them panels and the rest sky: it shows its albedo.
+#[test]
+fn panels_and_sky_of_one_radiance_are_an_even_sky() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 0.5), diffuse(Rgb::new(0.8, 0.5, 0.2)));
+    for i in 0..6 {
+        let place = Vec3::new(1.0 * (i % 3) as f32 - 1.5, 1.0, (i / 3) as f32 - 1.0);
+        let panel = Spec::new("", "rect").with("position", place).with("radiance", 1.0f32);
+        // Black, so that no light is scattered back and forth.
+        builder.lights.push(panel.with("edge_u", Vec3::X).with("edge_v", Vec3::Z));
+    }
+    sky(&mut builder, 1.0);
+    look(&mut builder, Vec3::new(0.0, 0.9, 0.0), Vec3::new(0.01, 0.0, 0.0), 30.0);
+    let scene = built(&builder);
+    for (kind, sampling) in
+        [("path", "mis"), ("path", "lights"), ("path", "scattering"), ("bdpt", ""), ("vcm", "")]
+    {
+        let spec = Spec::new("", kind);
+        let spec = if sampling.is_empty() { spec } else { spec.with("sampling", sampling) };
+        let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(16, 16, 256) };
+        let pixels = shoot(&scene, &*integrators::build(&spec).unwrap(), &settings).film.to_rgb();
+        let mean = pixels.into_iter().sum::<Rgb>() / 256.0;
+        for (found, wanted) in mean.to_array().into_iter().zip([0.8, 0.5, 0.2]) {
+            assert!((found / wanted - 1.0).abs() < 0.01, "{kind} {sampling}: {mean:?}");
+        }
+    }
+}

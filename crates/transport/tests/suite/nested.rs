@@ -1,0 +1,121 @@
+//! Overlapping media: their priorities decide what separates them, from both ends of a path.
+
+use crate::common::statistics::{agreement, blocks};
+use crate::common::{ball, built, diffuse, floor, integrator, look, put, shoot, sky};
+use bilux_math::transcendental::exp;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Mesh, SceneBuilder, Spec};
+use bilux_transport::RenderSettings;
+use std::sync::Arc;
+
+/// A closed box between two heights.
+fn slab(low: f32, high: f32) -> Arc<Mesh> {
+    let corner = |i: usize| Vec3::new([-2.0, 2.0][i & 1], [low, high][i >> 1 & 1], [-2.0, 2.0][i >> 2]);
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Arc::new(Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() })
+}
+
+fn medium(eta: f32, absorption: f32, priority: f32) -> Spec {
+    let spec = Spec::new("", "dielectric").with("eta", eta).with("absorption", absorption);
+    spec.with("priority", bilux_scene::Value::Integer(priority as i64))
+}
+
+const WATER: (f32, f32) = (1.33, 0.3);
+const GLASS: (f32, f32) = (1.6, 0.5);
+
+/// A metre of glass under a metre of water that extends a little into it, over a bright floor.
+fn slabs(water: f32, glass: f32) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    let bright = diffuse(0.0f32).with("emission", 1.0f32);
+    put(&mut builder, "floor", floor(-1.0, 3.0), bright);
+    put(&mut builder, "water", slab(0.8, 2.0), medium(WATER.0, WATER.1, water));
+    put(&mut builder, "glass", slab(0.0, 1.0), medium(GLASS.0, GLASS.1, glass));
+    let spec = Spec::new("eye", "perspective").with("position", Vec3::Y * 6.0).with("look_at", Vec3::ZERO);
+    let spec = spec.with("up", Vec3::X).with("fov", 1.0f32);
+    builder.cameras.push(bilux_scene::cameras::CameraSpec { spec, keyframes: Vec::new() });
+    builder
+}
+
+/// Transmittance of layers at normal incidence, with all interreflections summed: index, absorption and thickness of
+/// each layer, from the top.
+fn through(layers: &[(f32, f32, f32)]) -> f32 {
+    let index = |i: usize| if i == 0 { 1.0 } else { layers.get(i - 1).map_or(1.0, |layer| layer.0) };
+    let reflected = |i: usize| {
+        let r = (index(i) - index(i + 1)) / (index(i) + index(i + 1));
+        r * r
+    };
+    let last = reflected(layers.len());
+    let (mut reflects, mut passes) = (last, 1.0 - last);
+    for (i, (_, sigma, thickness)) in layers.iter().enumerate().rev() {
+        let (r, t) = (reflected(i), exp(-sigma * thickness));
+        let bounces = 1.0 - r * t * t * reflects;
+        passes = (1.0 - r) * t * passes / bounces;
+        reflects = r + (1.0 - r) * (1.0 - r) * t * t * reflects / bounces;
+    }
+    passes
+}
+
+#[test]
+fn light_through_overlapping_slabs_is_what_fresnel_and_beer_say() {
+    let glass_wins = through(&[(WATER.0, WATER.1, 1.0), (GLASS.0, GLASS.1, 1.0)]);
+    let water_wins = through(&[(WATER.0, WATER.1, 1.2), (GLASS.0, GLASS.1, 0.8)]);
+    let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(32, 32, 64) };
+    for (water, glass, wanted) in [(1.0, 2.0, glass_wins), (2.0, 1.0, water_wins), (1.0, 1.0, water_wins)] {
+        for name in ["path", "bdpt"] {
+            let film = shoot(&built(&slabs(water, glass)), &*integrator(name), &settings).film;
+            let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
+            assert!(
+                (found / wanted - 1.0).abs() < 5e-3,
+                "{name}, {water} and {glass}: {found}, not {wanted}"
+            );
+        }
+    }
+    assert!((glass_wins / water_wins - 1.0).abs() > 0.02);
+}
+
+/// A glass ball and a water ball that overlap, with a light in both.
+fn overlapping(roughness: f32, priorities: [f32; 2]) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    for (i, (x, absorption)) in [(-0.4, 3.0), (0.4, 0.1)].into_iter().enumerate() {
+        let material = medium([1.5, 1.33][i], absorption, priorities[i]).with("roughness", roughness);
+        put(&mut builder, "", ball(Vec3::new(x, 0.9, 0.0), 0.8, 12, true), material);
+    }
+    let light = diffuse(0.5f32).with("emission", 20.0f32);
+    put(&mut builder, "light", ball(Vec3::new(0.1, 0.9, 0.1), 0.12, 6, false), light);
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    builder.lights.push(panel);
+    sky(&mut builder, 0.2);
+    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.6, 0.0), 36.0);
+    builder
+}
+
+#[test]
+fn overlapping_media_look_the_same_from_both_ends() {
+    for (name, roughness, others) in [("frosted", 0.5, &["light", "bdpt"][..]), ("clear", 0.0, &["bdpt"])] {
+        let scene = built(&overlapping(roughness, [2.0, 1.0]));
+        let path = blocks(&scene, &*integrator("path"), 0);
+        for (i, other) in others.iter().enumerate() {
+            let p = agreement(&path, &blocks(&scene, &*integrator(other), 100 * (i as u64 + 1)));
+            assert!(p > 1e-4, "{name}: path and {other}: p = {p}");
+        }
+        // Otherwise the test could not tell which medium has priority.
+        let other = built(&overlapping(roughness, [1.0, 2.0]));
+        assert!(agreement(&path, &blocks(&other, &*integrator("path"), 50)) < 1e-4);
+    }
+}
+
+#[test]
+fn priorities_change_nothing_where_nothing_overlaps() {
+    let apart = |priority: f32| {
+        let mut builder = overlapping(0.3, [priority, 0.0]);
+        builder.objects.remove(2);
+        built(&builder)
+    };
+    let settings = RenderSettings::new(24, 16, 4);
+    for name in ["path", "bdpt"] {
+        let film = |priority| shoot(&apart(priority), &*integrator(name), &settings).film;
+        assert_eq!(film(1.0), film(0.0), "{name}");
+    }
+}
