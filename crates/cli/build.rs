@@ -1,12 +1,20 @@
 //! Records in the binary which commit it was built from.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    let output = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output();
-    let commit = output.ok().filter(|o| o.status.success()).and_then(|o| String::from_utf8(o.stdout).ok());
-    let commit = commit.map_or_else(|| "no commit".to_owned(), |c| c.trim().to_owned());
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "no commit".to_owned());
     println!("cargo::rustc-env=BILUX_COMMIT={commit}");
-    println!("cargo::rerun-if-changed=../../.git/HEAD");
+    // In a worktree, `.git` is a file that says where this is; a file that is not there would count as changed each time.
+    if let Some(head) = git(&["rev-parse", "--git-path", "HEAD"]).filter(|head| Path::new(head).exists()) {
+        println!("cargo::rerun-if-changed={head}");
+    }
     println!("cargo::rerun-if-changed=build.rs");
+}
+
+/// What git answers, if it is there and this is a repository.
+fn git(question: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(question).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
 }

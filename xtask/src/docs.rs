@@ -42,15 +42,24 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         [word] if word == "--check" => true,
         _ => bail!("the only option is `--check`"),
     };
-    // Builds as the tests do, so that no package is built a second time with other features.
-    run_process(&mut cargo(&["test", "--quiet", "--locked", "--workspace", "--no-run"]))?;
+    say("building `bilux` and the tests of the tables, as `cargo xtask test` builds them");
+    run_process(&mut cargo(&["test", "--locked", "--workspace", "--no-run", "--test", "suite"]))?;
     if check {
+        say(&format!("comparing the pages in {FOLDER} with the tables"));
         return check_reference();
     }
+    say(&format!("writing the pages in {FOLDER} from the tables"));
     write(&pages()?)?;
-    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "every_material"];
-    run_process(cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
+    say("writing the types of materials and lights in crates/scene/src/typed");
+    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "typed::every_material"];
+    output(cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
+    say("writing the documentation of the libraries to target/doc");
     library()
+}
+
+/// A line of progress, before each thing that takes long.
+fn say(what: &str) {
+    println!("==> {what}");
 }
 
 /// Checks the reference pages against the binary that the tests have built.
@@ -182,10 +191,12 @@ fn write(pages: &BTreeMap<String, String>) -> Result<()> {
     let folder = root().join(FOLDER);
     fs::create_dir_all(folder.join(command_pages::FOLDER))
         .with_context(|| format!("cannot make {FOLDER}"))?;
-    for (name, page) in pages {
+    let stale: Vec<_> =
+        pages.iter().filter(|(name, page)| !is_fresh(&fs::read(folder.join(name)), page)).collect();
+    for (name, page) in &stale {
         fs::write(folder.join(name), page).with_context(|| format!("cannot write {FOLDER}/{name}"))?;
     }
-    println!("{} pages in {FOLDER}", pages.len());
+    println!("{} pages in {FOLDER}, of which {} have changed", pages.len(), stale.len());
     Ok(())
 }
 

@@ -4,6 +4,8 @@ use anyhow::{Context, Result, bail};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use std::time::Duration;
 
 /// The root of the repository that this program was built from.
 pub(crate) fn root() -> PathBuf {
@@ -22,7 +24,33 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(program);
     command.args(arguments).current_dir(root());
+    if *IS_FRESH && std::env::var_os("CARGO_INCREMENTAL").is_none() {
+        command.env("CARGO_INCREMENTAL", "0");
+    }
     command
+}
+
+/// Whether nobody has developed here yet. Code that can be compiled in increments takes longer to compile, which is wasted
+/// where all is compiled once; but whoever develops keeps their increments.
+static IS_FRESH: LazyLock<bool> = LazyLock::new(|| {
+    let increments = std::fs::read_dir(target_folder().join("debug/incremental"));
+    let mut folders = increments.into_iter().flatten().flatten();
+    !folders.any(|folder| folder.file_name().to_string_lossy().starts_with("bilux"))
+});
+
+/// Builds all libraries, tests and what these run by one command. Cargo chooses the features of shared dependencies for all
+/// that a command builds, so another choice of packages would build nearly everything a second time.
+pub(crate) fn build_all() -> Result<()> {
+    run(&mut cargo(&["build", "--locked", "--workspace", "--lib", "--tests"]))
+}
+
+/// The time that this process and its children that have ended spent on all cores, on Linux.
+pub(crate) fn cpu_time() -> Option<Duration> {
+    // In hundredths of a second, after a name in parentheses: user and system time, and those of the children.
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = fields.get(11..15)?.iter().map(|field| field.parse::<u64>().ok()).sum::<Option<u64>>()?;
+    Some(Duration::from_millis(10 * ticks))
 }
 
 /// Runs a program to its end; its output goes straight to the user.

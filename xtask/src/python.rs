@@ -1,7 +1,7 @@
 //! The Python package: `cargo xtask wheel` builds it as it is handed out, and the step `python` of `cargo xtask test`
 //! builds, installs and tests it. Both work in virtual environments in the target folder.
 
-use crate::process::{cargo, output, root, run as run_process, target_folder};
+use crate::process::{build_all, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -70,9 +70,9 @@ pub(crate) fn test() -> Result<()> {
         }
     };
     println!("SKIPPED: {CLUSTER_TESTS} needs Ray, which is large: `cargo xtask python-cluster` runs it");
-    // The tests compare with what the command line writes. Of the whole workspace, since the step `test` has built that.
-    run_process(&mut cargo(&["build", "--quiet", "--locked", "--workspace", "--bin", "bilux"]))?;
-    install(&builders, &testers)?;
+    // The tests compare with what the command line writes.
+    build_all()?;
+    place(&builders, &testers)?;
     let mut pytest = pytest(&testers, "");
     run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
     let settings = root().join(PACKAGE).join("pyproject.toml");
@@ -81,6 +81,14 @@ pub(crate) fn test() -> Result<()> {
     mypy.args(["-m", "mypy", "-p", "bilux", "--config-file"]).arg(&settings).arg("--cache-dir").arg(&cache);
     run_process(&mut mypy)?;
     run_process(testers.python().args(["-m", "mypy.stubtest", "bilux"]))
+}
+
+/// Builds a wheel with the development profile, installs it, and runs the tests of the package itself.
+pub(crate) fn test_wheel() -> Result<()> {
+    let python = python()?;
+    let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
+    install(&builders(&python)?, &testers)?;
+    run_process(&mut pytest(&testers, "test_package.py"))
 }
 
 /// Checks with auditwheel, on Linux, that the wheel runs wherever its name says.
@@ -132,6 +140,52 @@ fn install(builders: &Environment, testers: &Environment) -> Result<()> {
     run_process(
         install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"]).arg(&wheel),
     )
+}
+
+/// Installs the package as a wheel would, from the library that [`build_all`] has left: a wheel is built with other features
+/// of shared dependencies, so all libraries below would be built a second time.
+fn place(builders: &Environment, testers: &Environment) -> Result<()> {
+    if !cfg!(target_os = "linux") {
+        // Elsewhere it takes more than cargo to link a module of Python.
+        return install(builders, testers);
+    }
+    let ask = ["-c", "import sysconfig; print(sysconfig.get_path('platlib'))"];
+    let site = PathBuf::from(output(testers.python().args(ask))?.trim());
+    for entry in fs::read_dir(&site).with_context(|| format!("cannot list {}", site.display()))?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name == "bilux" || name.starts_with("bilux-") && name.ends_with(".dist-info") {
+            fs::remove_dir_all(entry.path())
+                .with_context(|| format!("cannot remove {}", entry.path().display()))?;
+        }
+    }
+    let package = root().join(PACKAGE);
+    let placed = site.join("bilux");
+    copy(&package.join("python/bilux"), &placed)?;
+    let library = target_folder().join("debug/lib_bilux.so");
+    fs::copy(&library, placed.join("_bilux.abi3.so"))
+        .with_context(|| format!("cannot copy {}", library.display()))?;
+    let mut maturin = builders.python();
+    maturin.args(["-m", "maturin", "pep517", "write-dist-info", "--manifest-path"]);
+    maturin.arg(package.join("Cargo.toml")).arg("--metadata-directory").arg(&site);
+    output(maturin.arg("--interpreter").arg(&testers.interpreter)).map(drop)
+}
+
+/// Copies a folder of modules.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
+    for entry in fs::read_dir(from).with_context(|| format!("cannot list {}", from.display()))? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        match entry.file_type()?.is_dir() {
+            true if entry.file_name() == "__pycache__" => {}
+            true => copy(&entry.path(), &target)?,
+            false if entry.path().extension().is_some_and(|extension| extension == "so") => {}
+            false => fs::copy(entry.path(), &target)
+                .map(drop)
+                .with_context(|| format!("cannot write {}", target.display()))?,
+        }
+    }
+    Ok(())
 }
 
 /// Runs the tests, or one file of them.

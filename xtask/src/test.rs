@@ -1,6 +1,7 @@
-//! `cargo xtask test`: everything that must hold before a change lands, quick steps first.
+//! `cargo xtask test`: everything that must hold before a change lands, quick steps first. `--long` adds the long forms of
+//! some tests, which take an hour or more.
 
-use crate::process::{cargo, run_watched};
+use crate::process::{cargo, cpu_time, run_watched};
 use anyhow::{Context, Result, bail};
 use std::time::{Duration, Instant};
 
@@ -15,7 +16,9 @@ const STEPS: &[Step] = &[
     Step { name: "tidy", run: |_| crate::tidy::run(&[]) },
     Step { name: "licences", run: |_| crate::licences::run(&[]) },
     Step { name: "clippy", run: clippy },
+    Step { name: "build", run: |_| crate::process::build_all() },
     Step { name: "test", run: tests },
+    Step { name: "examples", run: examples },
     Step { name: "python", run: |_| crate::python::test() },
     Step { name: "instructions", run: |_| crate::instructions::run(&[]) },
     Step { name: "reference", run: |_| crate::docs::check_reference() },
@@ -23,36 +26,75 @@ const STEPS: &[Step] = &[
     Step { name: "doc", run: |_| crate::docs::library() },
 ];
 
+/// The long forms, which `--long` adds: `docs/trust.md` says what each does beyond its short form.
+const LONG: &[Step] = &[
+    Step { name: "long-wheel", run: |_| crate::python::test_wheel() },
+    Step { name: "long-visibility", run: long_visibility },
+    Step { name: "long-leaks", run: |_| release_example("bilux-accel", "leak_hunt", &[]) },
+    Step {
+        name: "long-agreement",
+        run: |_| release_example("bilux-validation", "agreement", &["--seconds", "3"]),
+    },
+];
+
 /// Runs every step, or those that are named, and reports all of them even if one fails.
-pub(crate) fn run(names: &[String]) -> Result<()> {
-    if let Some(name) = names.iter().find(|name| STEPS.iter().all(|step| step.name != **name)) {
-        let known: Vec<_> = STEPS.iter().map(|step| step.name).collect();
-        bail!("there is no step '{name}' (there are: {})", known.join(", "));
-    }
+pub(crate) fn run(arguments: &[String]) -> Result<()> {
+    let start = (Instant::now(), cpu_time());
+    let steps = chosen(arguments)?;
     let mut totals = Totals::default();
     let mut reports = Vec::new();
-    for step in STEPS.iter().filter(|step| names.is_empty() || names.iter().any(|name| name == step.name)) {
+    for step in steps {
         println!("==> {}", step.name);
-        let start = Instant::now();
+        let (start, cpu) = (Instant::now(), cpu_time());
         let result = (step.run)(&mut totals);
         if let Err(error) = &result {
             println!("{error:#}");
         }
-        reports.push((step.name, start.elapsed(), result.is_ok()));
+        reports.push(Report { name: step.name, time: start.elapsed(), cpu: since(cpu), ok: result.is_ok() });
     }
-    summarise(&reports, totals)
+    let failed: Vec<_> = reports.iter().filter(|report| !report.ok).map(|report| report.name).collect();
+    reports.push(Report { name: "all", time: start.0.elapsed(), cpu: since(start.1), ok: failed.is_empty() });
+    println!();
+    reports.iter().for_each(|report| println!("{report}"));
+    println!("{} passed, {} failed", totals.passed, totals.failed);
+    if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
 }
 
-fn summarise(reports: &[(&str, Duration, bool)], totals: Totals) -> Result<()> {
-    println!();
-    for (name, time, ok) in reports {
-        println!("{name:<12} {:>7.1} s  {}", time.as_secs_f64(), if *ok { "ok" } else { "FAILED" });
+/// The steps that the arguments ask for, in the order of the tables.
+fn chosen(arguments: &[String]) -> Result<Vec<&'static Step>> {
+    let all = || STEPS.iter().chain(LONG);
+    let names: Vec<&String> = arguments.iter().filter(|word| *word != "--long").collect();
+    if let Some(name) = names.iter().find(|name| all().all(|step| step.name != **name)) {
+        let known: Vec<_> = all().map(|step| step.name).collect();
+        bail!("there is no step '{name}' (there are: {}; `--long` adds the long ones)", known.join(", "));
     }
-    let all: Duration = reports.iter().map(|(_, time, _)| *time).sum();
-    println!("{:<12} {:>7.1} s", "all", all.as_secs_f64());
-    println!("{} passed, {} failed", totals.passed, totals.failed);
-    let failed: Vec<_> = reports.iter().filter(|report| !report.2).map(|report| report.0).collect();
-    if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
+    let long = names.len() < arguments.len();
+    let is_default = |step: &Step| names.is_empty() && STEPS.iter().any(|short| short.name == step.name);
+    let is_long = |step: &Step| long && LONG.iter().any(|long| long.name == step.name);
+    let is_named = |step: &Step| names.iter().any(|name| *name == step.name);
+    Ok(all().filter(|step| is_default(step) || is_long(step) || is_named(step)).collect())
+}
+
+/// How long a step took.
+struct Report {
+    name: &'static str,
+    time: Duration,
+    /// Of all cores, where the system tells.
+    cpu: Option<Duration>,
+    ok: bool,
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let minutes = |time: Duration| time.as_secs_f64() / 60.0;
+        let cpu = self.cpu.map_or("unknown".to_owned(), |cpu| format!("{:.2}", minutes(cpu)));
+        let verdict = if self.ok { "ok" } else { "FAILED" };
+        write!(out, "{:<16} {:>6.2} min, {cpu:>6} min of CPU  {verdict}", self.name, minutes(self.time))
+    }
+}
+
+fn since(start: Option<Duration>) -> Option<Duration> {
+    Some(cpu_time()?.saturating_sub(start?))
 }
 
 fn fmt(_: &mut Totals) -> Result<()> {
@@ -66,8 +108,18 @@ fn clippy(_: &mut Totals) -> Result<()> {
 }
 
 fn tests(totals: &mut Totals) -> Result<()> {
+    // Examples are left out: clippy has seen that they compile, and these do not run.
+    watched(&["test", "--locked", "--workspace", "--tests", "--no-fail-fast"], totals)
+}
+
+/// The examples in the documentation of the libraries.
+fn examples(totals: &mut Totals) -> Result<()> {
+    watched(&["test", "--locked", "--workspace", "--doc", "--no-fail-fast"], totals)
+}
+
+fn watched(arguments: &[&str], totals: &mut Totals) -> Result<()> {
     let mut suites = 0;
-    let ok = run_watched(&mut cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]), |line| {
+    let ok = run_watched(&mut cargo(arguments), |line| {
         if let Some(suite) = Totals::read(line) {
             totals.add(suite);
             suites += 1;
@@ -78,6 +130,22 @@ fn tests(totals: &mut Totals) -> Result<()> {
         (_, 0) => bail!("no test ran"),
         _ => bail!("a test failed: see above"),
     }
+}
+
+fn long_visibility(totals: &mut Totals) -> Result<()> {
+    let suite = ["test", "--locked", "--release", "-p", "bilux-accel", "--test", "suite", "visibility"];
+    let mut command = cargo(&suite);
+    let read = |line: &str| Totals::read(line).into_iter().for_each(|suite| totals.add(suite));
+    if run_watched(command.env("BILUX_LONG", "1"), read)? {
+        Ok(())
+    } else {
+        bail!("a test failed: see above")
+    }
+}
+
+fn release_example(package: &str, example: &str, arguments: &[&str]) -> Result<()> {
+    let run = ["run", "--locked", "--release", "-p", package, "--example", example, "--"];
+    run_step(&[&run, arguments].concat())
 }
 
 fn run_step(arguments: &[&str]) -> Result<()> {
@@ -132,11 +200,33 @@ mod tests {
         assert_eq!(Totals::read("test result: "), None);
     }
 
+    fn names(words: &[&str]) -> Vec<&'static str> {
+        let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+        chosen(&words).unwrap().iter().map(|step| step.name).collect()
+    }
+
+    #[test]
+    fn long_steps_run_only_if_asked_for() {
+        assert_eq!(names(&[]).len(), STEPS.len());
+        assert_eq!(names(&["--long"]).len(), STEPS.len() + LONG.len());
+        assert_eq!(names(&["long-leaks", "tidy"]), ["tidy", "long-leaks"]);
+        let wrong = chosen(&["quick".to_owned()]).err().unwrap().to_string();
+        assert!(wrong.starts_with("there is no step 'quick' (there are: fmt, tidy"), "{wrong}");
+    }
+
+    #[test]
+    fn the_page_about_trust_lists_the_long_steps() {
+        let page = std::fs::read_to_string(crate::process::root().join("docs/trust.md")).unwrap();
+        for step in LONG {
+            assert!(page.contains(&format!("`{}`", step.name)), "{}", step.name);
+        }
+    }
+
     #[test]
     fn a_failed_step_fails_the_whole() {
-        let fine = ("fmt", Duration::ZERO, true);
-        assert!(summarise(&[fine], Totals::default()).is_ok());
-        let error = summarise(&[fine, ("doc", Duration::ZERO, false)], Totals::default());
-        assert_eq!(error.map_err(|error| error.to_string()), Err("failed: doc".to_owned()));
+        let error = run(&["doc".to_owned(), "there-is-none".to_owned()]);
+        assert!(error.is_err_and(|error| error.to_string().contains("there-is-none")));
+        let report = Report { name: "doc", time: Duration::from_secs(90), cpu: None, ok: false };
+        assert_eq!(report.to_string(), "doc                1.50 min, unknown min of CPU  FAILED");
     }
 }
