@@ -15,6 +15,7 @@ const STEPS: &[Step] = &[
     Step { name: "fmt", run: fmt },
     Step { name: "tidy", run: |_| crate::tidy::run(&[]) },
     Step { name: "licences", run: |_| crate::licences::run(&[]) },
+    Step { name: "deny", run: deny },
     Step { name: "clippy", run: clippy },
     Step { name: "build", run: |_| crate::process::build_all() },
     Step { name: "test", run: tests },
@@ -100,6 +101,20 @@ fn since(start: Option<Duration>) -> Option<Duration> {
 fn fmt(_: &mut Totals) -> Result<()> {
     component("fmt", "rustfmt")?;
     run_step(&["fmt", "--all", "--", "--check"]).context("run `cargo fmt --all`")
+}
+
+/// Known faults of the packages that we build on, their licences and where they come from: by `cargo-deny` and `deny.toml`,
+/// where it is installed.
+fn deny(_: &mut Totals) -> Result<()> {
+    let there = cargo(&["deny", "--version"]).output().is_ok_and(|output| output.status.success());
+    if !there {
+        println!(
+            "skipped: cargo-deny is not installed (install it with `cargo install --locked cargo-deny`)"
+        );
+        return Ok(());
+    }
+    run_step(&["deny", "--locked", "check", "advisories", "licenses", "sources"])
+        .context("see deny.toml for what is allowed")
 }
 
 fn clippy(_: &mut Totals) -> Result<()> {

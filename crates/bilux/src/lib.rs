@@ -30,6 +30,8 @@ pub mod job;
 mod layers;
 pub mod light_path;
 pub mod memory;
+pub mod memory_limit;
+pub mod merging;
 mod outcome;
 mod own_light;
 pub mod parts;

@@ -24,6 +24,15 @@ impl Outcome {
         Ok(self.encoded(self.light()?))
     }
 
+    /// The number of samples that each pixel has; their mean where not all have the same, as in a picture that was
+    /// interrupted.
+    pub fn samples_per_pixel(&self) -> f64 {
+        let film = &self.rendered.film;
+        let pieces = film.coverage().pieces().iter();
+        let samples = pieces.map(|(window, samples)| window.pixels() as u64 * samples.len() as u64);
+        samples.sum::<u64>() as f64 / film.window().pixels() as f64
+    }
+
     /// The light in the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
         let mut picture = self.rendered.film.window_to_picture(self.rendered.film.window())?;

@@ -369,7 +369,8 @@ pub struct Generate {
 /// Merge partial renders into one picture
 #[derive(Args)]
 #[command(help_template = help::TEMPLATE)]
-#[command(after_help = "Example:\n  bilux merge a.exr b.exr -o scene.png")]
+#[command(after_help = "Examples:\n  bilux merge a.exr b.exr -o scene.png\n  \
+    bilux merge a.exr b.exr -o so-far.exr --partial    Other parts are still missing")]
 pub struct Merge {
     /// The partial renders to merge, in any order
     #[arg(required = true, value_name = "PART")]
@@ -377,6 +378,9 @@ pub struct Merge {
     /// The picture to write; an .exr can be merged again
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
+    /// Merge what there is even if samples are missing, which is otherwise an error
+    #[arg(long, help_heading = help::OUTPUT)]
+    pub partial: bool,
 }
 
 /// List integrators, accelerators, materials, formats and more

@@ -1,19 +1,24 @@
-//! Ctrl-C and SIGTERM: the first signal asks the work to stop and save what there is, the second stops it at once.
-//! `--timeout` does both, one after the other.
+//! Ctrl-C, SIGTERM and `--timeout`: the first asks the work to stop and save what there is, and the process ends within
+//! [`GRACE`] whatever it does; a second signal ends it at once. Where there is nothing to save, the first does.
+//!
+//! A thread waits for signals, so that none of the work has to look for them: not reading, building trees or decoding,
+//! nor a library in the midst of any of it.
 
-use crate::output;
+use crate::ending::end;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use std::sync::Arc;
+use signal_hook::iterator::Signals;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread::Builder;
 use std::time::Duration;
 
 /// What has interrupted the work, if anything has.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Interrupt {
     /// The signal's number, or [`TIMEOUT`].
     signal: Arc<AtomicUsize>,
-    /// Whether there is a picture that can be saved.
-    renders: Arc<AtomicBool>,
+    /// Whether the work ends by itself when it is interrupted, and saves what there is.
+    ends_itself: Arc<AtomicBool>,
     /// Whether what is being rendered has changed in the meantime.
     superseded: Arc<AtomicBool>,
 }
@@ -24,52 +29,89 @@ const TIMEOUT: usize = usize::MAX;
 /// The exit status after a timeout, the same as that of the command `timeout`.
 const TIMED_OUT: u8 = 124;
 
-/// How long saving may take after a timeout.
-const GRACE: Duration = Duration::from_secs(2);
+/// How long saving may take after a signal or a timeout; the process is gone within 2 seconds.
+const GRACE: Duration = Duration::from_millis(1800);
+
+/// The one of this process.
+static INTERRUPT: OnceLock<Interrupt> = OnceLock::new();
+
+/// What interrupts the work of this process.
+pub fn interrupt() -> &'static Interrupt {
+    INTERRUPT.get_or_init(Interrupt::default)
+}
+
+/// From now on, waits for signals in a thread. This comes after `--sandbox` is in force, which the thread inherits.
+pub fn listen() -> anyhow::Result<()> {
+    // Files that grow beyond `ulimit -f` then give an error, and what is half written is removed.
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
+    let mut signals = Signals::new([SIGINT, SIGTERM])?;
+    thread("signals").spawn(move || {
+        for signal in signals.forever() {
+            interrupt().signalled(signal);
+        }
+    })?;
+    Ok(())
+}
+
+/// A thread that waits most of the time, and needs little memory.
+fn thread(name: &str) -> Builder {
+    const STACK: usize = 256 << 10;
+    Builder::new().name(name.to_owned()).stack_size(STACK)
+}
 
 impl Interrupt {
-    /// Starts listening for signals.
-    pub fn listen() -> anyhow::Result<Interrupt> {
-        let signal = Arc::new(AtomicUsize::new(0));
-        for wanted in [SIGINT, SIGTERM] {
-            // The order matters: the shutdown checks the flag that an earlier signal has set.
-            let again = Arc::new(AtomicBool::new(false));
-            signal_hook::flag::register_conditional_shutdown(wanted, status(wanted as usize), again.clone())?;
-            signal_hook::flag::register(wanted, again)?;
-            signal_hook::flag::register_usize(wanted, signal.clone(), wanted as usize)?;
+    /// What a signal does.
+    fn signalled(&self, signal: i32) {
+        let first = self.signal.compare_exchange(0, signal as usize, Ordering::SeqCst, Ordering::SeqCst);
+        if first.is_err() {
+            end(status(signal as usize), "a second signal ended it at once, and nothing more was saved");
         }
-        Ok(Interrupt { signal, renders: Arc::default(), superseded: Arc::default() })
-    }
-
-    /// Stops the work after this time. What is rendered by then is saved; if nothing is, the program exits at once.
-    pub fn end_after(&self, timeout: Duration) {
-        let Interrupt { signal, renders, .. } = self.clone();
-        std::thread::spawn(move || {
-            std::thread::sleep(timeout);
-            signal.store(TIMEOUT, Ordering::Relaxed);
-            let seconds = timeout.as_secs_f64();
-            if renders.load(Ordering::Relaxed) {
-                std::thread::sleep(GRACE);
-                output::eprint(format_args!(
-                    "error: --timeout: the time of {seconds} s was up, and the picture could not be saved"
-                ));
-            } else {
-                output::eprint(format_args!(
-                    "error: --timeout: the time of {seconds} s was up before there was a picture to save"
-                ));
-            }
-            std::process::exit(i32::from(TIMED_OUT));
+        if !self.ends_itself.load(Ordering::SeqCst) {
+            end(self.exit_status(), "a signal ended it before there was a picture to save");
+        }
+        let late = self.clone();
+        let waits = thread("grace").spawn(move || {
+            std::thread::sleep(GRACE);
+            end(late.exit_status(), "a signal ended it, and what there is could not be saved in time");
         });
+        if waits.is_err() {
+            end(self.exit_status(), "a signal ended it, and there is no memory to save what there is");
+        }
     }
 
-    /// Says whether, from now on, there is a picture that can be saved.
-    pub fn renders(&self, yes: bool) {
-        self.renders.store(yes, Ordering::Relaxed);
+    /// Stops the work after what is left of the timeout. What is rendered by then is saved; if nothing is, the program exits at
+    /// once.
+    pub fn end_after(&self, left: Duration, timeout: Duration) -> anyhow::Result<()> {
+        let Interrupt { signal, ends_itself, .. } = self.clone();
+        thread("timeout").spawn(move || {
+            std::thread::sleep(left);
+            let _ = signal.compare_exchange(0, TIMEOUT, Ordering::SeqCst, Ordering::SeqCst);
+            let seconds = timeout.as_secs_f64();
+            if ends_itself.load(Ordering::SeqCst) {
+                std::thread::sleep(GRACE);
+                let lost = "was up, and the picture could not be saved";
+                end(TIMED_OUT, &format!("--timeout: the time of {seconds} s {lost}"));
+            }
+            let nothing = "was up before there was a picture to save";
+            end(TIMED_OUT, &format!("--timeout: the time of {seconds} s {nothing}"));
+        })?;
+        Ok(())
+    }
+
+    /// Says whether, from now on, the work ends by itself when it is interrupted, and saves what there is.
+    pub fn ends_itself(&self, yes: bool) {
+        self.ends_itself.store(yes, Ordering::SeqCst);
     }
 
     /// True if the timeout stopped the work.
     pub fn timed_out(&self) -> bool {
         self.signal.load(Ordering::Relaxed) == TIMEOUT
+    }
+
+    /// True if it was stopped by somebody who does not watch: the timeout or SIGTERM, in contrast to Ctrl-C.
+    pub fn is_terminated(&self) -> bool {
+        [TIMEOUT, SIGTERM as usize].contains(&self.signal.load(Ordering::Relaxed))
     }
 
     /// Says whether what is being rendered has changed: then it should stop, and nothing be saved.
@@ -97,12 +139,12 @@ impl Interrupt {
         match self.signal.load(Ordering::Relaxed) {
             0 => 0,
             TIMEOUT => TIMED_OUT,
-            signal => status(signal) as u8,
+            signal => status(signal),
         }
     }
 }
 
 /// The exit status by which shells report a signal.
-fn status(signal: usize) -> i32 {
-    128 + signal as i32
+fn status(signal: usize) -> u8 {
+    128 + signal as u8
 }

@@ -11,12 +11,14 @@ mod choices;
 mod commands;
 mod comparison;
 mod denoising;
+mod ending;
 mod explaining;
 mod farming;
 mod help;
 mod interrupt;
 mod lasting;
 mod measuring;
+mod memory;
 mod output;
 mod preview;
 mod progress;
@@ -42,9 +44,12 @@ const CLOSED_PIPE: u8 = 128 + 13;
 
 fn main() -> ExitCode {
     report_panics();
-    allocator::return_large_blocks();
+    memory::begin();
     let result = match Arguments::try_parse() {
-        Ok(arguments) => run(arguments),
+        Ok(mut arguments) => {
+            memory::bound(&mut arguments.common);
+            run(arguments)
+        }
         Err(answer) => print_answer(&advice::added(answer)),
     };
     match result {

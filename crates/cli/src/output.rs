@@ -1,6 +1,7 @@
 //! Output: results go to standard output, everything else to standard error.
 
 use bilux::formats::FormatError;
+use bilux::transport::RenderError;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 
@@ -94,7 +95,17 @@ fn without_error_numbers(text: &str) -> String {
 
 /// The flag that allows what the library refused.
 fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
-    Some(match cause.downcast_ref::<bilux::Error>()? {
+    let error = cause.downcast_ref::<bilux::Error>()?;
+    let is_too_large = matches!(
+        error,
+        bilux::Error::TooLarge { .. }
+            | bilux::Error::Format(FormatError::TooLarge { .. })
+            | bilux::Error::Render(RenderError::Threads { .. })
+    );
+    if let (true, Some(source)) = (is_too_large, crate::memory::tighter()) {
+        return Some(format!(" ({source} is the limit)"));
+    }
+    Some(match error {
         bilux::Error::TooLarge { needed, .. } => {
             format!(" (--max-memory {}G)", needed.total().div_ceil(1 << 30))
         }

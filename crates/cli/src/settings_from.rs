@@ -1,6 +1,7 @@
 //! Turns flags and `--set KEY=VALUE` into the same parameters that scene files use.
 
 use crate::arguments::{Explain, Render};
+use crate::memory;
 use crate::serving::Serve;
 use crate::studio::StudioArguments;
 use crate::values::Exposure;
@@ -94,6 +95,7 @@ fn all(flags: impl Iterator<Item = Flag>, set: &[String]) -> anyhow::Result<Para
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
     }
+    memory::set_threads(&mut parameters);
     Ok(parameters)
 }
 

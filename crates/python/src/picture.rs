@@ -105,8 +105,8 @@ impl Picture {
         self.metadata.clone_ref(py)
     }
 
-    /// What is known of the render: "spp" (samples per pixel; their mean, if it was stopped), "noise" (a fraction of the
-    /// light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "trees_built" (how many
+    /// What is known of the render: "spp" (samples per pixel that were taken; their mean, if it was stopped), "spp_asked"
+    /// (those that were asked for, or None where noise or time decides), "noise" (a fraction of the light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "trees_built" (how many
     /// there were not yet), "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
     /// Empty for other pictures.
     #[getter]

@@ -60,6 +60,7 @@ pub(crate) struct Rendered {
     outcome: Outcome,
     warnings: Vec<Warning>,
     spp: f64,
+    asked: Option<u32>,
     seed: u64,
     integrator: &'static str,
     denoiser: Option<String>,
@@ -234,11 +235,8 @@ pub(crate) fn with_layers(
         picture,
         shown: job.display()?,
         warnings: job.warnings().to_vec(),
-        spp: match (outcome.rendered.cancelled, outcome.rendered.reached) {
-            (true, _) => mean_samples(&outcome),
-            (false, Some(reached)) => f64::from(reached.spp),
-            (false, None) => f64::from(job.samples_per_pixel()),
-        },
+        spp: outcome.samples_per_pixel(),
+        asked: job.asked_samples(),
         seed: settings.seed,
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
@@ -284,14 +282,6 @@ fn window(job: &Job, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::E
     )))
 }
 
-/// The mean number of samples of a pixel.
-fn mean_samples(outcome: &Outcome) -> f64 {
-    let Window { x, y, width, height } = outcome.rendered.film.window();
-    let row = |row| (x..x + width).map(move |column| u64::from(outcome.rendered.film.samples(column, row)));
-    let all: u64 = (y..y + height).flat_map(row).sum();
-    all as f64 / (f64::from(width) * f64::from(height))
-}
-
 /// What the picture's `info` says.
 fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<Bound<'py, PyDict>> {
     let info = PyDict::new(py);
@@ -300,6 +290,7 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
         true => info.set_item("spp", rendered.spp)?,
         false => info.set_item("spp", rendered.spp as u64)?,
     }
+    info.set_item("spp_asked", rendered.asked)?;
     info.set_item("noise", outcome.rendered.reached.and_then(|reached| reached.noise))?;
     info.set_item("seconds", begun.elapsed().as_secs_f64())?;
     info.set_item("build_seconds", rendered.build.seconds)?;

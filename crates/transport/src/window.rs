@@ -137,6 +137,18 @@ impl Coverage {
         }
     }
 
+    /// What it lacks of these samples of a window.
+    pub fn missing(&self, window: Window, samples: Range<u32>) -> Coverage {
+        let mut left = vec![(window, samples)];
+        for held in &self.pieces {
+            left = left.into_iter().flat_map(|piece| without(piece, held)).collect();
+        }
+        let mut missing = Coverage::default();
+        left.into_iter().for_each(|(window, samples)| missing.insert(window, samples));
+        missing.pieces.sort_by_key(|(window, samples)| (samples.start, window.y, window.x));
+        missing
+    }
+
     /// Samples that both hold, if there are any.
     pub fn overlap(&self, other: &Coverage) -> Option<(Window, Range<u32>)> {
         self.pieces.iter().find_map(|a| other.pieces.iter().find_map(|b| shared(a, b)))
@@ -149,6 +161,24 @@ fn shared(a: &Piece, b: &Piece) -> Option<Piece> {
     let window = a.0.intersection(&b.0);
     let samples = a.1.start.max(b.1.start)..a.1.end.min(b.1.end);
     (!window.is_empty() && !samples.is_empty()).then_some((window, samples))
+}
+
+/// A piece without another: the samples before and after it, and the windows above, below and beside it.
+fn without(piece: Piece, held: &Piece) -> Vec<Piece> {
+    let Some((hole, taken)) = shared(&piece, held) else { return vec![piece] };
+    let (window, samples) = piece;
+    let side = |from: u32, to: u64| to.saturating_sub(u64::from(from)) as u32;
+    let (below, right) = (hole.bottom() as u32, hole.right() as u32);
+    let around = [
+        Window { height: hole.y - window.y, ..window },
+        Window { y: below, height: side(below, window.bottom()), ..window },
+        Window { width: hole.x - window.x, ..Window { y: hole.y, height: hole.height, ..window } },
+        Window { x: right, width: side(right, window.right()), y: hole.y, height: hole.height },
+    ];
+    let aside = [samples.start..taken.start, taken.end..samples.end].map(|range| (window, range));
+    let beside = around.map(|window| (window, taken.clone()));
+    let is_some = |(window, samples): &Piece| !window.is_empty() && !samples.is_empty();
+    aside.into_iter().chain(beside).filter(is_some).collect()
 }
 
 /// Both pieces as one, where they fit together.
@@ -202,5 +232,30 @@ mod tests {
         assert_eq!(a.overlap(&b), None);
         b.insert(Window { x: 4, y: 4, width: 1, height: 3 }, 3..9);
         assert_eq!(a.overlap(&b), Some((Window { x: 4, y: 4, width: 1, height: 1 }, 3..4)));
+    }
+    /// Against a count of each sample of each pixel: what a coverage lacks and what it holds are together everything, once.
+    #[test]
+    fn what_is_missing_is_all_that_is_not_there() {
+        let (whole, samples) = (Window::whole(7, 5), 0..6);
+        let mut held = Coverage::default();
+        for (x, y, width, height, from, to) in
+            [(0, 0, 7, 5, 0, 1), (2, 1, 3, 2, 1, 4), (0, 4, 7, 1, 2, 9), (6, 0, 1, 1, 5, 6)]
+        {
+            held.insert(Window { x, y, width, height }, from..to);
+        }
+        let missing = held.missing(whole, samples.clone());
+        let count = |coverage: &Coverage, x, y, sample| {
+            let has = |(window, range): &&Piece| window.index(x, y).is_some() && range.contains(&sample);
+            coverage.pieces().iter().filter(has).count()
+        };
+        for (x, y) in (0..whole.pixels()).map(|i| whole.position(i)) {
+            for sample in samples.clone() {
+                let counts = [&held, &missing].map(|coverage| count(coverage, x, y, sample));
+                assert_eq!(counts[0] + counts[1], 1, "sample {sample} of {x},{y}");
+            }
+        }
+        assert!(missing.overlap(&held).is_none());
+        held.extend(&missing);
+        assert!(held.missing(whole, samples).pieces().is_empty());
     }
 }

@@ -1,10 +1,14 @@
 //! `cargo xtask dist`: the binary as it is released, static where possible, in an archive with its licences,
-//! completions, man pages and scenes, and the archive's SHA-256 next to it. The profile is `dist` of `Cargo.toml`.
+//! completions, man pages and scenes, in a package for Debian, and with the description of an image for containers; the
+//! SHA-256 of both next to them. Each is unpacked and started. The profile is `dist` of `Cargo.toml`.
 //!
-//! The archive depends only on the sources and the toolchain: it contains no time, owner or path of the machine that
-//! builds it.
+//! The archive and the package depend only on the sources and the tools: they contain no time, owner or path of the machine that
+//! builds them.
 
+mod container;
+mod debian;
 mod elf;
+mod started;
 
 use crate::licences::PAGE as NOTICES;
 use crate::process::{cargo, output, root, run as run_process, target_folder};
@@ -26,19 +30,31 @@ const SHELLS: &[&str] = &["bash", "zsh", "fish", "powershell", "elvish"];
 pub(crate) fn run(_: &[String]) -> Result<()> {
     let target = Target::best()?;
     let binary = build(&target)?;
-    let name = format!("bilux-{}-{}", version()?, target.triple);
+    let version = version()?;
+    let name = format!("bilux-{version}-{}", target.triple);
     let folder = root().join("dist").join(&name);
     assemble(&folder, &binary)?;
     if target.is_static {
         elf::require_static(&fs::read(folder.join("bilux"))?).context("the binary is not static")?;
+        container::write(&folder)?;
     }
     let archive = pack(&folder, &name)?;
-    let sum = format!("{}  {name}.tar.gz\n", sha256(&archive)?);
-    fs::write(root().join("dist/SHA256SUMS"), &sum).context("cannot write SHA256SUMS")?;
+    let package = debian::Package { version: &version, triple: &target.triple, is_static: target.is_static };
+    let deb = debian::pack(&folder, &package)?;
+    started::check(&archive, &name, deb.as_deref(), &version)?;
+    if target.is_static {
+        container::check(&folder, &version)?;
+    }
     let kind = if target.is_static { "static" } else { "dynamic" };
     println!("{} bytes  {name}/bilux ({kind})", fs::metadata(folder.join("bilux"))?.len());
-    println!("{} bytes  dist/{name}.tar.gz", fs::metadata(&archive)?.len());
-    print!("{sum}");
+    let mut sums = String::new();
+    for file in [&archive].into_iter().chain(&deb) {
+        let shown = file.file_name().unwrap_or_default().to_string_lossy();
+        println!("{} bytes  dist/{shown}", fs::metadata(file)?.len());
+        sums += &format!("{}  {shown}\n", sha256(file)?);
+    }
+    fs::write(root().join("dist/SHA256SUMS"), &sums).context("cannot write SHA256SUMS")?;
+    print!("{sums}");
     Ok(())
 }
 
@@ -166,6 +182,62 @@ mod tests {
         fs::remove_file(&path).expect("the file of the test goes away");
         let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(sum.expect("the file can be read"), expected);
+    }
+
+    /// A program that answers as the binary does, in the folder that is packed.
+    #[cfg(unix)]
+    fn packed(parent: &Path, name: &str) -> PathBuf {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = parent.join(name);
+        for inner in ["completions", "man", SCENES] {
+            fs::create_dir_all(folder.join(inner)).expect("a folder for the test");
+        }
+        let program = "#!/bin/sh\ncase $1 in\n-V) echo 'bilux 1.2.3 (test)';;\n\
+            render) printf '\\211PNG and so on' > started.png;;\nesac\n";
+        fs::write(folder.join("bilux"), program).expect("a program for the test");
+        fs::set_permissions(folder.join("bilux"), fs::Permissions::from_mode(0o755))
+            .expect("it can be started");
+        let completions = SHELLS.iter().map(|shell| format!("completions/bilux.{shell}"));
+        let more = ["man/bilux.1".to_owned(), format!("{SCENES}/a.toml")];
+        for file in completions.chain(more).chain(PAGES.iter().map(|page| (*page).to_owned())) {
+            fs::write(folder.join(&file), file).expect("a file for the test");
+        }
+        folder
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_packed_starts_when_it_is_unpacked() {
+        let parent = std::env::temp_dir().join(format!("bilux-dist-{}", std::process::id()));
+        let folder = packed(&parent, "bilux-1.2.3-x86_64-unknown-linux-musl");
+        container::write(&folder).expect("the description of the image");
+        let archive = pack(&folder, "bilux-1.2.3-x86_64-unknown-linux-musl").expect("an archive");
+        let package =
+            debian::Package { version: "1.2.3", triple: "x86_64-unknown-linux-musl", is_static: true };
+        let deb = debian::pack(&folder, &package).expect("a package, or none where the tool is missing");
+        let name = "bilux-1.2.3-x86_64-unknown-linux-musl";
+        started::check(&archive, name, deb.as_deref(), "1.2.3").expect("both start");
+        // Another version than the one that is released is noticed.
+        assert!(started::check(&archive, name, deb.as_deref(), "1.2.4").is_err());
+        if let Some(deb) = deb {
+            assert_eq!(deb.file_name().and_then(|name| name.to_str()), Some("bilux_1.2.3_amd64.deb"));
+            let field =
+                |name: &str| output(Command::new("dpkg-deb").arg("--field").arg(&deb).arg(name)).expect(name);
+            assert_eq!([field("Package").trim(), field("Version").trim()], ["bilux", "1.2.3"]);
+            let listed = output(Command::new("dpkg-deb").arg("--contents").arg(&deb)).expect("a list");
+            for file in
+                ["./usr/bin/bilux", "./usr/share/man/man1/bilux.1.gz", "./usr/share/doc/bilux/copyright"]
+            {
+                assert!(
+                    listed.lines().any(|line| line.ends_with(file) && line.contains("root/root")),
+                    "{file}"
+                );
+            }
+            let first = sha256(&deb).expect("a sum");
+            let again = debian::pack(&folder, &package).expect("a package").expect("the tool is there");
+            assert_eq!(sha256(&again).expect("a sum"), first, "the same files give another package");
+        }
+        fs::remove_dir_all(&parent).expect("the folder of the test goes away");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The file of a checkpoint.
 
 use super::identity::Identity;
+use bilux_pictures::formats::Unfinished;
 use bilux_transport::{Checkpoint, FilmError};
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -164,6 +165,7 @@ pub(super) fn write(
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), CheckpointError> {
     let beside = part_path(path);
+    let _unfinished = Unfinished::begin(&beside);
     let text = head.to_text();
     let fill = || {
         let mut out = Hashed { file: io::BufWriter::new(File::create(&beside)?), hash: Sha256::new() };

@@ -7,6 +7,7 @@ use crate::Error;
 use crate::built::Built;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
+use crate::merging::ASKED;
 use crate::outcome::Outcome;
 use crate::own_light;
 use crate::scene_warnings::{self, oddities};
@@ -196,6 +197,11 @@ impl Job {
         self.render.samples.end - self.render.samples.start
     }
 
+    /// The number of samples that each pixel was to get, if noise or time alone does not decide it.
+    pub fn asked_samples(&self) -> Option<u32> {
+        self.settings.asked_spp().map(|_| self.samples_per_pixel())
+    }
+
     /// Renders only a window of the picture.
     pub fn crop(&mut self, window: Window) {
         self.render.crop = Some(window);
@@ -332,6 +338,9 @@ impl Job {
             picture.push_channel("A", coverage.clone())?;
         }
         self.display()?.record(&mut picture);
+        if let Some(spp) = self.settings.asked_spp() {
+            picture.metadata.insert(ASKED.to_owned(), spp.to_string());
+        }
         self.describe(&mut picture, outcome, None);
         Ok(picture)
     }

@@ -252,6 +252,12 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The samples per pixel of the picture, unless noise or time alone decides their number.
+    pub fn asked_spp(&self) -> Option<u32> {
+        let is_given = matches!(self.given.find("spp"), Some((Value::Integer(1..), _)));
+        (is_given || !self.stop.is_any()).then_some(self.spp)
+    }
+
     /// Combines the settings of the scene with those of the user, which take precedence.
     ///
     /// # Errors

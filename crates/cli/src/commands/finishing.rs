@@ -3,13 +3,15 @@
 use super::input::Input;
 use super::keeping::Keeping;
 use super::targets::{Target, is_stdout};
-use super::written::{self, is_part};
+use super::written::{self, Denoising, is_part};
 use super::{DONE, aov, log, stats, time_limit};
+use crate::ending::{end, under_way};
 use crate::preview::{Observers, Preview};
 use crate::progress::Report;
 use crate::{output, usage};
 use bilux::Job;
 use bilux::pictures::formats::format_of_path;
+use std::sync::Arc;
 
 /// Renders a picture and writes it, with what belongs to it.
 pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
@@ -19,15 +21,17 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
     let for_display = is_stdout(output) || format_of_path(output)?.for_display;
     let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
+    under_way(&target.scene, output, arguments.json);
     let (keeping, saved) = Keeping::begin(input, job, output)?;
     let before = input.begun.get().elapsed();
     let report = Report::new(&label, common, interrupt.clone());
-    interrupt.renders(true);
+    interrupt.ends_itself(true);
     let (outcome, kept) = {
         let writer = keeping.writer(job, saved.as_ref());
         let preview = arguments.lasting.preview.map(|choice| Preview::begin(choice, job, report.bar()));
         let preview = preview.transpose()?.flatten();
-        let observers = Observers { writer: writer.as_ref(), preview: preview.as_ref() };
+        let ends = Some(interrupt).filter(|_| !keeping.is_asked());
+        let observers = Observers { writer: writer.as_ref(), preview: preview.as_ref(), ends };
         let outcome = job.render_from(saved, &report, &observers)?;
         if let Some(preview) = preview {
             preview.finish(&outcome);
@@ -36,15 +40,21 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     };
     let seconds = report.finish();
     if interrupt.is_superseded() && outcome.rendered.cancelled {
-        interrupt.renders(false);
+        interrupt.ends_itself(false);
         return Ok(DONE);
     }
+    if outcome.rendered.cancelled && outcome.samples_per_pixel() == 0.0 {
+        let status = interrupt.exit_status();
+        end(status, "it was stopped before there was a picture to save");
+    }
     let rendered = input.begun.get().elapsed();
-    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
+    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled).map(Arc::new);
+    let outcome = Arc::new(outcome);
     let extra = aov::extra(arguments, job, &outcome, &report)?;
     let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
-    let denoised = written::write(arguments, common, job, &outcome, (denoiser.as_ref(), &layers), output)?;
-    interrupt.renders(false);
+    let denoising = written::write(input, job, &outcome, (denoiser.as_ref(), &layers), output)?;
+    let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
+    interrupt.ends_itself(false);
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, (output, &layers), common, interrupt)?;
@@ -56,7 +66,8 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
         build_seconds,
         seconds,
         total_seconds: input.begun.get().elapsed().as_secs_f64(),
-        denoiser: denoiser.as_ref().filter(|_| denoised),
+        denoiser: denoiser.as_deref().filter(|_| denoising == Denoising::Done),
+        is_whole,
         timed_out: interrupt.timed_out(),
         overrun,
         warnings: &input.warnings.borrow(),
@@ -68,8 +79,8 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     if !common.quiet {
         rendered.print(common.verbose);
     }
-    if outcome.rendered.cancelled || !all_aovs || extra.is_none() {
-        keeping.report_stop(kept, common.quiet);
+    if !is_whole || !all_aovs || extra.is_none() {
+        keeping.stop(kept, interrupt, common.quiet)?;
         return Ok(interrupt.exit_status());
     }
     let rendered = outcome.rendered.reached.map_or(job.samples_per_pixel(), |reached| reached.spp);

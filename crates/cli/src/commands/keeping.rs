@@ -1,8 +1,10 @@
 //! The checkpoints of a picture: from which one it goes on, where the next ones go, and when the last one is not needed any more.
 
 use super::input::Input;
+use super::log::counted_samples;
 use super::targets::is_stdout;
 use crate::arguments::Render;
+use crate::interrupt::Interrupt;
 use crate::lasting::Checkpoints;
 use crate::output;
 use anyhow::{Context, bail};
@@ -35,6 +37,8 @@ pub struct Keeping {
     /// Samples per pixel of an older checkpoint of the same picture, which a render that begins anew must not lose.
     older: Option<f64>,
     has_resumed: bool,
+    /// Whether the command line speaks of checkpoints.
+    is_asked: bool,
 }
 
 impl Keeping {
@@ -42,7 +46,8 @@ impl Keeping {
     pub fn begin(input: &Input, job: &Job, output: &Path) -> anyhow::Result<(Keeping, Option<SavedRender>)> {
         let (lasting, common) = (&input.arguments.lasting, input.common);
         let every = lasting.checkpoints();
-        let mut keeping = Keeping { path: None, every, older: None, has_resumed: false };
+        let is_asked = lasting.resume || lasting.checkpoint.is_some();
+        let mut keeping = Keeping { path: None, every, older: None, has_resumed: false, is_asked };
         if is_stdout(output) || lasting.watch {
             return Ok((keeping, None));
         }
@@ -55,7 +60,7 @@ impl Keeping {
                 output::eprint(format_args!(
                     "{}: resumes at {} per pixel, after {:.0} s of work",
                     output.display(),
-                    samples(read.head.samples),
+                    counted_samples(read.head.samples),
                     read.head.spent.as_secs_f64()
                 ));
             }
@@ -89,16 +94,27 @@ impl Keeping {
         })
     }
 
-    /// Says where a render that was stopped can go on.
-    pub fn report_stop(&self, written: Option<f64>, quiet: bool) {
-        let (Some(path), Some(kept)) = (&self.path, written) else { return };
+    /// True if the command line speaks of checkpoints; otherwise they are only for a process that is killed, and for Ctrl-C.
+    pub fn is_asked(&self) -> bool {
+        self.is_asked
+    }
+
+    /// The render was stopped and its picture saved: says where it can go on. A server that stops it, or a timeout, finds
+    /// nothing beside the picture that it has not asked for.
+    pub fn stop(&self, written: Option<f64>, interrupt: &Interrupt, quiet: bool) -> anyhow::Result<()> {
+        let (Some(path), Some(kept)) = (&self.path, written) else { return Ok(()) };
+        let is_ours = self.older.is_none_or(|older| kept > older);
+        if !self.is_asked && interrupt.is_terminated() && is_ours {
+            return remove(path, "the render was stopped");
+        }
         if !quiet && path.is_file() {
             output::eprint(format_args!(
                 "{}: holds {} per pixel; add --resume to continue from there",
                 path.display(),
-                samples(kept)
+                counted_samples(kept)
             ));
         }
+        Ok(())
     }
 
     /// The picture is written, with so many samples per pixel: removes its checkpoint.
@@ -108,11 +124,20 @@ impl Keeping {
             Some(older) => f64::from(rendered) >= older,
             None => written.is_some() || self.has_resumed,
         };
-        let Some(path) = self.path.as_ref().filter(|path| is_ours && path.is_file()) else { return Ok(()) };
-        std::fs::remove_file(path).with_context(|| {
-            format!("{}: the picture is finished, but this cannot be removed", path.display())
-        })
+        match &self.path {
+            Some(path) if is_ours => remove(path, "the picture is finished"),
+            _ => Ok(()),
+        }
     }
+}
+
+/// Removes a checkpoint, if it is there.
+fn remove(path: &Path, since: &str) -> anyhow::Result<()> {
+    if !path.is_file() {
+        return Ok(());
+    }
+    let failed = || format!("{}: {since}, but this cannot be removed", path.display());
+    std::fs::remove_file(path).with_context(failed)
 }
 
 /// Warns of a checkpoint that a render without `--resume` finds. One of the same picture is kept until this render has got
@@ -127,7 +152,7 @@ fn warn_of_older(input: &Input, job: &Job, path: &Path, every: Checkpoints) -> a
         warn(format!(
             "{shown}: this picture already has {} per pixel, and --resume continues from them; without --resume the render starts \
              over, and keeps this file until it has more",
-            samples(head.samples)
+            counted_samples(head.samples)
         ))?;
         return Ok(Some(head.samples));
     }
@@ -146,10 +171,4 @@ fn warn_of_older(input: &Input, job: &Job, path: &Path, every: Checkpoints) -> a
     warn(format!("{shown}: this checkpoint is {what}; it is kept as {}{replaced}", old.display()))?;
     std::fs::rename(path, &old).with_context(|| format!("{shown}: cannot rename it to {}", old.display()))?;
     Ok(None)
-}
-
-/// A number of samples as text.
-fn samples(number: f64) -> String {
-    let rounded = if number < 10.0 { (number * 10.0).round() / 10.0 } else { number.round() };
-    if rounded == 1.0 { "1 sample".to_owned() } else { format!("{rounded} samples") }
 }

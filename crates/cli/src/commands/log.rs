@@ -24,6 +24,8 @@ pub struct Rendered<'a> {
     pub total_seconds: f64,
     /// The denoiser that was used.
     pub denoiser: Option<&'a DenoiserChoice>,
+    /// Whether nothing was cut short: neither samples nor denoising.
+    pub is_whole: bool,
     /// Whether `--timeout` ended it.
     pub timed_out: bool,
     /// Why it took longer than its time limit, if it did.
@@ -32,9 +34,11 @@ pub struct Rendered<'a> {
 }
 
 impl Rendered<'_> {
-    /// Samples per pixel, on average.
-    fn spp(&self) -> u32 {
-        self.outcome.rendered.reached.map_or_else(|| self.job.samples_per_pixel(), |reached| reached.spp)
+    /// The samples of each pixel that were taken, and those that were asked for, if noise or time alone does not decide.
+    pub fn samples(&self) -> [serde_json::Value; 2] {
+        let taken = self.outcome.samples_per_pixel();
+        let whole = (taken.fract() == 0.0).then(|| (taken as u64).into());
+        [whole.unwrap_or_else(|| taken.into()), self.job.asked_samples().into()]
     }
 
     /// The remaining noise, as a fraction of the light, if it was measured.
@@ -51,10 +55,10 @@ impl Rendered<'_> {
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
-        let cut = match self.outcome.rendered.cancelled {
-            true if self.timed_out => "; ended by --timeout: this is the picture so far",
-            true => "; interrupted: this is the picture so far",
-            false => "",
+        let cut = match self.is_whole {
+            false if self.timed_out => "; ended by --timeout: this is the picture so far",
+            false => "; interrupted: this is the picture so far",
+            true => "",
         };
         if let Some(overrun) = &self.overrun {
             output::eprint(format_args!("{output}: {overrun}"));
@@ -63,7 +67,7 @@ impl Rendered<'_> {
             "{output}: {}x{}, {} per pixel, {:.1} s{noise}{}{cut}",
             s.width,
             s.height,
-            output::counted(self.spp(), "sample", "samples"),
+            counted_samples(self.outcome.samples_per_pixel()),
             self.total_seconds,
             denoised.unwrap_or_default(),
         ));
@@ -120,15 +124,22 @@ impl Rendered<'_> {
 
     /// The report as JSON.
     pub fn json(&self) -> serde_json::Value {
-        let (s, outcome) = (self.job.settings(), self.outcome);
+        let s = self.job.settings();
+        let [spp, asked] = self.samples();
         json!({
             "scene": self.scene.to_string_lossy(), "picture": self.output.to_string_lossy(),
-            "width": s.width, "height": s.height, "spp": self.spp(), "noise": self.noise(),
+            "width": s.width, "height": s.height, "spp": spp, "spp_asked": asked, "noise": self.noise(),
             "seconds": self.total_seconds, "integrator": s.integrator.entry.name,
             "denoiser": self.denoiser.map(|chosen| chosen.denoiser.describe()), "seed": s.seed,
-            "complete": !outcome.rendered.cancelled, "warnings": self.warnings,
+            "complete": self.is_whole, "warnings": self.warnings,
         })
     }
+}
+
+/// A number of samples as text; their mean over the pixels need not be whole.
+pub fn counted_samples(number: f64) -> String {
+    let rounded = if number < 10.0 { (number * 10.0).round() / 10.0 } else { number.round() };
+    if rounded == 1.0 { "1 sample".to_owned() } else { format!("{rounded} samples") }
 }
 
 /// Prints a line of JSON about a scene that could not be rendered.

@@ -8,20 +8,22 @@ use super::written::is_part;
 use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
-use crate::interrupt::Interrupt;
-use crate::sandbox::{SandboxPaths, folder_of};
+use crate::ending::under_way;
+use crate::interrupt::{Interrupt, interrupt};
+use crate::sandbox::{SandboxPaths, check_read, folder_of, leads_out};
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::Series;
 use bilux::budget::{with_default_budget, with_fast_budget};
+use bilux::checkpoint::checkpoint_path;
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::watch::Watched;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
-    let interrupt = Interrupt::listen()?;
+    let interrupt = interrupt();
     let user = settings_from::render(arguments).map_err(usage::wrong)?;
     check_scenes(&arguments.scenes).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
@@ -34,19 +36,20 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     if let Some(curve) = arguments.tonemap.as_deref().filter(|name| *name != "auto") {
         bilux::pictures::tone_map(curve).context("--tonemap").map_err(usage::wrong)?;
     }
-    if let Some(timeout) = arguments.timeout {
-        interrupt.end_after(timeout);
-    }
+    let begun = Instant::now();
     begin_loading(arguments, common);
     confine(&targets, arguments, common)?;
+    if let Some(timeout) = arguments.timeout {
+        interrupt.end_after(timeout.saturating_sub(begun.elapsed()), timeout)?;
+    }
     if let ([target], true) = (&targets[..], arguments.lasting.watch) {
-        return watching::run(target, common, &interrupt, |watched| {
-            render_one(target, &user, arguments, common, (&interrupt, Some(watched)))
+        return watching::run(target, common, interrupt, |watched| {
+            render_one(target, &user, arguments, common, (interrupt, Some(watched)))
         });
     }
     let mut failed = 0;
     for target in &targets {
-        match render_one(target, &user, arguments, common, (&interrupt, None)) {
+        match render_one(target, &user, arguments, common, (interrupt, None)) {
             Ok(DONE) => {}
             Ok(status) => return Ok(status),
             Err(error) => {
@@ -76,7 +79,11 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     let mut confines = SandboxPaths::default();
     for scene in targets.iter().map(|target| &target.scene) {
         // A scene on standard input may name files in the working directory.
-        confines = confines.reading_scene(if is_stdout(scene) { Path::new("./stdin") } else { scene });
+        let scene = if is_stdout(scene) { Path::new("./stdin") } else { scene };
+        // One that leads out is refused when its turn comes, and does not stop the others.
+        if !leads_out(scene) {
+            confines = confines.reading_scene(scene);
+        }
     }
     for file in studio.env.as_deref().into_iter().chain(studio.picture_behind()) {
         confines = confines.reading(file);
@@ -87,17 +94,26 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     // Those of frames have names of their own.
     let folders: BTreeSet<&Path> = targets.iter().map(|target| folder_of(&target.output)).collect();
     for file in folders.into_iter().filter_map(|folder| folder.read_dir().ok()).flatten().flatten() {
-        if file.path().extension().is_some_and(|extension| extension == "checkpoint") {
+        let is_checkpoint = file.path().extension().is_some_and(|extension| extension == "checkpoint");
+        if is_checkpoint && !leads_out(&file.path()) {
             confines = confines.reading(&file.path());
         }
     }
     for target in targets {
-        let files = [Some(&target.output), target.stats.as_ref()];
-        for file in files.into_iter().flatten().filter(|file| !is_stdout(file)) {
+        let beside = if is_stdout(&target.output) { Vec::new() } else { beside(target, arguments) };
+        let files = [&target.output].into_iter().chain(&target.stats).chain(&beside);
+        for file in files.filter(|file| !is_stdout(file)) {
             confines.check_written(file, common).map_err(usage::wrong)?;
         }
     }
     confines.enter(common)
+}
+
+/// What is written beside a picture.
+fn beside(target: &Target, arguments: &Render) -> Vec<PathBuf> {
+    let mut files = aov::files(arguments, &target.output);
+    files.extend([checkpoint_path(&target.output), target.output.with_extension("strategies")]);
+    files
 }
 
 fn render_one(
@@ -107,6 +123,8 @@ fn render_one(
     common: &Common,
     (interrupt, watched): (&Interrupt, Option<&Watched>),
 ) -> anyhow::Result<u8> {
+    under_way(&target.scene, &target.output, arguments.json);
+    check_read(&target.scene, common)?;
     let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
     let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
     input.warn(&scene.warnings)?;

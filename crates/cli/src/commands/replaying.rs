@@ -24,10 +24,9 @@ pub fn run(input: &Input, job: &mut Job, path: &Path) -> anyhow::Result<u8> {
     let denoiser = job.denoiser(format_of_path(path)?.for_display).map_err(usage::wrong)?;
     let label = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
-    interrupt.renders(true);
+    interrupt.ends_itself(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
-    interrupt.renders(false);
     let picture = match denoiser.filter(|_| !outcome.rendered.cancelled) {
         Some(chosen) => outcome.denoised(&chosen)?,
         None => outcome.picture()?,
@@ -40,6 +39,7 @@ pub fn run(input: &Input, job: &mut Job, path: &Path) -> anyhow::Result<u8> {
     let options =
         WriteOptions { quality: arguments.quality.unwrap_or(options.quality), ..WriteOptions::default() };
     bilux::pictures::write(path, &drawn, &options)?;
+    interrupt.ends_itself(false);
     if !common.quiet {
         output::eprint(format_args!(
             "{}: the path of sample {sample} of pixel {x},{y} drawn into the picture, {seconds:.2} s",

@@ -3,7 +3,7 @@
 use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
-use crate::interrupt::Interrupt;
+use crate::interrupt::interrupt;
 use crate::sandbox::SandboxPaths;
 use crate::serving::Serve;
 use crate::studio::StudioArguments;
@@ -16,7 +16,6 @@ use std::net::SocketAddr;
 use std::path::Path;
 
 pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
-    let interrupt = Interrupt::listen()?;
     let settings = settings_from::serve(&arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
@@ -41,7 +40,8 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     };
     let server = Server::start(options)?;
     output::print(server.address())?;
-    server.run(|| interrupt.is_requested())?;
+    interrupt().ends_itself(true);
+    server.run(|| interrupt().is_requested())?;
     Ok(DONE)
 }
 

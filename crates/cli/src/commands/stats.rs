@@ -18,6 +18,7 @@ fn choice(choice: &Choice) -> serde_json::Value {
 pub fn of(rendered: &Rendered) -> serde_json::Value {
     let Rendered { job, outcome, scene, build_seconds, seconds, .. } = *rendered;
     let (s, c) = (job.settings(), &outcome.rendered.counters);
+    let [spp, asked] = rendered.samples();
     let trees: Vec<_> = job
         .scene()
         .geometry()
@@ -35,7 +36,7 @@ pub fn of(rendered: &Rendered) -> serde_json::Value {
         .collect();
     json!({
         "scene": scene.to_string_lossy(), "integrator": s.integrator.entry.name, "accel": s.accel.name,
-        "width": s.width, "height": s.height, "spp": job.samples_per_pixel(), "seed": s.seed,
+        "width": s.width, "height": s.height, "spp": spp, "spp_asked": asked, "seed": s.seed,
         "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.rendered.cancelled,

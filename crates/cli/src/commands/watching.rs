@@ -85,9 +85,11 @@ fn render_again_and_again(
             let scene = target.scene.display();
             output::eprint(format_args!("{scene}: waits for a change; Ctrl-C ends"));
         }
+        interrupt.ends_itself(true);
         while !interrupt.is_requested() {
             std::thread::sleep(TICK);
         }
+        interrupt.ends_itself(interrupt.is_signalled());
         if interrupt.is_signalled() {
             return Ok(DONE);
         }

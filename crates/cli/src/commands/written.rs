@@ -1,14 +1,22 @@
 //! How the picture of a render becomes a file.
 
+use super::input::Input;
 use super::{aov, warn_lost_alpha};
-use crate::arguments::{Common, Render};
+use crate::arguments::Render;
 use crate::commands::targets::is_stdout;
+use crate::interrupt::Interrupt;
 use crate::output;
+use anyhow::bail;
+use bilux::pictures::Picture;
 use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::formats::BitDepth;
 use bilux::transport::aovs::Aov;
 use bilux::{ExtraLayers, Job, Outcome};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::thread::Builder;
+use std::time::Duration;
 
 /// The layers of an `.exr`.
 pub struct Layers<'a> {
@@ -23,20 +31,60 @@ pub fn is_part(arguments: &Render) -> bool {
     arguments.samples.is_some() || arguments.crop.is_some()
 }
 
-/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
+/// How often it is checked whether denoising has to give way to saving what there is.
+const TICK: Duration = Duration::from_millis(20);
+
+/// The denoised picture, which is `None` if a signal or the timeout comes first: there is no time to wait for it.
+fn denoised(
+    outcome: &Arc<Outcome>,
+    chosen: &Arc<DenoiserChoice>,
+    interrupt: &Interrupt,
+) -> anyhow::Result<Option<Picture>> {
+    let (sender, receiver) = sync_channel(1);
+    let work = {
+        let (outcome, chosen) = (outcome.clone(), chosen.clone());
+        move || drop(sender.send(outcome.denoised(&chosen)))
+    };
+    if Builder::new().name("denoising".to_owned()).spawn(work).is_err() {
+        return Ok(Some(outcome.denoised(chosen)?));
+    }
+    loop {
+        match receiver.recv_timeout(TICK) {
+            Ok(picture) => return Ok(Some(picture?)),
+            Err(RecvTimeoutError::Timeout) if interrupt.is_signalled() => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => bail!("denoising failed: render with --denoise=off"),
+        }
+    }
+}
+
+/// Whether the picture in the file is denoised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Denoising {
+    /// It was not wanted.
+    Off,
+    /// It is.
+    Done,
+    /// It is not, since a signal or the timeout came first.
+    CutShort,
+}
+
+/// Writes the picture; a partial render goes into an `.exr` with its exact sums.
 pub fn write(
-    arguments: &Render,
-    common: &Common,
+    input: &Input,
     job: &Job,
-    outcome: &Outcome,
-    (denoiser, layers): (Option<&DenoiserChoice>, &Layers),
+    outcome: &Arc<Outcome>,
+    (denoiser, layers): (Option<&Arc<DenoiserChoice>>, &Layers),
     output: &Path,
-) -> anyhow::Result<bool> {
+) -> anyhow::Result<Denoising> {
+    let Input { arguments, common, interrupt, .. } = *input;
     let is_exr = !is_stdout(output) && aov::is_exr(output);
     let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
-    let denoiser = denoiser.filter(|_| !is_part);
-    let mut picture = match denoiser {
-        Some(chosen) => outcome.denoised(chosen)?,
+    let chosen = denoiser.filter(|_| !is_part);
+    let smooth = chosen.map(|chosen| denoised(outcome, chosen, interrupt)).transpose()?.flatten();
+    let denoiser = chosen.filter(|_| smooth.is_some());
+    let mut picture = match smooth {
+        Some(picture) => picture,
         None if is_part => job.partial(outcome)?,
         None => outcome.picture()?,
     };
@@ -61,5 +109,9 @@ pub fn write(
         warn_lost_alpha(&picture, output, options.behind, common)?;
         bilux::pictures::write(output, &picture, &options)?;
     }
-    Ok(denoiser.is_some())
+    Ok(match (chosen, denoiser) {
+        (None, _) => Denoising::Off,
+        (Some(_), Some(_)) => Denoising::Done,
+        (Some(_), None) => Denoising::CutShort,
+    })
 }

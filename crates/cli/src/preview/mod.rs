@@ -5,6 +5,7 @@ mod iterm;
 mod kitty;
 mod sixel;
 
+use crate::interrupt::Interrupt;
 use crate::output;
 use anyhow::bail;
 use bilux::checkpoint::CheckpointWriter;
@@ -236,6 +237,8 @@ fn display_bytes(picture: &Picture, options: &WriteOptions) -> anyhow::Result<Ve
 pub struct Observers<'a, 'j> {
     pub writer: Option<&'a CheckpointWriter<'j>>,
     pub preview: Option<&'a Preview>,
+    /// What may end the render, if it then leaves no checkpoint.
+    pub ends: Option<&'a Interrupt>,
 }
 
 impl Observer for Observers<'_, '_> {
@@ -244,7 +247,7 @@ impl Observer for Observers<'_, '_> {
     }
 
     fn keep(&self, standing: &Standing) {
-        if let Some(writer) = self.writer {
+        if let (Some(writer), false) = (self.writer, self.ends.is_some_and(Interrupt::is_terminated)) {
             writer.keep(standing);
         }
     }

@@ -9,7 +9,7 @@ mod kernel;
 mod kernel;
 
 use crate::arguments::Common;
-use crate::output;
+use crate::{interrupt, memory, output};
 use anyhow::bail;
 use std::path::{Path, PathBuf};
 
@@ -47,6 +47,8 @@ pub struct SandboxPaths {
     read: Vec<PathBuf>,
     /// The folder that may be written to.
     write: Option<PathBuf>,
+    /// Files that lead out of the folder in which they are named.
+    outside: Vec<PathBuf>,
 }
 
 impl SandboxPaths {
@@ -56,10 +58,14 @@ impl SandboxPaths {
         self.reading(scene)
     }
 
-    /// Allows reading this file.
+    /// Allows reading this file; if it is a link, within the folder in which it is named.
     pub fn reading(mut self, file: &Path) -> SandboxPaths {
-        // If it is a link, its target is what will be opened.
-        self.read.extend(std::fs::canonicalize(file));
+        match (leads_out(file), file.canonicalize()) {
+            (true, _) => self.outside.push(file.to_owned()),
+            (false, Ok(target)) => self.read.push(target),
+            // Whoever opens it says that it is not there.
+            (false, Err(_)) => {}
+        }
         self
     }
 
@@ -93,12 +99,18 @@ impl SandboxPaths {
         Ok(())
     }
 
-    /// Restricts the process to these files if `--sandbox` asks for it. This must come before the first thread starts,
-    /// since threads that are already running stay unrestricted.
+    /// Restricts the process to these files if `--sandbox` asks for it, and then starts the first threads: those that are
+    /// already running would stay unrestricted.
     pub fn enter(&self, common: &Common) -> anyhow::Result<()> {
-        if !common.sandbox {
-            return Ok(());
+        if common.sandbox {
+            self.restrict(common)?;
         }
+        interrupt::listen()?;
+        memory::begin_threads()
+    }
+
+    fn restrict(&self, common: &Common) -> anyhow::Result<()> {
+        self.outside.iter().try_for_each(|file| check_read(file, common))?;
         let enforced = kernel::restrict(&self.read, self.write.as_deref())?;
         if !common.quiet {
             match enforced {
@@ -116,6 +128,30 @@ impl SandboxPaths {
         }
         Ok(())
     }
+}
+
+/// True for a link that leads out of the folder in which it is named. Folders may be links: whoever names a folder means
+/// what it stands for.
+pub fn leads_out(file: &Path) -> bool {
+    if file.is_dir() {
+        return false;
+    }
+    let (target, folder) = (file.canonicalize(), folder_of(file).canonicalize());
+    matches!((target, folder), (Ok(target), Ok(folder)) if !target.starts_with(&folder))
+}
+
+/// Refuses a file that leads out of its folder, if `--sandbox` asks for it: whoever has put the link there may not be the
+/// one who may read its target.
+pub fn check_read(file: &Path, common: &Common) -> anyhow::Result<()> {
+    if common.sandbox && leads_out(file) {
+        let folder = folder_of(file).display();
+        bail!(
+            "{}: --sandbox reads only what is in the folder {folder}, and this is a link that leads out of it: copy the \
+             file there, or name the file that the link stands for",
+            file.display()
+        );
+    }
+    Ok(())
 }
 
 /// The folder that contains a file.

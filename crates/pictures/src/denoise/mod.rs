@@ -34,7 +34,7 @@ pub struct DenoiserEntry {
 }
 
 /// A denoiser that is ready to run.
-pub trait Denoiser {
+pub trait Denoiser: Send + Sync {
     /// Its name and location, for the user.
     fn describe(&self) -> String;
 
@@ -84,12 +84,13 @@ impl Task {
 }
 
 /// Libraries that are being loaded on a separate thread.
-pub struct Preload(JoinHandle<()>);
+pub struct Preload(Option<JoinHandle<()>>);
 
 /// Starts to load what the best denoiser needs, for a number of threads (0 means one per core), so that it is there
 /// when the picture has been rendered. Only later requests wait for it.
 pub fn preload(threads: usize) -> Preload {
-    Preload(std::thread::spawn(move || oidn::load(threads)))
+    // Without a thread they are loaded when they are needed.
+    Preload(std::thread::Builder::new().spawn(move || oidn::load(threads)).ok())
 }
 
 impl Preload {
@@ -97,7 +98,7 @@ impl Preload {
     /// choice.
     pub fn wait(self) {
         // A failure is reported when a denoiser is requested.
-        let _ = self.0.join();
+        let _ = self.0.map(JoinHandle::join);
     }
 }
 

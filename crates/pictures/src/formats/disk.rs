@@ -1,5 +1,6 @@
 //! Reads and writes whole files.
 
+use super::unfinished::Unfinished;
 use crate::{Limits, PictureError};
 use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
@@ -27,7 +28,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
         return fs::write(&target, bytes).map_err(|source| PictureError::Io { action: "write it", source });
     }
-    let (beside, file) =
+    let (beside, file, _unfinished) =
         create_beside(&target).map_err(|source| PictureError::Io { action: "write beside it", source })?;
     let written = fill(file, bytes).and_then(|()| fs::rename(&beside, &target));
     written.map_err(|source| {
@@ -43,14 +44,15 @@ fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Creates a new file in the target's folder, under a name that does not exist yet.
-fn create_beside(target: &Path) -> std::io::Result<(PathBuf, File)> {
+fn create_beside(target: &Path) -> std::io::Result<(PathBuf, File, Unfinished)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let process = std::process::id();
     let mut attempt = 0;
     loop {
         let beside = target.with_file_name(format!(".{name}.{process}.{attempt}.part"));
+        let unfinished = Unfinished::begin(&beside);
         match OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Ok(file) => return Ok((beside, file)),
+            Ok(file) => return Ok((beside, file, unfinished)),
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
             Err(error) => return Err(error),
         }

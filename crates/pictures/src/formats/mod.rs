@@ -18,11 +18,13 @@ mod rgba8;
 mod tga;
 mod tiff;
 mod tokens;
+mod unfinished;
 mod webp;
 
 pub use disk::write_atomically;
 pub use guard::{guarded_decoding, is_decoding};
 pub use rgba8::{Rgba8, read_rgba8};
+pub use unfinished::{Unfinished, remove_unfinished};
 
 use crate::error::nearest;
 use crate::picture::clamp_sample;

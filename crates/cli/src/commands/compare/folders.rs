@@ -5,7 +5,7 @@ use crate::arguments::Compare;
 use crate::commands::{DONE, is_picture};
 use crate::output;
 use anyhow::{Context, bail};
-use bilux::pictures::Report;
+use bilux::pictures::{Limits, Report};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ struct Row {
 
 /// Compares all pictures of a folder with those of the same names in the other. A picture that has no partner, or that
 /// cannot be compared with it, is trouble; but the others are compared.
-pub(super) fn compare(arguments: &Compare) -> anyhow::Result<u8> {
+pub(super) fn compare(arguments: &Compare, limits: &Limits) -> anyhow::Result<u8> {
     let folders = [&*arguments.picture, &*arguments.reference];
     let [ours, theirs] = [names(folders[0])?, names(folders[1])?];
     if ours.is_disjoint(&theirs) {
@@ -38,7 +38,7 @@ pub(super) fn compare(arguments: &Compare) -> anyhow::Result<u8> {
         .collect();
     let (mut rows, mut troubles) = (Vec::new(), missing);
     for name in ours.intersection(&theirs) {
-        match row(arguments, name) {
+        match row(arguments, name, limits) {
             Ok(row) => rows.push(row),
             Err(error) => troubles.push(format!("{}: {error:#}", name.display())),
         }
@@ -82,9 +82,9 @@ fn names(folder: &Path) -> anyhow::Result<BTreeSet<PathBuf>> {
     Ok(names)
 }
 
-fn row(arguments: &Compare, name: &Path) -> anyhow::Result<Row> {
+fn row(arguments: &Compare, name: &Path, limits: &Limits) -> anyhow::Result<Row> {
     let (picture, reference) = (arguments.picture.join(name), arguments.reference.join(name));
-    let pair = Compared::of(&name.to_string_lossy(), &picture, &reference)?;
+    let pair = Compared::of(&name.to_string_lossy(), &picture, &reference, limits)?;
     let broken = broken_bounds(arguments, &pair.report);
     let page = arguments.html.is_some().then(|| page::Entry::of(&pair, &broken)).transpose()?;
     Ok(Row { name: pair.name, report: pair.report, broken, page })

@@ -55,11 +55,13 @@ fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
         bilux::pictures::format_of_path(path)?;
     }
     confines.enter(common)?;
-    if a { folders::compare(arguments) } else { compare_one(arguments) }
+    // Two pictures are read at a time.
+    let limits = Limits::new(common.max_memory / 2);
+    if a { folders::compare(arguments, &limits) } else { compare_one(arguments, &limits) }
 }
 
-fn compare_one(arguments: &Compare) -> anyhow::Result<u8> {
-    let pair = Compared::of("", &arguments.picture, &arguments.reference)?;
+fn compare_one(arguments: &Compare, limits: &Limits) -> anyhow::Result<u8> {
+    let pair = Compared::of("", &arguments.picture, &arguments.reference, limits)?;
     let report = &pair.report;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(report))?)?;
@@ -93,8 +95,8 @@ struct Compared {
 
 impl Compared {
     /// Reads and compares them; warns of samples that are not finite.
-    fn of(name: &str, picture: &Path, reference: &Path) -> anyhow::Result<Compared> {
-        let (picture, reference) = read_pair(picture, reference)?;
+    fn of(name: &str, picture: &Path, reference: &Path, limits: &Limits) -> anyhow::Result<Compared> {
+        let (picture, reference) = read_pair(picture, reference, limits)?;
         let report = bilux::pictures::compare(&picture, &reference)?;
         if report.non_finite != [0, 0] {
             let ([a, b], of) = (report.non_finite, if name.is_empty() { "" } else { ": " });
@@ -112,16 +114,16 @@ impl Compared {
 }
 
 /// Reads two pictures: of two crops only these, but as the picture that a crop belongs to if the other one is that.
-fn read_pair(picture: &Path, reference: &Path) -> anyhow::Result<(Picture, Picture)> {
-    let limits = Limits::default();
-    let (a, b) =
-        (bilux::pictures::read_crop(picture, &limits)?, bilux::pictures::read_crop(reference, &limits)?);
+fn read_pair(picture: &Path, reference: &Path, limits: &Limits) -> anyhow::Result<(Picture, Picture)> {
+    let [a, b] = [picture, reference].map(|path| bilux::pictures::read_crop(path, limits));
+    let (a, b) = (a?, b?);
     if [a.width(), a.height()] == [b.width(), b.height()]
         && (a.crop == b.crop || a.crop.is_none() || b.crop.is_none())
     {
         return Ok((a, b));
     }
-    Ok((bilux::pictures::read(picture)?, bilux::pictures::read(reference)?))
+    let [a, b] = [picture, reference].map(|path| bilux::pictures::read_with(path, limits));
+    Ok((a?, b?))
 }
 
 fn as_json(report: &Report) -> Value {

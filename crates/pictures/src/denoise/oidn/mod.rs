@@ -107,8 +107,10 @@ impl PendingFilters {
     fn begin(task: &Task, device: Arc<Device>, effort: Effort) -> PendingFilters {
         let size = task.size;
         let worth_it = size.0.min(size.1) >= MIN_SIDE;
-        let begin = || std::thread::spawn(move || Filters::new(&device, size, effort, [true; 2]).ok());
-        PendingFilters(std::sync::Mutex::new(worth_it.then(begin)), size)
+        let prepare = move || Filters::new(&device, size, effort, [true; 2]).ok();
+        // Without a thread they are made when they are needed.
+        let begin = || std::thread::Builder::new().spawn(prepare).ok();
+        PendingFilters(std::sync::Mutex::new(worth_it.then(begin).flatten()), size)
     }
 
     /// The filters, if they suit this picture; they can be taken only once.

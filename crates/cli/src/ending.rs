@@ -1,0 +1,116 @@
+//! How the process ends in the midst of its work: after a signal, a timeout, or where memory runs out. It says why, on
+//! standard error and, if `--json` promises a line for each scene, there; and it leaves no half-written file.
+//!
+//! Nothing here allocates memory or waits for another thread, since there may be no memory, and the other thread may be the
+//! one that ends.
+
+use serde_json::json;
+use std::cell::Cell;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// What is under way, for the message.
+static UNDER_WAY: Mutex<Option<UnderWay>> = Mutex::new(None);
+
+/// The first who ends the process does; others wait for that.
+static IS_ENDING: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// Whether it is this thread, which gives up if it fails at that.
+    static ENDS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The picture that is being made.
+struct UnderWay {
+    /// The beginning of the line on standard error.
+    before: String,
+    /// The beginning of the line of JSON, up to the message, if one is wanted.
+    json: Option<String>,
+}
+
+/// Says which picture is being made from now on.
+pub fn under_way(scene: &Path, picture: &Path, wants_json: bool) {
+    let (scene, picture) = (scene.to_string_lossy(), picture.to_string_lossy());
+    let json = wants_json.then(|| {
+        let line = json!({ "scene": scene, "picture": picture }).to_string();
+        format!("{},\"error\":\"", line.trim_end_matches('}'))
+    });
+    let before = format!("error: {scene}: ");
+    *UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(UnderWay { before, json });
+}
+
+/// Ends the process. The message, which contains neither quotes nor backslashes, is for a picture that is under way: where
+/// there is none, the status says enough.
+pub fn end(status: u8, message: &str) -> ! {
+    finish(status, message, false)
+}
+
+/// Ends the process, and says why even if no picture is under way.
+pub fn fail(status: u8, message: &str) -> ! {
+    finish(status, message, true)
+}
+
+fn finish(status: u8, message: &str, always: bool) -> ! {
+    if ENDS.replace(true) {
+        exit(status);
+    }
+    if IS_ENDING.swap(true, Ordering::SeqCst) {
+        loop {
+            std::thread::park();
+        }
+    }
+    match UNDER_WAY.try_lock().as_deref() {
+        Ok(Some(UnderWay { before, json })) => {
+            write(Stream::Error, &[before, message, "\n"]);
+            if let Some(json) = json {
+                write(Stream::Output, &[json, message, "\"}\n"]);
+            }
+        }
+        _ if always => write(Stream::Error, &["error: ", message, "\n"]),
+        _ => {}
+    }
+    bilux::pictures::formats::remove_unfinished();
+    exit(status)
+}
+
+enum Stream {
+    Output,
+    Error,
+}
+
+/// Writes past the buffers and locks of the standard library.
+#[cfg(unix)]
+fn write(stream: Stream, texts: &[&str]) {
+    for text in texts {
+        let mut rest = text.as_bytes();
+        while !rest.is_empty() {
+            let written = match stream {
+                Stream::Output => rustix::io::write(rustix::stdio::stdout(), rest),
+                Stream::Error => rustix::io::write(rustix::stdio::stderr(), rest),
+            };
+            match written {
+                Ok(count @ 1..) => rest = &rest[count..],
+                Err(rustix::io::Errno::INTR) => {}
+                // There is nowhere to report it.
+                _ => return,
+            }
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn write(stream: Stream, texts: &[&str]) {
+    use std::io::Write;
+    for text in texts {
+        let _ = match stream {
+            Stream::Output => std::io::stdout().write_all(text.as_bytes()),
+            Stream::Error => std::io::stderr().write_all(text.as_bytes()),
+        };
+    }
+}
+
+/// Ends the process without the functions that libraries have registered for its end: other threads still use them.
+fn exit(status: u8) -> ! {
+    signal_hook::low_level::exit(i32::from(status))
+}
