@@ -282,6 +282,92 @@ fn every_command_that_reads_pictures_keeps_to_max_memory() {
     }
 }
 
+/// Reports about other programs (`docs/lab/reports-use.md`): mistakes that went unnoticed, with status 0.
+#[test]
+fn mistakes_on_the_command_line_are_errors_before_any_work() {
+    let folder = folder();
+    let path = folder.path();
+    fs::create_dir(path.join("dir")).unwrap();
+    done(path, "render box.toml --size 8x8 --spp 1 -i path -o a.png -q");
+    for (line, what) in [
+        ("compare a.png a.png --heat-map nowhere/h.png", "there is no folder 'nowhere'"),
+        ("compare a.png a.png --html nowhere/h.html", "there is no folder 'nowhere'"),
+        ("convert box.toml -o dir", "this is a folder"),
+        ("render box.toml -o dir/", "this is a folder"),
+        ("merge a.png -o dir", "this is a folder"),
+        ("convert box.toml -o b.ply more", "unexpected argument 'more'"),
+        ("compare a.png a.png more", "unexpected argument 'more'"),
+        ("info box.toml more", "unexpected argument 'more'"),
+        ("render box.toml -o b.png --spp 3x", "'3x'"),
+        ("render box.toml -o b.png --size 64", "write 64x64"),
+        ("render box.toml -o b.png --crop 1,2", "'1,2'"),
+        ("render box.toml -o b.png --samples 3", "'3'"),
+        ("render box.toml -o b.png --aov depht", "did you mean 'depth'"),
+        ("render box.toml -o b.png --set spp", "write KEY=VALUE"),
+        ("render box.toml -o b.png --set sp=4", "'spp'"),
+        ("render box.toml -o b.png --timeout soon", "'soon'"),
+    ] {
+        let (status, out, said) = answer(path, line);
+        assert!(status == 2 && said.contains(what) && out.is_empty(), "{line}: {status} {said}");
+        assert!(!path.join("b.png").exists() && !path.join("b.ply").exists(), "{line}");
+    }
+}
+
+#[test]
+fn standard_output_has_the_picture_and_nothing_else_in_any_language() {
+    let folder = folder();
+    let path = folder.path();
+    let line = "render box.toml --size 8x8 --spp 1 -i path --exposure 0.5";
+    done(path, &format!("{line} -o a.png -q"));
+    let file = fs::read(path.join("a.png")).unwrap();
+    for language in ["C", "de_DE.UTF-8", "tr_TR.UTF-8"] {
+        let mut command = bilux(path, &format!("{line} -o - -vv --progress lines"));
+        let output = command.env("LC_ALL", language).env("LANG", language).output().unwrap();
+        assert!(output.stdout == file, "{language}");
+        assert!(!output.stderr.is_empty(), "what it says goes to standard error");
+    }
+}
+
+/// Each option of a pair has its own effect, without the other one and with it.
+#[test]
+fn each_option_of_a_pair_works_alone() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    // A wedge, which looks different from everywhere.
+    let wedge = "v 0 0 0\nv 3 0 0\nv 0 0 2\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
+    fs::write(path.join("wedge.obj"), wedge).unwrap();
+    let picture = |options: &str| {
+        done(path, &format!("render wedge.obj --size 24x18 --spp 2 -i path -o a.png -q {options}"));
+        fs::read(path.join("a.png")).unwrap()
+    };
+    let plain = picture("");
+    for (one, other) in [
+        ("--up z", "--front x"),
+        ("--eye 4,3,5", "--look-at 1,0,0"),
+        ("--orbit 40,0", "--orbit=0,30"),
+        ("--zoom 2", "--focal 80"),
+        ("--ground none", "--background #204060"),
+        ("--exposure=-1", "--tonemap agx"),
+        ("--spp 3", "--seed 5"),
+    ] {
+        let both = match (one.strip_prefix("--orbit"), other.strip_prefix("--orbit")) {
+            (Some(_), Some(_)) => "--orbit 40,30".to_owned(),
+            _ => format!("{one} {other}"),
+        };
+        let pictures = [plain.clone(), picture(one), picture(other), picture(&both)];
+        for (i, first) in pictures.iter().enumerate() {
+            for second in &pictures[..i] {
+                assert!(first != second, "{one} and {other}: two of the four are the same");
+            }
+        }
+        let turned = format!("{other} {one}");
+        assert!(
+            both == "--orbit 40,30" || picture(&turned) == pictures[3],
+            "{one} and {other}: their order counts"
+        );
+    }
+}
+
 fn link(target: &str, link: &Path) {
     std::os::unix::fs::symlink(target, link).unwrap();
 }

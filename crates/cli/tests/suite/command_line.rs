@@ -241,15 +241,21 @@ fn an_interrupt_saves_what_there_is() {
     let path = folder.path();
     let binary = assert_cmd::cargo::cargo_bin("bilux");
     for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
-        let mut child = std::process::Command::new(&binary)
-            .current_dir(path)
-            .args(["render", "pots.asc", "--spp", "100000", "--quiet", "-o", "cut.png"])
-            .spawn()
-            .unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(1500));
-        let id = child.id().to_string();
-        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
-        assert_eq!(child.wait().unwrap().code(), Some(status));
+        // Before the first sample there is nothing to save: a loaded machine needs longer for it.
+        for seconds in [1.5, 6.0, 20.0] {
+            let mut child = std::process::Command::new(&binary)
+                .current_dir(path)
+                .args(["render", "pots.asc", "--spp", "100000", "--quiet", "-o", "cut.png"])
+                .spawn()
+                .unwrap();
+            std::thread::sleep(std::time::Duration::from_secs_f64(seconds));
+            let id = child.id().to_string();
+            assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
+            assert_eq!(child.wait().unwrap().code(), Some(status));
+            if path.join("cut.png").exists() {
+                break;
+            }
+        }
         assert!(bilux::pictures::read(path.join("cut.png")).is_ok(), "{signal}");
         std::fs::remove_file(path.join("cut.png")).unwrap();
     }
