@@ -98,7 +98,7 @@ pub fn report_failures() {
 }
 
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-mod glibc {
+mod malloc {
     use std::ffi::c_int;
     // SAFETY: declared as in `malloc.h`.
     unsafe extern "C" {
@@ -130,8 +130,8 @@ pub fn return_large_blocks() {
         /// Larger than what threads allocate for a tile or a pass of photons, smaller than a plane of a large picture. At 1 MB, pages that
         /// came and went in each pass took a quarter of the time of `auto` in a small Cornell box.
         const LARGE: i32 = 8 << 20;
-        glibc::set(glibc::M_MMAP_THRESHOLD, LARGE);
-        glibc::set(glibc::M_TRIM_THRESHOLD, LARGE);
+        malloc::set(malloc::M_MMAP_THRESHOLD, LARGE);
+        malloc::set(malloc::M_TRIM_THRESHOLD, LARGE);
     }
 }
 
@@ -144,7 +144,7 @@ pub fn share(bytes: u64) {
         /// The address space of an arena, and of what is kept to align it.
         const ARENA: u64 = 128 << 20;
         let fit = (bytes / PART / ARENA).clamp(1, 1 << 10);
-        glibc::set(glibc::M_ARENA_MAX, fit as i32);
+        malloc::set(malloc::M_ARENA_MAX, fit as i32);
     }
     #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
     let _ = bytes;

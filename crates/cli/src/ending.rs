@@ -4,14 +4,18 @@
 //! Nothing here allocates memory or waits for another thread, since there may be no memory, and the other thread may be the
 //! one that ends.
 
+use crate::interrupt::interrupt;
 use serde_json::json;
 use std::cell::Cell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// What is under way, for the message.
 static UNDER_WAY: Mutex<Option<UnderWay>> = Mutex::new(None);
+
+/// A file that goes when a server or the timeout ends the process, since nobody has asked for it.
+static UNASKED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
 /// The first who ends the process does; others wait for that.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
@@ -38,6 +42,19 @@ pub fn under_way(scene: &Path, picture: &Path, wants_json: bool) {
     });
     let before = format!("error: {scene}: ");
     *UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(UnderWay { before, json });
+}
+
+/// Says which file goes when a server or the timeout ends the process.
+pub fn unasked(path: Option<PathBuf>) {
+    *UNASKED.lock().unwrap_or_else(PoisonError::into_inner) = path;
+}
+
+/// A server or the timeout has ended the work: removes what nobody has asked for.
+pub fn remove_unasked() {
+    if let Ok(Some(path)) = UNASKED.try_lock().as_deref() {
+        // Mostly it is not there yet.
+        let _ = std::fs::remove_file(path);
+    }
 }
 
 /// Ends the process. The message, which contains neither quotes nor backslashes, is for a picture that is under way: where
@@ -69,6 +86,9 @@ fn finish(status: u8, message: &str, always: bool) -> ! {
         }
         _ if always => write(Stream::Error, &["error: ", message, "\n"]),
         _ => {}
+    }
+    if interrupt().is_terminated() {
+        remove_unasked();
     }
     bilux::pictures::formats::remove_unfinished();
     exit(status)

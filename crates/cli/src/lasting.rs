@@ -37,6 +37,11 @@ pub enum Checkpoints {
 const DEFAULT: Checkpoints = Checkpoints::Every(Duration::from_secs(60));
 
 impl Lasting {
+    /// True if the command line speaks of checkpoints; otherwise they are only for a process that is killed, and for Ctrl-C.
+    pub fn is_asked(&self) -> bool {
+        self.resume || self.checkpoint.is_some()
+    }
+
     /// When checkpoints are saved.
     pub fn checkpoints(&self) -> Checkpoints {
         if self.watch { Checkpoints::Off } else { self.checkpoint.unwrap_or(DEFAULT) }

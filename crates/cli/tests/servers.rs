@@ -161,6 +161,38 @@ fn sigterm_leaves_the_picture_and_no_checkpoint() {
     }
 }
 
+#[test]
+fn sigterm_between_frames_leaves_no_list_of_them_unless_it_is_asked_for() {
+    let folder = folder();
+    let path = folder.path();
+    let line = "render box.toml --size 24x24 -i path --spp 20 --turntable 2000 -q -o f.png";
+    for (more, signal_name, is_kept) in [
+        ("", "-TERM", false),
+        ("", "-INT", true),
+        ("--checkpoint 60", "-TERM", true),
+        ("--timeout 4", "", false),
+    ] {
+        let child = bilux(path, &format!("{line} {more}")).spawn().unwrap();
+        let begun = Instant::now();
+        while !path.join("f-frames.png.checkpoint").exists() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "no frame is finished");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        if !signal_name.is_empty() {
+            signal(&child, signal_name);
+        }
+        let (status, _, said) = of(child.wait_with_output().unwrap());
+        assert!([124, 130, 143].contains(&status), "{status}: {said}");
+        assert_eq!(
+            path.join("f-frames.png.checkpoint").exists(),
+            is_kept,
+            "{more} {signal_name}: {:?}",
+            left_over(path)
+        );
+        left_over(path).iter().for_each(|name| fs::remove_file(path.join(name)).unwrap());
+    }
+}
+
 /// The longest that a process may live after a signal; a little more than what is promised, for a loaded machine.
 const END: Duration = Duration::from_millis(2600);
 

@@ -3,6 +3,7 @@
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout};
 use crate::choices::GlassArgument;
+use crate::ending;
 use crate::lasting::Checkpoints;
 use crate::output;
 use anyhow::{Context, bail};
@@ -54,6 +55,9 @@ impl<'a> FinishedFrames<'a> {
             }
             frames.finished = finished;
         }
+        if !lasting.is_asked() {
+            ending::unasked(Some(path.clone()));
+        }
         frames.path = Some(path);
         Ok(frames)
     }
@@ -80,8 +84,16 @@ impl<'a> FinishedFrames<'a> {
         Ok(())
     }
 
+    /// The frames are stopped before all of them are finished.
+    pub fn stop(self) {
+        if self.input.interrupt.is_terminated() {
+            ending::remove_unasked();
+        }
+    }
+
     /// All frames are finished.
     pub fn finish(self) -> anyhow::Result<()> {
+        ending::unasked(None);
         match self.path.filter(|path| path.is_file()) {
             Some(path) => {
                 std::fs::remove_file(&path).with_context(|| format!("{}: cannot remove it", path.display()))

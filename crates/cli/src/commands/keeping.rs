@@ -46,7 +46,7 @@ impl Keeping {
     pub fn begin(input: &Input, job: &Job, output: &Path) -> anyhow::Result<(Keeping, Option<SavedRender>)> {
         let (lasting, common) = (&input.arguments.lasting, input.common);
         let every = lasting.checkpoints();
-        let is_asked = lasting.resume || lasting.checkpoint.is_some();
+        let is_asked = lasting.is_asked();
         let mut keeping = Keeping { path: None, every, older: None, has_resumed: false, is_asked };
         if is_stdout(output) || lasting.watch {
             return Ok((keeping, None));

@@ -142,6 +142,7 @@ fn render_one(
         }
         let status = render_scene(&input, &mut scene, &numbered, user, &series)?;
         if status != DONE {
+            finished.stop();
             return Ok(status);
         }
         finished.add(frame)?;
@@ -219,6 +220,7 @@ fn render_scene(
         input.set_next_pose(&mut job, scene, (&user, &series))?;
         let status = finish(input, &mut job, &numbered, build_seconds)?;
         if status != DONE {
+            finished.stop();
             return Ok(status);
         }
         finished.add(frame)?;
