@@ -10,5 +10,6 @@ mod output;
 mod overwriting;
 mod resume;
 mod serve;
+mod servers;
 mod witness;
 mod wrong_inputs;
