@@ -32,7 +32,7 @@ def test_a_callback_stops_the_render_and_keeps_the_picture():
     picture = long_render(bilux.generate("cornell"), progress=lambda progress: progress.seconds < 0.5)
     assert time.monotonic() - begun < 3
     assert not picture.info["complete"] and picture.pixels.max() > 0
-    assert 0 < picture.info["spp"] < 100_000
+    assert 0 < picture.info["spp"] < 100_000 and picture.info["spp_asked"] == 100_000
 
 
 def test_what_a_callback_raises_comes_out():
