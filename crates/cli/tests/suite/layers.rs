@@ -63,7 +63,7 @@ fn layers_of_parts_are_those_of_the_whole() {
     assert_eq!(whole.metadata["bilux.group_the_sky"], "the sky");
     // Half of the samples are not what the settings would make.
     done(path, "render scene.toml -i path --size 32x24 --spp 4 -q --samples 0..2 -o half.exr");
-    done(path, "merge half.exr -o half.png -q");
+    done(path, "merge half.exr -o half.png -q --partial");
     assert!(!opened(path, "half.png").metadata.contains_key("bilux.settings"));
 }
 
