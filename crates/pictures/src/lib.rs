@@ -24,6 +24,7 @@
 //! light. Files may come from untrusted sources: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
+mod channel_order;
 mod crop;
 pub mod cryptomatte;
 pub mod denoise;
@@ -36,6 +37,7 @@ mod panels;
 mod picture;
 pub mod tonemap;
 
+pub use channel_order::component_rank;
 pub use crop::Crop;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};

@@ -5,7 +5,7 @@ use super::guard::guarded;
 use super::primaries::to_rec709;
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
-use crate::{Crop, Limits, Picture, PictureError};
+use crate::{Crop, Limits, Picture, PictureError, component_rank};
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::math::Vec2;
@@ -330,9 +330,8 @@ fn layered(layer: &str, name: String) -> String {
     if there { name } else { crate::picture::qualified(layer, &name) }
 }
 
-/// Layers in the order of their names, the main picture first; in each, R, G, B, A, then the others.
+/// Layers in the order of their names, the main picture first; in each, the usual order of its components.
 fn order(name: &str) -> (String, usize, String) {
     let (layer, component) = name.rsplit_once('.').unwrap_or(("", name));
-    let rank = ["R", "G", "B", "Y", "A"].iter().position(|&known| known == component).unwrap_or(usize::MAX);
-    (layer.to_owned(), rank, component.to_owned())
+    (layer.to_owned(), component_rank(component), component.to_owned())
 }
