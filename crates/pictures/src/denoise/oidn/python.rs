@@ -3,6 +3,7 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -69,8 +70,14 @@ const QUESTION: &str = "import sys; sys.path = [p for p in sys.path if p]; impor
 /// An interpreter that has not answered after this time is abandoned.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// The answer of `python3` itself, which knows pyenv's versions and environments that no folder reveals.
+/// The answer of `python3` itself, which knows pyenv's versions and environments that no folder reveals. It is asked once:
+/// that takes longer than many a thumbnail.
 pub(super) fn asked() -> Vec<PathBuf> {
+    static ANSWER: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    ANSWER.get_or_init(ask).clone()
+}
+
+fn ask() -> Vec<PathBuf> {
     let answer = |name: &&str| {
         let child = Command::new(name)
             .args(["-c", QUESTION])
