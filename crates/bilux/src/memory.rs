@@ -1,6 +1,7 @@
 //! How much memory a picture will take, so that Bilux refuses to start one that does not fit.
 
-use crate::Settings;
+use crate::{Error, Settings};
+use bilux_formats::FormatError;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -65,5 +66,33 @@ impl Memory {
     pub fn total(&self) -> u64 {
         let Memory { meshes, textures, levels, trees, picture } = *self;
         [meshes, textures, levels, trees, picture].into_iter().fold(0, u64::saturating_add)
+    }
+}
+
+/// A reader that was refused memory needs at most so many times what it had asked for by then, in the files that were
+/// tried, if that is more than [`LEAST_FOR_READING`].
+const TIMES_ASKED: u64 = 4;
+
+/// Bytes that are always allowed where reading was refused memory: compressed textures and meshes take up to a hundred
+/// times the size of their file, so what a reader asks for first says little about small files.
+const LEAST_FOR_READING: u64 = 1 << 30;
+
+/// A file that asks for so many bytes is broken, or means harm.
+const BEYOND_BELIEF: u64 = 1 << 40;
+
+impl Error {
+    /// The memory to allow, in bytes, if an error says that less is allowed than is needed. Whole GiB, or below one GiB whole
+    /// MiB. A render that was refused then has enough; reading a file, which is refused before all of it is known, most
+    /// probably.
+    pub fn memory_to_allow(&self) -> Option<u64> {
+        let bytes = match self {
+            Error::TooLarge { needed, .. } => needed.total(),
+            Error::Format(FormatError::TooLarge { asked, .. }) if *asked < BEYOND_BELIEF => {
+                (asked * TIMES_ASKED).max(LEAST_FOR_READING)
+            }
+            _ => return None,
+        };
+        let unit = if bytes >= 1 << 30 { 1 << 30 } else { 1 << 20 };
+        Some(bytes.div_ceil(unit).saturating_mul(unit))
     }
 }

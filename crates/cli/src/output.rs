@@ -105,11 +105,12 @@ fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
     if let (true, Some(source)) = (is_too_large, crate::memory::tighter()) {
         return Some(format!(" ({source} is the limit)"));
     }
+    if let Some(bytes) = error.memory_to_allow() {
+        let whole = bytes.is_multiple_of(1 << 30);
+        let amount = if whole { format!("{}G", bytes >> 30) } else { format!("{}M", bytes >> 20) };
+        return Some(format!(" (--max-memory {amount})"));
+    }
     Some(match error {
-        bilux::Error::TooLarge { needed, .. } => {
-            format!(" (--max-memory {}G)", needed.total().div_ceil(1 << 30))
-        }
-        bilux::Error::Format(FormatError::TooLarge { .. }) => " (--max-memory 16G)".to_owned(),
         bilux::Error::Format(FormatError::Outside { .. }) => " (--allow-outside)".to_owned(),
         _ => return None,
     })

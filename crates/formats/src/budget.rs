@@ -33,7 +33,11 @@ impl Budget {
                 self.spent = spent;
                 Ok(())
             }
-            None => Err(FormatError::TooLarge { file: file.to_owned(), limit: self.limit }),
+            None => Err(FormatError::TooLarge {
+                file: file.to_owned(),
+                limit: self.limit,
+                asked: self.spent.saturating_add(bytes),
+            }),
         }
     }
 

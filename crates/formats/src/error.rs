@@ -56,6 +56,8 @@ pub enum FormatError {
         file: String,
         /// How many bytes are allowed.
         limit: u64,
+        /// How many it had asked for by then; it may need more.
+        asked: u64,
     },
     /// No format has this name.
     #[error(
