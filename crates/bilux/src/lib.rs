@@ -46,6 +46,7 @@ mod shadow;
 pub mod strategies;
 pub mod tables;
 pub mod watch;
+pub mod wording;
 mod writing;
 
 pub use bilux_accel as accel;

@@ -18,7 +18,7 @@ pub(crate) struct Encoded(EncodedScene);
 impl Encoded {
     /// Everything but the blobs.
     #[getter]
-    fn document<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+    pub(crate) fn document<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &self.0.document)
     }
 
@@ -38,6 +38,15 @@ impl Encoded {
 }
 
 impl Encoded {
+    /// All blobs, by their hashes.
+    pub(crate) fn blobs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let blobs = PyDict::new(py);
+        for (hash, blob) in &self.0.blobs {
+            blobs.set_item(hash.to_string(), PyBytes::new(py, &without_gil(py, || Blob::bytes(blob))))?;
+        }
+        Ok(blobs)
+    }
+
     pub(crate) fn of(py: Python<'_>, scene: &SceneBuilder) -> PyResult<Encoded> {
         without_gil(py, || encode(scene)).map(Encoded).map_err(exception)
     }

@@ -3,6 +3,7 @@
 use bilux::formats::FormatError;
 use bilux::pictures::PictureError;
 use bilux::scene::{SceneError, Warning};
+use bilux::wording::in_python;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
 use std::ffi::CString;
@@ -24,6 +25,12 @@ pub(crate) use classes::Error;
 pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
     let error = error.into();
     let text = error.to_string();
+    of_text(&error, text)
+}
+
+/// The exception of an error's kind, with this text and the keyword that allows what was refused.
+pub(crate) fn of_text(error: &bilux::Error, text: String) -> PyErr {
+    let text = in_python(&text) + &allowing(error);
     match error {
         bilux::Error::Format(FormatError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
             PyFileNotFoundError::new_err(text)
@@ -41,9 +48,19 @@ pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
     }
 }
 
+/// The keyword that allows what the library refused.
+fn allowing(error: &bilux::Error) -> String {
+    match (error.memory_to_allow(), error) {
+        (Some(bytes), _) if bytes.is_multiple_of(1 << 30) => format!(" (max_memory={} << 30)", bytes >> 30),
+        (Some(bytes), _) => format!(" (max_memory={} << 20)", bytes.div_ceil(1 << 20)),
+        (None, bilux::Error::Format(FormatError::Outside { .. })) => " (allow_outside=True)".to_owned(),
+        _ => String::new(),
+    }
+}
+
 /// The exception for a file that cannot be opened.
 pub(crate) fn unopened(path: &Path, error: &std::io::Error) -> PyErr {
-    let text = format!("{}: cannot open it: {error}", path.display());
+    let text = format!("{}: cannot open it: {}", path.display(), bilux::pictures::reason(error));
     match error.kind() {
         ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
         _ => PyOSError::new_err(text),
@@ -67,7 +84,8 @@ pub(crate) fn of_scene(error: SceneError) -> PyErr {
 pub(crate) fn warn(py: Python<'_>, warnings: &[Warning]) -> PyResult<()> {
     let category = py.import("bilux._errors")?.getattr("SceneWarning")?;
     for warning in warnings {
-        let text = CString::new(warning.to_string().replace('\0', " ")).unwrap_or_default();
+        let text = in_python(&warning.to_string()).replace('\0', " ");
+        let text = CString::new(text).unwrap_or_default();
         PyErr::warn(py, &category, &text, 2)?;
     }
     Ok(())

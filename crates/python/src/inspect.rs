@@ -5,7 +5,7 @@ use crate::errors::exception;
 use crate::picture::Picture;
 use crate::render::{build, interrupted};
 use crate::scene::Scene;
-use crate::values::{self, Unresolved};
+use crate::values;
 use crate::watch::{Stopped, follow};
 use bilux::strategies::Light;
 use bilux::transport::Strategies;
@@ -27,7 +27,7 @@ pub(crate) fn replay(
     max_memory: u64,
 ) -> PyResult<Replayed> {
     crate::forks::check()?;
-    let user = values::parameters(settings, &mut Unresolved)?;
+    let user = values::keywords(settings)?;
     let builder = scene.get().builder(py).clone();
     let (built, [x, y, sample]) = (&scene.get().built, place);
     let replay = without_gil(py, || build((&builder, built), &user, max_memory)?.0.replay(x, y, sample));
@@ -52,11 +52,14 @@ pub(crate) fn strategies(
     callback: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Option<Vec<StrategyPictures>>> {
     crate::forks::check()?;
-    let user = values::parameters(settings, &mut Unresolved)?;
+    let user = values::keywords(settings)?;
     let builder = scene.get().builder(py).clone();
     let built = &scene.get().built;
-    let job =
-        without_gil(py, || checked(build((&builder, built), &user, max_memory)?.0)).map_err(exception)?;
+    let made = without_gil(py, || {
+        let (job, _) = build((&builder, built), &user, max_memory)?;
+        check_strategies(&job).map(|()| job)
+    });
+    let job = made.map_err(exception)?;
     let shown = job.display().map_err(exception)?;
     let (found, stopped) = follow(py, callback, |watch| job.strategies_of(None, watch));
     match stopped {
@@ -79,10 +82,10 @@ pub(crate) fn strategies(
     (0..found.pictures.len()).map(one).collect::<PyResult<_>>().map(Some)
 }
 
-/// The job, if its integrator has strategies.
-fn checked(job: Job) -> Result<Job, Error> {
+/// Refuses an integrator without strategies.
+pub(crate) fn check_strategies(job: &Job) -> Result<(), Error> {
     if job.has_strategies() {
-        return Ok(job);
+        return Ok(());
     }
     let name = job.settings().integrator.entry.name;
     let others = bilux::transport::integrators::with_strategies();

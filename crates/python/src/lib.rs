@@ -14,6 +14,8 @@ mod hits;
 mod inspect;
 mod keyframes;
 mod layer;
+mod layer_names;
+mod loading;
 mod output;
 mod parts;
 mod pickling;
@@ -21,9 +23,11 @@ mod picture;
 mod placed_mesh;
 mod progressive;
 mod rays;
+mod reading;
 mod render;
 mod scene;
 mod shown;
+mod source;
 mod spec;
 mod texture;
 mod turntable;
@@ -47,11 +51,13 @@ mod _bilux {
     #[pymodule_export]
     use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
-    use crate::picture::{Picture, compare, read_picture};
+    use crate::picture::Picture;
     #[pymodule_export]
     use crate::placed_mesh::PlacedMesh;
     #[pymodule_export]
     use crate::progressive::Progressive;
+    #[pymodule_export]
+    use crate::reading::{compare, read_picture};
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

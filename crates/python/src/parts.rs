@@ -6,6 +6,7 @@ use crate::errors::{Error, exception};
 use crate::picture::Picture;
 use crate::render::{
     BuildWork, Prepared, Request, interrupted, prepared, to_python, with_everything, with_layers,
+    with_next_pose,
 };
 use crate::scene::Scene;
 use crate::watch::{Stopped, follow};
@@ -118,7 +119,13 @@ impl Gathering {
         let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         let py = scene.py();
         let Prepared { mut job, build } = built(py, scene, &request)?;
-        without_gil(py, || with_everything(&mut job, &request).map(drop)).map_err(exception)?;
+        let (own, builder) = (scene.get(), scene.get().builder(py).clone());
+        let request = Request { origin: own.origin(py).clone(), ..request };
+        let asked = without_gil(py, || {
+            with_everything(&mut job, &request)?;
+            with_next_pose(&mut job, (&builder, &own.built), &request)
+        });
+        asked.map_err(exception)?;
         let Request { aovs, begun, .. } = request;
         Ok(Gathering { aovs, begun, build, state: Mutex::new(State { job, parts: None }) })
     }
@@ -192,7 +199,7 @@ impl Gathering {
             let job = &mut self.lock().job;
             let denoiser = job.denoiser(true)?;
             let outcome = job.gathered(parts, watch)?;
-            with_layers(job, outcome, denoiser, &self.aovs, self.build)
+            with_layers(job, outcome, denoiser, &self.aovs, (self.build, watch))
         });
         let picture = to_python(py, &rendered.ok_or_else(failed)?.map_err(exception)?, self.begun)?;
         match stopped {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// The form of pickles; another number is refused.
-const FORM: u32 = 1;
+const FORM: u32 = 2;
 
 /// Exposure in stops, whether it is automatic too, the name of the tone curve, and the colour behind the picture.
 type ShownValues = (f32, bool, String, Option<[f32; 3]>);
@@ -22,7 +22,7 @@ pub(crate) type PictureValues =
 /// A picture as plain values.
 pub(crate) fn values_of(py: Python<'_>, picture: &Picture) -> PictureValues {
     let layers = picture.layers.iter();
-    let layers = layers.map(|l| (l.name.clone(), l.components.clone(), l.pixels.clone_ref(py))).collect();
+    let layers = layers.map(|l| (l.name.clone(), l.channels.clone(), l.pixels.clone_ref(py))).collect();
     let Display { exposure, auto_exposure, tone_map, behind, .. } = picture.shown;
     let shown = (exposure, auto_exposure, tone_map.entry.name.to_owned(), behind.map(Rgb::to_array));
     // Linear light, sRGB as a power of 0, or a power.
@@ -46,7 +46,7 @@ pub(crate) fn picture_of(py: Python<'_>, values: PictureValues) -> PyResult<Pict
         return Err(other());
     }
     let layers: Vec<Layer> =
-        layers.into_iter().map(|(name, components, pixels)| Layer { name, components, pixels }).collect();
+        layers.into_iter().map(|(name, channels, pixels)| Layer { name, channels, pixels }).collect();
     let tone_map = tone_map(&curve).map_err(|_| other())?;
     let behind = behind.map(Rgb::from_array);
     let shown = Display { exposure, auto_exposure, tone_map, behind, ..Display::default() };

@@ -1,10 +1,12 @@
 //! Pictures whose layers are numpy arrays.
 
 use crate::ending::without_gil;
-use crate::errors::{exception, of_picture, unopened, warn};
+use crate::errors::{exception, of_picture, warn};
 use crate::layer::{Layer, layers_of};
+use crate::layer_names::{Meaning, meaning};
 use crate::pickling::{PictureValues, picture_of, values_of};
 use crate::shown;
+use crate::source::Sink;
 use bilux::Display;
 use bilux::pictures::denoise::{Task, denoise, denoiser};
 use bilux::pictures::formats::BitDepth;
@@ -12,7 +14,6 @@ use bilux::pictures::{ColourSpace, to_display};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
-use std::path::PathBuf;
 
 /// A picture: an array of pixels, and other layers of the same size.
 ///
@@ -21,7 +22,8 @@ use std::path::PathBuf;
 ///
 /// Args:
 ///     pixels: an array (height, width) for a grey picture, (height, width, 3) for colours, or (height, width, 4) with
-///         alpha.
+///         alpha. Of uint8, it holds colours as a screen shows them (sRGB, with straight alpha); all other numbers are
+///         linear.
 ///     layers: more arrays of the same height and width, by name.
 ///     metadata: texts to store with the picture, in formats that can.
 ///
@@ -44,13 +46,13 @@ pub(crate) struct Picture {
 impl Picture {
     #[new]
     #[pyo3(signature = (pixels, *, layers = None, metadata = None))]
-    fn new(
+    pub(crate) fn new(
         py: Python<'_>,
         pixels: &Bound<'_, PyAny>,
         layers: Option<&Bound<'_, PyDict>>,
         metadata: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Picture> {
-        let main = Layer::of_array("", pixels)?;
+        let main = Layer::of_bytes(pixels)?.map_or_else(|| Layer::of_array("", pixels), Ok)?;
         let size = main.size(py)?;
         let mut all = vec![main];
         for (name, pixels) in layers.into_iter().flatten() {
@@ -93,7 +95,8 @@ impl Picture {
         self.size[0]
     }
 
-    /// The names of the other layers, such as "albedo" or "depth".
+    /// The names of the other layers, such as "albedo" or "depth"; each light group has one, "group_NAME", and so has each
+    /// strategy, "strategy_NAME".
     #[getter]
     fn layers(&self) -> Vec<&str> {
         self.layers.iter().map(|layer| &*layer.name).filter(|name| !name.is_empty()).collect()
@@ -114,10 +117,16 @@ impl Picture {
         self.info.clone_ref(py)
     }
 
-    /// The array of a layer: (height, width, channels), or (height, width) if it has one channel.
-    fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
-        let found = self.layers.iter().find(|layer| layer.name == name && !name.is_empty());
-        let pixels = found.map(|layer| layer.pixels.clone_ref(py));
+    /// The array of a layer, by the name in `bilux.aovs` or in `layers`: (height, width, channels), or (height, width) if
+    /// it has one channel. "groups" and "strategies" are stacks of all their layers, sorted by name: (layers, height,
+    /// width, 3).
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let found = self.found(name);
+        if let (Meaning::Stack(_), false) = (meaning(name), found.is_empty()) {
+            let arrays: Vec<_> = found.iter().map(|layer| layer.pixels.clone_ref(py)).collect();
+            return py.import("numpy")?.call_method1("stack", (arrays,));
+        }
+        let pixels = found.first().map(|layer| layer.pixels.bind(py).clone());
         pixels.ok_or_else(|| {
             let known = self.layers().join(", ");
             let known = if known.is_empty() { "it has none; ask for some with aov=[…]" } else { &known };
@@ -126,7 +135,7 @@ impl Picture {
     }
 
     fn __contains__(&self, name: &str) -> bool {
-        self.layers().contains(&name)
+        !self.found(name).is_empty()
     }
 
     #[pyo3(signature = (dtype = None, copy = None))]
@@ -149,7 +158,8 @@ impl Picture {
     /// Writes the picture; the extension says in which format. An .exr also keeps all layers.
     ///
     /// Args:
-    ///     path: the file, which is replaced if it exists.
+    ///     file: a path, whose file is replaced if it exists, or a file that is open for writing in binary mode.
+    ///     format: the format (`bilux.picture_formats`), where no name says it.
     ///     exposure: stops by which formats for a display are brightened, or "auto"; by default as the render said.
     ///     tonemap: the tone curve of formats for a display; by default as the render said.
     ///     bits: 8 or 16 bits per channel of a PNG or PPM.
@@ -160,11 +170,13 @@ impl Picture {
     ///
     /// Example:
     ///     >>> bilux.Picture(np.full((2, 2, 3), 0.5)).save("grey.png")
-    #[pyo3(signature = (path, *, exposure = None, tonemap = None, bits = 8, quality = None))]
+    #[pyo3(signature = (file, *, format = None, exposure = None, tonemap = None, bits = 8, quality = None))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword of Picture.save")]
     fn save(
         &self,
         py: Python<'_>,
-        path: PathBuf,
+        file: &Bound<'_, PyAny>,
+        format: Option<&str>,
         exposure: Option<&Bound<'_, PyAny>>,
         tonemap: Option<&str>,
         bits: u32,
@@ -184,9 +196,16 @@ impl Picture {
             }
             options.quality = quality as u8;
         }
-        let lost = bilux::lost_alpha(&picture, &path, options.behind).map_err(exception)?;
+        let sink = Sink::of(file, format)?;
+        sink.format()?;
+        let lost = bilux::lost_alpha(&picture, &sink.named(), options.behind).map_err(exception)?;
         warn(py, lost.as_slice())?;
-        without_gil(py, || bilux::pictures::write(&path, &picture, &options)).map_err(of_picture)
+        if let Sink::Path(path) = &sink {
+            return without_gil(py, || bilux::pictures::write(path, &picture, &options)).map_err(of_picture);
+        }
+        let format = sink.format()?;
+        let bytes = without_gil(py, || bilux::pictures::write_bytes(&format, &picture, &options));
+        sink.write(py, &bytes.map_err(of_picture)?)
     }
 
     /// The picture as a display shows it: exposed, with a tone curve, sRGB-encoded, from 0 to 1, with straight alpha.
@@ -265,6 +284,24 @@ impl Picture {
 }
 
 impl Picture {
+    /// The layers that a name stands for.
+    fn found(&self, name: &str) -> Vec<&Layer> {
+        let all = || self.layers.iter().filter(|layer| !layer.name.is_empty());
+        if let Some(layer) = all().find(|layer| layer.name == name) {
+            return vec![layer];
+        }
+        match meaning(name) {
+            Meaning::Layer(wanted) => all().find(|layer| layer.name == wanted).into_iter().collect(),
+            Meaning::Stack(beginning) => {
+                let mut layers: Vec<&Layer> =
+                    all().filter(|layer| layer.name.starts_with(beginning)).collect();
+                // As files list them.
+                layers.sort_by_key(|layer| &layer.name);
+                layers
+            }
+        }
+    }
+
     /// A picture of the library, its planes interleaved into arrays.
     pub(crate) fn of(
         py: Python<'_>,
@@ -310,73 +347,5 @@ impl Picture {
         let picture = self.to_rust(py)?;
         let display = || to_display(&picture, shown.exposure_of(&picture), shown.tone_map);
         without_gil(py, display).map_err(of_picture)
-    }
-}
-
-/// Reads a picture file.
-///
-/// Args:
-///     path: a PNG, EXR, HDR, PFM, PPM, JPEG, WebP, TIFF, BMP, TGA or KTX2.
-///
-/// Returns:
-///     the picture in linear light, with all layers of an EXR.
-///
-/// Raises:
-///     FileNotFoundError: if there is no such file.
-///     PictureError: if it is no picture.
-///
-/// Example:
-///     >>> bilux.Picture(np.ones((2, 3, 3))).save("white.png")
-///     >>> bilux.read_picture("white.png").pixels.shape
-///     (2, 3, 3)
-#[pyfunction]
-pub(crate) fn read_picture(py: Python<'_>, path: PathBuf) -> PyResult<Picture> {
-    let file = without_gil(py, || std::fs::File::open(&path).map(drop));
-    file.map_err(|error| unopened(&path, &error))?;
-    let picture = without_gil(py, || {
-        bilux::pictures::read_crop(&path, &bilux::pictures::Limits::default())
-            .map(bilux::pictures::Picture::into_linear)
-    });
-    Picture::of(py, &picture.map_err(of_picture)?, Display::default(), None)
-}
-
-/// Measures how much a picture differs from a reference.
-///
-/// Args:
-///     picture: a Picture, or an array as Picture takes it.
-///     reference: the same for what it should look like.
-///
-/// Returns:
-///     the value of each metric by its name (`bilux.metrics`): "rmse", "relmse" and "max" of the light, "psnr", "ssim"
-///     and "flip" of what a display shows. Equal pictures have an infinite "psnr".
-///
-/// Raises:
-///     PictureError: if their sizes differ, or one has no colours.
-///
-/// Example:
-///     >>> black, grey = np.zeros((8, 8, 3)), np.full((8, 8, 3), 0.5)
-///     >>> bilux.compare(grey, black)["rmse"]
-///     0.5
-#[pyfunction]
-pub(crate) fn compare<'py>(
-    py: Python<'py>,
-    picture: &Bound<'py, PyAny>,
-    reference: &Bound<'py, PyAny>,
-) -> PyResult<Bound<'py, PyDict>> {
-    crate::forks::check()?;
-    let (picture, reference) = (any_picture(picture)?, any_picture(reference)?);
-    let report = without_gil(py, || bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
-    let values = PyDict::new(py);
-    for (name, value) in report.values {
-        values.set_item(name, value)?;
-    }
-    Ok(values)
-}
-
-fn any_picture(argument: &Bound<'_, PyAny>) -> PyResult<bilux::pictures::Picture> {
-    let py = argument.py();
-    match argument.cast::<Picture>() {
-        Ok(picture) => picture.get().to_rust(py),
-        Err(_) => Picture::new(py, argument, None, None)?.to_rust(py),
     }
 }

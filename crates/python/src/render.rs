@@ -1,14 +1,18 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
 use crate::errors::{Error, exception, of_scene, warn};
+use crate::inspect::check_strategies;
+use crate::loading::Origin;
 use crate::picture::Picture;
-use crate::values::{self, Unresolved};
+use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
 use bilux::pictures::denoise::{DenoiserChoice, preload};
-use bilux::scene::{Parameters, SceneBuilder, SceneError, Span, Warning};
-use bilux::transport::Window;
-use bilux::transport::aovs::{AOVS, Aov};
+use bilux::scene::{Object, Parameters, SceneBuilder, SceneError, Span, Warning};
+use bilux::strategies::Light;
+use bilux::transport::aovs::{AOVS, Aov, AovEntry};
+use bilux::transport::{Progress, Strategies, Window};
+use bilux::wording::in_python;
 use bilux::{Built, Display, Job, Outcome, Series};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -34,6 +38,8 @@ pub(crate) struct Request {
     pub(crate) begun: Instant,
     /// What the picture has in common with others.
     pub(crate) series: Series,
+    /// Where the scene came from, for the layer of motion of meshes that move by themselves.
+    pub(crate) origin: Option<Origin>,
 }
 
 impl Request {
@@ -47,9 +53,9 @@ impl Request {
         (fast, max_memory, loaded_at): (bool, u64, f32),
     ) -> PyResult<Request> {
         let (begun, series) = (Instant::now(), Series::default());
-        let user = values::parameters(settings, &mut Unresolved)?;
+        let user = values::keywords(settings)?;
         let aovs = aovs(layers).map_err(of_scene)?;
-        Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series })
+        Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series, origin: None })
     }
 }
 
@@ -70,13 +76,12 @@ pub(crate) struct Rendered {
 /// The AOVs of these names.
 ///
 /// # Errors
-/// If there is no such AOV, or it is no layer.
+/// If there is no such AOV.
 fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
-    let layers = || AOVS.iter().filter(|row| row.aov != Aov::Strategies);
     let find = |name: &String| {
-        let found = layers().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
+        let found = AOVS.iter().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
         found.map(|row| row.aov).ok_or_else(|| {
-            SceneError::unknown("layer", name, layers().map(|row| row.entry.name), &Span::default())
+            SceneError::unknown("layer", name, AOVS.iter().map(|row| row.entry.name), &Span::default())
         })
     };
     names.iter().map(find).collect()
@@ -139,14 +144,44 @@ fn rendered(
     request: Request,
     watch: &Watch,
 ) -> Result<Option<Rendered>, bilux::Error> {
-    use bilux::transport::Progress;
     let Prepared { mut job, build } = prepared((scene, built), &request)?;
     if watch.is_cancelled() {
         return Ok(None);
     }
     let denoiser = with_everything(&mut job, &request)?;
+    with_next_pose(&mut job, (scene, built), &request)?;
     let outcome = job.render(watch)?;
-    Ok(Some(with_layers(&job, outcome, denoiser, &request.aovs, build)?))
+    Ok(Some(with_layers(&job, outcome, denoiser, &request.aovs, (build, watch))?))
+}
+
+/// Tells the job the next pose of meshes that move by themselves, if the layer of motion is wanted.
+pub(crate) fn with_next_pose(
+    job: &mut Job,
+    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    request: &Request,
+) -> Result<(), bilux::Error> {
+    if !scene.inventory.moves() || !request.aovs.contains(&Aov::Motion) {
+        return Ok(());
+    }
+    let time = job.settings().time + 1.0 / job.settings().fps;
+    let later = request.origin.as_ref().map(|origin| origin.read_at(time)).transpose()?;
+    let same_shape = |(now, later): (&Object, &Object)| now.mesh.triangles == later.mesh.triangles;
+    let later = later.filter(|later| {
+        later.objects.len() == scene.objects.len() && scene.objects.iter().zip(&later.objects).all(same_shape)
+    });
+    let Some(later) = later else {
+        return Err(bilux::Error::Settings(
+            "aov: the motion of meshes that move by themselves takes the file again, at the next frame: render the \
+             scene as bilux.load returned it, without other objects, and not from a pickle"
+                .to_owned(),
+        ));
+    };
+    let mut next = scene.clone();
+    for (object, later) in next.objects.iter_mut().zip(later.objects) {
+        object.mesh = later.mesh;
+    }
+    job.moves_to(build_of((&next, built), &request.user, request.max_memory, &request.series)?.0);
+    Ok(())
 }
 
 /// A job, and what it took to build it.
@@ -196,6 +231,10 @@ pub(crate) fn with_everything(
 ) -> Result<Option<DenoiserChoice>, bilux::Error> {
     let Request { aovs, crop, begun, .. } = request;
     job.begun_at(*begun);
+    job.check_layers(aovs)?;
+    if aovs.contains(&Aov::Strategies) {
+        check_strategies(job)?;
+    }
     job.with_layers(aovs);
     if aovs.contains(&Aov::Interval) {
         job.with_interval()?;
@@ -215,7 +254,7 @@ pub(crate) fn with_layers(
     outcome: Outcome,
     denoiser: Option<DenoiserChoice>,
     aovs: &[Aov],
-    build: BuildWork,
+    (build, progress): (BuildWork, &dyn Progress),
 ) -> Result<Rendered, bilux::Error> {
     let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
     let mut picture = match &denoiser {
@@ -229,12 +268,13 @@ pub(crate) fn with_layers(
     if let Some(interval) = &outcome.rendered.interval {
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
+    let missing = push_made_later(job, &outcome, aovs, &mut picture, progress)?;
     job.describe(&mut picture, &outcome, denoiser.as_ref().map(|chosen| chosen.name));
     let settings = job.settings();
     Ok(Rendered {
         picture,
         shown: job.display()?,
-        warnings: job.warnings().to_vec(),
+        warnings: job.warnings().iter().cloned().chain(missing).collect(),
         spp: outcome.samples_per_pixel(),
         asked: job.asked_samples(),
         seed: settings.seed,
@@ -243,6 +283,41 @@ pub(crate) fn with_layers(
         build,
         outcome,
     })
+}
+
+/// Adds the layers that are made once the picture is there. If the render was stopped, a warning names those that are missing.
+fn push_made_later(
+    job: &Job,
+    outcome: &Outcome,
+    aovs: &[Aov],
+    picture: &mut bilux::pictures::Picture,
+    progress: &dyn Progress,
+) -> Result<Option<Warning>, bilux::Error> {
+    let mut missing: Vec<&AovEntry> = Vec::new();
+    match job.extra_layers(outcome, aovs, progress)? {
+        Some(extra) => extra.push(picture)?,
+        None => missing.extend(AOVS.iter().filter(|row| aovs.contains(&row.aov) && row.aov.is_extra())),
+    }
+    if aovs.contains(&Aov::Strategies) {
+        let found = if outcome.rendered.cancelled { None } else { job.strategies(outcome, progress)? };
+        match &found {
+            Some(found) => push_strategies(found, picture)?,
+            None => missing.extend(AOVS.iter().filter(|row| row.aov == Aov::Strategies)),
+        }
+    }
+    let names: Vec<&str> = missing.iter().map(|row| row.entry.name).collect();
+    let message = format!("the render was stopped, so these layers are missing: {}", names.join(", "));
+    Ok((!names.is_empty()).then(|| Warning { message, at: Span::default() }))
+}
+
+/// Adds what each strategy finds: `strategy_NAME`, weighted, whose sum is the picture, and `unweighted_NAME`.
+fn push_strategies(found: &Strategies, picture: &mut bilux::pictures::Picture) -> Result<(), bilux::Error> {
+    for one in &found.pictures {
+        for (light, beginning) in [(Light::Weighted, "strategy"), (Light::Unweighted, "unweighted")] {
+            picture.push_rgb(&format!("{beginning}_{}", one.strategy), light.of(one))?;
+        }
+    }
+    Ok(())
 }
 
 /// The job, with what earlier renders of the scene have built, and the number of trees that were missing.
@@ -301,7 +376,8 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
     info.set_item("denoiser", rendered.denoiser.as_deref())?;
     info.set_item("seed", rendered.seed)?;
     info.set_item("rays", outcome.rendered.counters.rays)?;
-    let warnings: Vec<String> = rendered.warnings.iter().map(ToString::to_string).collect();
+    let warnings: Vec<String> =
+        rendered.warnings.iter().map(|warning| in_python(&warning.to_string())).collect();
     info.set_item("warnings", warnings)?;
     Ok(info)
 }

@@ -4,17 +4,20 @@ use crate::adding::{self, Adding, mesh, of_table};
 use crate::arrays;
 use crate::encoded::{Encoded, decoded};
 use crate::ending::without_gil;
-use crate::errors::{exception, warn};
+use crate::errors::exception;
+use crate::loading::{Origin, glass_named, loaded};
 use crate::picture::Picture;
 use crate::progressive::Progressive;
 use crate::render::{Request, render};
+use crate::source::Source;
 use crate::spec::Spec;
 use crate::values::{self, Resolve, Unresolved};
 use bilux::Built;
-use bilux::formats::{Glass, ReadOptions};
+use bilux::formats::ReadOptions;
 use bilux::math::Transform;
 use bilux::scene::cameras::CameraSpec;
 use bilux::scene::{Object, SceneBuilder};
+use bilux::wording::in_python;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -30,6 +33,8 @@ pub(crate) struct Scene {
     builder: Mutex<SceneBuilder>,
     /// What renders have built. Locked only without the GIL, and while a render builds.
     pub(crate) built: Mutex<Built>,
+    /// The file that it was read from; nothing knows it after pickling.
+    origin: Mutex<Option<Origin>>,
 }
 
 #[pymethods]
@@ -40,11 +45,13 @@ impl Scene {
     }
 
     #[classmethod]
-    #[pyo3(signature = (path, *, time, animation, variant, glass, light_radius, max_memory, allow_outside, strict))]
+    #[pyo3(signature = (file, *, format, folder, time, animation, variant, glass, light_radius, max_memory, allow_outside, strict))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of bilux.load")]
     fn _load<'py>(
         class: &Bound<'py, PyType>,
-        path: PathBuf,
+        file: &Bound<'py, PyAny>,
+        format: Option<String>,
+        folder: Option<PathBuf>,
         time: f32,
         animation: Option<String>,
         variant: Option<String>,
@@ -54,15 +61,6 @@ impl Scene {
         allow_outside: bool,
         strict: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let glass = match glass {
-            "auto" => Glass::Auto,
-            "thin" => Glass::Thin,
-            "solid" => Glass::Solid,
-            _ => {
-                let message = format!("glass: there is no '{glass}': write 'auto', 'thin' or 'solid'");
-                return Err(PyValueError::new_err(message));
-            }
-        };
         let options = ReadOptions {
             max_memory,
             allow_outside,
@@ -71,15 +69,18 @@ impl Scene {
             time,
             animation,
             variant,
-            glass,
+            glass: glass_named(glass)?,
             light_radius,
             ..ReadOptions::default()
         };
         crate::forks::check()?;
-        let py = class.py();
-        let scene = without_gil(py, || bilux::load(&path, &options)).map_err(exception)?;
-        warn(py, &scene.warnings)?;
-        with_builder(class, scene)
+        let (py, source) = (class.py(), Source::of("file", file, max_memory)?);
+        let origin = Origin { source, format, folder, options };
+        let made = with_builder(class, loaded(py, &origin)?)?;
+        let scene = made.cast::<Scene>()?.get();
+        // Bytes are kept only where they are needed again.
+        *scene.origin(py) = scene.builder(py).inventory.moves().then_some(origin);
+        Ok(made)
     }
 
     #[classmethod]
@@ -92,8 +93,7 @@ impl Scene {
         crate::forks::check()?;
         let mut spec = bilux::scene::Spec::new("", kind);
         spec.parameters = values::parameters(parameters, &mut Unresolved)?;
-        let scene = without_gil(class.py(), || bilux::generate(&spec)).map_err(exception)?;
-        with_builder(class, scene)
+        with_builder(class, without_gil(class.py(), || bilux::generate(&spec)).map_err(exception)?)
     }
 
     #[pyo3(signature = (vertices, triangles, normals, uvs, material, transforms, name))]
@@ -260,8 +260,8 @@ impl Scene {
     #[setter]
     fn set_cameras(&self, py: Python<'_>, cameras: Vec<Bound<'_, Spec>>) -> PyResult<()> {
         let mut builder = self.builder(py);
-        let cameras = adding::resolved(&cameras, "cameras", &mut builder)?;
-        builder.cameras = cameras.into_iter().map(CameraSpec::new).collect();
+        let cameras = adding::resolved(&cameras, "cameras", &mut builder)?.into_iter();
+        builder.cameras = cameras.map(CameraSpec::new).collect();
         Ok(())
     }
 
@@ -276,13 +276,13 @@ impl Scene {
     /// What was odd about the file.
     #[getter]
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        self.builder(py).warnings.iter().map(ToString::to_string).collect()
+        self.builder(py).warnings.iter().map(|warning| in_python(&warning.to_string())).collect()
     }
 
     /// What is worth knowing about the file though nothing is wrong with it.
     #[getter]
     fn notes(&self, py: Python<'_>) -> Vec<String> {
-        self.builder(py).notes.iter().map(ToString::to_string).collect()
+        self.builder(py).notes.iter().map(|note| in_python(&note.to_string())).collect()
     }
 
     /// Lights the scene with a picture in longitude and latitude, replacing the one that it may have.
@@ -316,7 +316,8 @@ impl Scene {
         let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
-        render(py, (&scene, &self.built), Request { crop, ..request }, callback)
+        let origin = self.origin(py).clone();
+        render(py, (&scene, &self.built), Request { crop, origin, ..request }, callback)
     }
 
     fn _progressive(
@@ -326,7 +327,7 @@ impl Scene {
         max_memory: u64,
         callback: Option<Py<PyAny>>,
     ) -> PyResult<Progressive> {
-        let user = values::parameters(settings, &mut Unresolved)?;
+        let user = values::keywords(settings)?;
         let scene = self.builder(py).clone();
         Progressive::new(py, (&scene, &self.built), &user, max_memory, callback)
     }
@@ -349,6 +350,7 @@ impl Scene {
     fn _copy_to(&self, py: Python<'_>, other: &Bound<'_, Scene>) {
         let copy = self.builder(py).clone();
         *other.get().builder(other.py()) = copy;
+        *other.get().origin(py) = self.origin(py).clone();
         // Meshes are shared, and so are the trees over them.
         let (own, other) = (&self.built, &other.get().built);
         without_gil(py, || {
@@ -375,6 +377,11 @@ impl Scene {
     /// The scene under construction. Other threads run while this one waits for it.
     pub(crate) fn builder(&self, py: Python<'_>) -> MutexGuard<'_, SceneBuilder> {
         self.builder.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The file that it was read from, if that is known and may be needed again.
+    pub(crate) fn origin(&self, py: Python<'_>) -> MutexGuard<'_, Option<Origin>> {
+        self.origin.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 }
 

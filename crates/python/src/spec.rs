@@ -5,6 +5,7 @@ use crate::values::{self, Resolve, Unresolved};
 use bilux::math::registry::Entry;
 use bilux::scene::{Reader, SceneBuilder, SceneError, Span};
 use bilux::tables::{TABLES, values as values_of};
+use bilux::wording::in_python;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -145,9 +146,10 @@ pub(crate) fn rows<'py>(py: Python<'py>, table: &str) -> PyResult<Vec<Bound<'py,
 fn as_dictionary<'py>(py: Python<'py>, row: &Entry) -> PyResult<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
     dictionary.set_item("name", row.name)?;
-    dictionary.set_item("summary", row.summary)?;
+    dictionary.set_item("summary", in_python(row.summary))?;
     dictionary.set_item("source", row.source)?;
-    let parameters = row.parameters.iter().map(|p| (p.name, p.summary, values_of(p.kind), p.unit, p.default));
+    let parameters =
+        row.parameters.iter().map(|p| (p.name, in_python(p.summary), values_of(p.kind), p.unit, p.default));
     dictionary.set_item("parameters", parameters.collect::<Vec<_>>())?;
     Ok(dictionary)
 }

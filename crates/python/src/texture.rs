@@ -1,15 +1,18 @@
 //! Textures from arrays and files.
 
 use crate::arrays;
+use crate::encoded::{Encoded, decoded as decoded_scene};
 use crate::ending::without_gil;
-use crate::errors::{of_picture, unopened};
+use crate::errors::of_picture;
+use crate::source::Source;
 use bilux::math::Rgb;
 use bilux::pictures::{Limits, PictureError, Rgba8, read_rgba8};
+use bilux::scene::SceneBuilder;
 use bilux::scene::texture::{Filter, Image, Texels, Wrap};
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::path::PathBuf;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 /// An image on surfaces, for any parameter of a material or a light that takes a texture.
@@ -47,20 +50,31 @@ impl Texture {
     /// Reads a picture file as a texture.
     ///
     /// Args:
-    ///     path: a picture in any format that Bilux reads.
+    ///     file: a picture in any format that Bilux reads: a path, bytes, or a file that is open in binary mode.
     ///     data, wrap, filter: as for `Texture`.
+    ///     format: the format (`bilux.picture_formats`), where neither its bytes nor its name says it.
     ///
     /// Raises:
     ///     PictureError: if the file is no picture.
     #[staticmethod]
-    #[pyo3(signature = (path, *, data = false, wrap = "repeat", filter = "linear"))]
-    fn read(py: Python<'_>, path: PathBuf, data: bool, wrap: &str, filter: &str) -> PyResult<Texture> {
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let bytes = without_gil(py, || std::fs::read(&path)).map_err(|error| unopened(&path, &error))?;
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let image = without_gil(py, || decoded(&bytes, extension, data)).map_err(of_picture)?;
+    #[pyo3(signature = (file, *, data = false, wrap = "repeat", filter = "linear", format = None))]
+    fn read(
+        file: &Bound<'_, PyAny>,
+        data: bool,
+        wrap: &str,
+        filter: &str,
+        format: Option<String>,
+    ) -> PyResult<Texture> {
+        let py = file.py();
+        let mut source = Source::of("file", file, Limits::default().max_bytes)?;
+        if let Source::Path(path) = &source {
+            source = Source::opened(py, path)?;
+        }
+        let (name, format) = (source.file_name(), format.or_else(|| source.extension()));
+        let bytes = source.bytes();
+        let image = without_gil(py, || decoded(bytes, format.as_deref(), data)).map_err(of_picture)?;
         let image = image.ok_or_else(|| {
-            PyValueError::new_err(format!("{}: this picture has no colours", path.display()))
+            PyValueError::new_err(format!("{}: this picture has no colours", source.name()))
         })?;
         placed(bilux::scene::Texture::of(&name, Arc::new(image), data), wrap, filter)
     }
@@ -83,6 +97,20 @@ impl Texture {
 
     fn __hash__(&self) -> usize {
         Arc::as_ptr(&self.0) as usize
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, mut alone) = (slf.py(), SceneBuilder::default());
+        alone.textures.push(slf.get().0.clone());
+        let encoded = Encoded::of(py, &alone)?;
+        let restore = slf.get_type().getattr("_restored")?;
+        (restore, (encoded.document(py), encoded.blobs(py)?)).into_pyobject(py)
+    }
+
+    #[staticmethod]
+    fn _restored(document: &Bound<'_, PyAny>, blobs: &Bound<'_, PyDict>) -> PyResult<Texture> {
+        let texture = decoded_scene(document, blobs)?.textures.pop();
+        texture.map(Texture).ok_or_else(|| PyValueError::new_err("this is no pickle of a texture"))
     }
 
     fn __repr__(&self) -> String {

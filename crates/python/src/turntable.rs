@@ -45,6 +45,7 @@ impl Turntable {
         let builder = scene.get().builder(py).clone();
         let series = without_gil(py, || Series::turntable(&builder, &request.user, max_memory, count));
         request.series = series.map_err(exception)?;
+        request.origin = scene.get().origin(py).clone();
         Ok(Turntable { scene, builder, request, callback, count, next: AtomicU32::new(0) })
     }
 

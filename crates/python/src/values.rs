@@ -39,6 +39,15 @@ pub(crate) fn parameters(keywords: &Bound<'_, PyDict>, resolve: &mut dyn Resolve
     Ok(parameters)
 }
 
+/// Keyword arguments as settings. Each is its own place, which messages name.
+pub(crate) fn keywords(settings: &Bound<'_, PyDict>) -> PyResult<Parameters> {
+    let mut parameters = parameters(settings, &mut Unresolved)?;
+    for (key, _, at) in &mut parameters.0 {
+        at.file = key.as_str().into();
+    }
+    Ok(parameters)
+}
+
 /// An argument as a value.
 pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn Resolve) -> PyResult<Value> {
     if let Ok(texture) = argument.cast::<Texture>() {

@@ -279,7 +279,7 @@ impl Settings {
         let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
         let own = own.into_iter().map(|(key, value, at)| match key.as_str() {
-            "orbit" | "eye" | "look_at" => (key, as_list_text(value), at),
+            "orbit" | "eye" | "look_at" | "background" => (key, as_list_text(value), at),
             // Users who know `--ground none` write this.
             "denoise" if value == Value::from("none") => (key, Value::from("off"), at),
             _ => (key, value, at),

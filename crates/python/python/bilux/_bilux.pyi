@@ -1,6 +1,6 @@
 import os
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, final
+from typing import Any, BinaryIO, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ __all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMe
 __version__: str
 
 _Path = str | os.PathLike[str]
+_File = _Path | bytes | bytearray | memoryview | BinaryIO
 _Exposure = float | Literal["auto"]
 
 def rows(table: str) -> list[dict[str, Any]]: ...
@@ -36,7 +37,7 @@ def strategies(
     max_memory: int,
     callback: Callable[[int, int, int, float], object] | None,
 ) -> list[tuple[str, int, int, bool, Picture, Picture]] | None: ...
-def read_picture(path: _Path) -> Picture: ...
+def read_picture(file: _File, *, format: str | None = None) -> Picture: ...
 def compare(picture: Picture | ArrayLike, reference: Picture | ArrayLike) -> dict[str, float]: ...
 
 @final
@@ -67,12 +68,15 @@ class Texture:
     ) -> Self: ...
     @staticmethod
     def read(
-        path: _Path,
+        file: _File,
         *,
         data: bool = False,
         wrap: Literal["repeat", "mirror", "clamp"] = "repeat",
         filter: Literal["linear", "nearest"] = "linear",
+        format: str | None = None,
     ) -> Texture: ...
+    @staticmethod
+    def _restored(document: Any, blobs: dict[str, Any]) -> Texture: ...
     @property
     def shape(self) -> tuple[int, int]: ...
     @property
@@ -106,8 +110,9 @@ class Picture:
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
     def save(
         self,
-        path: _Path,
+        file: _Path | BinaryIO,
         *,
+        format: str | None = None,
         exposure: _Exposure | None = None,
         tonemap: str | None = None,
         bits: Literal[8, 16] = 8,
@@ -238,8 +243,10 @@ class Scene:
     @classmethod
     def _load(
         cls,
-        path: _Path,
+        file: _File,
         *,
+        format: str | None,
+        folder: _Path | None,
         time: float,
         animation: str | None,
         variant: str | None,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -208,7 +208,9 @@ class Scene(_bilux.Scene):
             noise: stop when the noise is, on average, at most this fraction of the light, such as 0.02.
             time_limit: finish within so many seconds, denoising included. Without `spp`, `noise` and `time_limit`, the
                 picture is done at 2% noise or after 5 seconds.
-            aov: layers to give as well (`bilux.aovs`), such as "albedo", "normal", "depth", "ids", "variance".
+            aov: layers to give as well (`bilux.aovs`), such as "albedo", "normal", "depth", "ids", "position",
+                "crypto_object" or "direct": `picture["depth"]`. "groups" gives a layer for each light group, and
+                "strategies" one for each strategy of "bdpt" and "vcm".
             denoise: True or a name (`bilux.denoisers`), or False; by default only if noise or time ends the picture.
                 The noisy picture is then its layer "noisy".
             seed: of the random numbers.
@@ -244,7 +246,7 @@ class Scene(_bilux.Scene):
         )  # fmt: skip
         if fast and (spp, noise, time_limit) != (None, None, None):
             raise TypeError("fast: this sets its own limits: leave it out, or spp, noise and time_limit")
-        layers = [aov] if isinstance(aov, str) else list(aov)
+        layers = _layers(aov)
         with following(progress) as callback:
             return self._render(given, layers, _window(crop), fast, _bytes(max_memory), self._time, callback)
 
@@ -329,7 +331,7 @@ class Scene(_bilux.Scene):
             raise TypeError("crop: a turntable shows all of each picture: leave it out")
         plain = dict.fromkeys(("size", "camera", "time", "exposure"))
         given = self._settings(**plain | settings)
-        layers = [aov] if isinstance(aov, str) else list(aov)
+        layers = _layers(aov)
         return self._turned(number, given, layers, fast, _bytes(max_memory), progress)
 
     def _turned(
@@ -486,10 +488,10 @@ def _size(size: tuple[int, int] | int | str | None) -> str | None:
 def _sides(size: tuple[int, int] | int) -> tuple[int, int]:
     """The width and the height."""
     try:
-        width, height = (size, size) if isinstance(size, int) else size
-        return int(width), int(height)
+        width, height = size if np.iterable(size) else (size, size)
+        return operator.index(width), operator.index(height)
     except (TypeError, ValueError):
-        raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels") from None
+        raise TypeError(f"size: {size!r} is no size: give (width, height) in pixels, whole numbers") from None
 
 
 def _check_spec(name: str, spec: object, *, optional: bool = False) -> None:
@@ -513,7 +515,10 @@ def _window(crop: tuple[int, int, int, int] | None) -> tuple[int, int, int, int]
 
 def _bytes(max_memory: int) -> int:
     """A number of bytes."""
-    number = operator.index(max_memory)
+    try:
+        number = operator.index(max_memory)
+    except TypeError:
+        raise TypeError(f"max_memory: {max_memory!r} is no number of bytes: give a whole number, such as 8 << 30") from None
     if not 0 < number < 1 << 64:
         raise ValueError(f"max_memory: {number} is no number of bytes: 8 << 30 is the default")
     return number
@@ -521,14 +526,23 @@ def _bytes(max_memory: int) -> int:
 
 def _denoise(denoise: bool | str | None) -> str | None:
     """The denoiser as settings have it."""
-    if isinstance(denoise, bool):
+    if isinstance(denoise, (bool, np.bool_)):
         return "auto" if denoise else "off"
     return denoise
 
 
+def _layers(aov: Sequence[str] | str | None) -> list[str]:
+    """The names of layers."""
+    if isinstance(aov, str):
+        return [aov]
+    return [] if aov is None else list(aov)
+
+
 def load(
-    path: Path,
+    file: Path | bytes | bytearray | memoryview | BinaryIO,
     *,
+    format: str | None = None,
+    folder: Path | None = None,
     time: float = 0.0,
     animation: str | None = None,
     variant: str | None = None,
@@ -541,7 +555,10 @@ def load(
     """Reads a scene file.
 
     Args:
-        path: a glTF, GLB, OBJ, PLY, STL, OFF, pbrt or native scene, or a point cloud (`bilux.formats`).
+        file: a glTF, GLB, OBJ, PLY, STL, OFF, pbrt or native scene, or a point cloud (`bilux.formats`): a path, bytes, or
+            a file that is open in binary mode.
+        format: its format (`bilux.formats`), such as "obj". By default, its extension or its first bytes say it.
+        folder: the folder of the files that it refers to; by default its own, if it has one.
         time: what moves is as at this time, in seconds.
         animation: the animation to play, by its name or number; by default the first.
         variant: the variant of materials to show, by its name or number.
@@ -558,12 +575,17 @@ def load(
         FileNotFoundError: if there is no such file.
         FormatError: if it is broken, or in no known format.
         SceneError: if a name or a value in it is wrong.
+        TypeError: if it is no file, or one that is open as text.
 
     Example:
         >>> bilux.load("model.glb").render(size=(64, 48), spp=1).save("model.png")
+        >>> len(bilux.load(b"v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n", format="obj"))
+        1
     """
     scene: Scene = Scene._load(
-        path,
+        file,
+        format=format,
+        folder=folder,
         time=time,
         animation=animation,
         variant=variant,

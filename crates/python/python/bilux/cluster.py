@@ -18,7 +18,7 @@ from ._bilux import Picture
 from ._errors import Interrupted
 from ._progress import following
 from ._resume import Parts, Pictures
-from ._scene import MAX_MEMORY, Scene, _bytes
+from ._scene import MAX_MEMORY, Scene, _bytes, _layers
 from ._types import Progress
 from ._workers import Task, Work, Workers
 
@@ -72,7 +72,7 @@ def render(
     """
     begun = clock.monotonic()
     given = _settings(scene, settings)
-    layers = [aov] if isinstance(aov, str) else list(aov)
+    layers = _layers(aov)
     memory = _bytes(max_memory)
     with Workers(address, cpus) as workers, following(progress) as report:
         work = Work(workers.ship(scene), given, fast, memory)
@@ -202,7 +202,7 @@ def dataset(
         >>> for picture in bilux.cluster.dataset(scenes(), size=256, spp=32):  # doctest: +SKIP
         ...     learn_from(picture)
     """
-    layers = [aov] if isinstance(aov, str) else list(aov)
+    layers = _layers(aov)
     memory = _bytes(max_memory)
     store = None if resume is None else Pictures(resume)
     coming = iter(scenes)

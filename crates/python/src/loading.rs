@@ -1,0 +1,101 @@
+//! Scenes from files, bytes and open files.
+
+use crate::ending::without_gil;
+use crate::errors::{of_text, warn};
+use crate::source::Source;
+use bilux::formats::{FormatError, Glass, ReadOptions};
+use bilux::scene::SceneBuilder;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Where a scene came from, and how it was read.
+#[derive(Clone)]
+pub(crate) struct Origin {
+    pub(crate) source: Source,
+    /// The name of its format, if it was given.
+    pub(crate) format: Option<String>,
+    /// The folder of the files that it refers to, if it was given.
+    pub(crate) folder: Option<PathBuf>,
+    pub(crate) options: ReadOptions,
+}
+
+impl Origin {
+    /// Reads the scene.
+    ///
+    /// # Errors
+    /// As `bilux::load`.
+    pub(crate) fn read(&self) -> Result<SceneBuilder, bilux::Error> {
+        self.read_with(&self.options)
+    }
+
+    /// Reads the scene as it is at another time, in seconds.
+    ///
+    /// # Errors
+    /// As `bilux::load`.
+    pub(crate) fn read_at(&self, time: f32) -> Result<SceneBuilder, bilux::Error> {
+        self.read_with(&ReadOptions { time, ..self.options.clone() })
+    }
+
+    fn read_with(&self, options: &ReadOptions) -> Result<SceneBuilder, bilux::Error> {
+        let Origin { source, format, folder, .. } = self;
+        let opened;
+        let bytes = match source {
+            Source::Path(path) if format.is_none() && folder.is_none() => return bilux::load(path, options),
+            Source::Path(path) => {
+                opened = bytes_at(path, options.max_memory)?;
+                &opened[..]
+            }
+            Source::Bytes { bytes, .. } => bytes,
+        };
+        let by_name =
+            || source.extension().filter(|e| bilux::formats::format_named(e).is_some_and(|f| f.reads()));
+        let format = format.clone().or_else(by_name).unwrap_or_default();
+        let folder = folder.clone().or_else(|| source.folder());
+        let read = bilux::formats::read_bytes(bytes, &format, folder.as_deref(), &source.name(), options);
+        Ok(read?)
+    }
+}
+
+/// The bytes of a file, but not many more than `most`.
+fn bytes_at(path: &Path, most: u64) -> Result<Vec<u8>, FormatError> {
+    let fault = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(fault)?;
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(fault)?;
+    Ok(bytes)
+}
+
+/// Reads a scene, and shows what is odd about it.
+///
+/// # Errors
+/// If it cannot be read; where nothing says what its format is, the message names the keyword that does.
+pub(crate) fn loaded(py: Python<'_>, origin: &Origin) -> PyResult<SceneBuilder> {
+    let scene = without_gil(py, || origin.read()).map_err(|error| {
+        let is_unknown = matches!(&error, bilux::Error::Format(FormatError::UnknownFormat { .. }));
+        let advice = match (is_unknown, &origin.source, &origin.format) {
+            (true, Source::Bytes { .. }, None) => "; if you know its format, say so, such as format=\"obj\"",
+            _ => "",
+        };
+        of_text(&error, error.to_string() + advice)
+    })?;
+    warn(py, &scene.warnings)?;
+    Ok(scene)
+}
+
+/// How to read glass whose thickness a file does not give.
+///
+/// # Errors
+/// If there is no such way.
+pub(crate) fn glass_named(name: &str) -> PyResult<Glass> {
+    match name {
+        "auto" => Ok(Glass::Auto),
+        "thin" => Ok(Glass::Thin),
+        "solid" => Ok(Glass::Solid),
+        _ => {
+            let message = format!("glass: there is no '{name}': write 'auto', 'thin' or 'solid'");
+            Err(PyValueError::new_err(message))
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Pictures from files, and how much pictures differ.
+
+use crate::ending::without_gil;
+use crate::errors::{of_picture, unopened};
+use crate::picture::Picture;
+use crate::source::Source;
+use bilux::Display;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Reads a picture file.
+///
+/// Args:
+///     file: a PNG, EXR, HDR, PFM, PPM, JPEG, WebP, TIFF, BMP, TGA or KTX2: a path, bytes, or a file that is open in binary
+///         mode.
+///     format: the format (`bilux.picture_formats`), where neither its bytes nor its name says it.
+///
+/// Returns:
+///     the picture in linear light, with all layers of an EXR.
+///
+/// Raises:
+///     FileNotFoundError: if there is no such file.
+///     PictureError: if it is no picture.
+///
+/// Example:
+///     >>> bilux.Picture(np.ones((2, 3, 3))).save("white.png")
+///     >>> bilux.read_picture("white.png").pixels.shape
+///     (2, 3, 3)
+#[pyfunction]
+#[pyo3(signature = (file, *, format = None))]
+pub(crate) fn read_picture(
+    py: Python<'_>,
+    file: &Bound<'_, PyAny>,
+    format: Option<&str>,
+) -> PyResult<Picture> {
+    let limits = bilux::pictures::Limits::default();
+    let mut source = Source::of("file", file, limits.max_bytes)?;
+    if let (Source::Path(path), Some(_)) = (&source, format) {
+        source = Source::opened(py, path)?;
+    }
+    if let Source::Path(path) = &source {
+        let opened = without_gil(py, || std::fs::File::open(path).map(drop));
+        opened.map_err(|error| unopened(path, &error))?;
+    }
+    let extension = format.map(str::to_owned).or_else(|| source.extension());
+    let picture = without_gil(py, || match &source {
+        Source::Path(path) => bilux::pictures::read_crop(path, &limits),
+        Source::Bytes { bytes, .. } => {
+            bilux::pictures::formats::read_crop_bytes(bytes, extension.as_deref(), &limits)
+        }
+    });
+    let picture = picture.map(bilux::pictures::Picture::into_linear).map_err(of_picture)?;
+    Picture::of(py, &picture, Display::default(), None)
+}
+
+/// Measures how much a picture differs from a reference.
+///
+/// Args:
+///     picture: a Picture, or an array as Picture takes it.
+///     reference: the same for what it should look like.
+///
+/// Returns:
+///     the value of each metric by its name (`bilux.metrics`): "rmse", "relmse" and "max" of the light, "psnr", "ssim"
+///     and "flip" of what a display shows. Equal pictures have an infinite "psnr".
+///
+/// Raises:
+///     PictureError: if their sizes differ, or one has no colours.
+///
+/// Example:
+///     >>> black, grey = np.zeros((8, 8, 3)), np.full((8, 8, 3), 0.5)
+///     >>> bilux.compare(grey, black)["rmse"]
+///     0.5
+#[pyfunction]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    picture: &Bound<'py, PyAny>,
+    reference: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyDict>> {
+    crate::forks::check()?;
+    let (picture, reference) = (any_picture(picture)?, any_picture(reference)?);
+    let report = without_gil(py, || bilux::pictures::compare(&picture, &reference)).map_err(of_picture)?;
+    let values = PyDict::new(py);
+    for (name, value) in report.values {
+        values.set_item(name, value)?;
+    }
+    Ok(values)
+}
+
+fn any_picture(argument: &Bound<'_, PyAny>) -> PyResult<bilux::pictures::Picture> {
+    let py = argument.py();
+    match argument.cast::<Picture>() {
+        Ok(picture) => picture.get().to_rust(py),
+        Err(_) => Picture::new(py, argument, None, None)?.to_rust(py),
+    }
+}
