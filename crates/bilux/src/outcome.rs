@@ -5,6 +5,7 @@ use bilux_pictures::Picture;
 use bilux_transport::{Features, Reached, Rendered};
 
 /// What was rendered, with whatever else the picture needs.
+#[derive(Clone)]
 pub struct Outcome {
     /// What was rendered: the film, the work that it took, how far it got.
     pub rendered: Rendered,

@@ -2,7 +2,7 @@
 
 use crate::{Error, Job, Outcome};
 use bilux_pictures::Picture;
-use bilux_transport::Progress;
+use bilux_transport::{BatchMeans, Progress};
 use std::time::{Duration, Instant};
 
 /// A job whose samples are taken step by step. After all steps its picture is that of [`Job::render`], byte for byte;
@@ -50,7 +50,7 @@ impl Progressive {
                     self.that_fit(time.saturating_sub(begun.elapsed())).max(u32::from(taken == 0))
                 }
             };
-            let end = self.done.saturating_add(wanted).min(self.total());
+            let end = self.batch_end(self.done.saturating_add(wanted).min(self.total()));
             if end == self.done || progress.is_cancelled() {
                 return Ok(self.done);
             }
@@ -60,6 +60,25 @@ impl Progressive {
             }
             self.each = Some(pass.elapsed() / (end - self.done));
             self.done = end;
+            self.close_batch();
+        }
+    }
+
+    /// The end of a pass that may go up to `end`: where the variance is estimated, no pass goes on after the end of a batch,
+    /// so that its batches are those of [`Job::render`].
+    fn batch_end(&self, end: u32) -> u32 {
+        if !self.job.render.batch_means {
+            return end;
+        }
+        (self.done + 1..end).find(|&samples| BatchMeans::ends_at(samples)).unwrap_or(end)
+    }
+
+    /// Closes a batch if one ends with the samples so far.
+    fn close_batch(&mut self) {
+        let ends = BatchMeans::ends_at(self.done) || self.is_done();
+        if let (true, Some(outcome)) = (self.job.render.batch_means && ends, &mut self.so_far) {
+            let rendered = &mut outcome.rendered;
+            rendered.batch_means.get_or_insert_default().close(&rendered.film, self.done);
         }
     }
 

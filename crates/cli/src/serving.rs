@@ -25,6 +25,12 @@ pub struct Serve {
     /// The address to listen on; if other machines can reach it, the printed address contains a secret token
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", help_heading = help::COMMON_OPTIONS)]
     pub listen: IpAddr,
+    /// Show all visitors the same view, which each of them may move; by default each has a view of their own
+    #[arg(long, help_heading = help::COMMON_OPTIONS)]
+    pub shared: bool,
+    /// The maximum number of visitors at the same time [default: 24; with --shared 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = help::COMMON_OPTIONS)]
+    pub visitors: Option<u32>,
     /// Let viewers change materials, lights and cameras, and drop in other files; the scene file is not modified
     #[arg(long, help_heading = help::COMMON_OPTIONS)]
     pub edit: bool,

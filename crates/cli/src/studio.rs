@@ -11,7 +11,7 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// The camera and the surroundings of a model.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct StudioArguments {
     /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8; a flat
     /// model from up to 40 degrees above]
@@ -66,11 +66,7 @@ impl StudioArguments {
             }
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
-        if self.env.as_deref() == Some(Path::new("none")) {
-            scene.environment_unspecified = false;
-        } else if let Some(picture) = &self.env {
-            bilux::presets::surround(scene, picture, options).context("--env")?;
-        }
+        surround(self.env.as_deref(), scene, options)?;
         if let Some(picture) = self.picture_behind() {
             bilux::presets::set_background(scene, picture, options).context("--background")?;
         }
@@ -78,6 +74,11 @@ impl StudioArguments {
             change_of(change).and_then(|change| Ok(change.make(scene)?)).map_err(usage::wrong)?;
         }
         Ok(())
+    }
+
+    /// The same options with another environment, if there is one.
+    pub fn with_env(&self, env: Option<PathBuf>) -> StudioArguments {
+        StudioArguments { env: env.or(self.env.clone()), ..self.clone() }
     }
 
     /// The background if it is a picture instead of a colour.
@@ -118,6 +119,16 @@ impl StudioArguments {
     pub fn background(&self) -> Option<String> {
         self.background.clone().filter(|_| self.picture_behind().is_none())
     }
+}
+
+/// Lights a scene with what `--env` says.
+pub fn surround(env: Option<&Path>, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
+    match env {
+        None => {}
+        Some(env) if env == Path::new("none") => scene.environment_unspecified = false,
+        Some(picture) => bilux::presets::surround(scene, picture, options).context("--env")?,
+    }
+    Ok(())
 }
 
 fn extension(path: &Path) -> &str {

@@ -91,14 +91,14 @@ impl Layer {
 
 impl BatchMeans {
     /// True when a batch ends with this many samples per pixel: after each of the first four, and then twice an octave.
-    pub(crate) fn ends_at(samples: u32) -> bool {
+    pub fn ends_at(samples: u32) -> bool {
         samples <= 4
             || samples.is_power_of_two()
             || samples.is_multiple_of(3) && (samples / 3).is_power_of_two()
     }
 
     /// Closes a batch: the film now has this many samples per pixel.
-    pub(crate) fn close(&mut self, film: &Film, samples: u32) {
+    pub fn close(&mut self, film: &Film, samples: u32) {
         if samples <= self.samples {
             return;
         }

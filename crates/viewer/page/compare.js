@@ -24,6 +24,7 @@ export class Compare {
     connection.addEventListener("catalogue", ({ detail }) => this.#build(detail));
     connection.addEventListener("state", ({ detail }) => this.#show(detail));
     connection.addEventListener("frame", ({ detail }) => this.#take("own", detail));
+    connection.addEventListener("progress", ({ detail }) => this.#work(detail));
     connection.addEventListener("other", ({ detail }) => this.#takeOther(detail));
     picture.addEventListener("arranged", () => this.#arrange());
     divider.addEventListener("pointerdown", (event) => this.#grab(event));
@@ -37,11 +38,13 @@ export class Compare {
     const choices = options.map(([value, words]) => element("option", { value }, words));
     this.what = element("select", { id: "compare-with", onchange: () => this.#choose(this.what.value) }, ...choices);
     this.place = element("div");
+    this.working = element("p", { id: "compare-working", class: "hint", role: "status", hidden: true });
     this.results = element("div", { hidden: true });
     section.replaceChildren(
       element("h2", { id: "compare-title" }, "Compare"),
       element("div", { class: "row" }, element("label", { for: "compare-with" }, "With"), this.what),
       this.place,
+      this.working,
       this.results,
     );
     this.#buildResults();
@@ -64,7 +67,22 @@ export class Compare {
     );
   }
 
+  // What is being done for the comparison, until both pictures are there.
+  #work({ level, other, waits, samples }) {
+    if (!this.working) return;
+    const isThere = !canvas.hidden;
+    this.working.hidden = !this.#comparison || isThere;
+    if (this.working.hidden) return;
+    const words = waits ? "Waiting for the turns of other visitors …"
+      : level !== "full" || !samples ? "Rendering the picture on the left first …"
+      : other?.samples ? `Rendering the picture on the right: ${other.samples} of ${other.total} samples …`
+      : "Preparing the picture on the right …";
+    if (this.working.textContent !== words) this.working.textContent = words;
+  }
+
   #choose(key) {
+    this.working.textContent = "Working …";
+    this.working.hidden = key === "";
     this.place.replaceChildren();
     this.made = null;
     if (key === "") return this.connection.send("compare", { with: "nothing" });
@@ -102,6 +120,7 @@ export class Compare {
     this.results.hidden = !it;
     this.differences.checked = Boolean(it?.differences);
     if (!it && was) this.#end();
+    if (!it) this.working.hidden = true;
     this.#label();
   }
 
@@ -164,6 +183,7 @@ export class Compare {
     const fits = this.#comparison && own && other && JSON.stringify(own.eye) === JSON.stringify(other.eye);
     canvas.hidden = divider.hidden = !fits;
     byId("side-own").hidden = byId("side-other").hidden = !fits;
+    if (fits) this.working.hidden = true;
     if (!fits) return;
     const { x, y, width, height } = this.picture.place;
     for (const [name, value] of Object.entries({ left: x, top: y, width, height })) canvas.style[name] = `${value}px`;

@@ -1,15 +1,25 @@
 // The connection with the render: frames and answers come in, requests go out. When it is lost, it is tried again.
 
 const WAITS = [500, 1000, 2000, 4000];
+// How long to wait where there is no place.
+const FULL = 5000;
 
 export class Connection extends EventTarget {
   #socket = null;
   #lost = 0;
   #size = null;
+  // By this the viewer knows this visitor again when the connection was lost.
+  #visitor = null;
+  #full = false;
 
   constructor() {
     super();
     this.#open();
+  }
+
+  // The address of something that each visitor has for themselves.
+  ours(path) {
+    return this.#visitor ? `${path}?visitor=${this.#visitor}` : path;
   }
 
   // Sends a request: `what` to do, and with what.
@@ -21,27 +31,33 @@ export class Connection extends EventTarget {
   }
 
   #open() {
-    const address = new URL("socket", document.baseURI);
+    const address = new URL(this.ours("socket"), document.baseURI);
     address.protocol = address.protocol.replace("http", "ws");
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
-    socket.onopen = () => {
-      this.#lost = 0;
-      this.#say("connected");
-      if (this.#size) this.send("size", this.#size);
-    };
+    socket.onopen = () => (this.#full = false);
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.#take(data) : this.#takeFrame(data));
     socket.onclose = () => {
       this.#socket = null;
-      this.#say("lost");
-      setTimeout(() => this.#open(), WAITS[Math.min(this.#lost++, WAITS.length - 1)]);
+      if (!this.#full) this.#say("lost");
+      setTimeout(() => this.#open(), this.#full ? FULL : WAITS[Math.min(this.#lost++, WAITS.length - 1)]);
     };
     this.#socket = socket;
   }
 
   #take(text) {
     const message = JSON.parse(text);
+    if (message.say === "full") this.#full = true;
+    if (message.say === "visitor") this.#enter(message.key);
     this.#say(message.say, message);
+  }
+
+  // There is a place for this visitor.
+  #enter(key) {
+    this.#visitor = key;
+    this.#lost = 0;
+    this.#say("connected");
+    if (this.#size) this.send("size", this.#size);
   }
 
   // The length of the header, the header, the picture.

@@ -7,11 +7,11 @@ import { Controls } from "./controls.js";
 import { Drop } from "./drop.js";
 import { Edits } from "./edits.js";
 import { byId, large } from "./element.js";
+import { Model } from "./model.js";
 import { Navigation } from "./navigation.js";
 import { Pick } from "./pick.js";
 import { PictureView } from "./picture.js";
 import { Status } from "./status.js";
-import { Time } from "./time.js";
 
 const connection = new Connection();
 const picture = new PictureView(connection);
@@ -19,11 +19,15 @@ const pick = new Pick(connection, picture);
 const status = new Status(connection);
 new Controls(connection, picture);
 new Edits(connection);
-new Time(connection);
+new Model(connection);
 new Compare(connection, picture);
 new Accelerators(connection);
 new Drop(connection, (problem) => status.tell(problem));
 new Navigation(connection, picture, { pick: (at) => pick.at(at), clear: () => pick.clear() });
+
+for (const [id, path] of [["save-png", "picture.png"], ["save-exr", "picture.exr"], ["save-overlay", "overlay.toml"]]) {
+  connection.addEventListener("visitor", () => (byId(id).href = connection.ours(path)));
+}
 
 connection.addEventListener("state", ({ detail: state }) => {
   document.title = `${state.title} – Bilux`;

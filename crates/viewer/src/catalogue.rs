@@ -14,10 +14,10 @@ pub(crate) const VISITS: &str = "visits";
 
 /// The settings that the page offers, in groups.
 const GROUPS: &[(&str, &[&str])] = &[
-    ("Light", &["integrator", "max_depth", "spp", "seed"]),
     ("Camera and studio", &["camera", "ground", "background"]),
     ("Time", &["time", "shutter"]),
     ("Display", &["exposure", "auto_exposure", "tonemap", "denoise"]),
+    ("Light", &["integrator", "max_depth", "spp", "seed"]),
     ("Speed", &["accel"]),
 ];
 
@@ -117,7 +117,8 @@ mod tests {
         assert_eq!(offered, GROUPS.iter().map(|(_, keys)| keys.len()).sum::<usize>());
         assert!(is_offered("exposure") && is_offered("roulette_depth"));
         assert!(!is_offered("threads") && !is_offered("size") && !is_offered("nonsense"));
-        let integrator = &groups[0]["settings"][0];
+        let light = groups.iter().find(|group| group["name"] == "Light").unwrap();
+        let integrator = &light["settings"][0];
         assert_eq!(integrator["kind"], "choice");
         assert_eq!(integrator["choices"].as_array().unwrap().len(), INTEGRATORS.len());
     }

@@ -1,10 +1,12 @@
 //! The camera that those who watch move: around a point, across, nearer, and through the scene.
 
 use bilux::math::transcendental::{acos, sin_cos_f64};
+use bilux::math::{Aabb, Vec2};
 use bilux::math::{DVec3, Vec3};
-use bilux::scene::cameras::CAMERAS;
-use bilux::scene::{CameraSample, Reader, Tracer};
-use bilux::{Job, math::Vec2};
+use bilux::presets::Studio;
+use bilux::scene::cameras::{self, CAMERAS};
+use bilux::scene::{CameraSample, Parameters, Reader, SceneBuilder, Tracer};
+use bilux::{Job, Settings};
 
 /// The least angle in degrees between the line of sight and the up direction.
 const STEEPEST: f64 = 2.0;
@@ -30,31 +32,47 @@ pub(crate) struct Eye {
 }
 
 impl Eye {
-    /// The eye of a job's camera. Many files say only in which direction a camera looks: what it looks at is next to the
-    /// middle of the scene.
-    pub(crate) fn of(job: &Job) -> Option<Eye> {
-        let (scene, wanted) = (job.completed_scene(), &job.settings().camera);
-        let by_name = scene.cameras.iter().find(|camera| camera.spec.name == *wanted);
-        let spec = &by_name.or_else(|| scene.cameras.get(wanted.parse::<usize>().ok()?))?.spec;
-        let row = CAMERAS.iter().find(|row| row.entry.name == spec.kind)?;
-        let reader = Reader::new(spec, &row.entry).ok()?;
-        let vector = |key: &str| reader.vector(key).as_dvec3();
-        let (position, target) = (vector("position"), vector("look_at"));
-        let ahead = (target - position).try_normalize()?;
-        let bounds = job.scene().bounds();
+    /// Where a scene has its camera, with these settings, in a picture of their shape; a job knows what lights the scene.
+    /// Many files say only in which direction a camera looks: what it looks at is next to the middle of the scene.
+    pub(crate) fn at_home(job: &Job, scene: &SceneBuilder, asked: &Parameters) -> Option<Eye> {
+        let settings = Settings::of(scene, asked).ok()?;
+        let aspect = settings.width as f32 / settings.height as f32;
+        let studio = Studio { aspect: Some(aspect), lit: job.settings().studio.lit, ..settings.studio };
+        let mut completed = bilux::presets::completed(scene, &studio);
+        settings.view.place(&mut completed, &settings.camera);
+        let by_name = completed.cameras.iter().find(|camera| camera.spec.name == settings.camera);
+        let camera = by_name.or_else(|| completed.cameras.get(settings.camera.parse::<usize>().ok()?))?;
+        let row = CAMERAS.iter().find(|row| row.entry.name == camera.spec.kind)?;
+        let reader = Reader::new(&camera.spec, &row.entry).ok()?;
+        // Where it is at this time, if it moves.
+        let built = cameras::build(camera, aspect).ok()?;
+        let middle_of_film = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: settings.time };
+        let position = Vec3::from_array(built.ray(&middle_of_film).origin).as_dvec3();
+        let ahead = built.forward(settings.time).as_dvec3().try_normalize()?;
+        let bounds = own_bounds(&completed, scene.objects.len(), settings.time);
         let middle = ((bounds.min + bounds.max) * 0.5).as_dvec3();
         let radius = f64::from(bounds.radius()).max(f64::MIN_POSITIVE);
         let depth = (middle - position).dot(ahead);
-        let has_focus = spec.number("aperture").unwrap_or(0.0) > 0.0;
+        let has_focus = camera.spec.number("aperture").unwrap_or(0.0) > 0.0;
+        let target = reader.vector("look_at").as_dvec3();
         let far = if depth > 0.0 && !has_focus { depth } else { target.distance(position) };
         Some(Eye {
             position,
             pivot: position + ahead * far,
-            zoom: f64::from(job.settings().view.zoom),
-            up: nearest_axis(vector("up")),
+            zoom: f64::from(settings.view.zoom),
+            up: nearest_axis(reader.vector("up").as_dvec3()),
             is_parallel: row.entry.parameters.iter().all(|p| p.name != "fov"),
             radius,
         })
+    }
+
+    /// Stands back as far as the scene's own camera does where the shape of the window changes: from where it was at home
+    /// before to where it is now.
+    pub(crate) fn keep_in_view(&mut self, before: &Eye, home: &Eye) {
+        let factor = home.position.distance(home.pivot) / before.position.distance(before.pivot);
+        if factor.is_finite() && factor > 0.0 && !self.is_parallel {
+            self.position = self.pivot + (self.position - self.pivot) * factor;
+        }
     }
 
     /// Moves around the pivot, by degrees to the right and up.
@@ -137,6 +155,12 @@ impl Eye {
     }
 }
 
+/// The bounding box of the first objects of a scene: those that come after them are the studio's, whose ground reaches far.
+pub(crate) fn own_bounds(completed: &SceneBuilder, count: usize, time: f32) -> Aabb {
+    let moved = |object: &bilux::scene::Object| object.motion.at(time).bounds(&object.mesh.bounds());
+    completed.objects.iter().take(count).map(moved).fold(Aabb::EMPTY, Aabb::union)
+}
+
 /// The point of a scene at a place of the picture, as fractions of its width and height; `None` where there is nothing.
 pub(crate) fn point_at(job: &Job, at: [f32; 2]) -> Option<Vec3> {
     let time = job.settings().time;
@@ -181,6 +205,31 @@ mod tests {
         assert!(moved.position.y > 5.9, "it is nearly above");
         moved.orbit(-360.0 * 2.0, -400.0);
         assert!(moved.position.y < -3.9, "it is nearly below");
+    }
+
+    /// Degrees to the right add to the azimuth, degrees up to the elevation, whichever of the two come together.
+    #[test]
+    fn an_orbit_about_both_axes_adds_up_azimuth_and_elevation() {
+        let at = |azimuth: f64, elevation: f64| {
+            let (a, e) = (azimuth.to_radians(), elevation.to_radians());
+            DVec3::Y + 5.0 * DVec3::new(e.cos() * a.sin(), e.sin(), e.cos() * a.cos())
+        };
+        let (mut azimuth, mut elevation, mut moved) = (0.0, 0.0, eye());
+        for [right, up] in [[30.0, 20.0], [-75.0, 25.0], [140.0, -80.0], [10.0, 0.0], [0.0, 12.0]] {
+            (azimuth, elevation) = (azimuth + right, elevation + up);
+            moved.orbit(right, up);
+            assert!(
+                moved.position.distance(at(azimuth, elevation)) < 1e-5,
+                "{moved:?} {azimuth} {elevation}"
+            );
+            assert_eq!(moved.pivot, DVec3::Y);
+        }
+        // Looking around is the same around the eye itself: to the right it turns the other way.
+        let mut looks = eye();
+        looks.look(30.0, 20.0);
+        let ahead = (looks.pivot - looks.position).normalize();
+        let (a, e) = (30f64.to_radians(), 20f64.to_radians());
+        assert!(ahead.distance(DVec3::new(e.cos() * a.sin(), e.sin(), -e.cos() * a.cos())) < 1e-5, "{ahead}");
     }
 
     #[test]

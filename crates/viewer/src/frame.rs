@@ -50,10 +50,10 @@ pub(crate) struct Facts {
 }
 
 impl Facts {
-    /// The same facts of a picture with so many samples and rays, which took this time.
-    pub(crate) fn of(mut self, picture: &Picture, samples: u32, rays: u64, time: Duration) -> Facts {
+    /// The same facts of a picture of this size with so many samples and rays, which took this time.
+    pub(crate) fn of(mut self, [width, height]: [u32; 2], samples: u32, rays: u64, time: Duration) -> Facts {
         let seconds = time.as_secs_f64();
-        let pixels = picture.width() as f64 * picture.height() as f64;
+        let pixels = f64::from(width) * f64::from(height);
         (self.samples, self.seconds) = (samples, seconds);
         self.rate = pixels * f64::from(samples) / seconds.max(1e-6);
         self.rays = rays as f64 / seconds.max(1e-6);

@@ -1,7 +1,6 @@
 //! What those who watch ask for, until the render takes it. However much they ask for, it takes a bounded amount of
 //! memory: moves add up, a later value of a setting replaces an earlier one, and questions that are too many are refused.
 
-use crate::dropped::Dropped;
 use crate::message::{Move, Other, Question, Request};
 use bilux::scene::Parameters;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,7 +9,7 @@ use std::time::Duration;
 
 /// The maximum number of questions that wait for an answer.
 pub(crate) const QUESTIONS: usize = 64;
-/// The maximum number of different moves or edits that wait.
+/// The maximum number of different moves or settings that wait.
 const MOVES: usize = 64;
 
 /// What waits to be taken.
@@ -28,22 +27,20 @@ pub(crate) struct Waiting {
     pub(crate) compared: Option<Option<Other>>,
     /// Whether differences are shown.
     pub(crate) differences: Option<bool>,
-    /// The variant of materials.
-    pub(crate) variant: Option<String>,
-    /// A file that was dropped in.
-    pub(crate) dropped: Option<Dropped>,
-    /// Edits, in order.
-    pub(crate) edits: Vec<Request>,
     /// Questions, in order.
     pub(crate) questions: Vec<Question>,
-    /// The scene's files have changed.
-    pub(crate) reload: bool,
+    /// There is another version of the scene.
+    pub(crate) scene_changed: bool,
+    /// The newest answer to what was asked of the scene: nothing, or why it cannot be done.
+    pub(crate) answered: Option<Option<String>>,
 }
 
 impl Waiting {
     /// True if the render is to stop what it does: the picture changes, or somebody waits for a pixel.
     fn interrupts(&self) -> bool {
-        self.changes_picture() || self.questions.iter().any(|it| !matches!(it, Question::Save { .. }))
+        self.changes_picture()
+            || self.answered.is_some()
+            || self.questions.iter().any(|it| !matches!(it, Question::Save { .. }))
     }
 
     /// True if it changes the picture.
@@ -52,12 +49,9 @@ impl Waiting {
             || self.size.is_some()
             || !self.settings.0.is_empty()
             || self.shown.is_some()
-            || !self.edits.is_empty()
-            || self.reload
+            || self.scene_changed
             || self.compared.is_some()
             || self.differences.is_some()
-            || self.variant.is_some()
-            || self.dropped.is_some()
     }
 }
 
@@ -96,22 +90,17 @@ impl Inbox {
             Request::Show(what) => waiting.shown = Some(what),
             Request::Compare(other) => waiting.compared = Some(other),
             Request::Differences(are_shown) => waiting.differences = Some(are_shown),
-            Request::Variant(name) => waiting.variant = Some(name),
-            // Whoever has dropped an earlier one is told that it was not opened.
-            Request::Open(dropped) => waiting.dropped = Some(dropped),
-            edit @ (Request::Edit { .. } | Request::Undo | Request::Redo) => {
-                if waiting.edits.len() >= MOVES {
-                    return full();
-                }
-                waiting.edits.push(edit);
-            }
             Request::Ask(question) => {
                 if waiting.questions.len() >= QUESTIONS {
                     return full();
                 }
                 waiting.questions.push(question);
             }
-            Request::Reload => waiting.reload = true,
+            Request::SceneChanged => waiting.scene_changed = true,
+            // A problem must be seen, even if something else that was asked for is done.
+            Request::Answered(problem) => {
+                waiting.answered = Some(problem.or(waiting.answered.take().flatten()));
+            }
         }
         if waiting.interrupts() {
             self.interrupts.store(true, Ordering::Relaxed);
@@ -185,6 +174,44 @@ mod tests {
         assert_eq!(waiting.settings.0.len(), 1);
         assert_eq!(waiting.size, Some([9_999, 7]));
         assert!(!inbox.interrupts());
+    }
+
+    /// The picture changes only by what changes it, and whoever waits for a pixel waits for no sample.
+    #[test]
+    fn each_request_interrupts_the_render_if_somebody_waits_for_it() {
+        let answers = || tokio::sync::mpsc::channel(1).0;
+        let all: Vec<(&str, Request, [bool; 2])> = vec![
+            ("move", Request::Move(Move::Home), [true, true]),
+            ("size", Request::Size([1, 1]), [true, true]),
+            ("set", Request::Set("seed".to_owned(), Value::Integer(1)), [true, true]),
+            ("show", Request::Show("picture".to_owned()), [true, true]),
+            ("compare", Request::Compare(None), [true, true]),
+            ("differences", Request::Differences(true), [true, true]),
+            ("scene", Request::SceneChanged, [true, true]),
+            ("answer", Request::Answered(None), [false, true]),
+            (
+                "pick",
+                Request::Ask(Question::Pick { at: [0.0; 2], paths: 1, answers: answers() }),
+                [false, true],
+            ),
+            ("measure", Request::Ask(Question::Measure { answers: answers() }), [false, true]),
+            (
+                "save",
+                Request::Ask(Question::Save { format: "png", to: tokio::sync::oneshot::channel().0 }),
+                [false, false],
+            ),
+        ];
+        for (name, request, [changes, interrupts]) in all {
+            let inbox = Inbox::default();
+            inbox.post(request).unwrap();
+            assert_eq!(inbox.interrupts(), interrupts, "{name}");
+            assert_eq!(inbox.take(None).changes_picture(), changes, "{name}");
+        }
+        let inbox = Inbox::default();
+        for problem in [Some("first".to_owned()), None] {
+            inbox.post(Request::Answered(problem)).unwrap();
+        }
+        assert_eq!(inbox.take(None).answered, Some(Some("first".to_owned())), "a problem is not lost");
     }
 
     #[test]

@@ -21,11 +21,13 @@ pub(crate) type Answers = mpsc::Sender<String>;
 pub(crate) enum Message {
     /// The browser has shown a frame.
     Seen(u64),
-    /// Something is asked for.
+    /// Something is asked for that concerns one's own view.
     Request(Request),
+    /// Something is asked for that concerns the scene, which all share.
+    Scene(SceneRequest),
 }
 
-/// Something that is asked for.
+/// Something that is asked for, or told, of a view.
 pub(crate) enum Request {
     /// Move the camera.
     Move(Move),
@@ -35,6 +37,20 @@ pub(crate) enum Request {
     Set(String, Value),
     /// Show the picture or one of its layers.
     Show(String),
+    /// Compare the picture with another one; `None` ends that.
+    Compare(Option<Other>),
+    /// While two pictures are compared, show where they differ in the place of the other one.
+    Differences(bool),
+    /// Answer a question.
+    Ask(Question),
+    /// There is another version of the scene.
+    SceneChanged,
+    /// What was asked of the scene is done, or cannot be done for this reason.
+    Answered(Option<String>),
+}
+
+/// Something that is asked of the scene.
+pub(crate) enum SceneRequest {
     /// Change a parameter of a material, a light or a camera.
     Edit {
         /// What is changed.
@@ -50,18 +66,36 @@ pub(crate) enum Request {
     Undo,
     /// Make the last edit that was undone again.
     Redo,
-    /// Compare the picture with another one; `None` ends that.
-    Compare(Option<Other>),
-    /// While two pictures are compared, show where they differ in the place of the other one.
-    Differences(bool),
-    /// Open the scene with this variant of its materials.
+    /// Open the scene with this variant of its materials; an empty name is the one at the start.
     Variant(String),
+    /// Open the scene with this animation; an empty name stands for those at the start.
+    Animation(String),
+    /// Light the scene with this environment; an empty name is the one at the start.
+    Environment(String),
+    /// Show this time, in seconds.
+    Time(Value),
     /// Open a file that was dropped in.
     Open(Dropped),
-    /// Answer a question.
-    Ask(Question),
     /// Open the scene again.
     Reload,
+}
+
+impl SceneRequest {
+    /// True if the next request makes this one needless, as long as neither has been done.
+    pub(crate) fn gives_way_to(&self, next: &SceneRequest) -> bool {
+        use SceneRequest::{Animation, Edit, Environment, Reload, Time, Variant};
+        match (self, next) {
+            (Edit { part, number, key, .. }, Edit { part: p, number: n, key: k, .. }) => {
+                (part, number, key) == (p, n, k)
+            }
+            (Variant(_), Variant(_))
+            | (Animation(_), Animation(_))
+            | (Environment(_), Environment(_))
+            | (Time(_), Time(_))
+            | (Reload, Reload) => true,
+            _ => false,
+        }
+    }
 }
 
 /// What the picture is compared with.
@@ -150,6 +184,7 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
     let what = json["do"].as_str().ok_or("a message has no 'do', which names what is asked for")?;
     let moved = |it: Move| Ok(Message::Request(Request::Move(it)));
     let asked = |it: Request| Ok(Message::Request(it));
+    let of_scene = |it: SceneRequest| Ok(Message::Scene(it));
     match what {
         "seen" => Ok(Message::Seen(json["frame"].as_u64().ok_or("'seen' has no number of a frame")?)),
         "orbit" => moved(Move::Orbit(numbers(&json, "by", 3600.0)?)),
@@ -163,9 +198,12 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
         "focus" => moved(Move::Focus(place(&json)?.map(f64::from))),
         "home" => moved(Move::Home),
         "size" => asked(Request::Size(size(&json)?)),
-        "set" => asked(Request::Set(text_of(&json, "key")?, value(&json["value"])?)),
+        "set" => match (text_of(&json, "key")?, value(&json["value"])?) {
+            (key, value) if key == "time" => of_scene(SceneRequest::Time(value)),
+            (key, value) => asked(Request::Set(key, value)),
+        },
         "show" => asked(Request::Show(text_of(&json, "what")?)),
-        "edit" => asked(Request::Edit {
+        "edit" => of_scene(SceneRequest::Edit {
             part: json["part"].as_str().and_then(Part::named).ok_or("'edit' needs a part of the scene")?,
             number: json["number"].as_u64().ok_or("'edit' needs the number of a part")? as usize,
             key: text_of(&json, "key")?,
@@ -175,10 +213,12 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
         "differences" => {
             asked(Request::Differences(json["show"].as_bool().ok_or("'differences' needs 'show'")?))
         }
-        "variant" => asked(Request::Variant(text_of(&json, "name")?)),
+        "variant" => of_scene(SceneRequest::Variant(choice(&json)?)),
+        "animation" => of_scene(SceneRequest::Animation(choice(&json)?)),
+        "environment" => of_scene(SceneRequest::Environment(choice(&json)?)),
         "measure" => asked(Request::Ask(Question::Measure { answers: answers.clone() })),
-        "undo" => asked(Request::Undo),
-        "redo" => asked(Request::Redo),
+        "undo" => of_scene(SceneRequest::Undo),
+        "redo" => of_scene(SceneRequest::Redo),
         "pick" => {
             let paths = json["paths"].as_u64().unwrap_or(0).min(64) as u32;
             asked(Request::Ask(Question::Pick { at: place(&json)?, paths, answers: answers.clone() }))
@@ -230,6 +270,12 @@ fn text_of(json: &Json, key: &str) -> Result<String, String> {
     text.map(str::to_owned).ok_or_else(|| format!("'{key}' needs a text of 1 to 256 bytes"))
 }
 
+/// What is chosen by its name; an empty name stands for what was chosen at the start.
+fn choice(json: &Json) -> Result<String, String> {
+    let name = json["name"].as_str().filter(|name| name.len() <= 256);
+    name.map(str::to_owned).ok_or_else(|| "'name' needs a text of up to 256 bytes".to_owned())
+}
+
 /// A value of a setting or of a parameter.
 fn value(json: &Json) -> Result<Value, String> {
     let number = |json: &Json| match (json.as_i64(), json.as_f64()) {
@@ -275,6 +321,27 @@ mod tests {
     }
 
     #[test]
+    fn only_moves_of_a_kind_add_up_in_all_their_parts() {
+        let all = [
+            (Move::Orbit([1.0, 2.0]), Move::Orbit([2.0, 4.0])),
+            (Move::Look([3.0, 4.0]), Move::Look([6.0, 8.0])),
+            (Move::Pan([5.0, 6.0]), Move::Pan([10.0, 12.0])),
+            (Move::Fly([7.0, 8.0, 9.0]), Move::Fly([14.0, 16.0, 18.0])),
+            (Move::Approach(3.0), Move::Approach(9.0)),
+            (Move::Home, Move::Home),
+        ];
+        for (i, (first, sum)) in all.iter().enumerate() {
+            for (j, (second, _)) in all.iter().enumerate() {
+                let mut moved = first.clone();
+                assert_eq!(moved.add(second), i == j, "{first:?} {second:?}");
+                assert_eq!(moved, if i == j { sum.clone() } else { first.clone() });
+            }
+        }
+        // Another point is another place to look at.
+        assert!(!Move::Focus([0.1, 0.2]).add(&Move::Focus([0.1, 0.2])));
+    }
+
+    #[test]
     fn wrong_messages_say_what_is_wrong() {
         for (text, part) in [
             ("", "not JSON"),
@@ -293,6 +360,8 @@ mod tests {
             (r#"{"do":"compare","key":"a","value":1}"#, "'compare' is with"),
             (r#"{"do":"differences"}"#, "'show'"),
             (r#"{"do":"variant"}"#, "'name'"),
+            (r#"{"do":"animation","name":7}"#, "'name'"),
+            (r#"{"do":"environment"}"#, "'name'"),
         ] {
             let error = parsed(text).err().unwrap_or_default();
             assert!(error.contains(part), "{text}: {error}");
@@ -307,7 +376,7 @@ mod tests {
 
         #[test]
         fn any_fields_are_read_or_refused(
-            what in "(orbit|look|pan|fly|approach|focus|size|set|show|edit|pick|seen|home|compare|differences|variant)",
+            what in "(orbit|look|pan|fly|approach|focus|size|set|show|edit|pick|seen|home|compare|differences|variant|animation|environment)",
             key in "(by|at|to|key|what|value|number|frame|paths|with|show|name)",
             value in "(-?[0-9]{1,30}(\\.[0-9]{1,5})?(e-?[0-9]{1,3})?|\\[[0-9,.-]{0,20}\\]|\"[a-z]{0,9}\"|true|null|\\{\\})",
         ) {

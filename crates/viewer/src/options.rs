@@ -14,9 +14,16 @@ pub struct Opening {
     pub file: Option<PathBuf>,
     /// The variant of its materials, by name, if another one than at the start.
     pub variant: Option<String>,
+    /// The animation that it plays, by name or by number, if another one than at the start.
+    pub animation: Option<String>,
+    /// What lights it from all around, one of [`Options::environments`], if another one than at the start.
+    pub environment: Option<String>,
     /// The time in seconds at which it is posed, if another one than at the start.
     pub time: Option<f32>,
 }
+
+/// The choice that stands for what was chosen at the start.
+pub(crate) const AS_OPENED: &str = "";
 
 /// What a viewer shows, to whom.
 pub struct Options {
@@ -25,6 +32,14 @@ pub struct Options {
     pub address: SocketAddr,
     /// What the page is titled: the name of the scene's file.
     pub title: String,
+    /// Whether all see the same view, instead of each their own.
+    pub shared: bool,
+    /// The maximum number of browsers that watch at the same time.
+    pub visitors: usize,
+    /// Whether no library may be loaded any more.
+    pub sandboxed: bool,
+    /// What may light the scene from all around, by the words of the option `--env`.
+    pub environments: Vec<String>,
     /// Whether those who watch may change materials, lights and cameras, and drop files in.
     pub may_edit: bool,
     /// Whether files that are dropped in may be kept in a temporary folder while they are shown.

@@ -60,19 +60,31 @@ impl Session {
     /// # Errors
     /// As for [`Session::new`]; and if the picture would take more memory.
     pub fn within(scene: SceneBuilder, user: &Parameters, most: u64) -> Result<Session, Error> {
-        let (user, mut built) = (without_limits(user.clone()), Built::default());
+        Session::sharing(scene, user, most, Built::default())
+    }
+
+    /// The same, with what another session has built of the scene ([`Session::built`]): both then hold the same trees.
+    ///
+    /// # Errors
+    /// As for [`Session::within`].
+    pub fn sharing(
+        scene: SceneBuilder,
+        user: &Parameters,
+        most: u64,
+        mut built: Built,
+    ) -> Result<Session, Error> {
+        let user = without_limits(user.clone());
         let job = Job::with_built(&scene, &user, most, &Series::default(), &mut built)?;
         let picture = Progressive::new(job);
         Ok(Session { scene, user, most, layers: Vec::new(), built, picture })
     }
 
-    /// Keeps these layers of the picture ([`Job::with_layers`]) from now on; the variance cannot be kept. The picture
-    /// starts again.
+    /// Keeps these layers of the picture ([`Job::with_layers`]) from now on. The picture starts again.
     ///
     /// # Errors
     /// As for [`Session::new`].
     pub fn with_layers(&mut self, wanted: &[Aov]) -> Result<(), Error> {
-        self.layers = wanted.iter().copied().filter(|aov| *aov != Aov::Variance).collect();
+        self.layers = wanted.to_vec();
         self.restart(self.scene.clone(), self.user.clone())
     }
 
@@ -113,6 +125,20 @@ impl Session {
         }
         (self.scene, self.user) = (scene, user);
         Ok(false)
+    }
+
+    /// Shows another scene with other settings, and with what another session has built of it. The picture starts again.
+    ///
+    /// # Errors
+    /// As for [`Session::within`]: then the session stays as it was.
+    pub fn replace(&mut self, scene: SceneBuilder, user: &Parameters, built: Built) -> Result<(), Error> {
+        let before = std::mem::replace(&mut self.built, built);
+        let user = without_limits(user.clone());
+        let replaced = self.restart(scene, user);
+        if replaced.is_err() {
+            self.built = before;
+        }
+        replaced
     }
 
     /// Starts the picture of another scene or of other settings.
@@ -164,6 +190,11 @@ impl Session {
     /// The job that takes the samples: its settings, its warnings, and how its pictures are shown.
     pub fn job(&self) -> &Job {
         &self.picture.job
+    }
+
+    /// What was built of the scene, for sessions that share it ([`Session::sharing`]).
+    pub fn built(&self) -> &Built {
+        &self.built
     }
 
     /// The trees that were built so far.

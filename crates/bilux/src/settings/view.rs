@@ -50,7 +50,7 @@ impl View {
     }
 
     /// Moves the camera of this name or number, which then stands still. Does nothing if there is no such camera.
-    pub(crate) fn place(&self, scene: &mut SceneBuilder, camera: &str) {
+    pub fn place(&self, scene: &mut SceneBuilder, camera: &str) {
         if !self.is_moved() {
             return;
         }

@@ -6,6 +6,7 @@ use bilux::math::transcendental::{atan, tan};
 use bilux::prelude::*;
 use bilux::scene::TreeWork;
 use bilux::transport::Progress;
+use bilux::transport::aovs::Aov;
 use bilux::{Budget, Edit, Session};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -258,4 +259,89 @@ fn the_interval_of_a_pixel_is_around_its_light() {
     assert!(session.job().estimate([24, 0], 16).is_err());
     session.apply(Edit::Set("integrator".to_owned(), "vcm".into())).unwrap();
     assert!(session.job().estimate([12, 6], 16).unwrap().is_none());
+}
+
+/// The variance guides the denoiser: it is estimated from the same batches of samples, however the steps divide them.
+#[test]
+fn a_denoised_picture_is_that_of_a_fresh_job_whatever_the_steps() {
+    for (integrator, spp) in [("path", 12), ("bdpt", 7)] {
+        let user = settings(&[
+            ("integrator", integrator.into()),
+            ("spp", Value::Integer(spp)),
+            ("denoise", "builtin".into()),
+        ]);
+        let mut job = Job::new(&cornell(), &user).unwrap();
+        let denoiser = job.denoiser(true).unwrap().unwrap();
+        let expected = bytes(&job.render(&Quiet).unwrap().denoised(&denoiser).unwrap());
+        for steps in [&[1, 1, 1, 2, 100][..], &[5, 100], &[100]] {
+            let mut session = Session::new(cornell(), &user).unwrap();
+            session.with_layers(&[Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance]).unwrap();
+            for &samples in steps {
+                session.step(Budget::Samples(samples), &Quiet).unwrap();
+            }
+            let cleaned = session.outcome().unwrap().denoised(&denoiser).unwrap();
+            assert!(bytes(&cleaned) == expected, "{integrator} in {steps:?}");
+        }
+    }
+}
+
+#[test]
+fn layers_follow_every_edit() {
+    let user = settings(&[("integrator", "path".into()), ("spp", Value::Integer(2))]);
+    let layers = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids];
+    let mut session = Session::new(cornell(), &user).unwrap();
+    session.with_layers(&layers).unwrap();
+    let blue = Spec::new("", "diffuse").with("reflectance", Rgb::new(0.0, 0.0, 0.9));
+    let edits = [
+        Edit::Material(0, blue),
+        Edit::Place(0, at(0.0, 0.1, 0.0)),
+        Edit::Remove(1),
+        Edit::Set("eye".to_owned(), "0.1,0.8,3".into()),
+        Edit::Set("size".to_owned(), "20x24".into()),
+    ];
+    for edit in edits {
+        let what = format!("{edit:?}");
+        let before = session.outcome().and_then(|outcome| outcome.features.clone());
+        session.apply(edit).unwrap();
+        finished(&mut session);
+        let mut job = Job::new(session.scene(), &user_of(&session)).unwrap();
+        job.with_layers(&layers);
+        let expected = job.render(&Quiet).unwrap().features;
+        let now = session.outcome().unwrap().features.clone();
+        assert!(now.is_some() && now == expected && now != before, "{what}");
+    }
+}
+
+/// The settings of a session, as far as the test above changes them.
+fn user_of(session: &Session) -> Parameters {
+    let own = session.job().settings();
+    let mut all = settings(&[("integrator", "path".into()), ("spp", Value::Integer(2))]);
+    all.set("size", format!("{}x{}", own.width, own.height));
+    if let Some(eye) = own.view.eye {
+        all.set("eye", format!("{},{},{}", eye.x, eye.y, eye.z));
+    }
+    all
+}
+
+#[test]
+fn sessions_that_share_what_is_built_build_no_tree_and_show_the_same() {
+    let user = settings(&[("integrator", "path".into())]);
+    let first = Session::new(cornell(), &user).unwrap();
+    let built = first.tree_work();
+    let other = settings(&[("integrator", "path".into()), ("eye", "0.2,0.9,3".into())]);
+    let mut second =
+        Session::sharing(first.scene().clone(), &other, u64::MAX, first.built().clone()).unwrap();
+    assert_eq!(second.tree_work(), built);
+    assert!(finished(&mut second) == fresh(&cornell(), &other));
+    // Another scene, with what was built of it elsewhere.
+    let mut changed = cornell();
+    changed.objects.pop();
+    let third = Session::new(changed.clone(), &user).unwrap();
+    second.replace(third.scene().clone(), &other, third.built().clone()).unwrap();
+    assert_eq!(second.tree_work(), third.tree_work());
+    assert!(finished(&mut second) == fresh(&changed, &other));
+    // What is wrong leaves everything as it was.
+    let wrong = settings(&[("integrator", "psychic".into())]);
+    assert!(second.replace(cornell(), &wrong, first.built().clone()).is_err());
+    assert!(finished(&mut second) == fresh(&changed, &other));
 }

@@ -4,30 +4,44 @@ use super::{DONE, check_choices, load, read_options_with, report_notes, report_w
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
 use crate::interrupt::interrupt;
-use crate::sandbox::SandboxPaths;
+use crate::sandbox::{SandboxPaths, folder_of};
 use crate::serving::Serve;
-use crate::studio::StudioArguments;
-use crate::{output, settings_from, usage};
+use crate::studio::{StudioArguments, surround};
+use crate::{denoising, output, settings_from, usage};
 use anyhow::bail;
 use bilux::formats::ReadOptions;
 use bilux::scene::SceneBuilder;
 use bilux_viewer::{Opening, Options, Server};
 use std::net::SocketAddr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The maximum number of visitors, each of whom has a picture of their own.
+const VISITORS: u32 = 24;
+/// The same if all see the same picture.
+const SHARED_VISITORS: u32 = 64;
+
+/// The maximum number of environments to choose from.
+const ENVIRONMENTS: usize = 200;
 
 pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     let settings = settings_from::serve(&arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
+    denoising::load(0, common);
     confine(&arguments, common)?;
     let read = read_options_with(common, &arguments.choices, arguments.at.unwrap_or(0.0));
     let scene = open(&arguments, &read)?;
     report_warnings(&scene.warnings, common)?;
     report_notes(&scene.notes, common);
+    let visitors = arguments.visitors.unwrap_or(if arguments.shared { SHARED_VISITORS } else { VISITORS });
     let name = arguments.scene.file_name().unwrap_or(arguments.scene.as_os_str());
     let options = Options {
         address: SocketAddr::new(arguments.listen, arguments.port),
         title: name.to_string_lossy().into_owned(),
+        shared: arguments.shared,
+        visitors: visitors as usize,
+        sandboxed: common.sandbox,
+        environments: environments(&arguments),
         may_edit: arguments.edit,
         // The sandbox was entered before there was a folder to allow.
         may_drop: !common.sandbox,
@@ -45,6 +59,21 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
+/// What may light the scene, as `--env` names it: the pictures of light that lie next to it, and no studio.
+fn environments(arguments: &Serve) -> Vec<String> {
+    let is_light = |path: &PathBuf| {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        path.is_file() && ["hdr", "exr", "pfm"].iter().any(|own| extension.eq_ignore_ascii_case(own))
+    };
+    let files = std::fs::read_dir(folder_of(&arguments.scene)).into_iter().flatten().flatten();
+    let mut found: Vec<PathBuf> = files.map(|file| file.path()).filter(is_light).collect();
+    found.extend(arguments.studio.env.clone().filter(|path| path != Path::new("none")));
+    found.sort();
+    found.dedup();
+    found.truncate(ENVIRONMENTS);
+    ["none".to_owned()].into_iter().chain(found.iter().map(|path| path.display().to_string())).collect()
+}
+
 fn open(arguments: &Serve, read: &ReadOptions) -> anyhow::Result<SceneBuilder> {
     if arguments.scene == Path::new("-") {
         bail!("a scene on standard input cannot be watched: name a file");
@@ -60,11 +89,19 @@ fn open_again(arguments: &Serve, read: &ReadOptions, opening: &Opening) -> anyho
     let mut read = read.clone();
     read.time = opening.time.unwrap_or(read.time);
     read.variant = opening.variant.clone().or(read.variant);
-    let Some(file) = &opening.file else { return open(arguments, &read) };
+    read.animation = opening.animation.clone().or(read.animation);
+    let env = opening.environment.as_ref().map(PathBuf::from);
+    let Some(file) = &opening.file else {
+        let mut scene = load(&arguments.scene, &read)?;
+        arguments.studio.with_env(env).set_up(&mut scene, &read)?;
+        return Ok(scene);
+    };
     // The choices are those among what is in the scene that the viewer was started with.
-    read.animation = None;
+    read.animation.clone_from(&opening.animation);
     read.variant = opening.variant.clone();
-    load(file, &read)
+    let mut scene = load(file, &read)?;
+    surround(env.as_deref(), &mut scene, &read)?;
+    Ok(scene)
 }
 
 /// Under `--sandbox`: allows reading the scene, its folder and the files that options name. Nothing is written.

@@ -76,6 +76,21 @@ fn beyond_this_machine_the_address_has_a_secret() {
 }
 
 #[test]
+#[cfg(unix)]
+fn visitors_are_counted_and_may_share_a_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = generated(folder.path());
+    for (wrong, word) in [("0", "1..=1000"), ("many", "invalid")] {
+        let output = bilux(&["serve", &scene, "--visitors", wrong]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(word), "{wrong}: {said}");
+    }
+    let (child, address) = serve(&[&scene, "--shared", "--visitors", "3"]);
+    assert!(address.starts_with("http://127.0.0.1:"), "{address}");
+    assert_eq!(end(child, "-TERM").status.code(), Some(0));
+}
+
+#[test]
 fn what_cannot_be_watched_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = generated(folder.path());

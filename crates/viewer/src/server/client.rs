@@ -3,6 +3,7 @@
 use super::Shared;
 use crate::frame::Frame;
 use crate::message::{Answers, Message, parse};
+use crate::visitors::Connection;
 use axum::extract::ws::{self, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
@@ -24,36 +25,49 @@ const PATIENCE: Duration = Duration::from_secs(20);
 struct Closed;
 
 /// Serves a browser until it leaves.
-pub(super) async fn serve(socket: WebSocket, shared: &Shared) {
+pub(super) async fn serve(socket: WebSocket, shared: &Shared, connection: &Connection) {
+    let view = &connection.view;
     let (sink, stream) = socket.split();
     let (answers, waiting) = mpsc::channel(ANSWERS);
     let (seen, last_seen) = watch::channel(0);
     let mut writer = Writer {
         sink,
-        frames: shared.outlets.frames.subscribe(),
-        other: shared.outlets.other.subscribe(),
-        state: shared.outlets.state.subscribe(),
+        frames: view.outlets.frames.subscribe(),
+        other: view.outlets.other.subscribe(),
+        state: view.outlets.state.subscribe(),
+        progress: view.outlets.progress.subscribe(),
         answers: waiting,
         seen: last_seen,
         under_way: Vec::new(),
     };
     // Somebody watches now.
-    shared.inbox.ring();
+    view.inbox.ring();
+    let visitor = json!({ "say": "visitor", "key": view.key });
     let writes = async {
+        writer.send(visitor.to_string().into()).await?;
         writer.send(shared.catalogue.clone().into()).await?;
         writer.run().await
     };
     // Whichever ends first ends the other.
     tokio::select! {
         _ = writes => {}
-        () = read(stream, shared, &answers, &seen) => {}
+        () = read(stream, shared, connection, &answers, &seen) => {}
     }
+}
+
+/// Says why somebody may not come in.
+pub(super) async fn turn_away(mut socket: WebSocket, message: String) {
+    let full = json!({ "say": "full", "message": message }).to_string();
+    // Whoever has asked may have gone.
+    let _ = tokio::time::timeout(PATIENCE, socket.send(full.into())).await;
+    let _ = tokio::time::timeout(PATIENCE, socket.send(ws::Message::Close(None))).await;
 }
 
 /// Takes what a browser says.
 async fn read(
     mut stream: SplitStream<WebSocket>,
     shared: &Shared,
+    connection: &Connection,
     answers: &Answers,
     seen: &watch::Sender<u64>,
 ) {
@@ -69,7 +83,8 @@ async fn read(
                 seen.send_replace(frame);
                 Ok(())
             }
-            Ok(Message::Request(request)) => shared.inbox.post(request),
+            Ok(Message::Request(request)) => connection.view.inbox.post(request),
+            Ok(Message::Scene(request)) => shared.open.post(request, Some(connection.view.inbox.clone())),
             Err(error) => Err(error),
         };
         if let Err(message) = done {
@@ -85,6 +100,7 @@ struct Writer {
     frames: watch::Receiver<Option<std::sync::Arc<Frame>>>,
     other: watch::Receiver<Option<std::sync::Arc<Frame>>>,
     state: watch::Receiver<std::sync::Arc<str>>,
+    progress: watch::Receiver<std::sync::Arc<str>>,
     answers: mpsc::Receiver<String>,
     seen: watch::Receiver<u64>,
     /// The frames that were sent and not seen.
@@ -96,6 +112,7 @@ impl Writer {
         self.frames.mark_changed();
         self.other.mark_changed();
         self.state.mark_changed();
+        self.progress.mark_changed();
         loop {
             let is_ready = (self.under_way.len() as u64) < UNDER_WAY;
             tokio::select! {
@@ -117,6 +134,11 @@ impl Writer {
                     let frame = self.frames.borrow_and_update().clone();
                     self.send_frame(frame).await?;
                 }
+                changed = self.progress.changed(), if is_ready => {
+                    changed.map_err(|_| Closed)?;
+                    let progress = self.progress.borrow_and_update().to_string();
+                    self.send_text(progress).await?;
+                }
                 changed = self.other.changed(), if is_ready => {
                     changed.map_err(|_| Closed)?;
                     let frame = self.other.borrow_and_update().clone();
@@ -128,7 +150,12 @@ impl Writer {
 
     async fn send_state(&mut self) -> Result<(), Closed> {
         let state = self.state.borrow_and_update().to_string();
-        self.send(state.into()).await
+        self.send_text(state).await
+    }
+
+    /// Sends a text, if there is one: a view that has just been opened has none.
+    async fn send_text(&mut self, text: String) -> Result<(), Closed> {
+        if text.is_empty() { Ok(()) } else { self.send(text.into()).await }
     }
 
     /// Sends a frame, after the state if that was published before it.

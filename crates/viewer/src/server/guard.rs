@@ -206,8 +206,28 @@ mod tests {
             );
         }
         assert!(is_same_origin(&headers(&[("host", "127.0.0.1:8000")])), "not a browser");
-        assert!(is_embedded(&headers(&[("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "no-cors")])));
-        assert!(!is_embedded(&headers(&[("sec-fetch-site", "cross-site"), ("sec-fetch-mode", "navigate")])));
+    }
+
+    /// Another port of this machine, and another name of the same domain, are the same site, but another origin (Fetch
+    /// Metadata Request Headers, 2.3). What a person types or a link leads to is a navigation.
+    #[test]
+    fn pages_of_the_same_site_are_other_origins_too() {
+        for (site, is_other) in
+            [("cross-site", true), ("same-site", true), ("same-origin", false), ("none", false)]
+        {
+            for (mode, embeds) in
+                [("no-cors", true), ("cors", true), ("websocket", true), ("navigate", false)]
+            {
+                let all = headers(&[("sec-fetch-site", site), ("sec-fetch-mode", mode)]);
+                assert_eq!(is_embedded(&all), is_other && embeds, "{site} {mode}");
+            }
+            assert_eq!(
+                is_embedded(&headers(&[("sec-fetch-site", site)])),
+                is_other,
+                "{site}, without a mode"
+            );
+        }
+        assert!(!is_embedded(&HeaderMap::new()), "not a browser");
     }
 
     #[test]

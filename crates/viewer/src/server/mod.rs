@@ -7,14 +7,15 @@ mod upload;
 
 use crate::ViewerError;
 use crate::catalogue::catalogue;
-use crate::inbox::Inbox;
+use crate::common::Common;
 use crate::message::{LONGEST, Question, Request};
+use crate::open_scene::{Keeper, OpenScene};
 use crate::options::Options;
-use crate::stage::{Outlets, Stage};
+use crate::visitors::Visitors;
 use crate::watch;
 use axum::Router;
 use axum::extract::{State, WebSocketUpgrade};
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::serve::ListenerExt;
@@ -23,14 +24,10 @@ use guard::Guard;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::RecvError;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
-
-/// The maximum number of browsers that watch at the same time.
-const CLIENTS: usize = 64;
 
 /// How often the server looks whether it is to end.
 const LOOKS: Duration = Duration::from_millis(50);
@@ -48,9 +45,8 @@ pub struct Server {
 
 /// What all connections share.
 struct Shared {
-    inbox: Arc<Inbox>,
-    outlets: Arc<Outlets>,
-    clients: AtomicUsize,
+    open: Arc<OpenScene>,
+    visitors: Arc<Visitors>,
     catalogue: String,
     /// Whether files may be dropped in.
     may_drop: bool,
@@ -64,30 +60,27 @@ impl Server {
     pub fn start(options: Options) -> Result<Server, ViewerError> {
         let (listener, address) = listen(options.address)?;
         let guard = Guard::of(address)?;
-        let (inbox, watched) = (Arc::new(Inbox::default()), Arc::new(Watched::default()));
-        let outlets = Arc::new(Outlets::default());
-        let shared = Shared {
-            inbox: inbox.clone(),
-            outlets: outlets.clone(),
-            clients: AtomicUsize::new(0),
-            catalogue: catalogue().to_string(),
-            may_drop: options.may_edit && options.may_drop,
-        };
+        let (open, watched) = (Arc::new(OpenScene::default()), Arc::new(Watched::default()));
+        let common = Arc::new(Common::new(&options, open.clone()));
+        let may_drop = common.may_drop;
+        let visitors = Arc::new(Visitors::new(common, options.shared, options.visitors));
+        let shared = Shared { open: open.clone(), visitors, catalogue: catalogue().to_string(), may_drop };
         let (opened, is_open) = std::sync::mpsc::channel();
-        let (mail, files) = (inbox.clone(), watched.clone());
+        let (kept, files) = (open.clone(), watched.clone());
         // Not everything that renders can pass from one thread to another.
-        let render = start("render", move || match Stage::new(options, mail, outlets, files) {
-            Ok(stage) => {
+        let keep = start("scene", move || match Keeper::new(options, kept, files) {
+            Ok(keeper) => {
                 drop(opened.send(Ok(())));
-                stage.run();
+                keeper.run();
             }
             Err(error) => drop(opened.send(Err(error))),
         })?;
-        let failed =
-            |_: RecvError| Err(ViewerError::Start("the render has failed: please report this".to_owned()));
+        let failed = |_: RecvError| {
+            Err(ViewerError::Start("opening the scene has failed: please report this".to_owned()))
+        };
         is_open.recv().unwrap_or_else(failed)?;
-        let watch = start("watch", move || watch::watch(&watched, &inbox))?;
-        Ok(Server { listener, guard, shared: Arc::new(shared), threads: vec![render, watch] })
+        let watch = start("watch", move || watch::watch(&watched, &open))?;
+        Ok(Server { listener, guard, shared: Arc::new(shared), threads: vec![keep, watch] })
     }
 
     /// The address of the page.
@@ -102,8 +95,8 @@ impl Server {
     pub fn run(self, is_over: impl Fn() -> bool) -> Result<(), ViewerError> {
         let failed = |error: io::Error| ViewerError::Start(error.to_string());
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
-        let Server { listener, guard, shared, threads } = self;
-        let inbox = shared.inbox.clone();
+        let Server { listener, guard, shared, mut threads } = self;
+        let (open, visitors) = (shared.open.clone(), shared.visitors.clone());
         let served = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(listener)?.tap_io(|stream| {
                 // A small frame must not wait for the next one. Without it everything works, only later.
@@ -119,7 +112,8 @@ impl Server {
                 () = over => Ok(()),
             }
         });
-        inbox.end();
+        open.end();
+        threads.extend(visitors.end());
         // Connections end with the runtime.
         drop(runtime);
         let asked = Instant::now();
@@ -132,11 +126,12 @@ impl Server {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        self.inbox.end();
+        self.open.end();
+        self.visitors.end();
     }
 }
 
-fn start(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, ViewerError> {
+pub(crate) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, ViewerError> {
     let thread = std::thread::Builder::new().name(name.to_owned()).spawn(work);
     thread.map_err(|error| ViewerError::Start(error.to_string()))
 }
@@ -161,8 +156,8 @@ fn router(guard: Guard, shared: Arc<Shared>) -> Router {
     }
     let files = files
         .route(&format!("{prefix}/socket"), get(socket))
-        .route(&format!("{prefix}/picture.png"), get(|shared: State<Arc<Shared>>| save(shared, "png")))
-        .route(&format!("{prefix}/picture.exr"), get(|shared: State<Arc<Shared>>| save(shared, "exr")))
+        .route(&format!("{prefix}/picture.png"), get(|shared, uri| save(shared, uri, "png")))
+        .route(&format!("{prefix}/picture.exr"), get(|shared, uri| save(shared, uri, "exr")))
         .route(&format!("{prefix}/overlay.toml"), get(overlay))
         .route(&format!("{prefix}/open/{{name}}"), post(upload::open))
         .with_state(shared);
@@ -172,37 +167,41 @@ fn router(guard: Guard, shared: Arc<Shared>) -> Router {
 /// Connects a browser.
 async fn socket(
     State(shared): State<Arc<Shared>>,
+    uri: Uri,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
     if !guard::is_same_origin(&headers) {
         return (StatusCode::FORBIDDEN, "pages of other origins may not connect\n").into_response();
     }
-    if shared.clients.fetch_add(1, Ordering::Relaxed) >= CLIENTS {
-        shared.clients.fetch_sub(1, Ordering::Relaxed);
-        let message = format!("{CLIENTS} browsers watch already: close one\n");
-        return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
-    }
-    let place = Place(shared);
     let upgrade = upgrade.max_message_size(LONGEST).max_frame_size(LONGEST);
-    upgrade.on_upgrade(|socket| async move { client::serve(socket, &place.0).await })
+    match shared.visitors.enter(visitor(&uri)) {
+        Ok(connection) => {
+            upgrade.on_upgrade(|socket| async move { client::serve(socket, &shared, &connection).await })
+        }
+        // Pages cannot read why a connection is refused: it is accepted, and they are told.
+        Err(message) => upgrade.on_upgrade(|socket| client::turn_away(socket, message)),
+    }
 }
 
-/// One of the places for browsers that watch, until it is dropped.
-struct Place(Arc<Shared>);
+/// The key of a visitor in an address, if there is one.
+fn visitor(uri: &Uri) -> Option<&str> {
+    uri.query()?.split('&').find_map(|part| part.strip_prefix("visitor="))
+}
 
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.clients.fetch_sub(1, Ordering::Relaxed);
-    }
+/// Asks the view of a visitor something.
+fn ask(shared: &Shared, uri: &Uri, question: Question) -> Result<(), Response> {
+    let failed = |message: String| (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response();
+    let view = shared.visitors.view(visitor(uri)).map_err(failed)?;
+    view.inbox.post(Request::Ask(question)).map_err(failed)
 }
 
 /// The scene with its edits as a file to keep.
-async fn overlay(State(shared): State<Arc<Shared>>) -> Response {
+async fn overlay(State(shared): State<Arc<Shared>>, uri: Uri) -> Response {
     let (to, saved) = oneshot::channel();
     let failed = |message: String| (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response();
-    if let Err(message) = shared.inbox.post(Request::Ask(Question::Overlay { to })) {
-        return failed(message);
+    if let Err(refused) = ask(&shared, &uri, Question::Overlay { to }) {
+        return refused;
     }
     let headers = [
         (header::CONTENT_TYPE, "application/toml"),
@@ -215,11 +214,11 @@ async fn overlay(State(shared): State<Arc<Shared>>) -> Response {
 }
 
 /// The picture as a file to keep.
-async fn save(State(shared): State<Arc<Shared>>, format: &'static str) -> Response {
+async fn save(State(shared): State<Arc<Shared>>, uri: Uri, format: &'static str) -> Response {
     let (to, saved) = oneshot::channel();
     let failed = |status: StatusCode, message: String| (status, message + "\n").into_response();
-    if let Err(message) = shared.inbox.post(Request::Ask(Question::Save { format, to })) {
-        return failed(StatusCode::SERVICE_UNAVAILABLE, message);
+    if let Err(refused) = ask(&shared, &uri, Question::Save { format, to }) {
+        return refused;
     }
     match saved.await {
         Ok(Ok(bytes)) => {

@@ -2,7 +2,7 @@
 
 use super::{Shared, guard};
 use crate::dropped::{Dropped, Incoming, LARGEST};
-use crate::message::Request;
+use crate::message::SceneRequest;
 use axum::body::Body;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
@@ -55,8 +55,8 @@ async fn take(
         incoming.add(&piece).map_err(refused(StatusCode::PAYLOAD_TOO_LARGE))?;
     }
     let (to, opened) = oneshot::channel();
-    let request = Request::Open(Dropped { file: incoming.whole(), to });
-    shared.inbox.post(request).map_err(refused(StatusCode::SERVICE_UNAVAILABLE))?;
+    let request = SceneRequest::Open(Dropped { file: incoming.whole(), to });
+    shared.open.post(request, None).map_err(refused(StatusCode::SERVICE_UNAVAILABLE))?;
     match opened.await {
         Ok(opened) => opened.map_err(refused(StatusCode::UNPROCESSABLE_ENTITY)),
         Err(_) => Err((StatusCode::SERVICE_UNAVAILABLE, "another file was opened".to_owned())),

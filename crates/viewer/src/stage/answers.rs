@@ -1,9 +1,12 @@
 //! Answers to questions about the picture.
 
+use super::command::Whole;
 use super::measure::Measurement;
 use super::show::Shown;
-use super::{Level, SCENE, Stage, command, pick};
+use super::{Stage, pick};
 use crate::message::Question;
+use crate::open_scene::{SCENE, Version};
+use crate::settings::{Level, denoiser_of};
 use bilux::Error;
 use bilux::pictures::write_bytes;
 use serde_json::json;
@@ -42,17 +45,24 @@ impl Stage {
 
     /// The scene with its edits, as an overlay of its file, which lies in the same folder.
     fn overlay(&self) -> String {
-        let (words, changes) = (self.words(), self.edits.changes(self.session.scene()));
+        let Version { words, changes, .. } = &*self.version;
         let asked = self.asked();
         let base = Path::new(words.get(SCENE).map_or("", String::as_str)).file_name().unwrap_or_default();
-        let settings = command::settings(&self.session, &asked);
+        let settings = self.whole().settings(&asked);
         let mut own = words.clone();
         if let Some(scene) = own.get_mut(SCENE) {
             "edited.toml".clone_into(scene);
         }
         let rest: Vec<&str> = own.iter().map(String::as_str).collect();
         let how = format!("# {} -o picture.png\n", rest.join(" ").replace('\n', " "));
-        how + &bilux::formats::overlay(&base.to_string_lossy(), &settings, &changes)
+        how + &bilux::formats::overlay(&base.to_string_lossy(), &settings, changes)
+    }
+
+    /// The picture as it will be in the end.
+    pub(super) fn whole(&self) -> Whole {
+        let job = self.session.job();
+        let denoise = denoiser_of(job.settings()).unwrap_or("off").to_owned();
+        Whole { size: self.size, samples: job.samples_per_pixel(), denoise }
     }
 
     /// The picture as a file of this format.

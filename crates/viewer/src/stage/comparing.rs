@@ -1,12 +1,13 @@
 //! Two pictures side by side: the picture, and another one with another setting or of the scene before its edits. Both get
 //! the same time, in turns.
 
+use super::Stage;
 use super::comparison::Comparison;
 use super::refining::{Interruptible, STEP};
 use super::show::{FOR_DENOISERS, Shown};
-use super::{Level, Stage, settings};
 use crate::frame::{Facts, Frame};
 use crate::message::Other;
+use crate::settings::{self, Level};
 use bilux::pictures::metrics::{HeatMap, Pair, heat_map};
 use bilux::pictures::{METRICS, Picture, WriteOptions, downscaled};
 use bilux::scene::Parameters;
@@ -36,7 +37,8 @@ impl Stage {
         if self.comparison.is_none() {
             self.outlets.other.send_replace(None);
         }
-        Ok(())
+        // Two pictures that are compared may be denoised differently from one.
+        self.choose_denoiser().map_err(|error| error.to_string())
     }
 
     /// Shows where the two pictures differ, or the other one.
@@ -106,8 +108,13 @@ impl Stage {
             Some(session) if !it.is_other_scene => session.apply(Edit::Settings(wanted))?,
             _ => {
                 let is_unedited = it.other == Other::Unedited;
-                let scene = if is_unedited { &self.unedited } else { self.session.scene() };
-                it.session = Some(Session::within(scene.clone(), &wanted, self.options.max_memory)?);
+                let scene = if is_unedited { &self.version.unedited } else { self.session.scene() };
+                it.session = Some(Session::sharing(
+                    scene.clone(),
+                    &wanted,
+                    self.common.max_memory,
+                    self.version.built.clone(),
+                )?);
                 true
             }
         };
@@ -116,7 +123,7 @@ impl Stage {
             (it.meter, it.facts.noise, it.worked) = (NoiseMeter::default(), None, Duration::ZERO);
         }
         it.denoiser = match &it.session {
-            Some(session) => self.denoiser_for(session.job().settings())?,
+            Some(session) => self.denoiser_for(session.job().settings(), true)?,
             None => None,
         };
         if let (Some(session), Some(_), true) = (&mut it.session, &it.denoiser, restarts) {
@@ -163,7 +170,12 @@ impl Stage {
             difference: error.or(it.facts.difference),
             ..it.facts.clone()
         }
-        .of(&picture, session.samples(), outcome.rendered.counters.rays, it.worked);
+        .of(
+            [picture.width() as u32, picture.height() as u32],
+            session.samples(),
+            outcome.rendered.counters.rays,
+            it.worked,
+        );
         self.frame += 1;
         let (picture, options) = map.map_or((picture, options), |map| (map, WriteOptions::default()));
         let frame = Frame::new(self.frame, &picture, &options, self.size, &it.facts)?;

@@ -1,41 +1,40 @@
-//! The render: one thread that owns the session, takes requests, and publishes the newest frame.
+//! A view: one thread that owns a session, takes requests, and publishes the newest frame.
 //!
-//! When the picture changes, small pictures are shown first, by path tracing, each soon after the one before; then larger
-//! ones; and when nothing has changed for a moment, the picture itself, in full size, by the integrator that was chosen.
+//! When the picture changes, small pictures are shown first, by path tracing, each soon after the one before; then a clean
+//! one of half the size; and then the picture itself, in full size, by the integrator that was chosen.
 
 mod answers;
 mod command;
 mod comparing;
 mod comparison;
-mod edits;
+mod denoising;
 mod json;
 mod measure;
-mod opening;
 mod pace;
 mod paths;
 mod pick;
 mod refining;
 mod requests;
-mod settings;
+mod scene;
 mod show;
 mod state;
 mod visits;
 
 use crate::ViewerError;
-use crate::dropped::Kept;
+use crate::common::Common;
 use crate::eye::Eye;
 use crate::frame::{Facts, Frame};
 use crate::inbox::Inbox;
 use crate::message::Question;
-use crate::options::{Opening, Options};
+use crate::open_scene::Version;
+use crate::settings::{self, Level};
 use bilux::Session;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
-use bilux::scene::{Parameters, SceneBuilder, Value};
+use bilux::scene::{Parameters, Value};
 use bilux::transport::NoiseMeter;
 use bilux::transport::aovs::Aov;
-use bilux::watch::Watched;
 use comparison::Comparison;
-use edits::Edits;
+use denoising::{Cleaned, Denoising};
 use measure::Measurement;
 use pace::Pace;
 use show::Shown;
@@ -43,14 +42,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// The place of the scene's file in [`Options::command`].
-const SCENE: usize = 2;
-
 /// How often it looks whether a measurement is over.
 const LOOKS: Duration = Duration::from_millis(30);
-
-/// The maximum number of samples of each pixel, if neither the user nor the scene says it.
-const SAMPLES: i64 = 1024;
 
 /// Where frames and the state of the stage are published: all who watch see the newest of each.
 pub(crate) struct Outlets {
@@ -60,36 +53,26 @@ pub(crate) struct Outlets {
     pub(crate) other: watch::Sender<Option<Arc<Frame>>>,
     /// The newest state, in JSON.
     pub(crate) state: watch::Sender<Arc<str>>,
+    /// How far the picture is, in JSON.
+    pub(crate) progress: watch::Sender<Arc<str>>,
 }
 
 impl Default for Outlets {
     fn default() -> Outlets {
         let (frames, other) = (watch::Sender::new(None), watch::Sender::new(None));
-        Outlets { frames, other, state: watch::Sender::new("".into()) }
+        let (state, progress) = (watch::Sender::new("".into()), watch::Sender::new("".into()));
+        Outlets { frames, other, state, progress }
     }
 }
 
-/// What is being rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
-    /// A picture whose sides are divided by this.
-    Preview(u32),
-    /// The picture itself.
-    Full,
-}
-
-/// The render.
+/// The render of a view.
 pub(crate) struct Stage {
-    options: Options,
+    common: Arc<Common>,
+    /// Its number among all views.
+    number: u64,
+    /// The version of the scene that is shown.
+    version: Arc<Version>,
     session: Session,
-    /// The scene as it was opened.
-    unedited: SceneBuilder,
-    /// What was opened, and how.
-    opening: Opening,
-    /// The time in seconds that the scene was opened at.
-    first_time: f32,
-    /// The file that was dropped in, while it is shown.
-    kept: Option<Kept>,
     /// The picture that this one is compared with.
     comparison: Option<Comparison>,
     /// Accelerators that are being measured.
@@ -102,26 +85,39 @@ pub(crate) struct Stage {
     denoiser: Option<DenoiserChoice>,
     /// What denoises small previews.
     for_previews: DenoiserChoice,
+    /// The picture that is being denoised.
+    denoising: Option<Denoising>,
+    /// The newest picture that was denoised.
+    cleaned: Option<Cleaned>,
     /// Where the scene has its camera.
     home: Option<Eye>,
     /// Where the camera is now.
     eye: Option<Eye>,
     is_moved: bool,
+    /// The size that is asked for, and the one that there is room for.
+    wanted_size: [u32; 2],
     size: [u32; 2],
     level: Level,
-    /// When something last changed.
+    /// When something last changed, and how many times.
     changed: Instant,
+    changes: u64,
     pace: Pace,
     meter: NoiseMeter,
-    edits: Edits,
     problem: Option<String>,
     /// How many times requests were served: the state says so, and each time is another state.
     served: u64,
     /// Whether nothing is to be done until something changes.
     rests: bool,
+    /// Whether it is the turn of other views.
+    awaits_turn: bool,
     facts: Facts,
     frame: u64,
     last_shown: Instant,
+    last_progress: Instant,
+    /// The samples that the picture in full size has before it takes the place of the clean one of half the size.
+    enough: u32,
+    /// Whether the picture in full size was shown.
+    is_full_shown: bool,
     /// Time that the last change of level took.
     entering: Duration,
     /// Time that the samples of the picture took so far.
@@ -130,38 +126,37 @@ pub(crate) struct Stage {
     questions: Vec<Question>,
     inbox: Arc<Inbox>,
     outlets: Arc<Outlets>,
-    watched: Arc<Watched>,
 }
 
 impl Stage {
-    /// A stage with the scene that the options open.
+    /// A view of the scene that is open.
     ///
     /// # Errors
-    /// If the scene cannot be opened or rendered.
+    /// If the scene cannot be rendered.
     pub(crate) fn new(
-        options: Options,
+        common: Arc<Common>,
         inbox: Arc<Inbox>,
         outlets: Arc<Outlets>,
-        watched: Arc<Watched>,
     ) -> Result<Stage, ViewerError> {
-        let scene = (options.open)(&Opening::default()).map_err(ViewerError::Open)?;
-        watched.add(&scene.files);
-        let (user, unedited) = (options.settings.clone(), scene.clone());
-        let session = Session::within(scene, &settings::with_defaults(&user), options.max_memory)?;
+        let closed = || ViewerError::Start("the viewer is closing".to_owned());
+        common.open.attach(&inbox);
+        let version = common.open.newest().ok_or_else(closed)?;
+        let user = common.settings.clone();
+        let asked = settings::with_defaults(&settings::at_time(&user, &version));
+        let (scene, built) = (version.scene.clone(), version.built.clone());
+        let session = Session::sharing(scene, &asked, common.max_memory, built)?;
         let settings = session.job().settings();
-        let (size, first_time) = ([settings.width, settings.height], settings.time);
+        let size = [settings.width, settings.height];
         let task = Task { threads: settings.threads, ..Task::default() };
         let for_previews = denoiser("builtin", &task).map_err(bilux::Error::from)?;
-        let (now, home) = (Instant::now(), Eye::of(session.job()));
+        let now = Instant::now();
         let mut stage = Stage {
-            home,
-            eye: home,
-            options,
+            number: common.room.number(),
+            common,
+            version,
+            home: None,
+            eye: None,
             session,
-            unedited,
-            opening: Opening::default(),
-            first_time,
-            kept: None,
             comparison: None,
             measurement: None,
             user,
@@ -169,26 +164,33 @@ impl Stage {
             layers: Vec::new(),
             denoiser: None,
             for_previews,
+            denoising: None,
+            cleaned: None,
             is_moved: false,
+            wanted_size: size,
             size,
             level: Level::Full,
             changed: now,
+            changes: 0,
             pace: Pace::new(),
             meter: NoiseMeter::default(),
-            edits: Edits::default(),
             problem: None,
             served: 0,
             rests: false,
+            awaits_turn: false,
             facts: Facts { side: "own", ..Facts::default() },
             frame: 0,
             last_shown: now,
+            last_progress: now,
+            enough: 1,
+            is_full_shown: false,
             entering: Duration::ZERO,
             worked: Duration::ZERO,
             questions: Vec::new(),
             inbox,
             outlets,
-            watched,
         };
+        stage.resize(size);
         stage.choose_denoiser()?;
         stage.begin()?;
         stage.publish_state();
@@ -203,7 +205,10 @@ impl Stage {
                 return;
             }
             self.serve(waiting);
-            if self.is_measuring() || !self.is_watched() {
+            let taken = self.take_denoised();
+            self.note_problem(taken);
+            if !self.may_work() {
+                self.publish_progress();
                 continue;
             }
             if self.is_turn_of_other() {
@@ -213,19 +218,37 @@ impl Stage {
                 let worked = self.work();
                 self.note_problem(worked);
             }
+            self.publish_progress();
+            if self.denoising.is_none() {
+                self.common.turns.leave(&self.inbox);
+            }
         }
+    }
+
+    /// True if it may render now. In full size it has to be its turn.
+    fn may_work(&mut self) -> bool {
+        let is_needed = self.is_watched() && (!self.rests || self.is_turn_of_other());
+        let needs_turn = self.level == Level::Full || self.measurement.is_some();
+        if !needs_turn || !is_needed && self.denoising.is_none() && self.measurement.is_none() {
+            self.common.turns.leave(&self.inbox);
+            self.awaits_turn = false;
+            return is_needed;
+        }
+        self.awaits_turn = !self.common.turns.is_turn_of(&self.inbox);
+        // While accelerators are measured, others wait too: the render would slow them.
+        !self.awaits_turn && !self.is_measuring() && is_needed
     }
 
     /// How long it may wait for requests; `None` for as long as there is none.
     fn may_wait(&self) -> Option<Duration> {
-        match self.rests && !self.is_turn_of_other() || !self.is_watched() {
+        match self.rests && !self.is_turn_of_other() || !self.is_watched() || self.awaits_turn {
             _ if self.measurement.is_some() => Some(LOOKS),
             true => None,
             false => Some(Duration::ZERO),
         }
     }
 
-    /// True while accelerators are measured: the render would slow them.
+    /// True while accelerators are measured.
     fn is_measuring(&mut self) -> bool {
         self.measurement = self.measurement.take().filter(Measurement::goes_on);
         self.measurement.is_some()
@@ -265,7 +288,7 @@ impl Stage {
 
     /// The settings that those who watch have asked for, with the camera where they have moved it.
     fn asked(&self) -> Parameters {
-        let mut all = self.user.clone();
+        let mut all = settings::at_time(&self.user, &self.version);
         if let (true, Some(eye)) = (self.is_moved, &self.eye) {
             eye.settings().into_iter().for_each(|(key, value)| match value.parse() {
                 Ok(number) if key == "zoom" => all.set(key, Value::Number(number)),
@@ -280,5 +303,12 @@ impl Stage {
         let mut all = settings::with_defaults(&self.asked());
         settings::set_level(&mut all, &self.session.scene().settings, self.size, level);
         all
+    }
+}
+
+impl Drop for Stage {
+    fn drop(&mut self) {
+        self.common.turns.leave(&self.inbox);
+        self.common.room.leave(self.number);
     }
 }

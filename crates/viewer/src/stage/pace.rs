@@ -1,9 +1,14 @@
 //! How small the pictures are that are shown while the camera moves, so that each of them is there soon.
 
+use crate::settings::divided;
 use std::time::Duration;
 
 /// How long one of these pictures may take.
 const SOON: Duration = Duration::from_millis(40);
+
+/// How long the first samples of a clean picture may take, and how many they are at least.
+const CLEAN: Duration = Duration::from_millis(450);
+const CLEAN_SAMPLES: f64 = 4.0;
 
 /// The maximum divisor of width and height.
 const SMALLEST: u32 = 16;
@@ -34,17 +39,23 @@ impl Pace {
     /// The smallest divisor of a size with which a sample of all pixels is there soon.
     pub(super) fn divisor(&self, size: [u32; 2]) -> u32 {
         let time = (SOON.as_secs_f64() - self.fixed).max(0.3 * SOON.as_secs_f64());
+        self.fitting(size, 1, time)
+    }
+
+    /// The smallest divisor of a size, at least 2, with which a few samples of all pixels are there soon enough for a clean
+    /// picture.
+    pub(super) fn clean_divisor(&self, size: [u32; 2]) -> u32 {
+        self.fitting(size, 2, CLEAN.as_secs_f64() / CLEAN_SAMPLES)
+    }
+
+    /// The smallest divisor from `least` with which a sample of all pixels takes no longer than `seconds`.
+    fn fitting(&self, size: [u32; 2], least: u32, seconds: f64) -> u32 {
         let fits = |divisor: &u32| {
             let [w, h] = divided(size, *divisor).map(f64::from);
-            w * h * self.each <= time
+            w * h * self.each <= seconds
         };
-        (1..SMALLEST).find(fits).unwrap_or(SMALLEST)
+        (least..SMALLEST).find(fits).unwrap_or(SMALLEST)
     }
-}
-
-/// A size with its sides divided; no side is 0.
-pub(super) fn divided(size: [u32; 2], divisor: u32) -> [u32; 2] {
-    size.map(|side| side.div_ceil(divisor).max(1))
 }
 
 #[cfg(test)]
@@ -61,9 +72,8 @@ mod tests {
         for _ in 0..50 {
             pace.learn(size, Duration::from_millis(1), Duration::from_millis(10));
         }
-        assert_eq!(pace.divisor(size), 1);
+        assert_eq!((pace.divisor(size), pace.clean_divisor(size)), (1, 2));
         pace.learn(size, Duration::from_secs(9), Duration::from_secs(900));
         assert_eq!(divided(size, pace.divisor(size)), [80, 45]);
-        assert_eq!(divided([3, 1], 12), [1, 1]);
     }
 }

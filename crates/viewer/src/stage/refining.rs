@@ -1,12 +1,14 @@
-//! How a picture comes about: small and soon at first, then larger, then refined.
+//! How a picture comes about: small and soon at first, then clean in half the size, then in full size, refined.
 
-use super::pace::divided;
-use super::show::Shown;
-use super::{Level, Stage};
+use super::Stage;
+use super::show::{FOR_DENOISERS, Shown};
 use crate::frame::{Facts, Frame};
 use crate::inbox::Inbox;
+use crate::settings::{Level, denoiser_of, divided};
+use bilux::pictures::{Picture, WriteOptions};
+use bilux::transport::aovs::Aov;
 use bilux::transport::{NoiseMeter, Progress};
-use bilux::{Budget, Edit, Error, Settings};
+use bilux::{Budget, Edit, Error, Outcome, Settings};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -16,6 +18,13 @@ pub(super) const STEP: Duration = Duration::from_millis(60);
 const SHOWN_EVERY: Duration = Duration::from_millis(250);
 /// How long nothing has changed when the picture itself is begun: some integrators then choose their strategies first.
 const SETTLED: Duration = Duration::from_millis(180);
+/// How long samples are taken for the clean picture of half the size, after the last change, and how many at most.
+const CLEAN: Duration = Duration::from_millis(600);
+const CLEAN_SAMPLES: u32 = 16;
+/// How much more time the samples take than denoising them does.
+const SHARE: u32 = 4;
+/// How often a picture that is denoised is shown.
+const CLEANED_EVERY: Duration = Duration::from_secs(2);
 
 /// Stops a step whose picture is out of date.
 pub(super) struct Interruptible<'a>(pub(super) &'a Inbox);
@@ -39,30 +48,53 @@ impl Stage {
         let has_samples = self.level == Level::Full && self.session.samples() > 0;
         if has_samples && full.takes_samples_of(self.session.job().settings()) {
             self.enter(Level::Full)?;
-            self.rests = self.session.is_done();
-            return self.publish();
+            if self.session.samples() > 0 {
+                self.rests = self.session.is_done();
+                return self.publish_again();
+            }
         }
+        self.changes += 1;
+        (self.enough, self.is_full_shown) = (1, false);
         self.enter(Level::Preview(self.pace.divisor(self.size)))
     }
 
-    /// True if what is shown is denoised: small previews always are, or little could be seen in them; the picture if that
-    /// is asked for. A preview in full size soon gives way to the picture.
+    /// True if what is shown is denoised: small previews always are, or little could be seen in them; larger ones and the
+    /// picture if that is asked for.
     pub(super) fn denoises(&self) -> bool {
+        let is_picture = self.shown == Shown::Picture;
         match self.level {
-            Level::Preview(1) => false,
-            Level::Preview(_) => {
-                self.shown == Shown::Picture && !self.session.job().settings().integrator.classic
+            Level::Preview(1) | Level::Full => is_picture && self.denoiser.is_some(),
+            Level::Preview(_) | Level::Clean(_) => {
+                is_picture && !self.session.job().settings().integrator.classic
             }
-            Level::Full => self.denoiser.is_some(),
         }
+    }
+
+    /// Looks for the denoiser that the settings ask for.
+    pub(super) fn choose_denoiser(&mut self) -> Result<(), Error> {
+        self.denoiser = self.denoiser_for(self.session.job().settings(), self.comparison.is_some())?;
+        self.choose_layers()
+    }
+
+    /// Keeps the layers that are shown, or that a denoiser looks at.
+    pub(super) fn choose_layers(&mut self) -> Result<(), Error> {
+        let shown = if let Shown::Layer(aov) = self.shown { Some(aov) } else { None };
+        let guides = if self.denoises() { &FOR_DENOISERS[..] } else { &[] };
+        let wanted: Vec<Aov> = shown.into_iter().chain(guides.iter().copied()).collect();
+        if wanted != self.layers {
+            self.session.with_layers(&wanted)?;
+            self.layers = wanted;
+        }
+        Ok(())
     }
 
     /// Goes on with another level.
     fn enter(&mut self, level: Level) -> Result<(), Error> {
         let begun = Instant::now();
         self.level = level;
+        let restarts = self.session.apply(Edit::Settings(self.settings_for(level)))?;
         self.choose_layers()?;
-        if self.session.apply(Edit::Settings(self.settings_for(level)))? || self.session.samples() == 0 {
+        if restarts || self.session.samples() == 0 {
             self.facts.picture += 1;
             (self.meter, self.facts.noise) = (NoiseMeter::default(), None);
             self.worked = Duration::ZERO;
@@ -97,37 +129,61 @@ impl Stage {
                 self.answer_waiting();
                 self.go_on_from(divisor)
             }
+            Level::Clean(_) => {
+                let is_enough = self.changed.elapsed() >= CLEAN || samples >= CLEAN_SAMPLES;
+                if !is_enough && !self.session.is_done() {
+                    return Ok(());
+                }
+                self.publish()?;
+                self.enough = samples.div_ceil(2);
+                self.enter(Level::Full)
+            }
             Level::Full => {
-                let is_done = self.session.is_done();
-                let is_more = samples.is_power_of_two() && self.denoiser.is_none() && samples <= 4;
-                if is_done || is_more || self.is_due() {
-                    self.rests = is_done;
+                self.rests = self.session.is_done();
+                if self.is_due() {
                     self.publish()?;
-                    if let (true, Some(it)) = (is_done, &mut self.comparison) {
+                    if let (true, Some(it)) = (self.rests, &mut self.comparison) {
                         // How far the two are from each other in the end.
                         it.is_shown = false;
                     }
-                    self.answer_waiting();
                 }
+                self.answer_waiting();
                 Ok(())
             }
         }
     }
 
-    /// True if it is time to show the picture again; with a denoiser, which takes long, less often.
+    /// True if it is time to show the picture in full size again; with a denoiser, which takes long, less often.
     fn is_due(&self) -> bool {
-        let often = if self.denoiser.is_some() { 8 } else { 1 };
-        self.last_shown.elapsed() >= SHOWN_EVERY * often
+        let samples = self.session.samples();
+        if self.denoises() && self.is_denoising() {
+            return false;
+        }
+        if self.session.is_done() || !self.is_full_shown {
+            return self.session.is_done() || samples >= self.enough;
+        }
+        if !self.denoises() {
+            let is_more = samples.is_power_of_two() && samples <= 4;
+            return is_more || self.last_shown.elapsed() >= SHOWN_EVERY;
+        }
+        let often = self.cleaned.as_ref().map_or(CLEANED_EVERY, |it| CLEANED_EVERY.max(it.time * SHARE));
+        self.last_shown.elapsed() >= often
     }
 
     /// Goes on with a larger picture, or with the picture itself once nothing changes any more.
     fn go_on_from(&mut self, divisor: u32) -> Result<(), Error> {
         if divisor > 1 {
-            return self.enter(Level::Preview(divisor / 2));
+            let cleans = self.denoises() && self.denoiser.is_some();
+            let clean = self.pace.clean_divisor(self.size);
+            let next = match cleans && divisor / 2 <= clean {
+                true => Level::Clean(clean.min(divisor)),
+                false => Level::Preview(divisor / 2),
+            };
+            return self.enter(next);
         }
         if self.settings_for(Level::Full) == self.settings_for(Level::Preview(1)) {
             self.level = Level::Full;
-            return Ok(());
+            return self.choose_layers();
         }
         if self.changed.elapsed() >= SETTLED {
             return self.enter(Level::Full);
@@ -135,37 +191,111 @@ impl Stage {
         Ok(())
     }
 
-    /// Shows the picture as it is.
-    fn publish(&mut self) -> Result<(), Error> {
-        let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
-        let is_preview = self.level != Level::Full;
-        let chosen = self.denoiser.as_ref().unwrap_or(&self.for_previews);
-        let denoiser = self.denoises().then_some(chosen);
-        let (picture, options) = self.shown.of(job, outcome, denoiser)?;
-        if !is_preview && self.session.samples() > 1 {
-            self.facts.noise =
-                self.meter.look(&outcome.rendered.film, self.session.samples()).or(self.facts.noise);
+    /// Shows the picture as it is, denoised if that is wanted: a large picture as soon as that is done.
+    pub(super) fn publish(&mut self) -> Result<(), Error> {
+        let samples = self.session.samples();
+        if let (true, Some(outcome)) = (self.level == Level::Full && samples > 1, self.session.outcome()) {
+            self.facts.noise = self.meter.look(&outcome.rendered.film, samples).or(self.facts.noise);
         }
+        let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
+        let facts = self.facts_of(outcome);
+        if self.denoises() && !matches!(self.level, Level::Preview(_)) {
+            self.facts = facts.clone();
+            return match self.cleaned_of(&facts).is_some_and(|it| it.samples == samples) {
+                true => self.show_cleaned(&facts),
+                false => self.begin_denoising(facts),
+            };
+        }
+        let denoiser = self.denoises().then_some(&self.for_previews);
+        let (picture, options) = self.shown.of(job, outcome, denoiser)?;
+        self.send(&picture, &options, facts)
+    }
+
+    /// Shows the picture at once in another way, from the same samples: one that was denoised before may have fewer.
+    fn publish_again(&mut self) -> Result<(), Error> {
+        let Some(outcome) = self.session.outcome().filter(|_| self.denoises()) else { return self.publish() };
+        let facts = self.facts_of(outcome);
+        match self.cleaned_of(&facts).map(|it| it.samples) {
+            Some(samples) if samples < facts.samples => {
+                self.show_cleaned(&Facts { samples, rests: false, ..facts })?;
+                if self.rests { self.publish() } else { Ok(()) }
+            }
+            _ => self.publish(),
+        }
+    }
+
+    /// The picture that was denoised of the one that is being refined.
+    fn cleaned_of(&self, facts: &Facts) -> Option<&super::Cleaned> {
+        let by = self.denoiser.as_ref().map(|chosen| chosen.name);
+        self.cleaned.as_ref().filter(|it| (it.picture, Some(it.by)) == (facts.picture, by))
+    }
+
+    /// What is known of the picture as it is.
+    fn facts_of(&self, outcome: &Outcome) -> Facts {
+        let (job, samples) = (self.session.job(), self.session.samples());
         let point = |p: bilux::math::DVec3| p.to_array();
         let facts = Facts {
             shown: self.shown.name(),
             total: job.samples_per_pixel(),
-            is_preview,
-            rests: self.rests,
+            is_preview: self.level != Level::Full,
+            rests: self.level == Level::Full && self.session.is_done(),
             choice: outcome.rendered.choice.as_ref().map(ToString::to_string),
             eye: self.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
             ..self.facts.clone()
-        }
-        .of(&picture, self.session.samples(), outcome.rendered.counters.rays, self.worked);
+        };
+        let settings = job.settings();
+        let size = [settings.width, settings.height];
+        facts.of(size, samples, outcome.rendered.counters.rays, self.worked)
+    }
+
+    /// Sends a picture to those who watch.
+    pub(super) fn send(
+        &mut self,
+        picture: &Picture,
+        options: &WriteOptions,
+        facts: Facts,
+    ) -> Result<(), Error> {
         self.frame += 1;
-        let frame = Frame::new(self.frame, &picture, &options, self.size, &facts)?;
-        self.facts = facts;
-        if self.rests {
+        let frame = Frame::new(self.frame, picture, options, self.size, &facts)?;
+        self.is_full_shown |= !facts.is_preview;
+        let rests = facts.rests;
+        if facts.picture == self.facts.picture {
+            self.facts = Facts { noise: self.facts.noise.or(facts.noise), ..facts };
+        }
+        if rests {
             // Before the frame: after a picture that rests, nothing more may come.
             self.publish_state();
         }
         self.outlets.frames.send_replace(Some(Arc::new(frame)));
         self.last_shown = Instant::now();
         Ok(())
+    }
+
+    /// Says how far the picture is: frames come more rarely.
+    pub(super) fn publish_progress(&mut self) {
+        if self.last_progress.elapsed() < SHOWN_EVERY && !self.rests {
+            return;
+        }
+        self.last_progress = Instant::now();
+        let progress = super::state::progress(self).to_string();
+        self.outlets.progress.send_if_modified(|last| {
+            let is_new = **last != *progress;
+            *last = progress.into();
+            is_new
+        });
+    }
+
+    /// The denoiser that settings ask for. Two pictures that are compared are not denoised unless that is asked for: what
+    /// people want to see is their noise.
+    pub(super) fn denoiser_for(
+        &self,
+        settings: &Settings,
+        is_compared: bool,
+    ) -> Result<Option<bilux::pictures::denoise::DenoiserChoice>, Error> {
+        let is_open = settings.denoise == "display" && is_compared;
+        Ok(match denoiser_of(settings).filter(|_| !is_open) {
+            Some(name) => Some(bilux::pictures::denoise::denoiser(name, &self.task())?),
+            None => None,
+        })
     }
 }

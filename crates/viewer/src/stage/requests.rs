@@ -1,59 +1,49 @@
-//! What those who watch ask for: moves, settings, layers, edits, another scene.
+//! What those who watch ask of their view: moves, settings, layers.
 
 use super::Stage;
-use super::show::{FOR_DENOISERS, Shown};
-use crate::eye::{Eye, point_at};
+use super::show::Shown;
+use crate::eye::{own_bounds, point_at};
 use crate::inbox::{QUESTIONS, Waiting};
-use crate::message::{Move, Request};
-use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
+use crate::message::Move;
+use bilux::Edit;
 use bilux::scene::{Parameters, Span, Value};
-use bilux::transport::aovs::Aov;
-use bilux::{Edit, Settings};
 
 impl Stage {
     /// Does what is asked for. What cannot be done keeps nothing else from being done: others may have asked for that.
     pub(super) fn serve(&mut self, waiting: Waiting) {
-        let changes_picture = waiting.changes_picture();
-        let Waiting { moves, size, settings, shown, edits, questions, reload, .. } = waiting;
-        if changes_picture {
-            (self.problem, self.measurement) = (None, None);
+        let (changes_picture, is_answered) = (waiting.changes_picture(), waiting.answered.is_some());
+        let Waiting { moves, size, settings, shown, questions, answered, .. } = waiting;
+        if changes_picture || is_answered {
+            self.problem = None;
             self.served += 1;
-            if let Some(dropped) = waiting.dropped {
-                let opened = self.open(dropped);
-                self.note(opened);
+        }
+        if changes_picture {
+            self.measurement = None;
+            if waiting.scene_changed {
+                let taken = self.take_newest();
+                self.note(taken);
             }
-            if let Some(variant) = waiting.variant {
-                let chosen = self.choose_variant(variant);
-                self.note(chosen);
-            }
-            if reload {
-                let reloaded = self.reload();
-                self.note(reloaded);
-            }
+            self.resize(size.unwrap_or(self.wanted_size));
             moves.iter().for_each(|it| self.make_move(it));
-            self.size = size.unwrap_or(self.size);
-            let set = self.set(settings).and_then(|()| self.pose());
+            let set = self.set(settings);
             self.note(set);
             let showed = self.show(shown);
             self.note(showed);
-            let are_edited = !edits.is_empty();
-            for edit in edits {
-                let edited = self.edit(edit);
-                self.note(edited);
-            }
             if let Some(other) = waiting.compared {
                 let compared = self.compare(other);
                 self.note(compared);
             }
-            self.other_is_out_of_date(are_edited);
+            self.other_is_out_of_date(waiting.scene_changed);
             if let Some(are_shown) = waiting.differences {
                 self.show_differences(are_shown);
             }
             let begun = self.begin().map_err(|error| error.to_string());
             self.note(begun);
-            if (are_edited || moves.contains(&Move::Home)) && !self.is_moved {
-                self.go_home(true);
-            }
+        }
+        if let Some(Some(problem)) = answered {
+            self.note(Err(problem));
+        }
+        if changes_picture || is_answered {
             self.publish_state();
         }
         // What waits for a picture is asked again by those who still want it.
@@ -104,61 +94,11 @@ impl Stage {
         self.choose_layers().map_err(|error| error.to_string())
     }
 
-    /// Makes an edit.
-    fn edit(&mut self, edit: Request) -> Result<(), String> {
-        if !self.options.may_edit {
-            return Err("this viewer is read-only: start it with --edit to change the scene".to_owned());
-        }
-        let session = &mut self.session;
-        let edited = match edit {
-            Request::Edit { part, number, key, value } => {
-                self.edits.change(session, (part, number), &key, value)
-            }
-            Request::Undo => self.edits.undo(session),
-            Request::Redo => self.edits.redo(session),
-            _ => Ok(()),
-        };
-        edited.map_err(|error| error.to_string())
-    }
-
     /// True if the camera is inside of the scene, as in a room.
     pub(super) fn is_inside(&self) -> bool {
-        let bounds = self.session.scene().bounds(self.session.job().settings().time);
+        let (job, own) = (self.session.job(), self.session.scene().objects.len());
+        let bounds = own_bounds(job.completed_scene(), own, job.settings().time);
         self.eye.is_some_and(|eye| bounds.contains(eye.position.as_vec3()))
-    }
-
-    /// Sees where the scene has its camera, and goes there if wanted.
-    pub(super) fn go_home(&mut self, goes: bool) {
-        self.home = Eye::of(self.session.job());
-        if goes {
-            (self.eye, self.is_moved) = (self.home, false);
-        }
-    }
-
-    /// Looks for the denoiser that the settings ask for.
-    pub(super) fn choose_denoiser(&mut self) -> Result<(), bilux::Error> {
-        self.denoiser = self.denoiser_for(self.session.job().settings())?;
-        self.choose_layers()
-    }
-
-    /// The denoiser that settings ask for.
-    pub(super) fn denoiser_for(&self, settings: &Settings) -> Result<Option<DenoiserChoice>, bilux::Error> {
-        Ok(match settings.denoise.as_str() {
-            "off" | "display" => None,
-            name => Some(denoiser(name, &Task { threads: settings.threads, ..Task::default() })?),
-        })
-    }
-
-    /// Keeps the layers that are shown, or that a denoiser looks at.
-    pub(super) fn choose_layers(&mut self) -> Result<(), bilux::Error> {
-        let shown = if let Shown::Layer(aov) = self.shown { Some(aov) } else { None };
-        let guides = if self.denoises() { &FOR_DENOISERS[..] } else { &[] };
-        let wanted: Vec<Aov> = shown.into_iter().chain(guides.iter().copied()).collect();
-        if wanted != self.layers {
-            self.session.with_layers(&wanted)?;
-            self.layers = wanted;
-        }
-        Ok(())
     }
 
     /// Changes settings, all at once if that is possible; otherwise one by one, without those that are refused.
@@ -196,47 +136,9 @@ impl Stage {
             self.user = before;
             (self.eye, self.is_moved) = eye;
         } else if changes_camera {
-            self.go_home(true);
+            self.find_home();
+            (self.eye, self.is_moved) = (self.home, false);
         }
         applied.map_err(|error| error.to_string())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Options;
-    use bilux::scene::Spec;
-    use std::sync::Arc;
-
-    /// Several browsers may ask at once, and one of them for what cannot be done.
-    #[test]
-    fn what_is_refused_keeps_nothing_else_from_being_done() {
-        let mut settings = Parameters::default();
-        settings.set("size", "16x12");
-        settings.set("integrator", "path");
-        let options = Options {
-            address: "127.0.0.1:0".parse().unwrap(),
-            title: String::new(),
-            may_edit: false,
-            may_drop: false,
-            settings,
-            max_memory: 1 << 30,
-            command: Vec::new(),
-            open: Box::new(|_| bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())),
-        };
-        let inbox = Arc::new(crate::inbox::Inbox::default());
-        let mut stage = Stage::new(options, inbox, Arc::default(), Arc::default()).unwrap();
-        let mut asked =
-            Waiting { size: Some([8, 6]), shown: Some("nothing".to_owned()), ..Waiting::default() };
-        for (key, value) in [("seed", 5.into()), ("output", 1.into()), ("integrator", Value::from("pathh"))] {
-            asked.settings.set(key, value);
-        }
-        asked.edits.push(Request::Undo);
-        stage.serve(asked);
-        assert_eq!(stage.problem.as_deref(), Some("'output' is not a setting that can be changed here"));
-        let settings = stage.session.job().settings();
-        assert_eq!((settings.seed, settings.integrator.entry.name), (5, "path"));
-        assert!(settings.width <= 8 && stage.size == [8, 6], "{}x{}", settings.width, settings.height);
     }
 }

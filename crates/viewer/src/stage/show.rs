@@ -11,7 +11,7 @@ use bilux::transport::aovs::{AOVS, Aov};
 use bilux::{Error, Job, Outcome};
 
 /// The layers that denoisers look at.
-pub(super) const FOR_DENOISERS: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Depth];
+pub(super) const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,10 @@
 //! What the page knows of the scene and of its settings.
 
-use super::command::command;
+use super::Stage;
 use super::comparison::Comparison;
 use super::json::value_json;
-use super::{Stage, settings};
+use crate::open_scene::animation_word;
+use crate::settings::{self, Level};
 use bilux::math::registry::Parameter;
 use bilux::scene::{Object, Part, SceneBuilder, Spec};
 use bilux::settings::RENDER;
@@ -15,11 +16,11 @@ pub(super) fn state(stage: &Stage) -> Value {
     let job = stage.session.job();
     let (scene, used) = (job.completed_scene(), job.settings());
     let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles.len()).sum();
-    let changes = stage.edits.changes(stage.session.scene());
+    let version = &*stage.version;
     let cameras = scene.cameras.iter().map(|camera| &camera.spec.name);
     json!({
         "say": "state",
-        "title": stage.title(),
+        "title": version.title,
         "objects": scene.objects.len(),
         "triangles": triangles,
         "cameras": cameras.collect::<Vec<_>>(),
@@ -32,21 +33,62 @@ pub(super) fn state(stage: &Stage) -> Value {
         "accel": used.accel.name,
         "curve": job.write_options().map(|options| options.tone_map.entry.name).unwrap_or_default(),
         "max_depth": used.max_depth,
-        "command": command(&stage.words(), &stage.session, &stage.asked(), &changes),
+        "command": stage.whole().command(&version.words, &stage.asked(), &version.changes),
         "served": stage.served,
         "problem": stage.problem,
         "warnings": warnings(stage),
         "notes": job.notes(),
-        "may_edit": stage.options.may_edit,
-        "may_drop": stage.options.may_edit && stage.options.may_drop,
-        "parts": if stage.options.may_edit { parts(stage) } else { json!({}) },
+        "may_edit": stage.common.may_edit,
+        "may_drop": stage.common.may_drop,
+        "parts": if stage.common.may_edit { parts(stage) } else { json!({}) },
         "comparison": stage.comparison.as_ref().map(Comparison::state),
         "variants": scene.inventory.variants,
-        "variant": stage.opening.variant,
+        "variant": version.opening.variant,
+        "animations": animations(scene),
+        "animation": version.opening.animation,
+        "environments": stage.common.environments,
+        "environment": version.opening.environment,
         "seconds": seconds(scene),
-        "can_undo": stage.edits.can_undo(),
-        "can_redo": stage.edits.can_redo(),
+        "can_undo": version.can_undo,
+        "can_redo": version.can_redo,
     })
+}
+
+/// How far the picture is, and the one that it is compared with, for the page.
+pub(super) fn progress(stage: &Stage) -> Value {
+    let (session, level) = (&stage.session, stage.level);
+    let other = stage.comparison.as_ref().map(|it| {
+        let samples = it.session.as_ref().map(bilux::Session::samples);
+        let total = it.session.as_ref().map(|session| session.job().samples_per_pixel());
+        json!({ "samples": samples.unwrap_or(0), "total": total, "goes_on": it.goes_on() })
+    });
+    json!({
+        "say": "progress",
+        "level": match level {
+            Level::Preview(_) => "preview",
+            Level::Clean(_) => "clean",
+            Level::Full => "full",
+        },
+        "divisor": level.divisor(),
+        "samples": session.samples(),
+        "total": session.job().samples_per_pixel(),
+        "noise": if level == Level::Full { stage.facts.noise } else { None },
+        "denoises": stage.denoising.is_some(),
+        "waits": stage.awaits_turn,
+        "rests": stage.rests && stage.denoising.is_none(),
+        "other": other,
+    })
+}
+
+/// The animations of the scene: the word that chooses each, its name, and whether it plays.
+fn animations(scene: &SceneBuilder) -> Vec<Value> {
+    let all = &scene.inventory.animations;
+    let one = |i: usize| {
+        let word = animation_word(all, i);
+        let name = if all[i].name.is_empty() { format!("number {i}") } else { all[i].name.clone() };
+        json!({ "word": word, "name": name, "seconds": all[i].seconds, "plays": all[i].plays })
+    };
+    (0..all.len()).map(one).collect()
 }
 
 /// The value of every setting: the user's, or else the scene's, or else the default.

@@ -1,7 +1,11 @@
 //! The viewer, with clients that speak to it as browsers do.
 
+mod choosing;
 mod common;
 mod comparing;
 mod editing;
+mod framing;
+mod refining;
 mod security;
+mod visitors;
 mod watching;

@@ -75,7 +75,7 @@ fn the_command_line_makes_the_picture_that_is_shown() {
     let viewer = Viewer::start();
     run(async {
         let mut client = Client::connect(&viewer).await;
-        client.frame(Frame::rests).await;
+        let first = client.frame(Frame::rests).await;
         client.send(json!({ "do": "orbit", "by": [33, -7] })).await;
         client.send(json!({ "do": "set", "key": "exposure", "value": 0.5 })).await;
         let state = client
@@ -83,6 +83,7 @@ fn the_command_line_makes_the_picture_that_is_shown() {
                 state["command"].as_str().unwrap().contains("--spp 16 --integrator path --exposure 0.5 --eye")
             })
             .await;
+        client.frame(|frame| frame.rests() && frame.header["eye"] != first.header["eye"]).await;
         let command = state["command"].as_str().unwrap();
         assert!(command.starts_with("bilux render cornell.toml -o picture.png --size 48x40"), "{command}");
         let after =

@@ -58,15 +58,20 @@ pub(crate) fn cornell() -> Result<SceneBuilder, String> {
     bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())
 }
 
-/// A viewer of a scene, 48 x 40 pixels with 16 samples by path tracing.
+/// A viewer of a scene, 48 x 40 pixels with 16 samples by path tracing, which are not denoised.
 pub(crate) fn options(open: impl Fn() -> Result<SceneBuilder, String> + Send + 'static) -> Options {
     let mut settings = Parameters::default();
     settings.set("size", "48x40");
     settings.set("spp", Value::Integer(16));
     settings.set("integrator", "path");
+    settings.set("denoise", "off");
     Options {
         address: "127.0.0.1:0".parse().unwrap(),
         title: "cornell".to_owned(),
+        shared: false,
+        visitors: 64,
+        sandboxed: false,
+        environments: Vec::new(),
         may_edit: false,
         may_drop: false,
         settings,
@@ -113,7 +118,11 @@ pub(crate) enum Said {
 
 /// A browser.
 pub(crate) struct Client {
+    /// By which the viewer knows its visitor; empty if there is no place.
+    pub(crate) key: String,
     socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+    /// Why there is no place for it.
+    pub(crate) refused: Option<String>,
     /// Whether it says that it has seen frames.
     pub(crate) sees: bool,
 }
@@ -138,7 +147,12 @@ impl Client {
             request.headers_mut().insert(*name, value.parse().unwrap());
         }
         let (socket, _) = tokio_tungstenite::connect_async(request).await?;
-        Ok(Client { socket, sees: true })
+        let mut client = Client { key: String::new(), refused: None, socket, sees: true };
+        if let Some(Said::Text(first)) = client.next().await {
+            client.key = first["key"].as_str().unwrap_or_default().to_owned();
+            client.refused = first["message"].as_str().map(str::to_owned);
+        }
+        Ok(client)
     }
 
     pub(crate) async fn send(&mut self, message: Json) {

@@ -154,3 +154,67 @@ fn replacing(scene: &SceneBuilder, part: Part, number: usize, spec: Spec) -> Edi
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux::scene::{Parameters, Which};
+
+    /// The box of Cornell with three lamps, in few pixels.
+    fn session() -> Session {
+        let mut scene = bilux::generate(&Spec::new("", "cornell")).unwrap();
+        for name in ["second", "third"] {
+            let mut lamp = scene.lights[0].clone();
+            name.clone_into(&mut lamp.name);
+            scene.lights.push(lamp);
+        }
+        let mut settings = Parameters::default();
+        settings.set("size", "8x8");
+        Session::new(scene, &settings).unwrap()
+    }
+
+    fn radiances(session: &Session) -> Vec<Value> {
+        session.scene().lights.iter().map(|light| light.value_or("radiance", 0.0f32)).collect()
+    }
+
+    /// A slider makes one step of many changes. Another light, another part and another parameter are other steps.
+    #[test]
+    fn only_changes_of_the_same_parameter_of_the_same_part_are_one_step() {
+        let (mut session, mut edits) = (session(), Edits::default());
+        let at_first = radiances(&session);
+        let changes = [
+            (Part::Light, 0, "radiance", 1.0),
+            (Part::Light, 0, "radiance", 2.0),
+            (Part::Light, 1, "radiance", 3.0),
+            (Part::Light, 1, "radiance", 4.0),
+            (Part::Material, 1, "reflectance", 0.5),
+            (Part::Material, 0, "reflectance", 0.25),
+        ];
+        for (part, number, key, value) in changes {
+            edits.change(&mut session, (part, number), key, Value::Number(value)).unwrap();
+        }
+        let now = radiances(&session);
+        assert_eq!(now, [Value::Number(2.0), Value::Number(4.0), at_first[2].clone()]);
+        let named = |change: &Change| match &change.which {
+            Which::Name(name) => format!("{} {name} {} {:?}", change.part.name(), change.key, change.value),
+            Which::Number(number) => {
+                format!("{} {number} {} {:?}", change.part.name(), change.key, change.value)
+            }
+        };
+        let saved: Vec<String> = edits.changes(session.scene()).iter().map(named).collect();
+        assert_eq!(saved.len(), 4, "{saved:?}");
+        assert!(saved[0].starts_with("light lamp radiance") && saved[0].contains('2'), "{saved:?}");
+        assert!(saved[1].starts_with("light second radiance") && saved[1].contains('4'), "{saved:?}");
+        // Made again in the scene as it was opened, they give the same scene.
+        let mut again = super::tests::session();
+        edits.again(&mut again).unwrap();
+        assert_eq!(format!("{:?}", again.scene().lights), format!("{:?}", session.scene().lights));
+        assert_eq!(format!("{:?}", again.scene().materials), format!("{:?}", session.scene().materials));
+        let mut steps = 0;
+        while edits.can_undo() {
+            edits.undo(&mut again).unwrap();
+            steps += 1;
+        }
+        assert_eq!((steps, radiances(&again)), (4, at_first));
+    }
+}

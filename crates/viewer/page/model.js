@@ -1,10 +1,12 @@
-// The time of scenes that move, and the variant of their materials.
+// What to show of a model: one of its animations and variants, at which time, and in which light.
 
 import { byId, element } from "./element.js";
 
-const section = byId("time");
+const section = byId("model");
+// The choice of what was opened.
+const OPENED = "";
 
-export class Time {
+export class Model {
   #seconds = null;
   #playing = false;
   #picture = 0;
@@ -23,22 +25,29 @@ export class Time {
     } });
     this.play = element("button", { type: "button", id: "play", "aria-pressed": "false", onclick: () => this.#toggle() }, "Play");
     this.row = element("div", {},
-      element("div", { class: "heading" }, element("h2", { id: "time-title" }, "Time"), this.play),
       element("div", { class: "row" }, element("label", { for: "time-range" }, "Seconds"), element("div", { class: "pair" }, this.range, this.exact)),
       element("span", { id: "time-help", class: "unseen" }, "The time that is shown, in seconds"),
     );
-    this.variant = element("select", { id: "variant", onchange: () => connection.send("variant", { name: this.variant.value }) });
-    this.variants = element("div", { class: "row" }, element("label", { for: "variant" }, "Variant"), this.variant);
-    section.replaceChildren(this.row, this.variants);
+    const offer = (what, label) => new Offer(what, label, (name) => connection.send(what, { name }));
+    this.offers = [offer("animation", "Animation"), offer("variant", "Variant"), offer("environment", "Light around")];
+    section.replaceChildren(
+      element("div", { class: "heading" }, element("h2", { id: "model-title" }, "Model"), this.play),
+      ...this.offers.map((it) => it.row),
+      this.row,
+    );
     connection.addEventListener("state", ({ detail }) => this.#show(detail));
     connection.addEventListener("frame", ({ detail }) => this.#next(detail));
   }
 
-  #show({ seconds, settings, variants, variant, title }) {
+  #show({ seconds, settings, animations, animation, variants, variant, environments, environment, title }) {
     this.#seconds = seconds;
-    section.hidden = !seconds && !variants.length;
-    this.row.hidden = !seconds;
-    this.variants.hidden = !variants.length;
+    const [clips, looks, lights] = this.offers;
+    const plays = animations.filter((it) => it.plays).map((it) => it.name).join(", ");
+    clips.show(animations.map(({ word, name, seconds: long }) => [word, `${name} (${Number(long.toFixed(2))} s)`]), animation, title, plays);
+    looks.show(variants.map((name) => [name, name]), variant, title);
+    lights.show(environments.map((path) => [path, path === "none" ? "none" : path.split(/[\\/]/).pop()]), environment, title);
+    this.row.hidden = this.play.hidden = !seconds;
+    section.hidden = !seconds && this.offers.every((it) => it.row.hidden);
     if (!seconds) this.#stop();
     const now = Number(settings.time);
     if (document.activeElement !== this.range) {
@@ -46,13 +55,6 @@ export class Time {
       this.range.value = now;
     }
     if (document.activeElement !== this.exact) this.exact.value = Number(now.toFixed(3));
-    const key = JSON.stringify([variants, title]);
-    if (key !== this.built) {
-      const first = element("option", { value: "", disabled: true }, "as in the file");
-      this.variant.replaceChildren(first, ...variants.map((name) => element("option", { value: name }, name)));
-      this.built = key;
-    }
-    this.variant.value = variant ?? "";
   }
 
   #go(time, byHand) {
@@ -103,5 +105,26 @@ export class Time {
     this.#waits = false;
     clearTimeout(this.timer);
     requestAnimationFrame(() => this.#step());
+  }
+}
+
+// A choice among what the model or the viewer has; what was opened is one of them.
+class Offer {
+  #built = "";
+
+  constructor(what, label, choose) {
+    this.select = element("select", { id: what, onchange: () => choose(this.select.value) });
+    this.row = element("div", { class: "row" }, element("label", { for: what }, label), this.select);
+  }
+
+  show(choices, chosen, title, opened = "") {
+    this.row.hidden = !choices.length;
+    const key = JSON.stringify([choices, title]);
+    if (key !== this.#built) {
+      const first = element("option", { value: OPENED }, opened && !chosen ? `as opened: ${opened}` : "as opened");
+      this.select.replaceChildren(first, ...choices.map(([value, words]) => element("option", { value }, words)));
+      this.#built = key;
+    }
+    this.select.value = chosen ?? OPENED;
   }
 }
