@@ -164,6 +164,7 @@ fn place(builders: &Environment, testers: &Environment) -> Result<()> {
     let library = target_folder().join("debug/lib_bilux.so");
     fs::copy(&library, placed.join("_bilux.abi3.so"))
         .with_context(|| format!("cannot copy {}", library.display()))?;
+    output(testers.python().args(["-m", "compileall", "-q"]).arg(&placed))?;
     let mut maturin = builders.python();
     maturin.args(["-m", "maturin", "pep517", "write-dist-info", "--manifest-path"]);
     maturin.arg(package.join("Cargo.toml")).arg("--metadata-directory").arg(&site);
