@@ -76,13 +76,13 @@ const SAMPLES: u64 = 60_000;
 const SIGNIFICANCE: f64 = 1e-4;
 
 /// Test directions: above and below the surface, steep and grazing.
-fn known_directions() -> Vec<Vec3> {
+fn known_directions() -> [Vec3; 5] {
     let at = |degrees: f32, turn: f32| {
         let (sin, cos) = sin_cos(degrees.to_radians());
         let (y, x) = sin_cos(turn);
         Vec3::new(sin * x, sin * y, cos)
     };
-    vec![at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
+    [at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
 }
 
 /// χ² test of `sample` against `pdf`; delta samples are compared with their probabilities instead.
@@ -204,9 +204,10 @@ pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), S
             let weight = sample.map_or(0.0, |x| f64::from(x.weight.luminance() * known.dot(s.n_geom).abs()));
             let found = sample.map_or(known, |x| x.wi);
             let (looked_from, light_from) = if mode == RADIANCE { (known, found) } else { (found, known) };
+            let measured = tested.map(|g| shape(looked_from, g) * weight);
+            let incident = tested.map(|h| shape(light_from, h));
             for (tally, i) in tallies.iter_mut().zip(0..) {
-                let (g, h) = (tested[i % tested.len()], tested[i / tested.len()]);
-                tally[end].add(shape(looked_from, g) * weight * shape(light_from, h));
+                tally[end].add(measured[i % tested.len()] * incident[i / tested.len()]);
             }
         }
     }

@@ -5,11 +5,15 @@ use bilux_math::transcendental::{acos, atan2, sin_cos};
 use bilux_math::{Vec2, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f32::consts::{PI, TAU};
+use std::sync::LazyLock;
 
 /// Cells of the sphere: bands of equal angle, since sharp lobes crowd around the poles too, times sectors.
 const BANDS: usize = 24;
 const SECTORS: usize = 24;
-/// Directions along each side of a cell at which the density is summed.
+/// Directions along each side of a cell at which the density is summed: where it is smooth, and elsewhere. The error of
+/// midpoints falls with the square of their distance: 8 along a side are good to a thousandth if the density varies by no more
+/// than its mean, which adds 0.06 to the χ² of 60,000 samples in some hundreds of cells.
+const COARSE: usize = 8;
 const FINE: usize = 24;
 /// Cells are pooled until this many samples are expected in each. [Cochran 1954]
 const MIN_EXPECTED: f64 = 5.0;
@@ -52,19 +56,72 @@ fn cell_of(d: Vec3) -> usize {
     band.min(BANDS - 1) * SECTORS + sector.min(SECTORS - 1)
 }
 
-/// The integral of the density over one cell, by the midpoints of a fine grid.
+/// The integral of the density over one cell, by midpoints, of which cells with edges and peaks get more.
 fn integral(cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
-    let (band, sector) = (cell / SECTORS, cell % SECTORS);
-    let mut sum = 0.0;
-    for i in 0..FINE {
-        let (r, z) = sin_cos((band as f32 + (i as f32 + 0.5) / FINE as f32) / BANDS as f32 * PI);
-        for j in 0..FINE {
-            let turn = (sector as f32 + (j as f32 + 0.5) / FINE as f32) / SECTORS as f32;
-            let (sin, cos) = sin_cos(turn * TAU);
-            sum += f64::from(pdf(Vec3::new(r * cos, r * sin, z)) * r);
-        }
+    static GRIDS: LazyLock<[Grid; 2]> =
+        LazyLock::new(|| [COARSE, FINE].map(|side| Grid::new(&midpoints(side))));
+    // Just within the sides of each cell, where an edge may lie that is beyond all coarse midpoints.
+    static BORDERS: LazyLock<Grid> =
+        LazyLock::new(|| Grid::new(&[midpoints(FINE)[0], midpoints(FINE)[FINE - 1]]));
+    let [coarse, fine] = &*GRIDS;
+    let inner = Sum::of(cell, coarse, coarse, pdf);
+    let sides = [Sum::of(cell, coarse, &BORDERS, pdf), Sum::of(cell, &BORDERS, coarse, pdf)];
+    let least = sides.iter().fold(inner.least, |least, side| least.min(side.least));
+    let most = sides.iter().fold(inner.most, |most, side| most.max(side.most));
+    let is_smooth = f64::from(most - least) <= inner.mean;
+    if is_smooth { inner.integral } else { Sum::of(cell, fine, fine, pdf).integral }
+}
+
+/// Where midpoints lie along the side of a cell.
+fn midpoints(count: usize) -> Vec<f32> {
+    (0..count).map(|i| (i as f32 + 0.5) / count as f32).collect()
+}
+
+/// Directions in all cells, as the coordinates of their bands and sectors.
+struct Grid {
+    /// Along each side of a cell.
+    side: usize,
+    /// Distance from the axis, and height.
+    bands: Vec<(f32, f32)>,
+    /// Sine and cosine of the turn about the axis.
+    turns: Vec<(f32, f32)>,
+}
+
+impl Grid {
+    /// From places along the side of each cell.
+    fn new(places: &[f32]) -> Grid {
+        let angles = |cells: usize, whole: f32| {
+            let of_cell = |cell| places.iter().map(move |place| (cell as f32 + place) / cells as f32 * whole);
+            (0..cells).flat_map(of_cell).map(sin_cos).collect()
+        };
+        Grid { side: places.len(), bands: angles(BANDS, PI), turns: angles(SECTORS, TAU) }
     }
-    sum * 2.0 * f64::from(PI) * f64::from(PI) / (BANDS * SECTORS * FINE * FINE) as f64
+}
+
+/// What the density adds up to in a cell, and how it varies there.
+struct Sum {
+    integral: f64,
+    mean: f64,
+    least: f32,
+    most: f32,
+}
+
+impl Sum {
+    fn of(cell: usize, bands: &Grid, turns: &Grid, pdf: &impl Fn(Vec3) -> f32) -> Sum {
+        let mut sum = Sum { integral: 0.0, mean: 0.0, least: f32::INFINITY, most: 0.0 };
+        for (r, z) in &bands.bands[cell / SECTORS * bands.side..][..bands.side] {
+            for (sin, cos) in &turns.turns[cell % SECTORS * turns.side..][..turns.side] {
+                let density = pdf(Vec3::new(r * cos, r * sin, *z));
+                (sum.least, sum.most) = (sum.least.min(density), sum.most.max(density));
+                sum.integral += f64::from(density * r);
+                sum.mean += f64::from(density);
+            }
+        }
+        let points = (bands.side * turns.side) as f64;
+        sum.integral *= 2.0 * f64::from(PI) * f64::from(PI) / (points * (BANDS * SECTORS) as f64);
+        sum.mean /= points;
+        sum
+    }
 }
 
 fn compare(seen: &[u64], expected: &[f64]) -> f64 {

@@ -21,7 +21,9 @@ use bilux_scene::generators::shapes::quad;
 use bilux_scene::{AccelChoice, Object, Scene, SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, Silent, integrators, render};
 use bilux_validation::statistics::estimate;
+use rayon::ThreadPoolBuilder;
 use std::sync::Arc;
+use std::thread;
 
 const SIDE: u32 = 12;
 const ITERATIONS: [u32; 4] = [2, 8, 32, 128];
@@ -80,7 +82,7 @@ fn measured(scene: &Scene, integrator: &Spec, truth: f64, iterations: u32, seeds
         let settings = RenderSettings { seed, max_depth: 3, ..RenderSettings::new(SIDE, SIDE, iterations) };
         picture(scene, integrator, &settings)
     };
-    let pictures: Vec<Vec<f64>> = (0..seeds).map(of_seed).collect();
+    let pictures = on_all_cores(seeds, of_seed);
     let means: Vec<f64> = pictures.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect();
     let (mean, variance_of_mean) = estimate(&means);
     let pixels = (SIDE * SIDE) as usize;
@@ -94,6 +96,20 @@ fn measured(scene: &Scene, integrator: &Spec, truth: f64, iterations: u32, seeds
         error: variance_of_mean.sqrt() / truth,
         variance: variance / (truth * truth),
     }
+}
+
+/// Many pictures at a time, each on one core: within so small a one, threads would mostly wait for each other.
+fn on_all_cores(count: u64, picture: impl Fn(u64) -> Vec<f64> + Sync) -> Vec<Vec<f64>> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let share = |core| {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        pool.install(|| (core..count).step_by(cores).map(&picture).collect::<Vec<_>>())
+    };
+    thread::scope(|scope| {
+        let share = &share;
+        let shares: Vec<_> = (0..cores as u64).map(|core| scope.spawn(move || share(core))).collect();
+        shares.into_iter().flat_map(|share| share.join().unwrap()).collect()
+    })
 }
 
 /// Slope of log `values` against log [`ITERATIONS`], by least squares.
