@@ -117,7 +117,8 @@ impl View<'_> {
 
     /// Where a point is on the film.
     fn on_film(&self, p: Vec3) -> Option<[f32; 2]> {
-        Some(self.job.camera().connect(p, Vec2::ZERO, self.time)?.film.to_array())
+        let seen = self.job.camera().connect(p, Vec2::ZERO, self.time)?;
+        seen.is_on_film().then(|| seen.film.to_array())
     }
 }
 

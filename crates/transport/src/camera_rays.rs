@@ -7,7 +7,7 @@ use crate::light_choice::LightChoice;
 use crate::photons::Photons;
 use crate::pixel_integrator::{CameraSpread, PixelIntegrator};
 use crate::sampler::{PixelSampler, regular_pattern};
-use crate::settings::RenderSettings;
+use crate::settings::{Reach, RenderSettings};
 use crate::task::Task;
 use bilux_math::{Vec2, warp};
 use bilux_scene::cameras::Pinhole;
@@ -23,6 +23,7 @@ pub(crate) struct CameraRays<'a> {
     lights: LightChoice,
     pub(crate) emission: Emission,
     has_lens: bool,
+    reach: Reach,
     /// Camera subpaths are merged with light subpaths of the same iteration.
     merges: bool,
     pub(crate) photons: Option<&'a Photons>,
@@ -39,7 +40,19 @@ impl<'a> CameraRays<'a> {
         let guide = integrator.light_subpaths().and_then(|subpaths| subpaths.guide());
         let emission = Emission::new(scene, guide);
         let merges = integrator.merging().is_some();
-        CameraRays { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
+        let reach = settings.reach();
+        CameraRays {
+            scene,
+            camera,
+            integrator,
+            settings,
+            lights,
+            emission,
+            has_lens,
+            reach,
+            merges,
+            photons: None,
+        }
     }
 
     /// The same for subpaths that are merged, whatever the integrator does.
@@ -112,6 +125,7 @@ impl<'a> CameraRays<'a> {
             wavelength,
             max_depth: self.settings.max_depth,
             camera: self.camera,
+            reach: self.reach,
             lights: &self.lights,
             emission: &self.emission,
             photons: self.photons,

@@ -4,6 +4,7 @@ use crate::error::RenderError;
 use crate::filters::Filter;
 use crate::limits::{DEFAULT_MAX_DEPTH, MAX_DEPTH, MAX_SAMPLES};
 use crate::window::Window;
+use bilux_math::Vec2;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -56,6 +57,22 @@ pub enum PixelAnchor {
     Corner,
 }
 
+/// The part of the film's plane (the film is 0..1 on both axes) that its pixels' filters reach. Beyond the film's edge it is
+/// as wide as the filter is wider than a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reach {
+    min: Vec2,
+    max: Vec2,
+}
+
+impl Reach {
+    /// Whether some pixel reaches a point.
+    #[inline]
+    pub(crate) fn contains(&self, film: Vec2) -> bool {
+        film.cmpge(self.min).all() && film.cmplt(self.max).all()
+    }
+}
+
 impl PixelAnchor {
     /// Its distance from the pixel's left and upper edge, in pixels.
     #[inline]
@@ -91,6 +108,14 @@ impl RenderSettings {
 
     pub(crate) fn window(&self) -> Window {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
+    }
+
+    /// What the pixels of the whole film reach.
+    pub(crate) fn reach(&self) -> Reach {
+        let (size, anchor) = (Vec2::new(self.width as f32, self.height as f32), self.pixel_anchor.offset());
+        let reach = Vec2::splat(self.filter.radius());
+        let [first, last] = [Vec2::splat(anchor), size - Vec2::ONE + Vec2::splat(anchor)];
+        Reach { min: (first - reach) / size, max: (last + reach) / size }
     }
 
     /// The settings that choosing integrators see: the choice is the same with an interval and without.

@@ -4,6 +4,7 @@ use crate::emission::Emission;
 use crate::light_choice::LightChoice;
 use crate::photons::Photons;
 use crate::sampler::PixelSampler;
+use crate::settings::Reach;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, Wavelength};
 
@@ -19,6 +20,8 @@ pub struct Task<'a, 's> {
     pub max_depth: u32,
     /// The camera.
     pub camera: &'a dyn Camera,
+    /// Where light subpaths are connected with the camera.
+    pub(crate) reach: Reach,
     /// Chooses lights by what they bring.
     pub lights: &'a LightChoice,
     /// Starts light subpaths.

@@ -28,7 +28,8 @@ pub struct CameraSample {
 /// A connection from a point of the scene to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraConnection {
-    /// Point of the film, as in [`CameraSample`], from 0 to below 1 on both axes.
+    /// Point of the film's plane, as in [`CameraSample`]; off the film where it is outside 0..1. Pixel filters reach beyond
+    /// the film's edge.
     pub film: Vec2,
     /// Point on the lens (on the film, for parallel rays) that sees it.
     pub p: Vec3,
@@ -58,10 +59,15 @@ impl CameraMatrices {
 }
 
 impl CameraConnection {
-    /// The connection, if its point is on the film and its density is finite.
-    fn on_film(self) -> Option<CameraConnection> {
+    /// Whether its point is on the film.
+    pub fn is_on_film(&self) -> bool {
         let inside = |x: f32| (0.0..1.0).contains(&x);
-        (inside(self.film.x) && inside(self.film.y) && self.density.is_finite()).then_some(self)
+        inside(self.film.x) && inside(self.film.y)
+    }
+
+    /// The connection, if its numbers are finite.
+    fn if_finite(self) -> Option<CameraConnection> {
+        (self.film.is_finite() && self.density.is_finite()).then_some(self)
     }
 }
 
@@ -71,7 +77,7 @@ pub trait Camera: Send + Sync {
     fn ray(&self, sample: &CameraSample) -> Ray;
     /// Connects a point of the scene through a point on the lens (as in [`CameraSample`]) at a time in seconds.
     ///
-    /// This is the inverse of [`Camera::ray`]. `None` when the point is behind the camera or off the film.
+    /// This is the inverse of [`Camera::ray`], off the film too. `None` when the point is behind the camera.
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
     /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;

@@ -96,7 +96,7 @@ impl Camera for Orthographic {
         }
         let film = Vec2::new(x / (half_height * self.aspect), -y / half_height) * 0.5 + 0.5;
         let p = position + right * x + up * y;
-        CameraConnection { film, p, wi: -forward, density: self.density_of(&key) }.on_film()
+        CameraConnection { film, p, wi: -forward, density: self.density_of(&key) }.if_finite()
     }
 
     fn density(&self, ray: &Ray, _t: f32) -> f32 {

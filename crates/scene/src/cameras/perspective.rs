@@ -198,7 +198,7 @@ impl Camera for Perspective {
         let distance2 = away.length_squared();
         let distance = distance2.sqrt();
         let density = key.density(self.aspect, depth / distance, distance2);
-        CameraConnection { film, p, wi: -away / distance, density }.on_film()
+        CameraConnection { film, p, wi: -away / distance, density }.if_finite()
     }
 
     fn density(&self, ray: &Ray, t: f32) -> f32 {

@@ -41,8 +41,8 @@ impl<const N: usize> Connection<N> {
     }
 }
 
-/// Connects a vertex of a light subpath with the camera (t = 1): the position on the film, and the light there as an
-/// integral over the whole film.
+/// Connects a vertex of a light subpath with the camera (t = 1): the position on the film or where pixels reach beyond its
+/// edge, and the light there as an integral over the whole film.
 pub(crate) fn to_camera<const N: usize>(
     task: &mut Task,
     y: &Vertex<N>,
@@ -51,6 +51,9 @@ pub(crate) fn to_camera<const N: usize>(
     let u_lens = task.sampler.next_2d();
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
+    if !task.reach.contains(seen.film) {
+        return None;
+    }
     let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
     if scattered.is_black() || task.scene().camera_sees_through(&y.surface, seen.wi) {
         return None;

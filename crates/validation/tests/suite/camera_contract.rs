@@ -137,13 +137,17 @@ const PLANTED: &[(&str, &str, &str, Defect)] = &[
     (
         "the film's edge clamped",
         "upright",
-        "nothing behind the camera or off the film is visible",
+        "nothing behind the camera is visible, and what is beside the film is found beside it",
         |c, from, lens, time| {
-            c.connect(from, lens, time).or_else(|| {
-                let middle = c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time });
-                c.connect(Vec3::from(middle.at(1.0)), lens, time)
-            })
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { film: seen.film.clamp(Vec2::ZERO, Vec2::splat(0.999)), ..seen })
         },
+    ),
+    (
+        "nothing is found beside the film",
+        "upright",
+        "nothing behind the camera is visible, and what is beside the film is found beside it",
+        |c, from, lens, time| c.connect(from, lens, time).filter(CameraConnection::is_on_film),
     ),
     (
         "a film 2% too wide",
@@ -157,7 +161,7 @@ const PLANTED: &[(&str, &str, &str, Defect)] = &[
     (
         "what is behind is seen",
         "lens",
-        "nothing behind the camera or off the film is visible",
+        "nothing behind the camera is visible, and what is beside the film is found beside it",
         |c, from, lens, time| {
             let eye = Vec3::from(c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time }).origin);
             c.connect(from, lens, time).or_else(|| c.connect(eye * 2.0 - from, lens, time))

@@ -79,7 +79,7 @@ pub(super) fn learn(
             }
         }
         for seen in wall.in_order().into_iter().flat_map(|finds| finds.there) {
-            let index = grid.tile_at(seen.film);
+            let Some(index) = grid.tile_at(seen.film) else { continue };
             let share = 1.0 / (tiles[index].pixels() as f64 * f64::from(SAMPLES));
             lessons.means[index] += seen.light * share;
             lessons.finds.push((index as u32, seen.cell, seen.square / (1.0 + near)));

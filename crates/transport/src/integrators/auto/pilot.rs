@@ -112,12 +112,15 @@ impl Grid {
         (along(x, 0), along(y, 1))
     }
 
-    /// The tile at a point of the film (0..=1).
-    pub(super) fn tile_at(&self, film: Vec2) -> usize {
+    /// The tile at a point of the film (0..1); `None` beyond its edge, from where little light comes into the picture.
+    pub(super) fn tile_at(&self, film: Vec2) -> Option<usize> {
         let [width, height] = self.size;
+        if film.cmplt(Vec2::ZERO).any() || film.cmpge(Vec2::ONE).any() {
+            return None;
+        }
         let place = (film * Vec2::new(width as f32, height as f32)).as_uvec2();
         let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
-        (place[1] * width.div_ceil(BLOCK) + place[0]) as usize
+        Some((place[1] * width.div_ceil(BLOCK) + place[0]) as usize)
     }
 }
 
@@ -234,7 +237,7 @@ fn one_sample(
                 *sum += found / f64::from(SAMPLES);
             }
             for (film, seen) in &look.seen {
-                let index = grid.tile_at(*film);
+                let Some(index) = grid.tile_at(*film) else { continue };
                 pilot.blocks[index].add(&Sample::seen(seen), share(&tiles[index]));
             }
         }
