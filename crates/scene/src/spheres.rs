@@ -28,6 +28,11 @@ impl PlacedSphere {
         Sphere { centre: self.centre.to_array(), radius: self.radius }
     }
 
+    /// Where the infinite line of a ray enters and leaves, in lengths of the ray's direction; `None` where it misses.
+    pub(crate) fn chord(&self, ray: &Ray) -> Option<[f64; 2]> {
+        self.shape().chord(ray)
+    }
+
     /// The point with this unit normal, and the bound on its error, per axis.
     pub(crate) fn point(&self, n: DVec3) -> (Vec3, Vec3) {
         let p = (self.centre.as_dvec3() + n * f64::from(self.radius)).as_vec3();
@@ -133,7 +138,7 @@ impl Spheres {
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let sphere = &self.all[hit.primitive as usize];
         let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-        let [enter, leave] = sphere.shape().chord(ray).unwrap_or([f64::from(hit.t); 2]);
+        let [enter, leave] = sphere.chord(ray).unwrap_or([f64::from(hit.t); 2]);
         // If two roots round to the same number, take the nearer one, unless the ray starts past it.
         let enters = hit.t == enter as f32 && ray.exclude != hit.primitive();
         let t = if enters { enter } else { leave };

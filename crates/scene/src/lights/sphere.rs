@@ -11,10 +11,11 @@ use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::spheres::PlacedSphere;
 use crate::surface::Surface;
-use bilux_accel::Primitive;
+use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
-use std::f32::consts::PI;
+use bilux_math::transcendental::sin_cos;
+use bilux_math::{Aabb, DVec3, Frame, Rgb, Vec2, Vec3, warp};
+use std::f32::consts::{PI, TAU};
 
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
@@ -74,9 +75,9 @@ pub struct SphereLight {
 /// The bounding cone of a sphere, as seen from outside.
 struct Cone {
     /// Unit, towards the centre.
-    axis: Vec3,
+    axis: DVec3,
     /// Square of the sine of the angle between the axis and the rim.
-    sin2_max: f32,
+    sin2_max: f64,
     /// 1 minus the cosine of that angle.
     height: f32,
 }
@@ -99,7 +100,7 @@ impl SphereLight {
 
     /// A ray from the point whose normal is `n_light`, emitted with the density `pdf` of its cosine.
     fn ray(&self, n_light: Vec3, direction: Vec3, pdf: impl Fn(f32) -> f32) -> Option<EmissionSample> {
-        let (p, p_error) = self.sphere.point(n_light.as_dvec3());
+        let (p, p_error) = self.sphere.point(n_light.as_dvec3().normalize());
         let cos = n_light.dot(direction);
         let pdf_emission = pdf(cos);
         (cos > 0.0 && pdf_emission.is_finite() && pdf_emission > 0.0).then_some(EmissionSample {
@@ -123,11 +124,14 @@ impl SphereLight {
         let sin2_max = radius2 / distance2;
         let height = (sin2_max / (1.0 + (1.0 - sin2_max).max(0.0).sqrt())) as f32;
         let is_seen = distance2 > radius2 && height.is_normal();
-        is_seen.then(|| Cone { axis: axis.as_vec3(), sin2_max: sin2_max as f32, height })
+        is_seen.then_some(Cone { axis, sin2_max, height })
     }
 
     /// See [`LightSample::clearance`]: the point is off the sphere by at most `error`, and a ray towards it at this
     /// cosine hits the sphere no earlier than where it leaves that depth. At most half of the distance.
+    ///
+    /// The point is rounded to an f32, and so is the ray towards it. Whatever came before is in f64: an error relative to the
+    /// radius could be as large as the distance from a point close to the sphere.
     fn clearance(&self, from: Vec3, point: Vec3, cos: f32) -> f32 {
         let distance = point.distance(from);
         let size = distance + from.abs().max_element().max(point.abs().max_element());
@@ -138,28 +142,40 @@ impl SphereLight {
     }
 }
 
-impl Light for SphereLight {
-    fn sample_li(&self, from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
-        let cone = self.cone(from)?;
-        let wi = warp::sample_cap(u, cone.height);
+impl Cone {
+    /// A direction, uniform over the cone, and the normal of the sphere where it is hit first, both unit vectors; and the cosine
+    /// between them.
+    ///
+    /// In f64: close to the sphere, a small angle at its centre is a large one at the receiver.
+    fn sample(&self, u: Vec2) -> (DVec3, DVec3, f64) {
+        let below = f64::from(u.x) * f64::from(self.height);
+        let (sin2_theta, cos_theta) = (below * (2.0 - below), 1.0 - below);
         // The angles at the receiver, at the point on the light and, between them, at its centre. [pbrt 2023, 6.2.4]
-        let (sin_theta, cos_theta) = ((wi.x * wi.x + wi.y * wi.y).sqrt(), wi.z);
-        let sin2_light = (sin_theta * sin_theta / cone.sin2_max).min(1.0);
+        let (sin_theta, sin2_light) = (sin2_theta.max(0.0).sqrt(), (sin2_theta / self.sin2_max).min(1.0));
         let (sin_light, cos_light) = (sin2_light.sqrt(), (1.0 - sin2_light).sqrt());
         let cos_middle = cos_light * cos_theta + sin_light * sin_theta;
         let sin_middle = sin_light * cos_theta - cos_light * sin_theta;
-        let aside = Vec2::new(wi.x, wi.y).normalize_or_zero() * sin_middle;
-        let frame = Frame::from_normal(cone.axis);
-        let (wi, n) = (frame.to_world(wi), frame.to_world(aside.extend(-cos_middle)));
-        let (wi, n_light) = (wi.normalize(), n.normalize());
-        let (point, _) = self.sphere.point(n_light.as_dvec3());
+        let (sin, cos) = sin_cos(TAU * u.y);
+        let (right, up) = self.axis.any_orthonormal_pair();
+        let aside = right * f64::from(cos) + up * f64::from(sin);
+        let wi = self.axis * cos_theta + aside * sin_theta;
+        let n = aside * sin_middle - self.axis * cos_middle;
+        (wi.normalize(), n.normalize(), cos_light)
+    }
+}
+
+impl Light for SphereLight {
+    fn sample_li(&self, from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
+        let cone = self.cone(from)?;
+        let (wi, n, cos_light) = cone.sample(u);
+        let (wi, n_light, point) = (wi.as_vec3(), n.as_vec3(), self.sphere.point(n).0);
         (-n_light.dot(wi) > 0.0).then(|| LightSample {
             wi,
             li: self.radiance,
             point: Some(point),
             n_light,
             pdf_solid_angle: warp::cap_pdf_solid_angle(cone.height),
-            clearance: self.clearance(from, point, cos_light),
+            clearance: self.clearance(from, point, cos_light as f32),
         })
     }
 
@@ -232,15 +248,18 @@ impl LightTracing for SphereLight {
 
 impl ClassicLighting for SphereLight {
     fn classic(&self, from: Vec3, _time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
-        let radius = self.sphere.radius;
-        let within = warp::sample_sphere(u) * (radius * extent);
+        let within = warp::sample_sphere(u) * (self.sphere.radius * extent);
         let position = self.sphere.centre + within;
         let wi = (position - from).try_normalize()?;
         // Only up to the surface: the rest of the segment is inside the light, where nothing casts shadows.
-        let along = within.dot(wi);
-        let inside = along + (along * along + (radius * radius - within.length_squared()).max(0.0)).sqrt();
-        let margin = self.clearance(from, position, 1.0);
-        let clearance = (inside / position.distance(from) + 2.0 * margin).min(0.5);
+        let (origin, along) = (from.as_dvec3(), (position - from).as_dvec3());
+        let chord = self.sphere.chord(&Ray::new(from.to_array(), (position - from).to_array()));
+        let enter = chord.map_or(1.0, |[enter, _]| enter.clamp(0.0, 1.0));
+        let point = origin + along * enter;
+        let n = (point - self.sphere.centre.as_dvec3()).normalize_or_zero();
+        let cos = -n.dot(along.normalize_or_zero()).min(0.0);
+        let before = self.clearance(from, point.as_vec3(), cos as f32);
+        let clearance = (1.0 - enter * f64::from(1.0 - before)) as f32;
         Some(ClassicLight { wi, position: Some(position), strength: 1.0, clearance })
     }
 

@@ -2,6 +2,7 @@
 
 mod conventions;
 mod generators;
+mod irradiance;
 mod normal_maps;
 mod orientation;
 mod presets;
