@@ -1,12 +1,12 @@
 //! How bare files are shown: presets that the user asks for, and the studio for files without a camera or lights.
 
 use crate::Error;
-use bilux_formats::ReadOptions;
+use bilux_formats::{FormatError, ReadOptions};
 use bilux_pictures::Limits;
 pub use bilux_scene::presets::{
     Ground, PRESETS, PresetEntry, Studio, add_missing, apply, frame, set_upright, shadow_catcher,
 };
-use bilux_scene::{SceneBuilder, Spec, Value};
+use bilux_scene::{SceneBuilder, Span, Spec, Value, Warning};
 use std::path::Path;
 
 /// Returns a copy of the scene with a camera and lights added where they are missing, and with whatever the user asks
@@ -61,10 +61,17 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
         "[[light]]\nname = \"surroundings\"\nkind = \"environment\"\nradiance = {{ texture = \"{quoted}\" }}\n"
     );
     let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // A user who asks for it does not want a checker in its place.
-    let options = ReadOptions { strict: true, ..options.clone() };
+    let options = ReadOptions { strict: false, ..options.clone() };
     let read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options);
     let mut read = read.map_err(|error| picture_fault(picture, &options).unwrap_or(error.into()))?;
+    // A user who asks for it does not want a grey in its place.
+    let is_lost = |warning: &Warning| warning.message.starts_with("a texture is replaced");
+    if let Some(lost) = read.warnings.iter().position(is_lost) {
+        let error = FormatError::Strict(read.warnings.swap_remove(lost));
+        return Err(picture_fault(picture, &options).unwrap_or(error.into()));
+    }
+    // A place in the text above would mean nothing.
+    scene.warnings.extend(read.warnings.drain(..).map(|warning| Warning { at: Span::default(), ..warning }));
     let before = scene.textures.len();
     scene.textures.append(&mut read.textures);
     scene.files.append(&mut read.files);

@@ -248,6 +248,7 @@ fn flow(
         scene.up = row.up;
     }
     reading.settle(spent, textures, &scene);
+    scene.warnings.append(&mut reading.picture_faults);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),

@@ -50,6 +50,56 @@ fn image_of(mut picture: Picture, means: SampleMeaning) -> Option<Image> {
     Some(Image { width, height, texels })
 }
 
+/// The largest number of half floats. Programs that write them turn what is brighter, such as the sun, into infinity.
+const BRIGHTEST_HALF: f32 = 65504.0;
+/// As bright as light may be that is given as a number.
+const BRIGHTEST: f32 = 1e12;
+
+/// A kind of number that no texel can have, and what is used in its place.
+struct Fault {
+    words: &'static str,
+    is: fn(f32) -> bool,
+    instead: f32,
+}
+
+/// All that is wrong with numbers; the first two are wrong with colours and with data, the others with colours alone.
+const FAULTS: [Fault; 5] = [
+    Fault { words: "NaN", is: f32::is_nan, instead: 0.0 },
+    Fault { words: "infinite", is: |x| x == f32::INFINITY, instead: BRIGHTEST_HALF },
+    Fault { words: "minus infinity", is: |x| x == f32::NEG_INFINITY, instead: 0.0 },
+    Fault { words: "negative", is: |x| x < 0.0, instead: 0.0 },
+    Fault { words: "above 1e12", is: |x| x > BRIGHTEST, instead: BRIGHTEST },
+];
+
+/// Replaces numbers that no texel can have; returns what was wrong, where first, and what is used instead.
+pub(crate) fn mend(image: &mut Image, is_data: bool) -> Option<String> {
+    let Texels::Floats { colours, .. } = &mut image.texels else { return None };
+    let faults = &FAULTS[..if is_data { 3 } else { 5 }];
+    let mut found = [(0usize, 0usize); FAULTS.len()];
+    for (i, colour) in colours.iter_mut().enumerate() {
+        let fault_of = |c: f32| faults.iter().position(|fault| (fault.is)(c));
+        let wrong = colour.to_array().map(fault_of);
+        if wrong == [None; 3] {
+            continue;
+        }
+        *colour = colour.map(|c| fault_of(c).map_or(c, |k| faults[k].instead));
+        for (_, (count, first)) in found.iter_mut().enumerate().filter(|(k, _)| wrong.contains(&Some(*k))) {
+            *first = if *count == 0 { i } else { *first };
+            *count += 1;
+        }
+    }
+    let (width, said) = (image.width.max(1), faults.iter().zip(found).filter(|(_, (count, _))| *count > 0));
+    let said: Vec<String> = said
+        .map(|(Fault { words, instead, .. }, (count, first))| {
+            let (texels, x, y) =
+                (if count == 1 { "texel is" } else { "texels are" }, first % width, first / width);
+            let first = if count == 1 { "at" } else { "the first at" };
+            format!("{count} {texels} {words}, {first} ({x}, {y}), and taken as {instead}")
+        })
+        .collect();
+    (!said.is_empty()).then(|| said.join("; "))
+}
+
 fn are_bytes(samples: &[f32]) -> bool {
     samples.iter().all(|&sample| f32::from(byte(sample)) / 255.0 == sample)
 }
@@ -107,6 +157,32 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Each fault is named with the place of its first texel, counted from the upper left, and replaced; sound texels stay.
+    #[test]
+    fn impossible_texels_are_named_and_replaced() {
+        let image = |fault: f32| {
+            let mut colours = vec![Rgb::new(0.25, 3.0, 900.0); 12];
+            colours[7].g = fault;
+            colours[9].b = fault;
+            Image { width: 4, height: 3, texels: Texels::Floats { colours, alpha: Vec::new() } }
+        };
+        for (fault, words, instead) in [
+            (f32::NAN, "NaN", 0.0),
+            (f32::INFINITY, "infinite", 65504.0),
+            (f32::NEG_INFINITY, "minus infinity", 0.0),
+            (-0.5, "negative", 0.0),
+            (3e38, "above 1e12", 1e12),
+        ] {
+            let mut light = image(fault);
+            let said = mend(&mut light, false).unwrap();
+            assert!(said.contains(&format!("2 texels are {words}, the first at (3, 1)")), "{said}");
+            assert_eq!(light, image(instead));
+            let mut data = image(fault);
+            assert_eq!(mend(&mut data, true).is_some(), !fault.is_finite(), "{fault} as a number");
+        }
+        assert_eq!(mend(&mut image(1e12), false), None);
     }
 
     /// Covers eight and sixteen bits, and thus both representations of texels.

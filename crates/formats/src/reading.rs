@@ -1,7 +1,7 @@
 //! The shared state of one read: the options, the memory used, and the files involved.
 
 use crate::budget::Budget;
-use crate::images::{SampleMeaning, decoded};
+use crate::images::{SampleMeaning, decoded, mend};
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
@@ -55,6 +55,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) working_folder: Option<PathBuf>,
     textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
     texture_bytes: u64,
+    /// What was wrong with the texels of pictures, until the scene that uses them is read.
+    pub(crate) picture_faults: Vec<Warning>,
     /// Scenes inserted into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
     /// Meshes that already count against the budget for good.
@@ -80,6 +82,7 @@ impl<'o> Reading<'o> {
             working_folder: None,
             textures: HashMap::new(),
             texture_bytes: 0,
+            picture_faults: Vec::new(),
             models: HashMap::new(),
             counted: HashSet::new(),
             open: Vec::new(),
@@ -121,12 +124,16 @@ impl<'o> Reading<'o> {
         let image = decoded(bytes, hint, means, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
-        let image = image.ok_or_else(|| {
+        let mut image = image.ok_or_else(|| {
             FormatError::malformed(
                 format!("the texture '{name}' has no colour channels: use another picture"),
                 at.clone(),
             )
         })?;
+        if let Some(what) = mend(&mut image, means == SampleMeaning::Numbers) {
+            let message = format!("the texture '{name}': {what}");
+            self.picture_faults.push(Warning { message, at: at.clone() });
+        }
         self.charge_image(&image, name)?;
         Ok(image)
     }
