@@ -6,7 +6,8 @@ pub enum Sides {
     /// Both sides.
     #[default]
     Both,
-    /// The side from which the corners of a triangle are counter-clockwise.
+    /// The side from which the corners of a triangle are counter-clockwise in its own mesh. A transform that mirrors keeps the
+    /// side: what was the outside of a solid still is.
     Front,
 }
 

@@ -29,7 +29,8 @@ pub(super) const EMISSION_SCALE: Parameter = Parameter {
 /// The emitting sides.
 pub(super) const EMISSION_SIDES: Parameter = Parameter {
     name: "emission_sides",
-    summary: "which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise",
+    summary: "which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its \
+              own mesh; a mirrored copy keeps its front",
     unit: "",
     kind: ParameterKind::Choice(Sides::NAMES),
     default: "both",

@@ -16,8 +16,8 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         parameters: &[
             tone("a", "colour of the lower left square and of every other square from there", "1 1 1"),
             tone("b", "colour of the other squares", "0 0 0"),
-            u_scale("8"),
-            v_scale("8"),
+            u_scale("factor on u: the number of squares across", "8"),
+            v_scale("factor on v: the number of squares upwards", "8"),
             U_OFFSET,
             V_OFFSET,
         ],

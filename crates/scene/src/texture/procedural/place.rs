@@ -15,12 +15,13 @@ const fn number(name: &'static str, summary: &'static str, default: &'static str
     Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: -1e6, max: 1e6 }, default }
 }
 
-pub(super) const fn u_scale(default: &'static str) -> Parameter {
-    number("u_scale", "factor on u: the number of periods across; gradients have only one", default)
+/// `summary` says what the factor counts.
+pub(super) const fn u_scale(summary: &'static str, default: &'static str) -> Parameter {
+    number("u_scale", summary, default)
 }
 
-pub(super) const fn v_scale(default: &'static str) -> Parameter {
-    number("v_scale", "factor on v: the same upwards", default)
+pub(super) const fn v_scale(summary: &'static str, default: &'static str) -> Parameter {
+    number("v_scale", summary, default)
 }
 
 pub(super) const U_OFFSET: Parameter = number("u_offset", "offset added to u afterwards", "0");
