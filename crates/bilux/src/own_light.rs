@@ -1,29 +1,47 @@
-//! Whether a file's own light or the studio lights its picture, decided by how much of what the camera sees the file's
-//! light reaches.
+//! What a scene's own light means for its picture, decided by how much of what the camera sees it reaches, and how brightly:
+//! whether the studio lights it, and how it is exposed.
 
 use crate::Error;
 use crate::camera_choice::choose_camera;
 use crate::job::shutter_at;
 use crate::presets::{self, Studio};
 use crate::settings::Settings;
+use bilux_math::transcendental::{log2, powf};
+use bilux_scene::presets::{added_lights, has_own_light, may_be_lit, seems_lit};
 use bilux_scene::{AccelChoice, BuiltParts, Scene, SceneBuilder};
 use bilux_transport::{Illumination, illumination};
 
 /// The fraction of the visible surfaces that a file's own light must reach for the studio to stay off.
 const ENOUGH: f32 = 0.5;
+/// The fraction that it must reach to count for the exposure.
+const SOME: f32 = 0.05;
+/// The outgoing radiance of a white surface that a display shows well, and by how many stops that may be missed.
+const SURFACE: [f32; 2] = [0.5, 1.5];
+/// The same for what emits light, where nothing else is visible.
+const EMITTER: [f32; 2] = [1.0, 3.0];
+/// Exposures are multiples of this many stops.
+const STEP: f32 = 0.25;
 
-/// The result of measuring a file's own light.
+/// What was found of a scene's own light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Judged {
+    /// Whether it lights what is visible; `None` if the file describes its surroundings, so that nothing is to be decided.
+    pub(crate) is_enough: Option<bool>,
+    /// Whether the user is told.
+    is_said: bool,
+    measured: Illumination,
+}
+
+/// The result of measuring a scene's own light.
 pub(crate) struct OwnLight {
-    /// Whether it lights what is visible.
-    pub(crate) is_enough: bool,
-    /// What was decided, as text for the user; `None` if nobody would expect anything else.
-    pub(crate) decision: Option<String>,
+    pub(crate) judged: Judged,
     /// The scene with only its own light, and the trees over it.
     pub(crate) alone: (SceneBuilder, Scene),
 }
 
-/// Measures the own light of a scene whose file says nothing about its surroundings, in each of these views; returns
-/// `None` if there is nothing to decide. The view in which it reaches least decides for all.
+/// Measures the own light of a scene whose file says nothing about its surroundings or about its exposure, in each of these
+/// views; returns `None` if there is nothing to decide. The view in which it reaches least decides about the studio for all, and
+/// the brightest about the exposure.
 ///
 /// # Errors
 /// If anything in the scene is wrong.
@@ -34,7 +52,8 @@ pub(crate) fn measure(
     accel: &AccelChoice,
     known: &mut BuiltParts,
 ) -> Result<Option<OwnLight>, Error> {
-    if !bilux_scene::presets::may_be_lit(scene) {
+    let decides = may_be_lit(scene);
+    if !decides && !(scene.exposure_unspecified && has_own_light(scene)) {
         return Ok(None);
     }
     let mut framed = scene.clone();
@@ -49,12 +68,17 @@ pub(crate) fn measure(
     // If a file has lights, and no surfaces that emit, the studio's surroundings are there for metal to reflect.
     let gets_surroundings = scene.lights.iter().any(|light| !light.is_backdrop());
     let others = others.map(|camera| illumination(&built, &**camera, gets_surroundings));
-    let least = |a: Illumination, b: Illumination| if reached(&b) < reached(&a) { b } else { a };
-    let measured = others.fold(illumination(&built, &*camera, gets_surroundings), least);
-    let is_enough = reached(&measured) >= ENOUGH;
-    let is_said = is_enough || bilux_scene::presets::seems_lit(scene);
-    let decision = is_said.then(|| decision(&measured, is_enough));
-    Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
+    let measured = others.fold(illumination(&built, &*camera, gets_surroundings), worst);
+    let is_enough = decides.then(|| reached(&measured) >= ENOUGH);
+    let is_said = is_enough == Some(true) || decides && seems_lit(scene);
+    let judged = Judged { is_enough, is_said, measured };
+    Ok(Some(OwnLight { judged, alone: (framed, built) }))
+}
+
+/// Of two views, what the one that light reaches less shows, as bright as in the brighter one.
+fn worst(a: Illumination, b: Illumination) -> Illumination {
+    let least = if reached(&b) < reached(&a) { b } else { a };
+    Illumination { level: a.level.max(b.level), glow: a.glow.max(b.glow), ..least }
 }
 
 /// True if nothing but a camera was added to a scene.
@@ -68,23 +92,72 @@ fn reached(measured: &Illumination) -> f32 {
     if measured.surfaces > 0.0 { measured.lit } else { 0.0 }
 }
 
-fn decision(measured: &Illumination, is_enough: bool) -> String {
-    let percent = (measured.lit * 100.0).round();
-    if measured.surfaces == 0.0 {
-        return "the studio lights it: everything visible in it is an emitter that lights nothing else (--env none \
-                turns the studio off)"
-            .to_owned();
+impl Judged {
+    /// The exposure, in stops, with which a display shows what the scene's own light lights; 0 where it is as bright as usual, or
+    /// lights next to nothing.
+    pub(crate) fn exposure(&self) -> f32 {
+        let Illumination { surfaces, lit, level, glow } = self.measured;
+        let (level, [wanted, tolerance]) = match surfaces > 0.0 {
+            true if lit < SOME => return 0.0,
+            true => (level, SURFACE),
+            false => (glow, EMITTER),
+        };
+        let stops = if level > 0.0 { log2(wanted / level) } else { 0.0 };
+        // Where its own light is dim, the studio's is not.
+        let is_usual = stops.abs() <= tolerance || stops > 0.0 && self.is_enough == Some(false);
+        if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
     }
-    match is_enough {
-        true => {
-            format!(
-                "only its own lights light it: they reach {percent}% of the visible surfaces (--preset studio \
-                     adds the studio's)"
-            )
+
+    /// How many times brighter than usual the scene is.
+    pub(crate) fn brightness(&self) -> f32 {
+        powf(2.0, -self.exposure())
+    }
+
+    fn decision(&self, added: Option<&str>) -> Option<String> {
+        let percent = (self.measured.lit * 100.0).round();
+        let added = added.unwrap_or("nothing");
+        Some(match self.is_enough.filter(|_| self.is_said)? {
+            true if added != "nothing" => format!(
+                "its own lights light it: they reach {percent}% of the visible surfaces; the studio adds {added} \
+                 (--env none leaves them out)"
+            ),
+            true => format!(
+                "only its own lights light it: they reach {percent}% of the visible surfaces (--preset studio adds \
+                 the studio's)"
+            ),
+            false if self.measured.surfaces == 0.0 => format!(
+                "the studio lights it with {added}: everything visible in it is an emitter that lights nothing else \
+                 (--env none turns the studio off)"
+            ),
+            false => format!(
+                "the studio lights it with {added}: its own lights reach only {percent}% of the visible surfaces \
+                 (--env none turns the studio off)"
+            ),
+        })
+    }
+}
+
+/// What is worth telling about the light of a completed scene, in one line: what the studio has added, and how the picture is
+/// exposed. `count` is the number of lights that the scene had before.
+pub(crate) fn note(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {
+    let judged = settings.own_light.as_ref();
+    let exposes = settings.is_exposed_by_own_light();
+    let added = added_lights(completed, count);
+    let is_dark = completed.describes_all_light && !has_own_light(completed);
+    let light = match (judged.and_then(|judged| judged.decision(added.as_deref())), &added) {
+        (Some(decision), _) => Some(decision),
+        (None, Some(added)) => {
+            Some(format!("the studio lights it with {added}, since nothing in the file does"))
         }
-        false => format!(
-            "the studio lights it: its own lights reach only {percent}% of the visible surfaces (--env none turns the \
-             studio off)"
-        ),
-    }
+        (None, None) if is_dark => {
+            Some("the file has no light, so everything is black (--preset studio lights it)".to_owned())
+        }
+        (None, None) => None,
+    };
+    let exposure = judged.map(Judged::exposure).filter(|stops| exposes && *stops != 0.0).map(|stops| {
+        format!("its own light is too {} for a display, so the picture is exposed by {stops:+} EV (--exposure 0 shows \
+                 it as it is)", if stops < 0.0 { "bright" } else { "dim" })
+    });
+    let parts: Vec<String> = light.into_iter().chain(exposure).collect();
+    (!parts.is_empty()).then(|| parts.join("; "))
 }

@@ -3,6 +3,7 @@
 
 use crate::built::Built;
 use crate::memory::Memory;
+use crate::own_light::Judged;
 use crate::presets::{Studio, set_upright};
 use crate::settings::Settings;
 use crate::{Error, Job, own_light};
@@ -16,10 +17,8 @@ const MAX_VIEWS: u32 = 8;
 pub struct Series {
     /// The part of a full turn by which the camera has moved around a model that is framed for the whole turn.
     turn: Option<f32>,
-    /// Whether the scene's own light is enough, where that was decided.
-    lit: Option<bool>,
-    /// What was decided, as text for the user.
-    notes: Vec<String>,
+    /// What was found of the scene's own light, in the first picture or in all views.
+    own_light: Option<Judged>,
 }
 
 impl Series {
@@ -47,11 +46,7 @@ impl Series {
         set_upright(&mut upright, &views[0]);
         let accel = settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum());
         let own = own_light::measure(&upright, &views, &settings, &accel, &mut BuiltParts::default())?;
-        Ok(Series {
-            turn: Some(0.0),
-            lit: own.as_ref().map(|own| own.is_enough),
-            notes: own.and_then(|own| own.decision).into_iter().collect(),
-        })
+        Ok(Series { turn: Some(0.0), own_light: own.map(|own| own.judged) })
     }
 
     /// Picture `index` of `count` of a turntable.
@@ -101,18 +96,14 @@ impl Job {
         built: &mut Built,
     ) -> Result<Job, Error> {
         let mut settings = checked(scene, user, most)?;
-        (settings.studio.turn, settings.studio.lit) = (series.turn, series.lit);
+        (settings.studio.turn, settings.own_light) = (series.turn, series.own_light);
         let mut job = Job::reusing(scene, settings, built)?;
         job.warnings.extend(job.settings.unused_settings(user));
-        if series.lit.is_some() {
-            job.notes.clone_from(&series.notes);
-        }
         Ok(job)
     }
 
     /// The series of this picture and of those that are to be lit as it is.
     pub fn series(&self) -> Series {
-        let studio = &self.settings.studio;
-        Series { turn: studio.turn, lit: studio.lit, notes: self.notes.clone() }
+        Series { turn: self.settings.studio.turn, own_light: self.settings.own_light }
     }
 }

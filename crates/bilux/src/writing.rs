@@ -47,6 +47,19 @@ pub fn lost_alpha(picture: &Picture, path: &Path, behind: Option<Rgb>) -> Result
     Ok(Some(Warning { message, at: Span::default() }))
 }
 
+impl Settings {
+    /// Whether pictures for a display are exposed by the scene's own light: nobody says how, and the shading is radiometric.
+    pub(crate) fn is_exposed_by_own_light(&self) -> bool {
+        !(self.states_exposure || self.auto_exposure || self.linear_transfer || self.integrator.classic)
+    }
+
+    /// The exposure of pictures for a display, in stops, without what automatic exposure adds.
+    pub fn display_exposure(&self) -> f32 {
+        let own = self.own_light.filter(|_| self.is_exposed_by_own_light());
+        self.exposure + own.map_or(0.0, |judged| judged.exposure())
+    }
+}
+
 impl Job {
     /// The options for writing a picture of this job, with automatic exposure if the settings ask for it.
     ///
@@ -74,7 +87,8 @@ impl Job {
             Background::Colour(colour) => Some(colour),
             Background::Surroundings | Background::Transparent => None,
         };
-        Ok(WriteOptions { exposure: self.settings.exposure, tone_map, behind, ..WriteOptions::default() })
+        let exposure = self.settings.display_exposure();
+        Ok(WriteOptions { exposure, tone_map, behind, ..WriteOptions::default() })
     }
 
     /// How its pictures are to be shown.

@@ -210,7 +210,7 @@ pub struct Render {
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
     pub crop: Option<[u32; 4]>,
     /// Brighten by this many stops (powers of two), or automatically to the brightness of a photograph
-    /// [default: 0]
+    /// [default: 0, or what a display needs to show the light that a glTF or OBJ file brings]
     #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Option<Exposure>,
     /// The tone-mapping curve (`bilux list tonemaps`) [default: auto]

@@ -70,6 +70,10 @@ pub struct SceneBuilder {
     pub cameras: Vec<CameraSpec>,
     /// The file's format has light sources, but cannot describe the environment around a scene.
     pub environment_unspecified: bool,
+    /// The file's format has light sources, but cannot state how a picture is exposed.
+    pub exposure_unspecified: bool,
+    /// The file describes all light that its scene has, so that a scene without any is black.
+    pub describes_all_light: bool,
     /// The up axis, as far as the file or its format states it.
     pub up: UpHint,
     /// Metres per unit of length of the file; 0 means one metre, as in scenes that state no unit.

@@ -1,5 +1,5 @@
 //! How well a scene's own lights illuminate what a camera sees, if everything were clay: the studio uses this to decide
-//! whether it is needed.
+//! whether it is needed, and how a picture is exposed that nobody has exposed.
 //!
 //! A pure function of the scene and the camera: it returns the same numbers for any number of threads, and reads no
 //! clock.
@@ -35,6 +35,21 @@ pub struct Illumination {
     pub surfaces: f32,
     /// The fraction of these surfaces that light reaches.
     pub lit: f32,
+    /// The median, over the surfaces that light reaches, of the outgoing radiance of a white surface there, as luminance; 0 if
+    /// there are none.
+    pub level: f32,
+    /// The median luminance of the emissive surfaces that the camera sees; 0 if there are none.
+    pub glow: f32,
+}
+
+/// What the camera sees at a point of the film.
+enum Seen {
+    /// Neither a surface nor an emitter.
+    Nothing,
+    /// A surface that emits light, with its luminance.
+    Emitter(f32),
+    /// Any other surface, with the outgoing radiance of a white one there, as luminance.
+    Surface(f32),
 }
 
 /// Measures a scene through a camera. Metal counts as clay if it `gets_surroundings` to reflect, and otherwise as what
@@ -43,33 +58,49 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera, gets_surroundings: bool)
     let lights = LightChoice::new(scene);
     let of_row = |y: u32| {
         let mut tracer = Tracer::new(scene, false);
-        let row = (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, gets_surroundings, [x, y]));
-        row.fold((0, 0), |(seen, lit), light| match light {
-            None => (seen, lit),
-            Some(light) => (seen + 1, lit + u32::from(light >= DARK)),
-        })
+        (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, gets_surroundings, [x, y])).collect()
     };
-    let (seen, lit) = (0..GRID).into_par_iter().map(of_row).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    Illumination { surfaces: seen as f32 / (GRID * GRID) as f32, lit: lit as f32 / seen.max(1) as f32 }
+    let rows: Vec<Vec<Seen>> = (0..GRID).into_par_iter().map(of_row).collect();
+    let (mut surfaces, mut emitters) = (Vec::new(), Vec::new());
+    for seen in rows.into_iter().flatten() {
+        match seen {
+            Seen::Nothing => {}
+            Seen::Emitter(light) => emitters.push(light),
+            Seen::Surface(light) => surfaces.push(light),
+        }
+    }
+    let lit: Vec<f32> = surfaces.iter().copied().filter(|light| *light >= DARK).collect();
+    Illumination {
+        surfaces: surfaces.len() as f32 / (GRID * GRID) as f32,
+        lit: lit.len() as f32 / surfaces.len().max(1) as f32,
+        level: median(lit),
+        glow: median(emitters),
+    }
 }
 
-/// The outgoing radiance, as luminance, of a white surface at a point of the film; `None` where the camera sees no such
-/// surface.
+/// The median; 0 of nothing.
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_unstable_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// What the camera sees at a point of the film.
 fn at_point(
     tracer: &mut Tracer,
     camera: &dyn Camera,
     lights: &LightChoice,
     gets_surroundings: bool,
     [x, y]: [u32; 2],
-) -> Option<f32> {
+) -> Seen {
     let scene = tracer.scene;
     let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / GRID as f32;
     let sample = CameraSample { film, lens: Vec2::splat(0.5), time: scene.shutter()[0] };
     let ray = scene.from_camera(camera.ray(&sample));
-    let surface = beyond_glass(tracer, ray)?;
+    let Some(surface) = beyond_glass(tracer, ray) else { return Seen::Nothing };
     let wo = -Vec3::from(ray.direction);
-    if !scene.emission(&surface, wo).is_black() {
-        return None;
+    let emission = scene.emission(&surface, wo);
+    if !emission.is_black() {
+        return Seen::Emitter(emission.luminance());
     }
     let metal =
         Some(scene.material(&surface).classic(&surface)).filter(|it| !gets_surroundings && is_metal(it));
@@ -82,7 +113,7 @@ fn at_point(
             }
         })
         .sum();
-    Some(sum / SAMPLES as f32)
+    Seen::Surface(sum / SAMPLES as f32)
 }
 
 fn is_metal(material: &ClassicMaterial) -> bool {

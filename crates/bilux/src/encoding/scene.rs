@@ -75,8 +75,11 @@ impl Coded for SceneBuilder {
         objects.write(to);
         lights.write(to);
         cameras.write(to);
-        let SceneBuilder { environment_unspecified, up, unit, origin, stroke_widths, .. } = self;
+        let SceneBuilder { environment_unspecified, exposure_unspecified, describes_all_light, .. } = self;
         environment_unspecified.write(to);
+        exposure_unspecified.write(to);
+        describes_all_light.write(to);
+        let SceneBuilder { up, unit, origin, stroke_widths, .. } = self;
         up.write(to);
         unit.write(to);
         origin.write(to);
@@ -98,6 +101,8 @@ impl Coded for SceneBuilder {
             lights: Coded::read(from)?,
             cameras: Coded::read(from)?,
             environment_unspecified: Coded::read(from)?,
+            exposure_unspecified: Coded::read(from)?,
+            describes_all_light: Coded::read(from)?,
             up: Coded::read(from)?,
             unit: Coded::read(from)?,
             origin: Coded::read(from)?,

@@ -98,12 +98,14 @@ impl Job {
         };
         let mut completed = scene.clone();
         let orientation = crate::presets::set_upright(&mut completed, &studio);
-        let own = match studio.lit {
+        let own = match settings.own_light {
             None => own_light::measure(&completed, &[studio], &settings, &accel_of(scene), &mut known.alone)?,
             Some(_) => None,
         };
         known.keep_alone(own.is_some());
-        studio.lit = studio.lit.or(own.as_ref().map(|own| own.is_enough));
+        let judged = settings.own_light.or(own.as_ref().map(|own| own.judged));
+        studio.lit = judged.and_then(|judged| judged.is_enough);
+        studio.brightness = judged.map(|judged| judged.brightness());
         crate::presets::add_missing(&mut completed, &studio);
         settings.view.place(&mut completed, &settings.camera);
         let objects = completed.objects.len() as u32;
@@ -119,9 +121,10 @@ impl Job {
         let size = [settings.width, settings.height];
         bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let accel = accel_of(&completed);
-        settings.studio.lit = studio.lit;
+        settings.own_light = judged;
         let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
-        let notes = own.iter().filter_map(|own| own.decision.clone()).chain(of_curve).collect();
+        let note = own_light::note(&settings, &completed, scene.lights.len());
+        let notes = note.into_iter().chain(of_curve).collect();
         let shutter = shutter_at(&settings, settings.time);
         let built = match own.map(|own| own.alone) {
             Some((alone, built)) if own_light::is_as_large(&alone, &completed) => {

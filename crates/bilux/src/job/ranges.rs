@@ -93,8 +93,8 @@ impl Job {
 
     /// Takes over settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
     pub(crate) fn show(&mut self, settings: &Settings) {
-        let Settings { spp, threads, fps, exposure, auto_exposure, background, linear_transfer, .. } =
-            *settings;
+        let Settings { spp, threads, fps, exposure, states_exposure, auto_exposure, .. } = *settings;
+        let Settings { background, linear_transfer, .. } = *settings;
         let (tonemap, denoise) = (settings.tonemap.clone(), settings.denoise.clone());
         let own = self.settings.clone();
         self.settings = Settings {
@@ -102,6 +102,7 @@ impl Job {
             threads,
             fps,
             exposure,
+            states_exposure,
             auto_exposure,
             background,
             linear_transfer,

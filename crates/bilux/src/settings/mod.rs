@@ -8,8 +8,7 @@ mod size;
 mod studio;
 mod view;
 
-use crate::Error;
-use crate::presets::Studio;
+use crate::{Error, own_light::Judged, presets::Studio};
 use accel::accel_choice;
 pub use background::Background;
 use background::background;
@@ -110,7 +109,8 @@ pub const RENDER: Entry = Entry {
         choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
         number(
             "exposure",
-            "brightens display formats by this many stops (powers of two)",
+            "brightens display formats by this many stops (powers of two); if it is not given, a picture by the light of a \
+             glTF or OBJ file, where that is too bright or too dim for a display, is exposed to show it",
             "EV",
             -64.0,
             64.0,
@@ -237,6 +237,10 @@ pub struct Settings {
     pub corner_anchor: bool,
     /// The exposure of pictures for a display, in stops.
     pub exposure: f32,
+    /// Whether the file or the user states the exposure.
+    pub states_exposure: bool,
+    /// What was found of the scene's own light.
+    pub(crate) own_light: Option<Judged>,
     /// Whether automatic exposure is added to it.
     pub auto_exposure: bool,
     /// The name of the tone curve.
@@ -324,6 +328,8 @@ impl Settings {
             filters_textures: reader.text("texture_filter") == "footprint",
             corner_anchor: reader.text("pixel_anchor") == "corner",
             exposure: reader.number("exposure"),
+            states_exposure: reader.is_given("exposure"),
+            own_light: None,
             auto_exposure: reader.bool("auto_exposure"),
             tonemap: reader.text("tonemap"),
             denoise: reader.text("denoise"),

@@ -17,6 +17,8 @@ impl Settings {
                 threads: 0,
                 fps: 0.0,
                 exposure: 0.0,
+                states_exposure: false,
+                own_light: None,
                 auto_exposure: false,
                 tonemap: String::new(),
                 denoise: String::new(),

@@ -49,6 +49,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         aspect: None,
         cut_out: false,
         lit: None,
+        brightness: None,
     })
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// A scene in a format that cannot describe its surroundings, such as glTF.
 fn file() -> SceneBuilder {
-    SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() }
+    SceneBuilder { environment_unspecified: true, exposure_unspecified: true, ..SceneBuilder::default() }
 }
 
 fn put(scene: &mut SceneBuilder, mesh: Mesh, material: Spec) {
@@ -279,4 +279,163 @@ fn metal_around_a_bulb_counts_by_what_it_reflects() {
     let job = job(&helmet);
     let lights: Vec<&str> = job.scene().lights().iter().map(|light| light.name.as_str()).collect();
     assert_eq!(lights, ["mine", "room"], "{:?}", job.notes());
+}
+
+/// A floor of albedo 1/2 below a panel of 1 m by 1 m, 1 m above it, seen from between them; the panel's emission, and more.
+fn below_a_panel(emission: &str) -> SceneBuilder {
+    let text = format!(
+        "[camera]\nkind = \"orthographic\"\nposition = [0, 0.5, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, -1]\nheight = 0.02\n\
+         [[material]]\nname = \"floor\"\nkind = \"diffuse\"\nreflectance = 0.5\n\
+         [[material]]\nname = \"panel\"\nkind = \"diffuse\"\nreflectance = 0\n{emission}\n\
+         [[model]]\nshape = \"floor\"\nside = 20\nmaterial = \"floor\"\n\
+         [[model]]\nshape = \"floor\"\nside = 1\nmaterial = \"panel\"\ntranslate = [0, 1, 0]\n"
+    );
+    bilux::formats::read_bytes(text.as_bytes(), "toml", None, "a.toml", &Default::default()).unwrap()
+}
+
+/// The mean radiance of a picture.
+fn mean(scene: &SceneBuilder) -> f32 {
+    let mut settings = settings();
+    settings.set("integrator", "path");
+    settings.set("size", "8x8");
+    settings.set("spp", Value::Integer(64));
+    let picture = Job::new(scene, &settings).unwrap().render(&Quiet).unwrap().picture().unwrap();
+    let seen = picture.to_rgb().unwrap();
+    seen.iter().map(|p| p.g).sum::<f32>() / seen.len() as f32
+}
+
+/// The outgoing radiance of the floor for a panel of radiance 1: albedo / pi times four times the irradiance of a quarter above its
+/// corner. [Howell 2010, C-11]
+fn of_panel() -> f32 {
+    let (half, over) = (0.5f32, 0.5f32.hypot(1.0));
+    let corner = half / over * bilux::math::transcendental::atan(half / over);
+    0.5 / std::f32::consts::PI * 4.0 * corner
+}
+
+#[test]
+fn what_toml_and_pbrt_say_of_light_is_all_the_light() {
+    for (emission, radiance) in [
+        ("emission = 0.9", 0.9),
+        ("emission = 0.001", 0.001),
+        ("emission = [0, 0.5, 0]", 0.5),
+        ("emission = 0.09\nemission_scale = 10", 0.9),
+        ("emission = { kind = \"checker\", a = 0.6, b = 0.6 }", 0.6),
+        ("emission = 0", 0.0),
+        ("emission = 5\nemission_scale = 0", 0.0),
+        ("emission = { kind = \"checker\", a = 0, b = 0 }", 0.0),
+    ] {
+        let (found, expected) = (mean(&below_a_panel(emission)), radiance * of_panel());
+        assert!((found - expected).abs() <= 0.03 * expected, "{emission}: {found} instead of {expected}");
+    }
+    let pbrt = |light: &str| {
+        let text = format!(
+            "LookAt 0 0.5 0  0 0 0  0 0 -1 Camera \"orthographic\" \"float screenwindow\" [-.01 .01 -.01 .01]\n\
+             WorldBegin Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n\
+             Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-10 0 -10 10 0 -10 10 0 10 -10 0 10]\n\
+             Material \"diffuse\" \"rgb reflectance\" [0 0 0] {light} Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-.5 1 -.5 .5 1 -.5 .5 1 .5 -.5 1 .5]"
+        );
+        bilux::formats::read_bytes(text.as_bytes(), "pbrt", None, "a.pbrt", &Default::default()).unwrap()
+    };
+    let area =
+        |l: f32| format!("AreaLightSource \"diffuse\" \"rgb L\" [{l} {l} {l}] \"bool twosided\" [true]");
+    for (light, radiance) in [(area(0.5), 0.5), (area(0.01), 0.01), (area(0.0), 0.0), (String::new(), 0.0)] {
+        let (found, expected) = (mean(&pbrt(&light)), radiance * of_panel());
+        assert!((found - expected).abs() <= 0.03 * expected, "{light}: {found} instead of {expected}");
+    }
+    let note = job(&pbrt("")).notes()[0].clone();
+    assert!(note.contains("no light") && note.contains("--preset studio"), "{note}");
+    assert!(job(&below_a_panel("emission = 0.9")).notes().is_empty());
+}
+
+#[test]
+fn what_the_studio_adds_is_said() {
+    let mut bare = file();
+    put(&mut bare, cuboid(Vec3::NEG_ONE, Vec3::ONE), clay(0.5));
+    let all = "the studio lights it with a key light, a rim light and surroundings";
+    assert!(job(&bare).notes()[0].starts_with(all), "{:?}", job(&bare).notes());
+    bare.lights.push(Spec::new("sun", "directional").with("direction", Vec3::new(-0.5, -1.0, -0.8)));
+    let notes = job(&bare).notes().to_vec();
+    assert!(notes.len() == 1 && notes[0].contains("the studio adds surroundings"), "{notes:?}");
+}
+
+/// A model below a sun of so many lux.
+fn sunlit(lux: f32) -> SceneBuilder {
+    let mut scene = file();
+    put(&mut scene, cuboid(Vec3::NEG_ONE, Vec3::ONE), clay(0.5));
+    let sun = Spec::new("sun", "directional").with("direction", Vec3::new(-0.5, -1.0, -0.8));
+    scene.lights.push(sun.with("irradiance", lux));
+    scene
+}
+
+/// The pixels of the model as a display shows them, and the exposure.
+fn shown(scene: &SceneBuilder, user: &[(&str, Value)]) -> (Vec<f32>, f32, Vec<String>) {
+    let mut settings = settings();
+    user.iter().for_each(|(key, value)| settings.set(key, value.clone()));
+    let job = Job::new(scene, &settings).unwrap();
+    let picture = job.render(&Quiet).unwrap().picture().unwrap();
+    let options = job.write_options_for(&picture).unwrap();
+    let shown = bilux::pictures::tonemap::to_display(&picture, options.exposure, options.tone_map).unwrap();
+    let pixels = shown.to_rgb().unwrap().iter().map(|p| p.g).collect();
+    (pixels, options.exposure, job.notes().to_vec())
+}
+
+/// A picture of a model by its own light shows the model, in whatever units the light is, and as a model that is as bright as usual.
+#[test]
+fn own_light_of_any_brightness_is_exposed() {
+    let usual = shown(&sunlit(3.0), &[]);
+    assert_eq!(usual.1, 0.0, "{:?}", usual.2);
+    for lux in [10_000.0, 1e5, 64.0] {
+        let (pixels, exposure, notes) = shown(&sunlit(lux), &[]);
+        // A quarter of a stop is where exposures are rounded.
+        let wanted = -f64::from(bilux::math::transcendental::log2(lux / 3.0));
+        assert!(
+            (f64::from(exposure) - wanted).abs() < 1.5,
+            "{lux} lux: {exposure} EV, and about {wanted} expected"
+        );
+        assert!(notes.len() == 1 && notes[0].contains(&format!("{exposure:+} EV")), "{notes:?}");
+        assert!(notes[0].contains("--exposure 0"), "{notes:?}");
+        let mean = |pixels: &[f32]| pixels.iter().sum::<f32>() / pixels.len() as f32;
+        assert!(
+            (mean(&pixels) - mean(&usual.0)).abs() < 0.15,
+            "{lux} lux: {} and {}",
+            mean(&pixels),
+            mean(&usual.0)
+        );
+        let burnt = pixels.iter().filter(|p| **p > 0.99).count();
+        assert!(burnt * 10 < pixels.len(), "{lux} lux: {burnt} pixels are white");
+    }
+}
+
+#[test]
+fn the_exposure_is_the_users_or_the_files_where_they_state_it() {
+    let of = |user: &[(&str, Value)]| shown(&sunlit(10_000.0), user);
+    for stated in [0.0, -3.0] {
+        let (_, exposure, notes) = of(&[("exposure", Value::Number(stated))]);
+        assert!(f64::from(exposure) == stated && !notes.iter().any(|note| note.contains("EV")), "{notes:?}");
+    }
+    let mut said = sunlit(10_000.0);
+    said.settings.set("exposure", Value::Number(-9.0));
+    assert_eq!(shown(&said, &[]).1, -9.0);
+    // Formats that can state an exposure show light as it is.
+    let described =
+        SceneBuilder { environment_unspecified: false, exposure_unspecified: false, ..sunlit(10_000.0) };
+    assert_eq!(shown(&described, &[]).1, 0.0);
+    // Without the studio's surroundings (`--env none`) it is exposed too.
+    let alone = SceneBuilder { environment_unspecified: false, ..sunlit(10_000.0) };
+    let (_, exposure, notes) = shown(&alone, &[]);
+    assert!(exposure < -8.0 && notes.len() == 1, "{exposure} EV, {notes:?}");
+    // The radiance of the picture is that of the file's light, and the same for parts and any number of threads.
+    let whole = of(&[]);
+    assert_eq!(of(&[("threads", Value::Integer(2))]).1, whole.1);
+    let job = Job::new(&sunlit(10_000.0), &settings()).unwrap();
+    assert!(bright(&job) > 100.0, "{}", bright(&job));
+}
+
+#[test]
+fn all_pictures_of_a_series_are_exposed_alike() {
+    let first = job(&sunlit(10_000.0));
+    let next = Job::in_series(&sunlit(100.0), &settings(), u64::MAX, &first.series()).unwrap();
+    let exposure = |job: &Job| job.write_options().unwrap().exposure;
+    assert!(exposure(&first) < -8.0);
+    assert_eq!((exposure(&next), next.notes()), (exposure(&first), first.notes()));
 }

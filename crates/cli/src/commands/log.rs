@@ -131,7 +131,7 @@ impl Rendered<'_> {
             "width": s.width, "height": s.height, "spp": spp, "spp_asked": asked, "noise": self.noise(),
             "seconds": self.total_seconds, "integrator": s.integrator.entry.name,
             "denoiser": self.denoiser.map(|chosen| chosen.denoiser.describe()), "seed": s.seed,
-            "complete": self.is_whole, "warnings": self.warnings,
+        "complete": self.is_whole, "warnings": self.warnings, "notes": self.job.notes(),
         })
     }
 }

@@ -185,7 +185,7 @@ fn render_scene(
     input.set_next_pose(&mut job, scene, (&user, series))?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
-    if common.verbose > 0 {
+    if !common.quiet {
         job.notes()
             .iter()
             .for_each(|note| output::eprint(format_args!("{}: {note}", target.output.display())));

@@ -74,6 +74,7 @@ impl<'d> Gltf<'d, '_, '_> {
         // A scene that Bilux wrote records all of its surroundings.
         let around = scene.as_ref().and_then(|scene| scene.get("extras")?.get(SURROUNDINGS));
         self.scene.environment_unspecified = around.is_none();
+        self.scene.exposure_unspecified = around.is_none();
         match scene {
             Some(scene) => scene.list("nodes"),
             None => {

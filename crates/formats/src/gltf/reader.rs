@@ -131,7 +131,11 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             source,
             file: source.name.clone(),
             reading,
-            scene: SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() },
+            scene: SceneBuilder {
+                environment_unspecified: true,
+                exposure_unspecified: true,
+                ..SceneBuilder::default()
+            },
             oddities,
             order: Vec::new(),
             time,

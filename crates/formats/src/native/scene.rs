@@ -6,6 +6,7 @@ use super::{overlay, specs};
 use crate::FormatError;
 use crate::reading::{Reading, Source, default_material};
 use crate::text::whole_file;
+use bilux_scene::presets::mentions_light;
 use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -57,6 +58,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         native.change(part)?;
     }
     let mut scene = native.scene;
+    // What a file says of light is all the light, be it black. A file that says nothing has a model without light.
+    scene.describes_all_light |= !scene.environment_unspecified && mentions_light(&scene);
     if scene.objects.is_empty() && scene.lights.is_empty() {
         scene.warn("it has no [[model]], so there is nothing to render: add one", whole_file(source.name));
     }

@@ -39,7 +39,11 @@ fn read_in_blocks(
         source,
         lines: 0,
         indexed: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
-        scene: SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() },
+        scene: SceneBuilder {
+            environment_unspecified: true,
+            exposure_unspecified: true,
+            ..SceneBuilder::default()
+        },
         materials: HashMap::new(),
         oddities: Oddities::default(),
         name: String::new(),

@@ -28,7 +28,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 fn read_whole(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut pbrt = Pbrt {
         reading,
-        scene: SceneBuilder::default(),
+        scene: SceneBuilder { describes_all_light: true, ..SceneBuilder::default() },
         oddities: Oddities::default(),
         folder: source.folder.map(Path::to_owned),
         state: State::new(),

@@ -10,8 +10,8 @@ mod studio;
 
 pub use stroke_widths::set_stroke_widths;
 pub use studio::{
-    Ground, Studio, add_missing, complete, frame, is_unlit, may_be_lit, seems_lit, set_upright,
-    shadow_catcher,
+    Ground, Studio, add_missing, added_lights, complete, frame, has_own_light, is_unlit, may_be_lit,
+    mentions_light, seems_lit, set_upright, shadow_catcher,
 };
 
 use crate::builder::SceneBuilder;

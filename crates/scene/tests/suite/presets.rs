@@ -275,13 +275,34 @@ fn lights_of_formats_without_environments_get_the_studio_environment() {
 }
 
 #[test]
-fn dim_emitters_are_not_lights() {
+fn dim_emitters_are_not_lights_where_surroundings_cannot_be_described() {
     for (emission, lights) in [(0.6f32, 3), (1.0, 0), (20.0, 0)] {
-        let mut scene = teapot();
+        let mut scene = SceneBuilder { environment_unspecified: true, ..teapot() };
         scene.materials[0].parameters.set("emission", Value::triple([0.0, emission, 0.0]));
         complete(&mut scene, &Studio::default());
         assert_eq!(scene.lights.len(), lights, "{emission}");
     }
+}
+
+/// A scene with light of its own gets no other, however dim it is, and one that describes all of its light none.
+#[test]
+fn described_light_is_all_the_light() {
+    let lights = |scene: &SceneBuilder| {
+        let mut scene = scene.clone();
+        complete(&mut scene, &Studio::default());
+        scene.lights.len()
+    };
+    assert_eq!(lights(&teapot()), 3, "nothing is said of light");
+    for emission in [Value::Number(1e-3), Value::triple([0.0, 0.9, 0.0]), Value::Texture(0)] {
+        let mut scene = teapot();
+        scene.materials[0].parameters.set("emission", emission.clone());
+        assert_eq!(lights(&scene), 0, "{emission:?}");
+        // No object is made of it.
+        scene.add_material(Spec::new("", "diffuse"));
+        scene.objects[0].material = 1;
+        assert_eq!(lights(&scene), 3, "unused: {emission:?}");
+    }
+    assert_eq!(lights(&SceneBuilder { describes_all_light: true, ..teapot() }), 0, "black, as in pbrt");
 }
 
 #[test]

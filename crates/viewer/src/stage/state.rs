@@ -96,7 +96,13 @@ fn values(stage: &Stage) -> Value {
     let (asked, scene) = (settings::with_defaults(&stage.asked()), &stage.session.scene().settings);
     let value = |p: &Parameter| {
         let found = asked.find(p.name).or_else(|| scene.find(p.name));
-        found.map_or_else(|| json!(p.default), |(value, _)| value_json(value))
+        let used = stage.session.job().settings();
+        match found {
+            Some((value, _)) => value_json(value),
+            // As the scene's own light asks for: who changes it begins there.
+            None if p.name == "exposure" => json!(used.display_exposure().to_string()),
+            None => json!(p.default),
+        }
     };
     let mut all: Map<String, Value> = Map::new();
     for p in RENDER.parameters {

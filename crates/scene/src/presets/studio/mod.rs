@@ -31,6 +31,9 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
     apply,
 };
 
+/// The light in front of the model.
+const KEY: &str = "key";
+
 /// The light behind the model.
 const RIM: &str = "rim";
 
@@ -44,7 +47,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     standing::set_upright(scene, &studio);
     let framing = Framing::of(scene, &studio);
     scene.cameras.push(framing.camera());
-    scene.lights.extend(lights(&framing, Ground::Shadow));
+    scene.lights.extend(lights(&framing, Ground::Shadow, 1.0));
     furnish(scene, &framing, Ground::Shadow, false);
     Ok(())
 }
@@ -64,7 +67,7 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation
 /// Like [`complete`], for a scene that is upright already ([`set_upright`]).
 pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
-    let glows = scene.objects.iter().any(|o| gives_light(scene, o));
+    let glows = scene.objects.iter().any(|o| is_bright(scene, o));
     let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
     let has_lights_only =
         has_light && scene.environment_unspecified && has_lights && !glows && !has_surroundings(scene);
@@ -88,7 +91,8 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
         // An existing camera may be close, and show what is behind the model; so does a mirror.
         let is_in_view = |spec: &Spec| spec.name == RIM && (seen && !asked || ground == Ground::Mirror);
         let is_wanted = |spec: &Spec| if has_lights_only { spec.name == ROOM } else { !is_in_view(spec) };
-        scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
+        let brightness = studio.brightness.unwrap_or(1.0);
+        scene.lights.extend(lights(&framing, ground, brightness).into_iter().filter(is_wanted));
     }
     if !lit && !seen {
         drawings::of_clay(scene);
@@ -100,16 +104,39 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
 ///
 /// Only measurement can show whether that light is meant to illuminate the scene.
 pub fn may_be_lit(scene: &SceneBuilder) -> bool {
-    let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
-    let emission = |o: &Object| scene.materials.get(o.material).and_then(|m| m.parameters.find("emission"));
-    let glows = || scene.objects.iter().any(|o| emission(o).is_some());
-    scene.environment_unspecified && !has_surroundings(scene) && (has_lights || glows())
+    scene.environment_unspecified && !has_surroundings(scene) && has_own_light(scene)
 }
 
-/// True when a scene has light sources, or surfaces that are at least as bright as the white of a screen.
-pub fn seems_lit(scene: &SceneBuilder) -> bool {
+/// True when a scene has light sources, or surfaces that emit light, however little.
+pub fn has_own_light(scene: &SceneBuilder) -> bool {
+    let is_black = |value: &Value| match value {
+        Value::Integer(i) => *i == 0,
+        Value::Number(x) => *x == 0.0,
+        Value::List(list) => list.iter().all(|c| matches!(c, Value::Integer(0)) || *c == Value::Number(0.0)),
+        _ => false,
+    };
     scene.lights.iter().any(|light| !light.is_backdrop())
-        || scene.objects.iter().any(|o| gives_light(scene, o))
+        || scene.objects.iter().filter_map(|o| emission_of(scene, o)).any(|value| !is_black(value))
+}
+
+/// True when a scene says something of its light, if only that some surface emits none.
+pub fn mentions_light(scene: &SceneBuilder) -> bool {
+    scene.lights.iter().any(|light| !light.is_backdrop())
+        || scene.objects.iter().any(|o| emission_of(scene, o).is_some())
+}
+
+/// True when a scene has light of its own.
+///
+/// Any light counts, textures and dim surfaces too, and so does a scene whose format describes all of its light. If the format
+/// cannot describe an environment, surfaces count that are at least as bright as the white of a screen.
+pub fn seems_lit(scene: &SceneBuilder) -> bool {
+    match scene.environment_unspecified {
+        true => {
+            scene.lights.iter().any(|light| !light.is_backdrop())
+                || scene.objects.iter().any(|o| is_bright(scene, o))
+        }
+        false => scene.describes_all_light || has_own_light(scene),
+    }
 }
 
 /// True when every surface emits its colour and reflects nothing, as in models with baked light.
@@ -126,6 +153,20 @@ pub fn is_unlit(scene: &SceneBuilder) -> bool {
             && is_black("specular_weight")
     };
     !scene.objects.is_empty() && scene.objects.iter().all(of)
+}
+
+/// What the studio has added to light a scene, as a list in words; `None` if it has added no light. `count` is the number of
+/// lights that the scene had before.
+pub fn added_lights(completed: &SceneBuilder, count: usize) -> Option<String> {
+    let words = |light: &Spec| match light.name.as_str() {
+        KEY => "a key light",
+        RIM => "a rim light",
+        _ => "surroundings",
+    };
+    let added = completed.lights.get(count..)?.iter().filter(|light| !light.is_backdrop());
+    let added: Vec<&str> = added.map(words).collect();
+    let (last, others) = added.split_last()?;
+    Some(if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) })
 }
 
 /// Adds only the camera that [`complete`] would add.
@@ -177,16 +218,21 @@ fn has_surroundings(scene: &SceneBuilder) -> bool {
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
 }
 
-/// True for an object that illuminates the scene: one less bright than the white of a screen is a sign, not a light.
-fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
+/// The emission of an object's material, if the scene states it.
+fn emission_of<'a>(scene: &'a SceneBuilder, object: &Object) -> Option<&'a Value> {
+    let material = scene.materials.get(object.material)?;
+    material.parameters.find("emission").map(|(value, _)| value)
+}
+
+/// True for an object that is at least as bright as the white of a screen: a less bright one is a sign, not a light.
+fn is_bright(scene: &SceneBuilder, object: &Object) -> bool {
     let bright = |value: &Value| match value {
         Value::Integer(i) => *i >= 1,
         Value::Number(x) => *x >= 1.0,
         // Textures count as signs too.
         _ => false,
     };
-    let emission = scene.materials.get(object.material).and_then(|m| m.parameters.find("emission"));
-    emission.is_some_and(|(value, _)| match value {
+    emission_of(scene, object).is_some_and(|value| match value {
         Value::List(list) => list.iter().any(bright),
         one => bright(one),
     })
@@ -195,16 +241,16 @@ fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
 /// A large key light from the upper left, a weaker rim light from behind on the right, and a pale environment.
 ///
 /// Without a cove, which reflects light, the environment is brighter.
-fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
-    let bright = if ground == Ground::None { 1.7 } else { 1.0 };
+fn lights(framing: &Framing, ground: Ground, brightness: f32) -> [Spec; 3] {
+    let bright = brightness * if ground == Ground::None { 1.7 } else { 1.0 };
     let [right, up, forward] = framing.axes;
     let warm = Rgb::new(1.0, 0.96, 0.90);
     let cool = Rgb::new(0.86, 0.93, 1.0);
-    let key = Panel { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
+    let key = Panel { name: KEY, towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
     let rim = Panel { name: RIM, towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
     [
-        key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
-        rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
+        key.spec(framing, warm * (4.4 * brightness)).with("classic", warm * 0.72),
+        rim.spec(framing, cool * (3.2 * brightness)).with("classic", cool * 0.28),
         Spec::new(ROOM, "environment")
             .with("zenith", Rgb::new(0.40, 0.42, 0.46) * bright)
             .with("horizon", Rgb::new(0.26, 0.27, 0.29) * bright)

@@ -47,6 +47,9 @@ pub struct Studio {
     /// Whether the scene's own light illuminates the visible objects, as measured; `None` means that having any is
     /// enough.
     pub lit: Option<bool>,
+    /// How many times brighter than usual the studio's lights are, where a scene's own light is that much brighter than what
+    /// a picture shows; `None` for 1.
+    pub brightness: Option<f32>,
 }
 
 impl Studio {

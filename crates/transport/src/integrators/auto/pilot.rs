@@ -115,12 +115,10 @@ impl Grid {
     /// The tile at a point of the film (0..1); `None` beyond its edge, from where little light comes into the picture.
     pub(super) fn tile_at(&self, film: Vec2) -> Option<usize> {
         let [width, height] = self.size;
-        if film.cmplt(Vec2::ZERO).any() || film.cmpge(Vec2::ONE).any() {
-            return None;
-        }
+        let is_on_film = film.cmpge(Vec2::ZERO).all() && film.cmplt(Vec2::ONE).all();
         let place = (film * Vec2::new(width as f32, height as f32)).as_uvec2();
         let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
-        Some((place[1] * width.div_ceil(BLOCK) + place[0]) as usize)
+        is_on_film.then_some((place[1] * width.div_ceil(BLOCK) + place[0]) as usize)
     }
 }
 
