@@ -137,6 +137,12 @@ impl Judged {
     }
 }
 
+/// What the studio has added to light a scene, where nothing was decided about the scene's own light.
+pub(crate) fn studio_light(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {
+    let is_decided = settings.own_light.is_some_and(|judged| judged.is_said);
+    added_lights(completed, count).filter(|_| !is_decided)
+}
+
 /// What is worth telling about the light of a completed scene, in one line: what the studio has added, and how the picture is
 /// exposed. `count` is the number of lights that the scene had before.
 pub(crate) fn note(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {

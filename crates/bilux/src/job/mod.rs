@@ -53,6 +53,7 @@ pub struct Job {
     fingerprint: OnceLock<String>,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) notes: Vec<String>,
+    studio_light: Option<String>,
     /// The ground of which only the shadow is in the picture.
     pub(crate) catcher: Option<ShadowCatcher>,
     /// The next frame, if its meshes have another pose.
@@ -124,6 +125,7 @@ impl Job {
         settings.own_light = judged;
         let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
         let note = own_light::note(&settings, &completed, scene.lights.len());
+        let studio_light = own_light::studio_light(&settings, &completed, scene.lights.len());
         let notes = note.into_iter().chain(of_curve).collect();
         let shutter = shutter_at(&settings, settings.time);
         let built = match own.map(|own| own.alone) {
@@ -151,6 +153,7 @@ impl Job {
             orientation,
             source: completed,
             notes,
+            studio_light,
             catcher,
             next_pose: None,
             fingerprint: OnceLock::new(),
@@ -177,6 +180,11 @@ impl Job {
     /// What was decided where the scene leaves a choice, such as what lights it.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// What the studio lights the scene with, as a list in words, if nothing else in the scene may be meant to.
+    pub fn studio_light(&self) -> Option<&str> {
+        self.studio_light.as_deref()
     }
 
     /// How the model was rotated, if it came without a camera or the user asked for a rotation.

@@ -55,6 +55,7 @@ impl Rendered<'_> {
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
+        let lit = self.job.studio_light().map(|with| format!(", lit by the studio with {with}"));
         let cut = match self.is_whole {
             false if self.timed_out => "; ended by --timeout: this is the picture so far",
             false => "; interrupted: this is the picture so far",
@@ -64,12 +65,13 @@ impl Rendered<'_> {
             output::eprint(format_args!("{output}: {overrun}"));
         }
         output::eprint(format_args!(
-            "{output}: {}x{}, {} per pixel, {:.1} s{noise}{}{cut}",
+            "{output}: {}x{}, {} per pixel, {:.1} s{noise}{}{}{cut}",
             s.width,
             s.height,
             counted_samples(self.outcome.samples_per_pixel()),
             self.total_seconds,
             denoised.unwrap_or_default(),
+            lit.unwrap_or_default(),
         ));
         // A log is no place for advice on what to install.
         let advice = self.denoiser.and_then(|chosen| chosen.advice.as_ref());

@@ -185,7 +185,8 @@ fn render_scene(
     input.set_next_pose(&mut job, scene, (&user, series))?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
-    if !common.quiet {
+    // That the studio lights a model without light is part of the line about its picture.
+    if common.verbose > 0 || !common.quiet && job.studio_light().is_none() {
         job.notes()
             .iter()
             .for_each(|note| output::eprint(format_args!("{}: {note}", target.output.display())));

@@ -230,6 +230,7 @@ fn the_log_of_a_picture_is_one_line() {
     let model = "render bare.obj --size 16x16 --progress none --noise 20% -o b.png";
     let said = assert_done(path, model);
     assert!(said.lines().count() == 1 && said.contains(", denoised by "), "{said}");
+    assert!(said.contains(", lit by the studio with a key light, a rim light and surroundings"), "{said}");
     let more = assert_done(path, &format!("{model} -v"));
     assert!(more.contains("up is y, front is z"), "{more}");
     // A guess may be wrong, so it is reported: a plate lies flat.
