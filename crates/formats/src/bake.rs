@@ -97,6 +97,19 @@ pub(crate) fn flat_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     unit_face_normal(&[a, b, c])
 }
 
+/// Warns about what vertices add to a material beyond reflectance, which no format stores.
+pub(crate) fn warn_of_vertices(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
+    let any = |has: fn(&Mesh) -> bool| scene.objects.iter().any(|object| has(&object.mesh));
+    let parts = [
+        ("colours that vertices emit", any(|mesh| mesh.emission_by_kd)),
+        ("opacities of vertices", any(|mesh| !mesh.vertex_opacity.is_empty())),
+        ("widths of single points", any(|mesh| !mesh.point_widths.is_empty())),
+    ];
+    for (what, _) in parts.into_iter().filter(|(_, is_there)| *is_there) {
+        writing.warn(format!("{format} files cannot store {what}: left out"));
+    }
+}
+
 /// Warns about everything that a format of bare meshes leaves out.
 pub(crate) fn warn_of_scene(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
     let parts = [

@@ -27,10 +27,25 @@ pub(crate) fn origin_for(p: DVec3) -> DVec3 {
     DVec3::new(of(p.x), of(p.y), of(p.z))
 }
 
+/// The number of points, spread over a file, that tell where most of them are.
+pub(crate) const SAMPLES: usize = 9;
+
+/// A first point that is farther than this from most others is not one of them: scanners write zeros where nothing
+/// came back.
+const OUTSIDE: f64 = 16.0 * FAR;
+
 impl Cloud {
-    /// An empty cloud whose points lie near this one.
-    pub(crate) fn around(p: DVec3) -> Cloud {
-        Cloud { origin: Some(origin_for(p)), ..Cloud::default() }
+    /// An empty cloud, given its first point and some that are spread over the file.
+    pub(crate) fn around(first: DVec3, samples: &[DVec3]) -> Cloud {
+        let middle = |axis: usize| {
+            let mut all: Vec<f64> = samples.iter().map(|p| p[axis]).filter(|c| c.is_finite()).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(all.len() / 2).copied().unwrap_or(first[axis])
+        };
+        let middle = DVec3::new(middle(0), middle(1), middle(2));
+        let is_one_of_them = (first - middle).abs().max_element() <= OUTSIDE;
+        let origin = origin_for(if is_one_of_them { first } else { middle });
+        Cloud { origin: Some(origin), ..Cloud::default() }
     }
 
     /// Reserves memory for points, with or without colours, and charges the budget for it.

@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-/// The f32 nearest to a decimal number; `nan`, `inf` and C compilers' spellings of them count as numbers.
+/// The f32 nearest to a decimal number; `nan`, `inf` and C compilers' spellings of them count as numbers, and so do
+/// decimal commas (1,5) and Fortran's exponents (1.5D+01).
 ///
 /// If the digits and the power of ten are exact in an f64, one rounding gives the nearest f64 [Clinger 1990].
 /// Rounding that to f32 gives the f32 nearest to the decimal, unless the f64 lies exactly midway between two f32s.
@@ -19,7 +20,14 @@ pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
 pub(crate) fn parse_f64(word: &[u8]) -> Option<f64> {
     // A word that is not a number to `parse_f32` is not a number here either.
     parse_f32(word)?;
-    std::str::from_utf8(word).ok()?.parse().ok().or_else(|| parse_f32(word).map(f64::from))
+    let text = std::str::from_utf8(word).ok()?;
+    text.parse().ok().or_else(|| localised(text)?.parse().ok()).or_else(|| parse_f32(word).map(f64::from))
+}
+
+/// A coordinate relative to that of an origin, with all of its digits.
+#[inline]
+pub(crate) fn parse_relative(word: &[u8], origin: f64) -> Option<f32> {
+    if origin == 0.0 { parse_f32(word) } else { parse_f64(word).map(|number| (number - origin) as f32) }
 }
 
 const POWERS: [f64; 23] = [
@@ -77,10 +85,21 @@ fn small_integer(text: &[u8]) -> Option<i32> {
     fits.then(|| sign * digits.iter().fold(0, |n, d| n * 10 + i32::from(d - b'0')))
 }
 
+/// A number with a decimal comma or with an exponent as Fortran writes it, in the usual form; `None` if it has neither.
+fn localised(text: &str) -> Option<String> {
+    let is_number = text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b',' | b'e' | b'E' | b'd' | b'D'));
+    let commas = text.bytes().filter(|&b| b == b',').count();
+    let has_exponent = text.contains(['d', 'D']);
+    let is_plain = commas > 1 || (commas == 1 && text.contains('.')) || (commas == 0 && !has_exponent);
+    // A comma at either end separates.
+    let separates = text.starts_with(',') || text.ends_with(',');
+    (is_number && !is_plain && !separates).then(|| text.replace(',', ".").replace(['d', 'D'], "e"))
+}
+
 #[cold]
 fn thorough(word: &[u8]) -> Option<f32> {
     let text = std::str::from_utf8(word).ok()?;
-    text.parse().ok().or_else(|| {
+    text.parse().ok().or_else(|| localised(text)?.parse().ok()).or_else(|| {
         // The spellings of C runtimes: 1.#QNAN, -1.#IND00, nan(ind).
         let bare = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
         let is_nan = bare.starts_with("nan(") || bare.starts_with("1.#qnan") || bare.starts_with("1.#ind");
@@ -118,7 +137,11 @@ mod tests {
 
     #[test]
     fn reads_every_way_of_writing_a_number() {
-        let cases: [(&str, f32); 12] = [
+        let cases: [(&str, f32); 16] = [
+            ("1,5", 1.5),
+            ("-0,25e1", -2.5),
+            ("1.5D+01", 15.0),
+            ("2d-1", 0.2),
             ("1", 1.0),
             ("+1.5", 1.5),
             ("-0", -0.0),
@@ -139,7 +162,7 @@ mod tests {
             assert!(parse_f32(text.as_bytes()).is_some_and(f32::is_nan), "{text}");
         }
         assert_eq!(parse_f32(b"-1.#INF"), Some(f32::NEG_INFINITY));
-        for text in ["", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5", "0x10", "1f", "one"] {
+        for text in ["", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5,2", "1,5.2", "1,", ",5", "d5", "0x10", "1f", "one"] {
             assert_eq!(parse_f32(text.as_bytes()), None, "{text}");
         }
     }

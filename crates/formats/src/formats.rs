@@ -1,9 +1,9 @@
 //! The table of formats, and reading and writing with it.
 
-use crate::bake::with_pictures;
+use crate::bake::{warn_of_vertices, with_pictures};
 use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
-use crate::text::whole_file;
+use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::writing::{Writing, write_all};
 use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
 use bilux_math::DVec3;
@@ -50,9 +50,11 @@ pub struct SceneFormatEntry {
 /// Turns bytes into a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ReadFormat {
-    /// From the whole file in memory.
+    /// From the whole file in memory, without a byte order mark, and as UTF-8 if it is UTF-16.
     Whole(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
-    /// From a stream. The source holds only the beginning of the file; the stream repeats it.
+    /// From the whole file as it is: any bytes may come first in it.
+    Binary(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
+    /// From a stream of text, as for `Whole`. The source holds only the beginning of the file; the stream repeats it.
     Flowing(fn(&mut Reading, &Source, &mut dyn Read) -> Result<SceneBuilder, FormatError>),
 }
 /// Turns a scene into bytes.
@@ -101,26 +103,39 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
 pub(crate) fn read_file(
-    row: Option<&SceneFormatEntry>,
+    row: Option<&'static SceneFormatEntry>,
     reading: &mut Reading,
     path: &Path,
     name: &Arc<str>,
 ) -> Result<SceneBuilder, FormatError> {
+    keeping_digits(reading, |reading| read_file_once(row, reading, path, name))
+}
+
+/// Reads a scene, and once more if it lies far from zero, relative to an origin near it.
+fn keeping_digits(
+    reading: &mut Reading,
+    mut read: impl FnMut(&mut Reading) -> Result<(&'static SceneFormatEntry, SceneBuilder), FormatError>,
+) -> Result<SceneBuilder, FormatError> {
     let before = reading.budget.clone();
-    let scene = read_file_once(row, reading, path, name)?;
+    let (row, scene) = read(reading)?;
     let Some(origin) = far_origin(row, &scene) else { return Ok(scene) };
     drop(scene);
     reading.budget = before;
     reading.origin = origin;
-    let again = read_file_once(row, reading, path, name);
+    let again = read(reading);
     reading.origin = DVec3::ZERO;
-    again.map(|scene| SceneBuilder { origin, ..scene })
+    again.map(|(_, scene)| SceneBuilder { origin, ..scene })
 }
 
+/// The formats whose readers take positions relative to [`Reading::origin`].
+const KEEPING_DIGITS: [&str; 6] = ["obj", "ply", "stl", "off", "asc", "gltf"];
+
 /// The origin of a model so far from zero that f32 coordinates have lost digits that the file may hold.
-fn far_origin(row: Option<&SceneFormatEntry>, scene: &SceneBuilder) -> Option<DVec3> {
+fn far_origin(row: &SceneFormatEntry, scene: &SceneBuilder) -> Option<DVec3> {
     const FAR: f64 = 1024.0;
-    row.filter(|row| matches!(row.entry.name, "obj" | "ply"))?;
+    if !KEEPING_DIGITS.contains(&row.entry.name) {
+        return None;
+    }
     let bounds = scene.bounds(0.0);
     let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let middle = ((low + high) * 0.5).round();
@@ -129,18 +144,19 @@ fn far_origin(row: Option<&SceneFormatEntry>, scene: &SceneBuilder) -> Option<DV
 }
 
 fn read_file_once(
-    row: Option<&SceneFormatEntry>,
+    row: Option<&'static SceneFormatEntry>,
     reading: &mut Reading,
     path: &Path,
     name: &Arc<str>,
-) -> Result<SceneBuilder, FormatError> {
+) -> Result<(&'static SceneFormatEntry, SceneBuilder), FormatError> {
     let folder = path.parent();
     if let Some(row @ SceneFormatEntry { read: Some(ReadFormat::Flowing(_)), .. }) = row {
         let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
         let (mut file, _) = reading.open_file(path)?;
         let mut head = Vec::new();
         file.by_ref().take(BEGINNING).read_to_end(&mut head).map_err(failed)?;
-        return flow(row, reading, &Source { bytes: &head, name, folder }, &mut (&head[..]).chain(file));
+        let source = Source { bytes: &head, name, folder };
+        return Ok((row, flow(row, reading, &source, &mut (&head[..]).chain(file))?));
     }
     let bytes = reading.load(path)?;
     let row = row.or_else(|| sniffed(&bytes));
@@ -149,7 +165,7 @@ fn read_file_once(
     })?;
     let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
     reading.release(bytes);
-    Ok(scene)
+    Ok((row, scene))
 }
 
 /// The length of a file's beginning that a streaming reader can inspect first.
@@ -174,7 +190,9 @@ pub fn read_bytes(
     let row = found.ok_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))?;
     let mut reading = Reading::new(options, base);
     reading.budget.take_bytes(bytes.len() as u64, name)?;
-    let mut scene = read_source(row, &mut reading, &Source { bytes, name: &Arc::from(name), folder: base })?;
+    let name = Arc::from(name);
+    let source = Source { bytes, name: &name, folder: base };
+    let mut scene = keeping_digits(&mut reading, |reading| Ok((row, read_source(row, reading, &source)?)))?;
     scene.files = reading.files;
     Ok(scene)
 }
@@ -198,6 +216,7 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
                 "positions are written relative to {x}, {y}, {z}, the centre of the file's points"
             ));
         }
+        warn_of_vertices(scene, row.entry.name, &mut writing);
         let scene = with_pictures(scene, row.capabilities, &mut writing);
         let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;
@@ -240,7 +259,17 @@ fn flow(
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
     let mut scene = match read {
-        ReadFormat::Whole(read) => read(reading, source)?,
+        ReadFormat::Binary(read) => read(reading, source)?,
+        ReadFormat::Whole(read) => {
+            reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
+            read(reading, &Source { bytes: &plain(source.bytes), ..*source })?
+        }
+        ReadFormat::Flowing(read) if is_marked(source.bytes) => {
+            // Such files are rare, and need not flow.
+            let bytes = read_all(reading, source, from)?;
+            let source = Source { bytes: &plain(&bytes), ..*source };
+            read(reading, &source, &mut &source.bytes[..])?
+        }
         ReadFormat::Flowing(read) => read(reading, source, from)?,
     };
     // A scene that is based on another one keeps what that file says.
@@ -255,6 +284,17 @@ fn flow(
     }
 }
 
+/// The rest of a stream, charged with what its text takes.
+fn read_all(reading: &mut Reading, source: &Source, from: &mut dyn Read) -> Result<Vec<u8>, FormatError> {
+    let path = || Path::new(&**source.name).to_owned();
+    let failed = |source| FormatError::Io { path: path(), action: "read it", source };
+    let mut bytes = Vec::new();
+    let left = reading.budget.left();
+    from.take(left.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+    reading.budget.take_bytes(bytes.len() as u64 + plain_size(&bytes), source.name)?;
+    Ok(bytes)
+}
+
 /// The error for a picture in place of a scene.
 fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
     let by_bytes = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
@@ -263,8 +303,18 @@ fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
     Some(FormatError::IsPicture { name, format: row.extensions[0] })
 }
 
+/// The bytes of a marked file that tell its format.
+const HEAD: usize = 1 << 16;
+
 fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {
-    SCENE_FORMATS.iter().find(|row| row.reads() && (row.sniff)(bytes))
+    let head = plain(&bytes[..bytes.len().min(HEAD)]);
+    let looks_like = |row: &&SceneFormatEntry| match row.read {
+        Some(ReadFormat::Binary(_)) => (row.sniff)(bytes),
+        // Most look at the end too, but the text of a marked file is made anew.
+        _ if is_marked(bytes) => (row.sniff)(&head),
+        _ => (row.sniff)(bytes),
+    };
+    SCENE_FORMATS.iter().filter(|row| row.reads()).find(looks_like)
 }
 
 fn extension(path: &Path) -> Option<String> {

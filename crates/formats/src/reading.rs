@@ -2,12 +2,12 @@
 
 use crate::budget::Budget;
 use crate::images::{SampleMeaning, decoded, mend};
-use crate::text::whole_file;
+use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::texture::{Channel, Image};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
+use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read;
@@ -228,6 +228,23 @@ impl<'o> Reading<'o> {
         Ok(bytes)
     }
 
+    /// The bytes of a text file without its byte order mark, as UTF-8. They count as held until [`Reading::release`].
+    pub(crate) fn load_text(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
+        let bytes = self.load(path)?;
+        self.as_text(bytes, path)
+    }
+
+    /// The same for bytes that count as held.
+    pub(crate) fn as_text(&mut self, bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, FormatError> {
+        if !is_marked(&bytes) {
+            return Ok(bytes);
+        }
+        self.budget.take_bytes(plain_size(&bytes), &path.display().to_string())?;
+        let text = plain(&bytes).into_owned();
+        self.budget.release((bytes.len() as u64 + plain_size(&bytes)).saturating_sub(text.len() as u64));
+        Ok(text)
+    }
+
     /// Opens a file for reading; also returns the length that the system reports.
     pub(crate) fn open_file(&mut self, path: &Path) -> Result<(fs::File, u64), FormatError> {
         let opened = open(path)?;
@@ -294,86 +311,4 @@ pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
         spec.parameters.set(key, 1.0);
     }
     spec
-}
-
-/// Counts oddities by kind, so that a file with a million of them gives one warning.
-#[derive(Debug, Default)]
-pub(crate) struct Oddities {
-    kinds: Vec<Oddity>,
-}
-
-#[derive(Debug)]
-struct Oddity {
-    /// The text that all of this kind share.
-    what: String,
-    /// The text about the first one, which precedes it in the message.
-    first: String,
-    count: u64,
-    at: Span,
-    /// Whether nothing is wrong with the file.
-    is_note: bool,
-}
-
-/// The number of kinds that are distinguished: a file of garbage has thousands.
-const MAX_KINDS: usize = 40;
-
-impl Oddities {
-    /// Merges the oddities of a later part of the file, which begins after this many lines.
-    pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
-        for Oddity { what, first, count, mut at, is_note } in part.kinds {
-            at.line = at.line.saturating_add(lines);
-            self.note_first(&what, || first, || at);
-            if let Some(known) = self.kinds.iter_mut().find(|kind| kind.what == what) {
-                known.count += count - 1;
-                known.is_note = is_note;
-            }
-        }
-    }
-
-    /// Counts one of a kind; evaluates `at` only for the first.
-    pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.note_first(what, String::new, at);
-    }
-
-    /// Counts one of a kind that is no fault of the file and changes nothing in the picture.
-    pub(crate) fn remark(&mut self, what: &str, at: impl FnOnce() -> Span) {
-        self.note(what, at);
-        if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.what == what) {
-            kind.is_note = true;
-        }
-    }
-
-    /// The same with text about the first of the kind, which precedes the common text.
-    pub(crate) fn note_first(
-        &mut self,
-        what: &str,
-        first: impl FnOnce() -> String,
-        at: impl FnOnce() -> Span,
-    ) {
-        let kinds = self.kinds.len();
-        match self.kinds.iter_mut().find(|kind| kind.what == what) {
-            Some(kind) => kind.count += 1,
-            None if kinds > MAX_KINDS => {}
-            None if kinds == MAX_KINDS => {
-                let what = "further faults from here on are not listed".to_owned();
-                let (first, at) = (String::new(), at());
-                self.kinds.push(Oddity { what, first, count: 1, at, is_note: false });
-            }
-            None => {
-                let (what, first, at) = (what.to_owned(), first(), at());
-                self.kinds.push(Oddity { what, first, count: 1, at, is_note: false });
-            }
-        }
-    }
-
-    /// Converts them to warnings and notes, each with its count and the location of the first.
-    pub(crate) fn into_warnings(mut self, scene: &mut SceneBuilder) {
-        self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
-        for Oddity { what, first, count, at, is_note } in self.kinds {
-            let times =
-                if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
-            let warning = Warning { message: format!("{first}{what}{times}"), at };
-            if is_note { scene.notes.push(warning) } else { scene.warnings.push(warning) }
-        }
-    }
 }

@@ -3,8 +3,69 @@
 use crate::FormatError;
 use crate::reading::Source;
 use bilux_scene::Span;
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
+
+/// The byte order mark of UTF-8.
+const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// The encodings in which text comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TextEncoding {
+    /// UTF-8, or any other in which ASCII characters are single bytes.
+    Bytes,
+    /// UTF-16 in either byte order.
+    Utf16 { big: bool },
+}
+
+/// A text without the byte order mark of UTF-8.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes)
+}
+
+/// The encoding of a text and the length of its byte order mark.
+///
+/// Without a mark, two ASCII characters with zeros between them show UTF-16, as in JSON. [RFC 4627, 3]
+fn encoding(bytes: &[u8]) -> (TextEncoding, usize) {
+    let ascii = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    match bytes {
+        [0xff, 0xfe, ..] => (TextEncoding::Utf16 { big: false }, 2),
+        [0xfe, 0xff, ..] => (TextEncoding::Utf16 { big: true }, 2),
+        [a, 0, b, 0, ..] if ascii(*a) && ascii(*b) => (TextEncoding::Utf16 { big: false }, 0),
+        [0, a, 0, b, ..] if ascii(*a) && ascii(*b) => (TextEncoding::Utf16 { big: true }, 0),
+        bytes if bytes.starts_with(UTF8_MARK) => (TextEncoding::Bytes, UTF8_MARK.len()),
+        _ => (TextEncoding::Bytes, 0),
+    }
+}
+
+/// True if [`plain`] changes the text.
+pub(crate) fn is_marked(bytes: &[u8]) -> bool {
+    encoding(bytes) != (TextEncoding::Bytes, 0)
+}
+
+/// A text without its byte order mark, and as UTF-8 if it is UTF-16. Every reader of text gets its bytes through this.
+pub(crate) fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (encoding, mark) = encoding(bytes);
+    let text = &bytes[mark..];
+    let TextEncoding::Utf16 { big } = encoding else { return Cow::Borrowed(text) };
+    let units = text.as_chunks::<2>().0.iter();
+    let units = units.map(|unit| if big { u16::from_be_bytes(*unit) } else { u16::from_le_bytes(*unit) });
+    let letters = char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER));
+    Cow::Owned(letters.collect::<String>().into_bytes())
+}
+
+/// An upper bound on the bytes that [`plain`] allocates.
+pub(crate) fn plain_size(bytes: &[u8]) -> u64 {
+    // A character of two bytes takes at most three in UTF-8; a growing string may be half empty.
+    if matches!(encoding(bytes).0, TextEncoding::Utf16 { .. }) { 3 * bytes.len() as u64 } else { 0 }
+}
+
+/// A text without the zeros and the end-of-file character that some programs append.
+pub(crate) fn without_padding(bytes: &[u8]) -> &[u8] {
+    let end = bytes.iter().rposition(|&b| !matches!(b, 0 | END_OF_FILE)).map_or(0, |last| last + 1);
+    &bytes[..end]
+}
 
 /// Iterates over a text word by word and line by line.
 #[derive(Clone, Debug)]
@@ -44,8 +105,11 @@ impl TextPosition {
     }
 }
 
+/// The character with which some programs end a text, as CP/M did.
+const END_OF_FILE: u8 = 0x1a;
+
 const fn is_blank(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t' | 0x0b | 0x0c | 0)
+    matches!(byte, b' ' | b'\t' | 0x0b | 0x0c | 0 | END_OF_FILE)
 }
 
 const fn is_newline(byte: u8) -> bool {
@@ -99,6 +163,8 @@ impl<'a> Cursor<'a> {
         while let Some(&byte) = self.bytes.get(self.pos) {
             match byte {
                 b if is_blank(b) => self.pos += 1,
+                // Files that were joined have marks inside.
+                0xef if self.bytes[self.pos..].starts_with(UTF8_MARK) => self.pos += UTF8_MARK.len(),
                 b'\\' if self.joins_lines => {
                     match &self.bytes[self.pos + 1..] {
                         [b'\r', b'\n', ..] => self.pos += 3,
@@ -142,6 +208,20 @@ impl<'a> Cursor<'a> {
         let start = line.iter().position(|&b| !is_blank(b)).unwrap_or(length);
         let end = line.iter().rposition(|&b| !is_blank(b)).map_or(start, |last| last + 1);
         &line[start..end]
+    }
+
+    /// Moves past the line end here, which belongs to a text whose first line ends as that of `text` does: in a
+    /// text of CRs, a LF after the last one is the first byte of what follows.
+    pub(crate) fn end_line_as_in(&mut self, text: &[u8]) {
+        let first = text.iter().position(|&b| is_newline(b)).unwrap_or(text.len());
+        let is_bare = text[first..].starts_with(b"\r") && !text[first..].starts_with(b"\r\n");
+        self.rest_of_line();
+        if is_bare && self.bytes[self.pos..].starts_with(b"\r") {
+            self.pos += 1;
+            self.next_line();
+        } else {
+            self.end_line();
+        }
     }
 
     /// Moves to the start of the next line, treating continued lines as one.
@@ -206,12 +286,17 @@ impl<'a> Places<'a> {
     }
 }
 
+/// True for a line that is a comment to any of the programs that write lists of numbers as text.
+pub(crate) fn is_comment(line: &[u8]) -> bool {
+    line.starts_with(b"#") || line.starts_with(b";") || line.starts_with(b"//")
+}
+
 /// The error for a file that should be text; reports binary data as such.
 pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
     match error {
         // Trailing zeros, which some programs leave, count as spaces.
         FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
-            let message = format!("this file is not plain text: it is binary, or text in UTF-16 ({message})");
+            let message = format!("this file is not plain text, but binary ({message})");
             FormatError::Malformed { message, at }
         }
         error => error,
@@ -263,6 +348,38 @@ mod tests {
             }
             assert_eq!(lines, ["a,b", "", "c,d", "e"], "{end:?}");
         }
+    }
+
+    #[test]
+    fn marks_are_taken_off_and_utf_16_becomes_utf_8() {
+        let text = "v 1 2 3\nü €\u{1f600}";
+        let utf16 = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+        let (little, big) = (utf16(u16::to_le_bytes), utf16(u16::to_be_bytes));
+        for bytes in [
+            text.as_bytes().to_vec(),
+            [UTF8_MARK, text.as_bytes()].concat(),
+            [b"\xff\xfe", &little[..]].concat(),
+            [b"\xfe\xff", &big[..]].concat(),
+            little,
+            big,
+        ] {
+            assert_eq!(plain(&bytes), text.as_bytes());
+            assert_eq!(is_marked(&bytes), bytes != text.as_bytes());
+            assert!(plain_size(&bytes) == 0 || plain_size(&bytes) >= text.len() as u64);
+        }
+        assert_eq!(plain(b"\xff\xfea\0b"), &b"a"[..], "half of a character is dropped");
+        assert_eq!(without_padding(b"{} \x1a\0\0"), b"{} ");
+    }
+
+    #[test]
+    fn a_text_of_crs_ends_at_its_last_cr() {
+        let end = |text: &[u8]| {
+            let mut cursor = Cursor::new(text);
+            cursor.end_line();
+            cursor.end_line_as_in(text);
+            cursor.offset()
+        };
+        assert_eq!((end(b"a\rb\r\nx"), end(b"a\r\nb\r\nx"), end(b"a\nb\n\rx")), (4, 6, 4));
     }
 
     #[test]

@@ -305,6 +305,8 @@ fn check_mesh(object: &Object) -> Result<(), SceneError> {
         ("tangents", mesh.tangents.len()),
         ("vertex kd", mesh.vertex_kd.len()),
         ("vertex ks", mesh.vertex_ks.len()),
+        ("vertex opacities", mesh.vertex_opacity.len()),
+        ("point widths", mesh.point_widths.len()),
     ];
     for (what, n) in attributes {
         if n != 0 && n != count {

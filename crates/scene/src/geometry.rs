@@ -254,20 +254,21 @@ impl Geometry {
         }
     }
 
-    /// The material of a hit, and its texture coordinates; spheres have none here.
-    pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
+    /// The opacity at a hit: that of its material, which `of_material` gives for its index and the texture coordinates
+    /// (spheres have none here), times that of the vertices.
+    pub(crate) fn opacity_at(&self, hit: &Hit, of_material: impl Fn(u32, UvPair) -> f32) -> f32 {
         let (object, triangle) = self.locate(hit.primitive());
         let material = self.material_of(object);
         if let Some((strokes, _)) = self.strokes_of(hit.instance) {
-            return (material, strokes.uv(hit.primitive, hit.u).into());
+            let own = of_material(material, strokes.uv(hit.primitive, hit.u).into());
+            return strokes.opacity(hit.primitive, hit.u, own);
         }
-        match self.objects.get(object as usize) {
-            Some(placed) => {
-                let corners = uv_pairs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
-                (material, UvPair::between(corners, [1.0 - hit.u - hit.v, hit.u, hit.v]))
-            }
-            None => (material, Vec2::ZERO.into()),
-        }
+        let Some(placed) = self.objects.get(object as usize) else {
+            return of_material(material, Vec2::ZERO.into());
+        };
+        let (mesh, weights) = (&*placed.mesh, [1.0 - hit.u - hit.v, hit.u, hit.v]);
+        let corners = mesh.triangles[triangle as usize];
+        mesh.opacity(of_material(material, UvPair::between(uv_pairs(mesh, corners), weights)), corners, weights)
     }
 
     /// An object's transform at a time, and whether it mirrors.

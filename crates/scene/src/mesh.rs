@@ -28,6 +28,14 @@ pub struct Mesh {
     pub vertex_kd: Vec<Rgb>,
     /// Specular reflectance per vertex (the paper's Ks).
     pub vertex_ks: Vec<Rgb>,
+    /// If true, `vertex_kd` is a factor on the material's emission too.
+    pub emission_by_kd: bool,
+    /// Factor on the material's opacity per vertex, 0 to 1.
+    pub vertex_opacity: Vec<f32>,
+    /// If given, an opacity below it, after that factor, becomes 0, and any other 1.
+    pub opacity_threshold: Option<f32>,
+    /// Diameter of the point at each vertex, in the mesh's own space; without them, points have the scene's point width.
+    pub point_widths: Vec<f32>,
     /// Triples of vertices.
     pub triangles: Vec<[u32; 3]>,
     /// Vertices that are points: spheres with the scene's point width.
@@ -99,7 +107,29 @@ impl Mesh {
         let colours = self.vertex_kd.len() + self.vertex_ks.len();
         let uvs = self.uvs.len() + self.uvs2.len();
         let strokes = self.points.len() + 2 * self.lines.len();
-        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len() + strokes) as u64
+        let numbers = self.vertex_opacity.len() + self.point_widths.len();
+        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len() + strokes + numbers) as u64
+    }
+
+    /// The factor on the emission of its material at a point between vertices.
+    #[inline]
+    pub(crate) fn emission_factor<const N: usize>(&self, vertices: [u32; N], weights: [f32; N]) -> Rgb {
+        if !self.emission_by_kd || self.vertex_kd.is_empty() {
+            return Rgb::WHITE;
+        }
+        let of = |i: u32| self.vertex_kd.get(i as usize).copied().unwrap_or(Rgb::WHITE);
+        vertices.into_iter().zip(weights).map(|(i, weight)| of(i) * weight).sum()
+    }
+
+    /// The opacity at a point between vertices, where that of its material is `own`.
+    #[inline]
+    pub(crate) fn opacity<const N: usize>(&self, own: f32, vertices: [u32; N], weights: [f32; N]) -> f32 {
+        if self.vertex_opacity.is_empty() {
+            return own;
+        }
+        let of = |i: u32| self.vertex_opacity.get(i as usize).copied().unwrap_or(1.0);
+        let opacity = own * vertices.into_iter().zip(weights).map(|(i, weight)| of(i) * weight).sum::<f32>();
+        self.opacity_threshold.map_or(opacity, |threshold| if opacity < threshold { 0.0 } else { 1.0 })
     }
 
     /// The number of points and lines.

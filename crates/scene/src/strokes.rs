@@ -34,6 +34,8 @@ pub(crate) struct Strokes {
     /// The mesh's positions in world space, if the tree is not in object space.
     moved: Option<Vec<Vec3>>,
     radii: StrokeWidths,
+    /// The factor from widths in the mesh to radii in the space of the tree.
+    radius_of_width: f32,
 }
 
 impl Strokes {
@@ -52,7 +54,8 @@ impl Strokes {
         let moved = to_world
             .filter(|to_world| !to_world.is_identity())
             .map(|to_world| mesh.positions.iter().map(|p| to_world.point(*p)).collect());
-        PrimitiveTree::new(Strokes { mesh: mesh.clone(), moved, radii })
+        let radius_of_width = 0.5 * moved.as_ref().and(to_world).map_or(1.0, mean_scale);
+        PrimitiveTree::new(Strokes { mesh: mesh.clone(), moved, radii, radius_of_width })
     }
 
     fn position(&self, vertex: u32) -> [f32; 3] {
@@ -71,7 +74,8 @@ impl Strokes {
     fn shape(&self, index: u32) -> Shape {
         let [a, b] = self.ends(index);
         if (index as usize) < self.mesh.points.len() {
-            Shape::Sphere(Sphere { centre: self.position(a), radius: self.radii.points })
+            let own = self.mesh.point_widths.get(a as usize).map(|width| width * self.radius_of_width);
+            Shape::Sphere(Sphere { centre: self.position(a), radius: own.unwrap_or(self.radii.points) })
         } else {
             Shape::Capsule(Capsule { ends: [a, b].map(|i| self.position(i)), radius: self.radii.lines })
         }
@@ -81,6 +85,11 @@ impl Strokes {
     fn between<T: Copy>(&self, index: u32, u: f32, of: &[T], mix: impl Fn(T, T, f32) -> T) -> Option<T> {
         let [a, b] = self.ends(index).map(|i| of.get(i as usize).copied());
         Some(mix(a?, b?, u))
+    }
+
+    /// The opacity of a place, where that of the material is `own`.
+    pub(crate) fn opacity(&self, index: u32, u: f32, own: f32) -> f32 {
+        self.mesh.opacity(own, self.ends(index), [1.0 - u, u])
     }
 
     /// Texture coordinates; 0 if the mesh has none.

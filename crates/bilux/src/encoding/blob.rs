@@ -66,6 +66,10 @@ impl Blob {
                 list(write, &mesh.tangents, |t| t.to_array().map(f32::to_le_bytes));
                 list(write, &mesh.vertex_kd, |c| c.to_array().map(f32::to_le_bytes));
                 list(write, &mesh.vertex_ks, |c| c.to_array().map(f32::to_le_bytes));
+                write(&[u8::from(mesh.emission_by_kd)]);
+                list(write, &mesh.vertex_opacity, |x| [x.to_le_bytes()]);
+                list(write, mesh.opacity_threshold.as_slice(), |x| [x.to_le_bytes()]);
+                list(write, &mesh.point_widths, |x| [x.to_le_bytes()]);
                 list(write, &mesh.triangles, |t| t.map(u32::to_le_bytes));
                 list(write, &mesh.points, |p| [p.to_le_bytes()]);
                 list(write, &mesh.lines, |l| l.map(u32::to_le_bytes));
@@ -148,6 +152,7 @@ fn read_mesh(from: &mut Decoder) -> Result<Mesh, EncodingError> {
     let vec3 = |n: [[u8; 4]; 3]| Vec3::from(n.map(f32::from_le_bytes));
     let vec2 = |n: [[u8; 4]; 2]| Vec2::from(n.map(f32::from_le_bytes));
     let rgb = |n: [[u8; 4]; 3]| Rgb::from_array(n.map(f32::from_le_bytes));
+    let number = |[n]: [[u8; 4]; 1]| f32::from_le_bytes(n);
     let mesh = Mesh {
         name: String::new(),
         positions: read_list(from, vec3)?,
@@ -157,6 +162,10 @@ fn read_mesh(from: &mut Decoder) -> Result<Mesh, EncodingError> {
         tangents: read_list(from, |n: [[u8; 4]; 4]| Vec4::from(n.map(f32::from_le_bytes)))?,
         vertex_kd: read_list(from, rgb)?,
         vertex_ks: read_list(from, rgb)?,
+        emission_by_kd: bool::read(from)?,
+        vertex_opacity: read_list(from, number)?,
+        opacity_threshold: at_most_one(read_list(from, number)?, from)?,
+        point_widths: read_list(from, number)?,
         triangles: read_list(from, |n: [[u8; 4]; 3]| n.map(u32::from_le_bytes))?,
         points: read_list(from, |[n]: [[u8; 4]; 1]| u32::from_le_bytes(n))?,
         lines: read_list(from, |n: [[u8; 4]; 2]| n.map(u32::from_le_bytes))?,
@@ -164,13 +173,18 @@ fn read_mesh(from: &mut Decoder) -> Result<Mesh, EncodingError> {
     let count = mesh.positions.len();
     let attributes = [mesh.normals.len(), mesh.uvs.len(), mesh.uvs2.len(), mesh.tangents.len()];
     let colours = [mesh.vertex_kd.len(), mesh.vertex_ks.len()];
-    if attributes.iter().chain(&colours).any(|n| *n != 0 && *n != count) {
+    let numbers = [mesh.vertex_opacity.len(), mesh.point_widths.len()];
+    if attributes.iter().chain(&colours).chain(&numbers).any(|n| *n != 0 && *n != count) {
         return Err(from.wrong("a mesh has attributes for another number of vertices"));
     }
     if let Some(vertex) = mesh.named_vertices().find(|vertex| *vertex as usize >= count) {
         return Err(from.wrong(format!("a mesh has the vertex {vertex}, but only {count} vertices")));
     }
     Ok(mesh)
+}
+
+fn at_most_one(list: Vec<f32>, from: &Decoder) -> Result<Option<f32>, EncodingError> {
+    if list.len() > 1 { Err(from.wrong("a mesh has several thresholds")) } else { Ok(list.first().copied()) }
 }
 
 fn read_image(from: &mut Decoder, kind: u8) -> Result<Image, EncodingError> {

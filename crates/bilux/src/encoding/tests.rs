@@ -70,6 +70,10 @@ fn rich() -> SceneBuilder {
         uvs2: vec![Vec2::new(0.5, -0.0); 4],
         vertex_kd: vec![Rgb::grey(0.3); 4],
         vertex_ks: vec![Rgb::grey(0.4); 4],
+        emission_by_kd: true,
+        vertex_opacity: vec![0.25; 4],
+        opacity_threshold: Some(0.5),
+        point_widths: vec![0.125; 4],
         points: vec![2],
         lines: vec![[0, 1]],
         ..Mesh::quad(Vec3::ZERO, Vec3::X, Vec3::Y)

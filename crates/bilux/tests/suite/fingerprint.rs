@@ -29,6 +29,9 @@ fn scene() -> SceneBuilder {
         tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 3],
         vertex_kd: vec![Rgb::WHITE; 3],
         vertex_ks: vec![Rgb::BLACK; 3],
+        vertex_opacity: vec![1.0; 3],
+        opacity_threshold: Some(0.5),
+        point_widths: vec![1.0; 3],
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     };
@@ -67,6 +70,10 @@ const CHANGES: &[Change] = &[
     ("a tangent's hand", |s| mesh_of(s).tangents[1].w = -1.0),
     ("a vertex's diffuse colour", |s| mesh_of(s).vertex_kd[1].r = 0.5),
     ("a vertex's specular colour", |s| mesh_of(s).vertex_ks[1].r = 0.5),
+    ("whether that tints what it emits", |s| mesh_of(s).emission_by_kd = true),
+    ("a vertex's opacity", |s| mesh_of(s).vertex_opacity[1] = 0.5),
+    ("the threshold of that", |s| mesh_of(s).opacity_threshold = None),
+    ("a point's width", |s| mesh_of(s).point_widths[1] = 0.5),
     ("the order of corners", |s| mesh_of(s).triangles[0] = [0, 2, 1]),
     ("one triangle more", |s| mesh_of(s).triangles.push([0, 2, 1])),
     ("a point", |s| mesh_of(s).points.push(1)),

@@ -1,10 +1,11 @@
 //! Reads `.asc`.
 
 use crate::FormatError;
-use crate::float::parse_f32;
-use crate::reading::{Oddities, Reading, Source, plain_material};
+use crate::float::{parse_f32, parse_f64};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source, plain_material};
 use crate::text::{Cursor, Places, name_of, no_text, quoted};
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -62,7 +63,7 @@ struct Group {
 
 /// The words of a line, parsed as numbers.
 struct Numbers {
-    values: [f32; MAX],
+    values: [f64; MAX],
     count: usize,
 }
 
@@ -163,10 +164,11 @@ impl Asc<'_, '_, '_> {
         let [ks_r, ks_g, ks_b, kd_r, kd_g, kd_b, reflectivity, ..] = numbers.values;
         let span = self.places.at(start);
         let mut spec = Spec { span: span.clone(), ..Spec::new("", "phong") };
+        let triple = |c: [f64; 3]| Value::triple(c.map(|c| c as f32));
         let values = [
-            ("kd", Value::triple([kd_r, kd_g, kd_b])),
-            ("ks", Value::triple([ks_r, ks_g, ks_b])),
-            ("reflectivity", reflectivity.into()),
+            ("kd", triple([kd_r, kd_g, kd_b])),
+            ("ks", triple([ks_r, ks_g, ks_b])),
+            ("reflectivity", (reflectivity as f32).into()),
         ];
         for (key, value) in values {
             spec.parameters.set_at(key, value, span.clone());
@@ -230,6 +232,7 @@ impl Asc<'_, '_, '_> {
 
     /// Parses all words up to the end of the line as numbers.
     fn line_of_numbers(&mut self) -> Result<Numbers, FormatError> {
+        let is_far = self.reading.origin != DVec3::ZERO;
         let mut numbers = Numbers { values: [0.0; MAX], count: 0 };
         loop {
             self.cursor.skip_blanks();
@@ -238,7 +241,8 @@ impl Asc<'_, '_, '_> {
             if word.is_empty() {
                 break;
             }
-            let Some(value) = parse_f32(word) else {
+            let value = if is_far { parse_f64(word) } else { parse_f32(word).map(f64::from) };
+            let Some(value) = value else {
                 let message =
                     format!("{} is not a number; a number of a vertex should be here", quoted(word));
                 return Err(FormatError::malformed(message, self.places.at(at)));
@@ -254,7 +258,7 @@ impl Asc<'_, '_, '_> {
         Ok(numbers)
     }
 
-    fn push(&mut self, values: &[f32], stride: usize) -> Result<(), FormatError> {
+    fn push(&mut self, values: &[f64], stride: usize) -> Result<(), FormatError> {
         let mesh = &self.group.mesh;
         if !mesh.positions.is_empty() && mesh.vertex_kd.is_empty() == (stride == COLOURED) {
             // Either all vertices of a mesh have kd and ks, or none: the rest becomes an object of its own.
@@ -263,16 +267,19 @@ impl Asc<'_, '_, '_> {
             (self.group.name, self.group.config) = (name, config);
         }
         self.reading.budget.take::<([f32; COLOURED], u32)>(3, &self.name)?;
-        let mesh = &mut self.group.mesh;
+        let (origin, mesh) = (self.reading.origin, &mut self.group.mesh);
         let Ok(first) = u32::try_from(mesh.positions.len() + 3).map(|end| end - 3) else {
             let message = "an object has more than 4 billion vertices: split it with 'object' lines";
             return Err(FormatError::malformed(message, self.places.whole()));
         };
         for vertex in values[..3 * stride].chunks_exact(stride) {
-            mesh.positions.push(Vec3::from_slice(&vertex[0..3]));
+            mesh.positions.push((DVec3::from_slice(vertex) - origin).as_vec3());
+            let vertex: [f32; COLOURED] =
+                std::array::from_fn(|i| vertex.get(i).map_or(0.0, |number| *number as f32));
             mesh.normals.push(Vec3::from_slice(&vertex[3..6]));
             mesh.uvs.push(Vec2::from_slice(&vertex[6..8]));
-            if let [r, g, b, sr, sg, sb] = vertex[PLAIN..] {
+            if stride == COLOURED {
+                let [.., r, g, b, sr, sg, sb] = vertex;
                 mesh.vertex_kd.push(Rgb::new(r, g, b));
                 mesh.vertex_ks.push(Rgb::new(sr, sg, sb));
             }

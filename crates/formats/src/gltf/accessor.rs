@@ -115,6 +115,13 @@ impl<'d> Accessor<'d> {
         Ok(accessor)
     }
 
+    /// Makes integers fractions of the greatest one; false if they were already, or are no integers.
+    pub(super) fn normalise(&mut self) -> bool {
+        let changes = self.component != Component::F32 && !self.is_normalised;
+        self.is_normalised |= changes;
+        changes
+    }
+
     /// The elements as arrays of exactly `N` numbers.
     pub(super) fn floats<const N: usize>(&self, budget: &mut Budget) -> Result<Vec<[f32; N]>, FormatError> {
         if self.width() != N {

@@ -2,7 +2,7 @@
 
 use super::json::JsonNode;
 use crate::FormatError;
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::Spec;
 use bilux_scene::cameras::CameraSpec;

@@ -2,7 +2,7 @@
 
 use crate::FormatError;
 use crate::reading::Source;
-use crate::text::whole_file;
+use crate::text::{whole_file, without_mark, without_padding};
 
 /// The first bytes of every GLB file.
 pub(super) const MAGIC: &[u8] = b"glTF";
@@ -22,14 +22,8 @@ pub(super) struct Container<'a> {
 pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError> {
     let fail = |message: String| Err(FormatError::malformed(message, whole_file(source.name)));
     let bytes = source.bytes;
-    let mut container = Container { json: bytes, binary: None, warnings: Vec::new() };
+    let mut container = Container { json: without_padding(bytes), binary: None, warnings: Vec::new() };
     if !bytes.starts_with(MAGIC) {
-        if container.json.starts_with(b"\xef\xbb\xbf") {
-            container.json = &bytes[3..];
-            container
-                .warnings
-                .push("the file begins with a byte order mark, which glTF does not allow".to_owned());
-        }
         return Ok(container);
     }
     let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
@@ -67,7 +61,7 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
             ));
         };
         match (number, kind) {
-            (0, JSON) => container.json = chunk,
+            (0, JSON) => container.json = without_padding(without_mark(chunk)),
             (0, _) => {
                 return fail("the first chunk of a GLB file must be JSON, but this one is not".to_owned());
             }

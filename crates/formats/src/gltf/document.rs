@@ -4,7 +4,8 @@ use super::container::Container;
 use super::json::JsonNode;
 use super::{meshopt, uri};
 use crate::FormatError;
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use std::borrow::Cow;
 use std::collections::HashMap;
 

@@ -2,7 +2,7 @@
 
 use super::json::JsonNode;
 use crate::FormatError;
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use bilux_scene::error::nearest_name;
 
 /// Extensions that are read, either fully or with a warning about what is not.

@@ -27,8 +27,9 @@ impl<'d> Gltf<'d, '_, '_> {
         let count = root.list("nodes")?.len();
         self.reading.budget.take_bytes((count * size_of::<[Placed; 2]>()) as u64, &self.file)?;
         self.order = vec![None; count];
+        let at_origin = DMat4::from_translation(-self.reading.origin);
         let mut waiting: Vec<(JsonNode<'d>, DMat4)> =
-            self.roots()?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
+            self.roots()?.into_iter().rev().map(|node| (node, at_origin)).collect();
         let mut placed = Vec::new();
         while let Some((index, parent)) = waiting.pop() {
             let node = self.document.named("nodes", index)?;

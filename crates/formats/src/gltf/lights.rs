@@ -3,7 +3,7 @@
 use super::graph::Placed;
 use super::json::JsonNode;
 use crate::FormatError;
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::Spec;
 

@@ -20,7 +20,27 @@ pub(super) struct UsedMaterial {
     pub(super) has_direction: bool,
     /// True if its normal map uses the second of these sets.
     pub(super) normal_by_second: bool,
+    /// True if it emits its colour, which vertices tint.
+    pub(super) is_unlit: bool,
+    /// What the alpha of vertices does.
+    pub(super) alpha: Alpha,
 }
+
+/// What alpha does to a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Alpha {
+    /// Nothing.
+    #[default]
+    Opaque,
+    /// It is the opacity.
+    Blend,
+    /// Below this the surface is not there, elsewhere it is opaque.
+    Mask(f32),
+}
+
+/// A material by its index in the file (`None` for the default one), by whether glass is solid, and by whether it is
+/// for vertices with alpha.
+pub(super) type MaterialKey = (Option<usize>, bool, bool);
 
 /// The texture coordinate sets of the file that become the mesh's first and second set.
 pub(super) type UvSets = [Option<usize>; 2];
@@ -31,6 +51,9 @@ pub(super) struct Draft {
     pub(super) uv_sets: UvSets,
     /// True if transmission without a thickness means a solid.
     is_solid: bool,
+    /// True if the vertices have alpha, with which a threshold is compared only after it has been multiplied.
+    has_vertex_alpha: bool,
+    alpha: Alpha,
 }
 
 impl Draft {
@@ -51,15 +74,21 @@ impl<'d> Gltf<'d, '_, '_> {
     pub(super) fn material(
         &mut self,
         index: Option<JsonNode<'d>>,
-        is_solid: bool,
+        (is_solid, has_vertex_alpha): (bool, bool),
     ) -> Result<UsedMaterial, FormatError> {
-        let key = (index.map(|index| index.as_count()).transpose()?, is_solid);
+        let key = (index.map(|index| index.as_count()).transpose()?, is_solid, has_vertex_alpha);
         if let Some(material) = self.materials.get(&key) {
             return Ok(*material);
         }
-        let mut draft = Draft { spec: Spec::new("default", "principled"), uv_sets: [None; 2], is_solid };
+        let (spec, alpha) = (Spec::new("default", "principled"), Alpha::Opaque);
+        let mut draft = Draft { spec, uv_sets: [None; 2], is_solid, has_vertex_alpha, alpha };
+        let mut is_unlit = false;
         match index {
-            Some(index) => self.draft(self.document.named("materials", index)?, &mut draft)?,
+            Some(index) => {
+                let node = self.document.named("materials", index)?;
+                is_unlit = node.extension("KHR_materials_unlit").is_some();
+                self.draft(node, &mut draft)?;
+            }
             None => {
                 draft.set("base_color", Rgb::WHITE, Span::default());
                 draft.set("base_metalness", 1.0, Span::default());
@@ -73,9 +102,9 @@ impl<'d> Gltf<'d, '_, '_> {
         let normal = normal.map(|(value, _)| value);
         let is_second = |i: &usize| self.scene.textures.get(*i).is_some_and(|texture| texture.second_uv);
         let normal_by_second = matches!(normal, Some(Value::Texture(i)) if is_second(i));
-        let uv_sets = draft.uv_sets;
+        let (uv_sets, alpha) = (draft.uv_sets, draft.alpha);
         let index = self.fitted(draft.spec);
-        let used = UsedMaterial { index, uv_sets, has_direction, normal_by_second };
+        let used = UsedMaterial { index, uv_sets, has_direction, normal_by_second, is_unlit, alpha };
         self.materials.insert(key, used);
         Ok(used)
     }
@@ -140,13 +169,17 @@ impl<'d> Gltf<'d, '_, '_> {
         draft: &mut Draft,
     ) -> Result<(), FormatError> {
         let mode = node.text("alphaMode")?.unwrap_or("OPAQUE");
-        let threshold = match mode {
+        draft.alpha = match mode {
             "OPAQUE" => return Ok(()),
-            "BLEND" => None,
-            "MASK" => Some(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
+            "BLEND" => Alpha::Blend,
+            "MASK" => Alpha::Mask(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
             other => {
                 return Err(node.error(format!("'{other}' is not an alphaMode: use OPAQUE, MASK or BLEND")));
             }
+        };
+        let threshold = match draft.alpha {
+            Alpha::Mask(cutoff) if !draft.has_vertex_alpha => Some(cutoff),
+            _ => None,
         };
         let opacity = match (picture, threshold) {
             (Some(info), _) => {

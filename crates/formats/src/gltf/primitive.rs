@@ -2,12 +2,13 @@
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
-use super::material::UsedMaterial;
+use super::material::{Alpha, UsedMaterial};
 use super::reader::Gltf;
 use super::skin::Joints;
 use super::tangents;
 use super::topology::Mode;
 use crate::FormatError;
+use crate::text::quoted;
 use bilux_math::glam::Vec4;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
@@ -54,7 +55,11 @@ impl<'d> Gltf<'d, '_, '_> {
         };
         let named = self.variant_of(node)?.or(node.get("material"));
         let is_solid = self.is_solid_glass(named, &mesh)?;
-        let material = self.material(named, is_solid)?;
+        let (kd, alphas) = match attributes.get("COLOR_0") {
+            Some(colour) => self.colours(colour, count)?,
+            None => Default::default(),
+        };
+        let material = self.material(named, (is_solid, !alphas.is_empty()))?;
         self.directions(attributes, material, &mut mesh)?;
         self.morph(node, worn.weights, &mut mesh)?;
         if let Some(joints) = worn.joints {
@@ -65,8 +70,14 @@ impl<'d> Gltf<'d, '_, '_> {
             self.oddities.note(what, || position.at());
         }
         self.coordinates(attributes, material, &mut mesh)?;
-        if let Some(colour) = attributes.get("COLOR_0") {
-            mesh.vertex_kd = self.colours(colour, count)?;
+        // Of what is unlit, the colour is what it emits.
+        (mesh.emission_by_kd, mesh.vertex_kd) = (material.is_unlit && !kd.is_empty(), kd);
+        if material.alpha != Alpha::Opaque {
+            mesh.vertex_opacity = alphas;
+            mesh.opacity_threshold = match material.alpha {
+                Alpha::Mask(cutoff) if !mesh.vertex_opacity.is_empty() => Some(cutoff),
+                _ => None,
+            };
         }
         self.note_unused(attributes, material);
         match mode {
@@ -162,19 +173,32 @@ impl<'d> Gltf<'d, '_, '_> {
         accessor.floats(&mut self.reading.budget)
     }
 
-    fn colours(&mut self, index: JsonNode<'d>, count: usize) -> Result<Vec<Rgb>, FormatError> {
-        let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
+    /// The colours of vertices, which are linear, and their alphas if any is not 1. All are clamped to 0 to 1.
+    /// [glTF 2.0, 3.7.2.1]
+    fn colours(
+        &mut self,
+        index: JsonNode<'d>,
+        count: usize,
+    ) -> Result<(Vec<Rgb>, Vec<f32>), FormatError> {
+        let mut accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
         same_count(index, &accessor, Some(count))?;
+        if accessor.normalise() {
+            let what = "colours of vertices are integers without 'normalized'; they are taken as if they had it";
+            self.oddities.note(what, || index.at());
+        }
         let budget = &mut self.reading.budget;
         if accessor.width() == 3 {
             let colours = accessor.floats::<3>(budget)?;
-            return Ok(colours.into_iter().map(Rgb::from_array).collect());
+            return Ok((colours.into_iter().map(|c| Rgb::from_array(c).clamp(0.0, 1.0)).collect(), Vec::new()));
         }
         let colours = accessor.floats::<4>(budget)?;
+        let mut alphas = Vec::new();
         if colours.iter().any(|c| c[3] != 1.0) {
-            self.oddities.note("the alpha of vertex colours is not used", || index.at());
+            budget.take_bytes(count as u64 * 4, &self.file)?;
+            alphas = colours.iter().map(|c| c[3].clamp(0.0, 1.0)).collect();
         }
-        Ok(colours.into_iter().map(|[r, g, b, _]| Rgb::new(r, g, b)).collect())
+        let kd = colours.into_iter().map(|[r, g, b, _]| Rgb::new(r, g, b).clamp(0.0, 1.0)).collect();
+        Ok((kd, alphas))
     }
 
     /// Adds the weighted displacements of the morph targets. [glTF 2.0, 3.7.2.2]
@@ -222,7 +246,7 @@ impl<'d> Gltf<'d, '_, '_> {
             let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
             // Unused sets of texture coordinates have no effect.
             if !is_used && !key.starts_with("TEXCOORD_") {
-                self.oddities.note("an attribute of a mesh is ignored", || node.at());
+                self.oddities.not_shown(&format!("{} of meshes", quoted(key.as_bytes())), || node.at());
             }
         }
     }

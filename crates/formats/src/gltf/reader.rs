@@ -6,11 +6,12 @@ use super::document::Document;
 use super::graph::Placed;
 use super::instances::Instances;
 use super::json::JsonNode;
-use super::material::UsedMaterial;
+use super::material::{MaterialKey, UsedMaterial};
 use super::primitive::{NodeMesh, Part};
 use super::{cameras, extensions, lights};
 use crate::FormatError;
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
 use bilux_math::motion::Motion;
 use bilux_math::{DMat4, Transform};
@@ -55,7 +56,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 /// The results of one pass over a file that the next pass can reuse.
 struct PassCache {
     meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
-    materials: HashMap<(Option<usize>, bool), UsedMaterial>,
+    materials: HashMap<MaterialKey, UsedMaterial>,
     images: HashMap<(usize, bool), Option<Named>>,
 }
 
@@ -111,8 +112,7 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) nodes: Vec<Placed<'d>>,
     /// The parts of each mesh, keyed by its index, the weights of its morph targets and its skin.
     meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
-    /// Materials by their index in the file (`None` for the default one) and by whether glass is solid.
-    pub(super) materials: HashMap<(Option<usize>, bool), UsedMaterial>,
+    pub(super) materials: HashMap<MaterialKey, UsedMaterial>,
     /// Images with their names, by their index in the file and by whether they hold numbers; `None` for one that
     /// failed.
     pub(super) images: HashMap<(usize, bool), Option<Named>>,

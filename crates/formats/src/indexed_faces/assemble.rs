@@ -4,14 +4,15 @@ use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
 use crate::polygon::Triangulator;
-use crate::reading::{Oddities, Reading, Source, plain_material};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source, plain_material};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The size of a vertex under construction: position, normal, uv, kd and its entry in the welder.
-type Vertex = [u32; 14];
+type Vertex = [u32; 15];
 
 /// Makes an object of every run. `place` converts the numbers in [`IndexedFaces::places`] to locations.
 pub(crate) fn assemble(
@@ -49,7 +50,7 @@ pub(crate) fn assemble(
             (run, welder.run) = (run + 1, welder.run + 1);
         }
         let made = piece.made.len();
-        if piece.add_face(corners, &mut welder, &mut triangulator).is_none() {
+        if piece.add_face((face, corners), &mut welder, &mut triangulator).is_none() {
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
             oddities.note(what, || place(indexed.places.at(face)));
@@ -202,7 +203,7 @@ pub(crate) fn material_of(
         );
         oddities.note(&what, || place(offset));
     }
-    let mut spec = plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty());
+    let mut spec = plain_material(indexed.has_colours(), !indexed.specular.is_empty());
     if offset.is_some() {
         name.clone_into(&mut spec.name);
     }
@@ -237,8 +238,10 @@ impl Welder {
 struct Piece<'s> {
     indexed: &'s IndexedFaces,
     mesh: Mesh,
-    /// For each vertex its uv, its normal, and the next vertex at the same position.
-    made: Vec<[u32; 3]>,
+    /// For each vertex its uv, its normal, its face's colour, and the next vertex at the same position.
+    made: Vec<[u32; 4]>,
+    /// The colour of the current face.
+    colour: u32,
     corners: Vec<u32>,
     has_uvs: bool,
     lacks_uvs: bool,
@@ -255,22 +258,23 @@ impl<'s> Piece<'s> {
             positions: Vec::with_capacity(vertices),
             uvs: Vec::with_capacity(of(!indexed.uvs.is_empty())),
             normals: Vec::with_capacity(of(!indexed.normals.is_empty())),
-            vertex_kd: Vec::with_capacity(of(!indexed.colours.is_empty())),
+            vertex_kd: Vec::with_capacity(of(indexed.has_colours())),
             vertex_ks: Vec::with_capacity(of(!indexed.specular.is_empty())),
             triangles: Vec::with_capacity(corners - 2 * faces),
             ..Mesh::default()
         };
         let made = Vec::with_capacity(vertices);
-        Piece { indexed, mesh, made, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
+        Piece { indexed, mesh, made, colour: NONE, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
     }
 
     /// Returns `None` if a polygon could not be triangulated properly.
     fn add_face(
         &mut self,
-        corners: &[Corner],
+        (face, corners): (usize, &[Corner]),
         welder: &mut Welder,
         triangulator: &mut Triangulator,
     ) -> Option<()> {
+        self.colour = self.indexed.face_colours.of(face);
         if let [a, b, c] = corners {
             let triangle = [self.vertex(*a, welder), self.vertex(*b, welder), self.vertex(*c, welder)];
             self.mesh.triangles.push(triangle);
@@ -293,15 +297,15 @@ impl<'s> Piece<'s> {
         let mut next = if slot.run == welder.run { slot.first } else { NONE };
         let chain = next;
         for _ in 0..MAX_CHAIN {
-            let Some(&[old_uv, old_normal, after]) = self.made.get(next as usize) else { break };
-            if (old_uv, old_normal) == (uv, normal) {
+            let Some(&[old_uv, old_normal, old_colour, after]) = self.made.get(next as usize) else { break };
+            if (old_uv, old_normal, old_colour) == (uv, normal, self.colour) {
                 return next;
             }
             next = after;
         }
         let vertex = self.made.len() as u32;
         *slot = Slot { run: welder.run, first: vertex };
-        self.made.push([uv, normal, chain]);
+        self.made.push([uv, normal, self.colour, chain]);
         self.push_attributes([position, uv, normal]);
         vertex
     }
@@ -318,7 +322,9 @@ impl<'s> Piece<'s> {
         if !indexed.normals.is_empty() {
             mesh.normals.push(indexed.normals.get(normal as usize).copied().unwrap_or(Vec3::ZERO));
         }
-        if !indexed.colours.is_empty() {
+        if !indexed.face_colours.is_empty() {
+            mesh.vertex_kd.push(indexed.face_colours.colour(self.colour));
+        } else if !indexed.colours.is_empty() {
             mesh.vertex_kd.push(indexed.colours.get(position as usize).copied().unwrap_or(Rgb::WHITE));
         }
         if !indexed.specular.is_empty() {

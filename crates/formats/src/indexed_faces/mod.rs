@@ -1,9 +1,11 @@
-//! The data model that OBJ and PLY share, and its conversion to meshes.
+//! The data model that OBJ, PLY and OFF share, and its conversion to meshes.
 
 mod assemble;
+mod face_colours;
 mod faces;
 
 pub(crate) use assemble::{assemble, material_of};
+pub(crate) use face_colours::{FaceColour, FaceColours};
 pub(crate) use faces::{FaceList, Steps};
 
 use crate::FormatError;
@@ -27,6 +29,7 @@ pub(crate) struct IndexedFaces {
     pub(crate) uvs: Vec<Vec2>,
     pub(crate) normals: Vec<Vec3>,
     pub(crate) faces: FaceList,
+    pub(crate) face_colours: FaceColours,
     /// The location of each face in the file, as a number that the reader converts to a [`bilux_scene::Span`].
     pub(crate) places: Steps,
     /// Changes of smoothing: the first face that each applies to.
@@ -50,6 +53,35 @@ pub(crate) struct Run {
 }
 
 impl IndexedFaces {
+    /// True if vertices or faces have diffuse colours.
+    pub(crate) fn has_colours(&self) -> bool {
+        !self.colours.is_empty() || !self.face_colours.is_empty()
+    }
+
+    /// Sorts the faces by a number that each has, and returns the first face of each number. Faces of one number stay
+    /// in their order; all faces share one smoothing.
+    pub(crate) fn sort_by(&mut self, numbers: &[u32]) -> Vec<(usize, u32)> {
+        let (mut corners, mut ends) = (Vec::with_capacity(self.faces.corner_count()), vec![0]);
+        for face in std::mem::take(&mut self.faces).iter() {
+            corners.extend_from_slice(face);
+            ends.push(corners.len());
+        }
+        let mut order: Vec<usize> = (0..ends.len() - 1).collect();
+        let number_of = |face: usize| numbers.get(face).copied().unwrap_or(NONE);
+        order.sort_by_key(|&face| number_of(face));
+        let places = std::mem::take(&mut self.places);
+        let mut groups: Vec<(usize, u32)> = Vec::new();
+        for (now, &face) in order.iter().enumerate() {
+            self.faces.push(&corners[ends[face]..ends[face + 1]]);
+            self.places.push(places.at(face));
+            if groups.last().is_none_or(|(_, number)| *number != number_of(face)) {
+                groups.push((now, number_of(face)));
+            }
+        }
+        self.face_colours.reorder(&order);
+        groups
+    }
+
     /// Sets the smoothing of the following faces.
     #[inline]
     pub(crate) fn smooth(&mut self, smoothing: Smoothing) {

@@ -19,6 +19,6 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     capabilities: &["points", "vertex-kd"],
     sniff: |bytes| bytes.starts_with(header::SIGNATURE),
     up: UpHint::Is(Axis::Z),
-    read: Some(ReadFormat::Whole(read::read)),
+    read: Some(ReadFormat::Binary(read::read)),
     write: None,
 };

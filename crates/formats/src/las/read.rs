@@ -2,7 +2,8 @@
 
 use super::header::{Header, read_header, u16_at, u32_at};
 use crate::FormatError;
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, SAMPLES};
+use crate::colours::{Greatest, Stored, decoded};
 use crate::reading::{Reading, Source};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
@@ -20,7 +21,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     };
     let colour_of = colours(&header, records);
     let first = records().next().map(position).unwrap_or_default();
-    let mut cloud = Cloud::around(first);
+    let step = (header.count as usize / SAMPLES).max(1);
+    let samples: Vec<DVec3> = records().step_by(step).map(position).collect();
+    let mut cloud = Cloud::around(first, &samples);
     cloud.reserve(header.count, colour_of.is_some(), &mut reading.budget, source.name)?;
     for record in records() {
         cloud.push(position(record));
@@ -36,15 +39,15 @@ type ColourOf = Box<dyn Fn(&[u8]) -> Rgb>;
 ///
 /// Some programs write 8-bit values into the 16-bit fields.
 fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn() -> I) -> Option<ColourOf> {
-    let one_for = |greatest: u16| if greatest > 255 { 65535.0 } else { 255.0 };
     if let Some(at) = header.colour {
-        let channels = move |record: &[u8]| [0, 2, 4].map(|channel| u16_at(record, at + channel));
-        let greatest = records().flat_map(channels).max().unwrap_or(0);
-        if greatest > 0 {
-            let one = one_for(greatest);
-            return Some(Box::new(move |record| {
-                Rgb::from_array(channels(record).map(|c| srgb_decode(f32::from(c) / one)))
-            }));
+        let stored = move |record: &[u8]| {
+            Rgb::from_array([0, 2, 4].map(|channel| f32::from(u16_at(record, at + channel))))
+        };
+        let mut greatest = Greatest::default();
+        records().for_each(|record| greatest.see(stored(record)));
+        if !greatest.is_zero() {
+            let white = greatest.white(Stored::Integers);
+            return Some(Box::new(move |record| decoded(stored(record), white)));
         }
     }
     let mut histogram = vec![0u64; 1 << 16];

@@ -74,7 +74,7 @@ impl Gathering<'_, '_> {
             self.parts.push(Part { root: as_model(file, at), folder: folder.map(Path::to_owned) });
             return Ok(());
         }
-        let bytes = self.reading.load(&path)?;
+        let bytes = self.reading.load_text(&path)?;
         let shown = Path::new(&**from).with_file_name(file).display().to_string();
         self.add(&bytes, &shown.into(), path.parent())?;
         self.reading.release(bytes);

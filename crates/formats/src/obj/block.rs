@@ -4,10 +4,11 @@ use super::index::{Index, index};
 use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
+use crate::colours::UNCOLOURED;
 use crate::float::{parse_f32, parse_f64};
 use crate::indexed_faces::{Corner, NONE};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use crate::text::{Cursor, TextPosition, name_of, quoted};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(super) struct Block {
     pub(super) positions: Vec<Vec3>,
-    /// One per position, or none if no position has a colour.
+    /// One per position, as stored, or none if no position has a colour.
     pub(super) colours: Vec<Rgb>,
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
@@ -211,10 +212,10 @@ impl<'a> Reader<'a> {
         let colour = match count {
             6 => Rgb::from_array([numbers[3], numbers[4], numbers[5]]),
             7.. => Rgb::from_array([numbers[4], numbers[5], numbers[6]]),
-            _ => Rgb::WHITE,
+            _ => UNCOLOURED,
         };
         if count >= 6 || !block.colours.is_empty() {
-            block.colours.resize(block.positions.len() - 1, Rgb::WHITE);
+            block.colours.resize(block.positions.len() - 1, UNCOLOURED);
             block.colours.push(colour);
         }
         Ok(())

@@ -5,9 +5,11 @@ use super::mtl::read_library;
 use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
 use crate::blocks::Blocks;
+use crate::colours::{Stored, UNCOLOURED, decode};
 use crate::indexed_faces::{IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, Smoothing};
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use crate::text::{Cursor, Places, TextPosition, no_text, whole_file};
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
@@ -183,9 +185,9 @@ impl Obj<'_, '_, '_> {
         if !block.colours.is_empty() || !indexed.colours.is_empty() {
             let count = indexed.positions.len() + block.positions.len();
             self.reading.budget.take::<Rgb>(count - indexed.colours.len(), self.source.name)?;
-            indexed.colours.resize(indexed.positions.len(), Rgb::WHITE);
+            indexed.colours.resize(indexed.positions.len(), UNCOLOURED);
             indexed.colours.extend_from_slice(&block.colours);
-            indexed.colours.resize(count, Rgb::WHITE);
+            indexed.colours.resize(count, UNCOLOURED);
         }
         Ok(())
     }
@@ -267,7 +269,7 @@ impl Obj<'_, '_, '_> {
         };
         for name in names {
             let located = self.reading.locate(folder, &name, at);
-            let loaded = located.and_then(|path| Ok((self.reading.load(&path)?, path)));
+            let loaded = located.and_then(|path| Ok((self.reading.load_text(&path)?, path)));
             let (bytes, path) = match loaded {
                 Ok(loaded) => loaded,
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
@@ -302,6 +304,8 @@ impl Obj<'_, '_, '_> {
             reading.budget.take::<u32>(indexed.positions.len(), source.name)?;
             strokes.add_all(indexed.positions.len(), source.stem());
         }
+        // Only now is the greatest number of the whole file known.
+        decode(&mut indexed.colours, Stored::Numbers);
         let place = |key: u64| TextPosition::of_key(key).in_file(source.name);
         strokes.into_objects(reading, source, &place, &indexed, &mut materials, &mut scene, &mut oddities)?;
         if indexed.faces.is_empty() {

@@ -3,9 +3,9 @@
 use super::mtl_write::write_library;
 use crate::FormatError;
 use crate::bake::{in_place, name_of, warn_of_scene};
+use crate::colours::encoded;
 use crate::float::push_f32s;
 use crate::writing::Writing;
-use bilux_math::Rgb;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::io::Write;
 
@@ -52,7 +52,7 @@ fn vertices(mesh: &Mesh, out: &mut Vec<u8>) {
         out.push(b'\n');
     };
     for (i, p) in mesh.positions.iter().enumerate() {
-        let colour = mesh.vertex_kd.get(i).copied().map(Rgb::to_array);
+        let colour = mesh.vertex_kd.get(i).copied().map(encoded);
         line("v", &[&p.to_array(), colour.as_ref().map_or(&[], |c| &c[..])]);
     }
     mesh.uvs.iter().for_each(|uv| line("vt", &[&uv.to_array()]));

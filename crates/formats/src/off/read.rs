@@ -2,12 +2,13 @@
 
 use super::FLAT_COMMENT;
 use crate::FormatError;
-use crate::float::parse_f32;
-use crate::indexed_faces::{Corner, IndexedFaces, NONE, Run, assemble};
+use crate::colours::{Stored, decode};
+use crate::float::{parse_f32, parse_relative};
+use crate::indexed_faces::{Corner, FaceColour, IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use crate::text::{Cursor, Places, no_text, quoted};
-use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::SceneBuilder;
 use std::collections::HashMap;
@@ -115,8 +116,6 @@ impl<'a> Off<'a, '_, '_> {
     }
 
     fn vertices(&mut self, count: u64, columns: Columns) -> Result<(), FormatError> {
-        // Linear from 0 to 1 as the format requires, unless a number shows that they are bytes.
-        let mut bytes = false;
         for _ in 0..count {
             self.reading.budget.take::<f32>(columns.width(), self.source.name)?;
             let row = self.row("all of its vertices")?;
@@ -133,7 +132,6 @@ impl<'a> Off<'a, '_, '_> {
                 rest = &rest[3..];
             }
             if columns.colours {
-                bytes |= rest[..3].iter().any(|&c| c > 1.0);
                 self.indexed.colours.push(Rgb::new(rest[0], rest[1], rest[2]));
                 rest = &rest[3 + opacity..];
             }
@@ -142,9 +140,7 @@ impl<'a> Off<'a, '_, '_> {
             }
             self.note_odd(&row, extra > opacity);
         }
-        if bytes {
-            self.indexed.colours.iter_mut().for_each(|kd| *kd = kd.map(|c| srgb_decode(c / 255.0)));
-        }
+        decode(&mut self.indexed.colours, Stored::Numbers);
         Ok(())
     }
 
@@ -176,21 +172,50 @@ impl<'a> Off<'a, '_, '_> {
                 let (uv, normal) = (of_vertex(columns.uvs, vertex), of_vertex(columns.normals, vertex));
                 corners.push([vertex, uv, normal]);
             }
-            if !matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
-                let places = self.places;
-                self.oddities.note("a face has a colour of its own, which is left out", || places.at(start));
-            }
+            let colour = self.face_colour(start);
             self.cursor.end_line();
-            self.end_face(&corners, start)?;
+            if self.end_face(&corners, start)?
+                && let Some(colour) = colour
+            {
+                self.reading.budget.take::<FaceColour>(1, self.source.name)?;
+                self.indexed.face_colours.set(self.indexed.faces.len() - 1, colour);
+            }
+        }
+        self.indexed.face_colours.decode(Stored::Numbers);
+        if columns.colours && !self.indexed.face_colours.is_empty() {
+            let places = self.places;
+            self.indexed.face_colours.clear();
+            self.oddities.not_shown("colours of faces, since vertices have colours", || places.whole());
         }
         Ok(())
     }
 
-    fn end_face(&mut self, corners: &[Corner], start: usize) -> Result<(), FormatError> {
+    /// The colour at the end of a face's line, as stored: three numbers, and perhaps an opacity. A single number is
+    /// the index of a colour of the program that wrote the file.
+    fn face_colour(&mut self, start: usize) -> Option<Rgb> {
+        let (mut numbers, mut count, places) = ([0.0; 3], 0, self.places);
+        while !matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
+            let Some(number) = parse_f32(self.cursor.word()) else {
+                self.oddities.note("a face has more than vertices and a colour", || places.at(start));
+                return None;
+            };
+            if let Some(slot) = numbers.get_mut(count) {
+                *slot = number;
+            }
+            count += 1;
+        }
+        if matches!(count, 1 | 2) {
+            self.oddities.not_shown("colours of faces that are indices into a table", || places.at(start));
+        }
+        (count >= 3).then(|| Rgb::from_array(numbers))
+    }
+
+    /// Adds a face; false if it is left out.
+    fn end_face(&mut self, corners: &[Corner], start: usize) -> Result<bool, FormatError> {
         let (indexed, places) = (&mut self.indexed, self.places);
         if corners.len() < 3 {
             self.oddities.note("a face has fewer than 3 corners and is left out", || places.at(start));
-            return Ok(());
+            return Ok(false);
         }
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
         if (indexed.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
@@ -200,7 +225,7 @@ impl<'a> Off<'a, '_, '_> {
         indexed.smooth(self.smoothing);
         indexed.faces.push(corners);
         indexed.places.push(start as u64);
-        Ok(())
+        Ok(true)
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
@@ -240,6 +265,7 @@ impl<'a> Off<'a, '_, '_> {
 
     /// The numbers of the next line.
     fn row(&mut self, wanted: &str) -> Result<Row, FormatError> {
+        let origin = self.reading.origin.to_array();
         let mut row = Row { numbers: [0.0; 12], count: 0, start: self.next_line(wanted)? };
         loop {
             let word = self.cursor.word();
@@ -247,7 +273,9 @@ impl<'a> Off<'a, '_, '_> {
                 self.cursor.end_line();
                 return Ok(row);
             }
-            let number = parse_f32(word).ok_or_else(|| self.no_number(word, "a vertex has numbers"))?;
+            let origin = origin.get(row.count).copied().unwrap_or(0.0);
+            let number = parse_relative(word, origin);
+            let number = number.ok_or_else(|| self.no_number(word, "a vertex has numbers"))?;
             if let Some(slot) = row.numbers.get_mut(row.count) {
                 *slot = number;
             }

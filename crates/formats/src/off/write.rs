@@ -4,6 +4,7 @@ use super::FLAT_COMMENT;
 use super::read::Columns;
 use crate::FormatError;
 use crate::bake::{in_place, warn_of_materials, warn_of_scene};
+use crate::colours::encoded;
 use crate::float::push_f32s;
 use crate::text::whole_file;
 use crate::writing::Writing;
@@ -67,9 +68,7 @@ fn push_vertex(columns: Columns, mesh: &Mesh, i: usize, out: &mut Vec<u8>) {
     };
     // If one mesh has a column, all do; a zero normal stands for a missing one.
     more(columns.normals, &mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).to_array());
-    // Readers interpret colours as bytes if any is above 1.
-    let kd = mesh.vertex_kd.get(i).copied().unwrap_or(Rgb::WHITE);
-    more(columns.colours, &kd.map(|c| c.clamp(0.0, 1.0)).to_array());
+    more(columns.colours, &encoded(mesh.vertex_kd.get(i).copied().unwrap_or(Rgb::WHITE)));
     more(columns.uvs, &mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).to_array());
     out.push(b'\n');
 }

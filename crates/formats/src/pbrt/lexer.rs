@@ -168,7 +168,8 @@ fn unescaped(text: &[u8]) -> Vec<u8> {
 
 /// A number of a list, which may be infinite or NaN.
 pub(super) fn number_of(word: &[u8]) -> Option<f32> {
-    parse_f32(word)
+    // Elsewhere a comma may be a decimal comma; here it can only be a mistake.
+    if word.contains(&b',') { None } else { parse_f32(word) }
 }
 
 /// A token for a message.

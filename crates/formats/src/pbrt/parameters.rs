@@ -5,7 +5,7 @@ use super::lexer::{Lexer, Token, number_of, shown};
 use super::{shortened, unknown};
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Span;
 use bilux_scene::error::nearest_name;

@@ -10,7 +10,8 @@ use super::spectra::Spectrum;
 use super::state::{MaterialKey, Matrices, State};
 use super::textures::NamedTextures;
 use crate::FormatError;
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use bilux_math::DMat4;
 use bilux_scene::{Mesh, SceneBuilder, Span, Spec, Texture};
 use std::collections::HashMap;
@@ -209,7 +210,8 @@ impl Pbrt<'_, '_> {
             return Err(FormatError::malformed(message, at.clone()));
         }
         let raw = self.reading.load(&path)?;
-        let bytes = super::gzip::plain(raw, self.reading, &path, at)?;
+        let unpacked = super::gzip::plain(raw, self.reading, &path, at)?;
+        let bytes = self.reading.as_text(unpacked, &path)?;
         self.included = self.included.saturating_add(bytes.len() as u64 + MIN_FILE);
         if self.included > self.reading.options.max_memory {
             let message = "the includes multiply so much that reading would not end: remove some";

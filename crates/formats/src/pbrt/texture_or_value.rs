@@ -326,7 +326,7 @@ impl Pbrt<'_, '_> {
         if let Some(known) = self.spectra.get(&path) {
             return Ok((**known).clone());
         }
-        let bytes = self.reading.load(&path)?;
+        let bytes = self.reading.load_text(&path)?;
         let file = path.display().to_string();
         self.reading.budget.take::<f32>(bytes.len() / 2, &file)?;
         let mut numbers = Vec::new();

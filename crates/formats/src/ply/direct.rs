@@ -72,14 +72,12 @@ impl Ply<'_, '_, '_> {
     /// Builds the scene if nothing has to be welded.
     pub(super) fn finish_triangles(
         mut self,
-        texture: Option<(String, usize)>,
+        textures: &[(String, usize)],
         mut scene: SceneBuilder,
         triangles: Vec<[u32; 3]>,
     ) -> Result<SceneBuilder, FormatError> {
         let mut materials = HashMap::new();
-        if let Some((file, offset)) = texture {
-            self.texture(&file, offset, &mut scene, &mut materials)?;
-        }
+        self.only_texture(textures, &mut scene, &mut materials)?;
         let indexed = std::mem::take(&mut self.indexed);
         let material = materials.get("").copied().unwrap_or_else(|| {
             scene.add_material(plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty()))

@@ -1,6 +1,7 @@
 //! The header: the elements, their counts and their properties.
 
 use crate::FormatError;
+use crate::colours::Stored;
 use crate::reading::Source;
 use crate::text::{Cursor, Places, name_of, quoted};
 
@@ -50,12 +51,12 @@ impl Scalar {
         }
     }
 
-    /// The value that means 1 in a colour; `None` for floating-point types.
-    pub(super) fn colour_scale(self) -> Option<f32> {
+    /// How colours of this type are stored.
+    pub(super) fn stored(self) -> Stored {
         match self {
-            Scalar::U8 => Some(255.0),
-            Scalar::U16 => Some(65535.0),
-            _ => None,
+            Scalar::I8 | Scalar::U8 => Stored::Bytes,
+            Scalar::F32 | Scalar::F64 => Stored::Numbers,
+            _ => Stored::Integers,
         }
     }
 }
@@ -95,8 +96,8 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The file of a `comment TextureFile` line, and the offset of the line.
-    pub(super) texture: Option<(String, usize)>,
+    /// The file of each `comment TextureFile` line, and the offset of the line.
+    pub(super) textures: Vec<(String, usize)>,
     /// True if a comment states that faces without normals are flat.
     pub(super) is_flat: bool,
     /// The offset of the body.
@@ -115,14 +116,14 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
     cursor.end_line();
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    let (mut texture, mut is_flat, mut properties) = (None, false, 0);
+    let (mut textures, mut is_flat, mut properties) = (Vec::new(), false, 0);
     while !cursor.is_done() {
         cursor.skip_blanks();
         let start = cursor.offset();
         match cursor.word() {
             b"format" => encoding = Some(read_encoding(&mut cursor, places)?),
             b"comment" | b"obj_info" => match cursor.word() {
-                b"TextureFile" => texture = Some((name_of(cursor.rest_of_line()), start)),
+                b"TextureFile" => textures.push((name_of(cursor.rest_of_line()), start)),
                 b"shading" => is_flat |= cursor.rest_of_line() == b"flat",
                 _ => {
                     cursor.rest_of_line();
@@ -143,11 +144,11 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
                 element.properties.push(read_property(&mut cursor, places)?);
             }
             b"end_header" => {
-                cursor.end_line();
+                cursor.end_line_as_in(source.bytes);
                 let Some(encoding) = encoding else {
                     return fail("the header has no 'format' line".to_owned(), start);
                 };
-                return Ok(Header { encoding, elements, texture, is_flat, body: cursor.offset() });
+                return Ok(Header { encoding, elements, textures, is_flat, body: cursor.offset() });
             }
             b"" => {}
             word => {

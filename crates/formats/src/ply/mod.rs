@@ -2,10 +2,13 @@
 
 mod body;
 mod direct;
+mod faces;
 mod header;
 mod read;
 mod slots;
+mod splats;
 mod strokes;
+mod textures;
 mod write;
 
 pub(crate) use write::encode;

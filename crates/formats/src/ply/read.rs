@@ -2,19 +2,20 @@
 
 use super::body::Body;
 use super::direct::can_be;
-use super::header::{Element, Property, Scalar, read_header};
+use super::header::{Element, Property, read_header};
 use super::slots::{MEANINGS, Slots};
+use super::splats::{self, Splats};
 use super::strokes;
 use crate::FormatError;
-use crate::indexed_faces::{Corner, IndexedFaces, NONE, Run, assemble};
+use crate::colours::{Stored, decode};
+use crate::indexed_faces::{IndexedFaces, NONE, assemble};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
-use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
-use crate::text::Places;
-use bilux_math::colour::srgb_decode;
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
+use crate::text::{Places, quoted};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
-use bilux_scene::{SceneBuilder, Texture, Value};
+use bilux_scene::SceneBuilder;
 use std::collections::HashMap;
-use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let places = Places::new(source.name, source.bytes);
@@ -25,9 +26,13 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         places: &places,
         body: Body::new(source, &places, header.encoding, header.body),
         indexed: IndexedFaces::default(),
-        vertices: Slots::default(),
+        has_normals: false,
+        has_uvs: false,
         triangles: None,
         edges: Vec::new(),
+        splats: None,
+        face_textures: Vec::new(),
+        face_colours: None,
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
@@ -40,15 +45,14 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         header.elements.iter().filter(|e| matches!(&*e.name, "vertex" | "face" | "tristrips")).count() == 2;
     for element in &header.elements {
         let is_plain = are_in_order && are_few && element.name == "face" && can_be(element);
-        if is_plain && (reader.vertices.normals || reader.reading.crease_angle <= 0.0) {
+        if is_plain && (reader.has_normals || reader.reading.crease_angle <= 0.0) {
             reader.body.check_claim(element)?;
             reader.triangles = Some(reader.triangles_of(element)?);
         } else {
             reader.element(element)?;
         }
     }
-    let (texture, scene) = (header.texture, SceneBuilder::default());
-    reader.finish(texture, scene)
+    reader.finish(&header.textures, SceneBuilder::default())
 }
 
 pub(super) struct Ply<'a, 'o, 'r> {
@@ -61,13 +65,20 @@ pub(super) struct Ply<'a, 'o, 'r> {
     triangles: Option<Vec<[u32; 3]>>,
     /// Edges, as pairs of vertices.
     pub(super) edges: Vec<[u32; 2]>,
-    vertices: Slots,
+    /// The opacity and the width of each vertex that is a splat.
+    pub(super) splats: Option<Splats>,
+    /// How colours of faces are stored, if there are any.
+    pub(super) face_colours: Option<Stored>,
+    /// The number of each face's texture.
+    pub(super) face_textures: Vec<u32>,
+    has_normals: bool,
+    has_uvs: bool,
     /// Distinct texture coordinates of corners, as opposed to vertices.
-    wedge_uvs: Vec<Vec2>,
+    pub(super) wedge_uvs: Vec<Vec2>,
     /// The index of each of these, by its bits.
-    wedges: HashMap<[u32; 2], u32>,
+    pub(super) wedges: HashMap<[u32; 2], u32>,
     /// The smoothing of faces without normals.
-    smoothing: Smoothing,
+    pub(super) smoothing: Smoothing,
     pub(super) oddities: Oddities,
 }
 
@@ -79,11 +90,16 @@ impl Ply<'_, '_, '_> {
         }
         self.body.check_claim(element)?;
         match element.name.as_str() {
+            "vertex" if splats::are_splats(element) => self.splats(element),
             "vertex" => self.vertices(element),
             "face" => self.faces(element, false),
             "tristrips" => self.faces(element, true),
             "edge" if strokes::has_both_ends(element) => self.edges(element),
-            _ => self.skip_element(element),
+            name => {
+                let places = self.places;
+                self.oddities.not_used(&quoted(name.as_bytes()), || places.at(element.offset));
+                self.skip_element(element)
+            }
         }
     }
 
@@ -108,13 +124,18 @@ impl Ply<'_, '_, '_> {
     fn vertices(&mut self, element: &Element) -> Result<(), FormatError> {
         let slots = Slots::new(element);
         if !(0..3).all(|slot| slots.meaning.contains(&Some(slot))) {
-            let message = "the element 'vertex' has no properties x, y and z";
+            let is_packed = element.properties.iter().any(|p| p.name == "packed_position");
+            let message = match is_packed {
+                true => "these are compressed Gaussian splats, which cannot be read: save them uncompressed",
+                false => "the element 'vertex' has no properties x, y and z",
+            };
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
         if element.count >= u64::from(NONE) {
             let message = "there are more than 4 billion vertices: split the file";
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
+        self.report_unused(element, |p| slots.meaning[p].is_some());
         let floats = 3 * (1 + usize::from(slots.normals) + usize::from(slots.kd) + usize::from(slots.ks))
             + 2 * usize::from(slots.uvs);
         // The count has been checked against the remaining bytes, so the memory is reserved at once.
@@ -149,8 +170,19 @@ impl Ply<'_, '_, '_> {
             self.end_row(start);
             self.push_vertex(&values, &slots, start);
         }
-        self.vertices = slots;
+        (self.has_normals, self.has_uvs) = (slots.normals, slots.uvs);
+        decode(&mut self.indexed.colours, slots.stored[0]);
+        decode(&mut self.indexed.specular, slots.stored[1]);
         Ok(())
+    }
+
+    /// Names the properties that the picture does not show.
+    pub(super) fn report_unused(&mut self, element: &Element, is_used: impl Fn(usize) -> bool) {
+        let places = self.places;
+        for (_, unused) in element.properties.iter().enumerate().filter(|(p, _)| !is_used(*p)) {
+            let what = format!("{} of each {}", quoted(unused.name.as_bytes()), element.name);
+            self.oddities.not_used(&what, || places.at(element.offset));
+        }
     }
 
     pub(super) fn end_row(&mut self, start: usize) {
@@ -179,15 +211,13 @@ impl Ply<'_, '_, '_> {
         if slots.uvs {
             indexed.uvs.push(Vec2::from_slice(&values[6..8]));
         }
-        let colour = |first: usize, scale: Option<f32>| {
-            let stored = Rgb::new(values[first], values[first + 1], values[first + 2]);
-            scale.map_or(stored, |one| stored.map(|c| srgb_decode(c / one)))
-        };
+        // As stored: only when all are known is it known what white is.
+        let colour = |first: usize| Rgb::new(values[first], values[first + 1], values[first + 2]);
         if slots.kd {
-            indexed.colours.push(colour(8, slots.colour[0]));
+            indexed.colours.push(colour(8));
         }
         if slots.ks {
-            indexed.specular.push(colour(11, slots.colour[1]));
+            indexed.specular.push(colour(11));
         }
         if values.iter().any(|x| !x.is_finite()) {
             let places = self.places;
@@ -196,134 +226,13 @@ impl Ply<'_, '_, '_> {
         }
     }
 
-    fn faces(&mut self, element: &Element, strips: bool) -> Result<(), FormatError> {
-        let is = |p: &Property, names: &[&str]| p.count.is_some() && names.contains(&p.name.as_str());
-        if !element.properties.iter().any(|p| is(p, &["vertex_indices", "vertex_index"])) {
-            let message = format!("the element '{}' has no list 'vertex_indices'", element.name);
-            return Err(FormatError::malformed(message, self.places.at(element.offset)));
-        }
-        let mut corners = Vec::new();
-        for _ in 0..element.count {
-            let start = self.body.offset();
-            let mut wedges = None;
-            for property in &element.properties {
-                if is(property, &["vertex_indices", "vertex_index"]) {
-                    self.indices(property, strips, start, &mut corners)?;
-                } else if is(property, &["texcoord"]) && !strips {
-                    wedges = Some(self.wedges(property)?);
-                } else {
-                    self.skip(property)?;
-                }
-            }
-            if let Some(uvs) = wedges {
-                self.set_wedges(&mut corners, uvs, start);
-            }
-            self.end_face(&mut corners, start)?;
-            self.end_row(start);
-        }
-        Ok(())
-    }
-
-    /// Reads the corners of a face, or of a triangle strip, in which -1 starts a new strip.
-    fn indices(
-        &mut self,
-        property: &Property,
-        strips: bool,
-        start: usize,
-        corners: &mut Vec<Corner>,
-    ) -> Result<(), FormatError> {
-        let count = self.body.integer(property.count.unwrap_or(property.scalar))?;
-        self.end_face(corners, start)?;
-        let mut strip: [u32; 2] = [NONE; 2];
-        let mut turned = false;
-        for _ in 0..count {
-            let index = self.body.integer(property.scalar)?;
-            let vertex = u32::try_from(index).ok().filter(|&i| i != NONE);
-            match vertex {
-                None if strips && index == -1 => (strip, turned) = ([NONE; 2], false),
-                None => {
-                    let message = format!("this face refers to vertex {index}: vertices are counted from 0");
-                    return Err(FormatError::malformed(message, self.places.at(start)));
-                }
-                Some(vertex) if strips => {
-                    let [a, b] = strip;
-                    if a != NONE {
-                        let triangle = if turned { [b, a, vertex] } else { [a, b, vertex] };
-                        corners.extend(triangle.map(corner_of));
-                        self.end_face(corners, start)?;
-                        turned = !turned;
-                    }
-                    strip = [b, vertex];
-                }
-                Some(vertex) => corners.push(corner_of(vertex)),
-            }
-        }
-        if !strips && corners.len() < 3 {
-            corners.clear();
-            let places = self.places;
-            let what = "a face has fewer than 3 corners and is left out";
-            self.oddities.note(what, || places.at(start));
-        }
-        Ok(())
-    }
-
-    /// Adds the collected corners as a face, if there are any.
-    fn end_face(&mut self, corners: &mut Vec<Corner>, start: usize) -> Result<(), FormatError> {
-        if corners.is_empty() {
-            return Ok(());
-        }
-        let indexed = &mut self.indexed;
-        self.reading.budget.take::<Corner>(corners.len(), self.source.name)?;
-        self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        if (indexed.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
-            let message = "there are more than 4 billion corners: split the file";
-            return Err(FormatError::malformed(message, self.places.at(start)));
-        }
-        indexed.smooth(self.smoothing);
-        indexed.faces.push(corners);
-        indexed.places.push(start as u64);
-        corners.clear();
-        Ok(())
-    }
-
-    /// The texture coordinates of each corner of a face, in order.
-    fn wedges(&mut self, property: &Property) -> Result<Vec<Vec2>, FormatError> {
-        let count = self.body.integer(property.count.unwrap_or(Scalar::U8))?;
-        let mut uvs = Vec::new();
-        for _ in 0..count / 2 {
-            self.reading.budget.take::<[Vec2; 4]>(1, self.source.name)?;
-            uvs.push(Vec2::new(self.body.number(property.scalar)?, self.body.number(property.scalar)?));
-        }
-        self.body.skip(property.scalar, count % 2)?;
-        Ok(uvs)
-    }
-
-    fn set_wedges(&mut self, corners: &mut [Corner], uvs: Vec<Vec2>, start: usize) {
-        if uvs.len() != corners.len() {
-            if !uvs.is_empty() && !corners.is_empty() {
-                let places = self.places;
-                let what = "a face has different numbers of corners and of texture coordinates";
-                self.oddities.note(what, || places.at(start));
-            }
-            return;
-        }
-        for (corner, uv) in corners.iter_mut().zip(uvs) {
-            let all = &mut self.wedge_uvs;
-            let next = all.len() as u32;
-            corner[1] = *self.wedges.entry(uv.to_array().map(f32::to_bits)).or_insert(next);
-            if corner[1] == next {
-                all.push(uv);
-            }
-        }
-    }
-
     fn finish(
         mut self,
-        texture: Option<(String, usize)>,
+        textures: &[(String, usize)],
         mut scene: SceneBuilder,
     ) -> Result<SceneBuilder, FormatError> {
         if let Some(triangles) = self.triangles.take().filter(|triangles| !triangles.is_empty()) {
-            return self.finish_triangles(texture, scene, triangles);
+            return self.finish_triangles(textures, scene, triangles);
         }
         if self.indexed.faces.is_empty() {
             return self.finish_strokes(scene);
@@ -332,7 +241,7 @@ impl Ply<'_, '_, '_> {
             let places = self.places;
             self.oddities.note("edges are not rendered if there are faces", || places.whole());
         }
-        let (normals, uvs) = (self.vertices.normals, self.vertices.uvs);
+        let (normals, uvs) = (self.has_normals, self.has_uvs);
         let wedges = std::mem::take(&mut self.wedge_uvs);
         let uvs = uvs && wedges.is_empty();
         if !wedges.is_empty() {
@@ -343,11 +252,15 @@ impl Ply<'_, '_, '_> {
             *corner =
                 [corner[0], if corner[1] == NONE { of_vertex(uvs) } else { corner[1] }, of_vertex(normals)];
         }
-        self.indexed.runs.push(Run { first_face: 0, name: self.source.stem(), material: None });
-        let mut materials = HashMap::new();
-        if let Some((file, offset)) = texture {
-            self.texture(&file, offset, &mut scene, &mut materials)?;
+        if let Some(stored) = self.face_colours {
+            self.indexed.face_colours.decode(stored);
         }
+        if !self.indexed.colours.is_empty() && !self.indexed.face_colours.is_empty() {
+            let places = self.places;
+            self.indexed.face_colours.clear();
+            self.oddities.not_shown("colours of faces, since vertices have colours", || places.whole());
+        }
+        let materials = self.materials(textures, &mut scene)?;
         let Ply { reading, source, places, indexed, mut oddities, .. } = self;
         let place = |offset: u64| places.at(offset as usize);
         assemble(reading, source, &place, indexed, materials, &mut scene, &mut oddities)?;
@@ -355,34 +268,4 @@ impl Ply<'_, '_, '_> {
         Ok(scene)
     }
 
-    /// Adds the texture of the whole mesh, which MeshLab names in a comment.
-    pub(super) fn texture(
-        &mut self,
-        file: &str,
-        offset: usize,
-        scene: &mut SceneBuilder,
-        materials: &mut HashMap<String, usize>,
-    ) -> Result<(), FormatError> {
-        let at = self.places.at(offset);
-        let texture = match self.reading.texture(self.source.folder, file, Texels::Colours, &at) {
-            Ok(texture) => texture,
-            Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-            Err(error) => {
-                let reason = error.without_place();
-                scene.warn(format!("a texture is replaced by a magenta checker: {reason}"), at.clone());
-                Arc::new(Texture::missing(file))
-            }
-        };
-        let mut spec = plain_material(false, !self.indexed.specular.is_empty());
-        spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);
-        scene.textures.push(texture);
-        let index = scene.add_material(spec);
-        materials.insert(String::new(), index);
-        Ok(())
-    }
-}
-
-/// Vertices may follow later in the file, with their normals and uvs, which are resolved at the end.
-fn corner_of(vertex: u32) -> Corner {
-    [vertex, NONE, NONE]
 }

@@ -1,6 +1,7 @@
 //! The meaning of vertex properties.
 
 use super::header::{Element, Property, Scalar};
+use crate::colours::Stored;
 
 /// The known meanings of vertex properties, with the names that programs use for them.
 pub(super) const MEANINGS: [&[&str]; 14] = [
@@ -21,12 +22,11 @@ pub(super) const MEANINGS: [&[&str]; 14] = [
 ];
 
 /// The meanings that a file's vertices have.
-#[derive(Default)]
 pub(super) struct Slots {
     /// The meaning of each property.
     pub(super) meaning: Vec<Option<usize>>,
-    /// The values that mean 1 in diffuse and specular colours.
-    pub(super) colour: [Option<f32>; 2],
+    /// How diffuse and specular colours are stored.
+    pub(super) stored: [Stored; 2],
     pub(super) normals: bool,
     pub(super) uvs: bool,
     pub(super) kd: bool,
@@ -40,12 +40,12 @@ impl Slots {
         };
         let meaning: Vec<Option<usize>> = element.properties.iter().map(meaning_of).collect();
         let all = |slots: std::ops::Range<usize>| slots.into_iter().all(|slot| meaning.contains(&Some(slot)));
-        let scale = |slot| {
+        let stored = |slot| {
             let property = meaning.iter().position(|&m| m == Some(slot));
-            property.and_then(|p| element.properties[p].scalar.colour_scale())
+            property.map_or(Stored::Numbers, |p| element.properties[p].scalar.stored())
         };
         let (normals, uvs, kd, ks) = (all(3..6), all(6..8), all(8..11), all(11..14));
-        Slots { colour: [scale(8), scale(11)], normals, uvs, kd, ks, meaning }
+        Slots { stored: [stored(8), stored(11)], normals, uvs, kd, ks, meaning }
     }
 
     /// The offset of each meaning in a binary row, and the row's length.
@@ -61,5 +61,50 @@ impl Slots {
             at += property.scalar.size();
         }
         Some((offsets, at))
+    }
+}
+
+/// The properties of faces that show, apart from lists.
+pub(super) struct FaceSlots {
+    /// The properties that are red, green and blue.
+    pub(super) colour: Option<[usize; 3]>,
+    /// How these are stored.
+    pub(super) stored: Option<Stored>,
+    /// The property that is the number of the texture.
+    pub(super) texture: Option<usize>,
+    strips: bool,
+}
+
+/// The lists that faces have, and for plain faces the texture coordinates of their corners.
+const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+impl FaceSlots {
+    pub(super) fn of(element: &Element, strips: bool) -> FaceSlots {
+        let find = |names: &[&str]| {
+            element.properties.iter().position(|p| p.count.is_none() && names.contains(&&*p.name))
+        };
+        let channels = [8, 9, 10].map(|slot| find(MEANINGS[slot]));
+        let colour = match channels {
+            [Some(r), Some(g), Some(b)] if !strips => Some([r, g, b]),
+            _ => None,
+        };
+        let stored = colour.map(|[r, ..]| element.properties[r].scalar.stored());
+        let texture = find(&["texnumber", "texture_index"]).filter(|_| !strips);
+        FaceSlots { colour, stored, texture, strips }
+    }
+
+    /// The channel of a property.
+    #[inline]
+    pub(super) fn channel(&self, property: usize) -> Option<usize> {
+        self.colour?.iter().position(|&p| p == property)
+    }
+
+    /// True if the property shows.
+    pub(super) fn uses(&self, index: usize, property: &Property) -> bool {
+        let is_list = property.count.is_some();
+        let name = &*property.name;
+        self.channel(index).is_some()
+            || self.texture == Some(index)
+            || (is_list && (INDICES.contains(&name) || (name == "texcoord" && !self.strips)))
     }
 }

@@ -56,7 +56,10 @@ impl Ply<'_, '_, '_> {
         let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
         let material =
             scene.add_material(plain_material(!indexed.colours.is_empty(), !indexed.specular.is_empty()));
+        let splats = self.splats.take().unwrap_or_default();
         let mesh = Mesh {
+            vertex_opacity: splats.opacities,
+            point_widths: splats.widths,
             name: self.source.stem(),
             positions: indexed.positions,
             uvs: indexed.uvs,

@@ -2,10 +2,10 @@
 
 use crate::FormatError;
 use crate::bake::{in_place, warn_of_materials, warn_of_scene};
+use crate::colours::{as_bytes, encoded};
 use crate::float::push_f32s;
 use crate::text::whole_file;
 use crate::writing::Writing;
-use bilux_math::colour::{srgb_decode, srgb_encode};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, SceneBuilder};
 use std::borrow::Cow;
@@ -92,14 +92,6 @@ enum Colours {
     Floats,
 }
 
-fn as_bytes(colour: Rgb) -> Option<[u8; 3]> {
-    let byte = |c: f32| {
-        let byte = (srgb_encode(c.clamp(0.0, 1.0)) * 255.0).round() as u8;
-        (srgb_decode(f32::from(byte) / 255.0) == c).then_some(byte)
-    };
-    Some([byte(colour.r)?, byte(colour.g)?, byte(colour.b)?])
-}
-
 impl Columns {
     fn of(meshes: &[&Mesh]) -> Columns {
         let colours = |of: fn(&Mesh) -> &Vec<Rgb>| {
@@ -169,10 +161,10 @@ impl Columns {
                 None => {}
                 Some(Colours::Floats) => {
                     if ascii {
-                        push_f32s(out, &value.to_array());
+                        push_f32s(out, &encoded(value));
                         out.push(b' ');
                     } else {
-                        out.extend(value.to_array().iter().flat_map(|v| v.to_le_bytes()));
+                        out.extend(encoded(value).iter().flat_map(|v| v.to_le_bytes()));
                     }
                 }
                 Some(Colours::Bytes) => {

@@ -1,11 +1,13 @@
 //! Reads text STL.
 
 use crate::FormatError;
-use crate::float::parse_f32;
+use crate::colours::{Stored, UNCOLOURED, decode};
+use crate::float::{parse_f32, parse_relative};
 use crate::polygon::Triangulator;
-use crate::reading::{Oddities, Reading, Source};
-use crate::text::{Cursor, Places, name_of, quoted};
-use bilux_math::Vec3;
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
+use crate::text::{Cursor, Places, is_comment, name_of, quoted};
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;
 
@@ -19,10 +21,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         oddities: Oddities::default(),
         mesh: Mesh::default(),
         corners: Vec::new(),
+        colour: None,
         triangulator: Triangulator::default(),
     };
     reader.statements()?;
     let Ascii { mut scene, oddities, .. } = reader;
+    decode_all(&mut scene);
     oddities.into_warnings(&mut scene);
     Ok(scene)
 }
@@ -37,6 +41,8 @@ struct Ascii<'a, 'o, 'r> {
     mesh: Mesh,
     /// The corners of the current loop.
     corners: Vec<Vec3>,
+    /// The colour of the next facets, as stored.
+    colour: Option<Rgb>,
     triangulator: Triangulator,
 }
 
@@ -52,12 +58,18 @@ impl Ascii<'_, '_, '_> {
                 b"" => {}
                 b"solid" => self.begin_solid()?,
                 b"facet" => facet = Some(start),
+                b"color" | b"colour" => self.colour(start),
+                line if is_comment(line) => {
+                    self.cursor.rest_of_line();
+                }
                 b"vertex" if facet.is_some() => self.vertex()?,
                 b"endfacet" => {
                     self.end_facet(start)?;
                     facet = None;
                 }
-                b"endsolid" | b"outer" | b"endloop" | b"end" => {}
+                b"outer" | b"endloop" | b"end" => {}
+                // Some programs write the name without a blank.
+                word if word.starts_with(b"endsolid") => {}
                 _ => {
                     let message = format!(
                         "{} is not expected here: a text STL has 'facet', 'outer loop', three times 'vertex x y z', \
@@ -76,8 +88,23 @@ impl Ascii<'_, '_, '_> {
         self.end_solid()
     }
 
+    /// `color r g b`, which some programs write for the facets that follow.
+    fn colour(&mut self, start: usize) {
+        let mut colour = [0.0; 3];
+        for channel in &mut colour {
+            let Some(number) = parse_f32(self.cursor.word()) else {
+                let places = &self.places;
+                self.oddities.note("a colour is not three numbers, and is ignored", || places.at(start));
+                return;
+            };
+            *channel = number;
+        }
+        self.colour = Some(Rgb::from_array(colour));
+    }
+
     fn begin_solid(&mut self) -> Result<(), FormatError> {
         self.end_solid()?;
+        self.colour = None;
         self.mesh.name = name_of(self.cursor.rest_of_line());
         Ok(())
     }
@@ -95,9 +122,9 @@ impl Ascii<'_, '_, '_> {
 
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut point = [0.0; 3];
-        for number in &mut point {
+        for (number, origin) in point.iter_mut().zip(self.reading.origin.to_array()) {
             let word = self.cursor.word();
-            *number = parse_f32(word).ok_or_else(|| {
+            *number = parse_relative(word, origin).ok_or_else(|| {
                 let at = self.places.at(self.cursor.offset() - word.len());
                 let message = match word {
                     b"" => "a vertex has three numbers, but the line ends earlier".to_owned(),
@@ -112,7 +139,7 @@ impl Ascii<'_, '_, '_> {
             let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.oddities.note(what, || places.at(offset));
         }
-        self.reading.budget.take::<(Vec3, [u32; 3])>(1, self.source.name)?;
+        self.reading.budget.take::<(Vec3, [u32; 3], Rgb)>(1, self.source.name)?;
         self.corners.push(point);
         Ok(())
     }
@@ -134,6 +161,10 @@ impl Ascii<'_, '_, '_> {
             .triangulator
             .triangulate(corners.iter().copied(), |t| triangles.push(t.map(|i| first as u32 + i)));
         mesh.positions.extend_from_slice(corners);
+        if self.colour.is_some() || !mesh.vertex_kd.is_empty() {
+            mesh.vertex_kd.resize(first, UNCOLOURED);
+            mesh.vertex_kd.resize(mesh.positions.len(), self.colour.unwrap_or(UNCOLOURED));
+        }
         self.corners.clear();
         if whole.is_none() {
             let places = &self.places;
@@ -142,5 +173,23 @@ impl Ascii<'_, '_, '_> {
             self.oddities.note(what, || places.at(start));
         }
         Ok(())
+    }
+}
+
+/// Replaces the stored colours of all solids by reflectances.
+fn decode_all(scene: &mut SceneBuilder) {
+    let mut all: Vec<Rgb> = scene.objects.iter().flat_map(|object| object.mesh.vertex_kd.iter().copied()).collect();
+    if all.is_empty() {
+        return;
+    }
+    decode(&mut all, Stored::Numbers);
+    let mut rest = all.into_iter();
+    for object in &mut scene.objects {
+        let mesh = Arc::make_mut(&mut object.mesh);
+        // One material is for all: what has no colour is white among what has.
+        match mesh.vertex_kd.len() {
+            0 => mesh.vertex_kd = vec![Rgb::WHITE; mesh.positions.len()],
+            count => mesh.vertex_kd = rest.by_ref().take(count).collect(),
+        }
     }
 }

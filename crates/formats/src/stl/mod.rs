@@ -2,12 +2,13 @@
 
 mod ascii;
 mod binary;
+mod facet_colours;
 mod write;
 
 use crate::FormatError;
 use crate::formats::{ReadFormat, SceneFormatEntry};
-use crate::reading::{Reading, Source, default_material};
-use crate::text::whole_file;
+use crate::reading::{Reading, Source, plain_material};
+use crate::text::{is_comment, plain, plain_size, whole_file};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
 
@@ -20,32 +21,37 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["stl"],
     capabilities: &["triangles", "objects (text only)"],
-    sniff: |bytes| binary::fits(bytes) || begins_with_solid(bytes),
+    sniff: |bytes| binary::fits(bytes) || is_text(&plain(&bytes[..bytes.len().min(HEAD)])),
     up: UpHint::Usually(Axis::Z),
-    read: Some(ReadFormat::Whole(read)),
+    read: Some(ReadFormat::Binary(read)),
     write: Some(write::write),
 };
 
 /// Many binary files begin with `solid` too, so the size decides first.
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
-    let mut scene = if binary::fits(source.bytes) || !begins_with_solid(source.bytes) {
-        binary::read(reading, source)?
+    reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
+    let text = plain(source.bytes);
+    let (mut scene, head) = if !binary::fits(source.bytes) && is_text(&text) {
+        let source = Source { bytes: &text, ..*source };
+        (ascii::read(reading, &source)?, first_statement(&text).unwrap_or_default())
     } else {
-        ascii::read(reading, source)?
+        (binary::read(reading, source)?, &source.bytes[..source.bytes.len().min(binary::HEADER - 4)])
     };
     if scene.objects.is_empty() {
         return Err(FormatError::malformed("it contains no triangles", whole_file(source.name)));
     }
-    scene.add_material(default_material());
-    scene.unit = unit(source.bytes);
+    scene.unit = unit(head);
+    if scene.materials.is_empty() {
+        let is_coloured = scene.objects.iter().any(|object| !object.mesh.vertex_kd.is_empty());
+        scene.add_material(plain_material(is_coloured, false));
+    }
     Ok(scene)
 }
 
 /// The length of a unit in metres: millimetres, as 3D printers expect, unless the free-form header states another,
 /// as in `UNITS=inch`.
-fn unit(bytes: &[u8]) -> f64 {
-    let head = bytes[..bytes.len().min(binary::HEADER - 4)].to_ascii_lowercase();
-    let head = String::from_utf8_lossy(&head);
+fn unit(head: &[u8]) -> f64 {
+    let head = String::from_utf8_lossy(head).to_ascii_lowercase();
     let line = head.lines().next().unwrap_or_default();
     let Some((_, said)) = line.split_once("unit") else { return MILLIMETRE };
     let said = said.trim_start_matches('s').trim_start_matches([' ', '=', ':', '"']);
@@ -61,7 +67,22 @@ fn unit(bytes: &[u8]) -> f64 {
 
 const MILLIMETRE: f64 = 0.001;
 
-fn begins_with_solid(bytes: &[u8]) -> bool {
-    let start = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
-    bytes[start..].get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+/// The bytes that tell text from binary.
+const HEAD: usize = 1024;
+
+/// The first line that is neither empty nor a comment.
+fn first_statement(text: &[u8]) -> Option<&[u8]> {
+    let lines = text.split(|b| matches!(b, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    lines.take(HEAD).find(|line| !line.is_empty() && !is_comment(line))
+}
+
+/// True for a text: one that begins with `solid`, though not if binary data follow, or with a facet.
+fn is_text(bytes: &[u8]) -> bool {
+    let begins = |line: &[u8], word: &[u8]| {
+        line.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    let head = bytes[..bytes.len().min(HEAD)].to_ascii_lowercase();
+    let has_facet = head.windows(6).any(|word| word == b"facet ");
+    let Some(line) = first_statement(bytes) else { return false };
+    begins(line, b"facet ") || (begins(line, b"solid") && (has_facet || !head.contains(&0)))
 }

@@ -63,20 +63,16 @@ impl Columns {
     }
 }
 
-/// Separators between numbers other than spaces.
-pub(super) const fn is_separator(byte: u8) -> bool {
-    matches!(byte, b',' | b';')
-}
-
 /// True if the first lines are numbers, at least three on each except for a leading count.
 pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(4096)];
     let mut cursor = Cursor::new(head);
+    let comma = Comma::of_text(head);
     let mut lines = 0;
     while !cursor.is_done() && lines < 4 {
         let line = cursor.rest_of_line();
         cursor.end_line();
-        let words = words_of(line);
+        let words = words_of(line, comma);
         if words.is_empty() || line.starts_with(b"#") || line.starts_with(b"//") {
             continue;
         }
@@ -93,8 +89,72 @@ pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
     lines > 1
 }
 
+/// What a comma is between numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Comma {
+    Separates,
+    /// It is the decimal point of some languages: 1,5 is one and a half.
+    IsPoint,
+}
+
+impl Comma {
+    /// What the commas of a line are; `None` if it has none.
+    ///
+    /// They are decimal where blanks or semicolons make words of at most one comma each, with digits on both sides,
+    /// three or more in all.
+    pub(super) fn of(line: &[u8]) -> Option<Comma> {
+        if !line.contains(&b',') {
+            return None;
+        }
+        let words = words_of(line, Comma::IsPoint);
+        let is_number = |word: &&[u8]| crate::float::parse_f32(word).is_some();
+        let is_point = words.len() >= 3 && words.iter().all(is_number);
+        Some(if is_point { Comma::IsPoint } else { Comma::Separates })
+    }
+
+    /// That of the first line that has any.
+    pub(super) fn of_text(text: &[u8]) -> Comma {
+        let lines = text.split(|b| matches!(b, b'\n' | b'\r')).filter(|line| is_data(line));
+        let lines = lines.filter_map(|line| line.split(|&b| b == b'#').next());
+        lines.filter_map(Comma::of).next().unwrap_or(Comma::Separates)
+    }
+}
+
+/// True for a line that begins with a number.
+fn is_data(line: &[u8]) -> bool {
+    let first = line.trim_ascii_start().first();
+    first.is_some_and(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'.'))
+}
+
 /// The words of a line.
-pub(super) fn words_of(line: &[u8]) -> Vec<&[u8]> {
-    let is_between = |b: &u8| b.is_ascii_whitespace() || is_separator(*b) || *b == 0;
+pub(super) fn words_of(line: &[u8], comma: Comma) -> Vec<&[u8]> {
+    let is_separator = |b: u8| b == b';' || (b == b',' && comma == Comma::Separates);
+    let is_between = |b: &u8| b.is_ascii_whitespace() || is_separator(*b) || matches!(*b, 0 | 0x1a);
     line.split(is_between).filter(|word| !word.is_empty()).take(MAX).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_are_points_where_every_word_is_a_number_with_one() {
+        use Comma::{IsPoint, Separates};
+        for (line, comma) in [
+            ("1,5 2,5 3,5", IsPoint),
+            ("1,5;2,5;3,5;255;0;0", IsPoint),
+            ("1,5\t2\t-3,25e1", IsPoint),
+            ("1,2,3", Separates),
+            ("1, 2, 3", Separates),
+            ("1 ,2 ,3", Separates),
+            ("1.5,2.5,3.5", Separates),
+            ("1,2,3 255,0,0", Separates),
+            ("1,2 3,4", Separates),
+        ] {
+            assert_eq!(Comma::of(line.as_bytes()), Some(comma), "{line}");
+        }
+        assert_eq!(Comma::of(b"1 2 3"), None);
+        assert_eq!(Comma::of_text(b"X,Y,Z\n0 0 0\n0,5 0 1\n"), IsPoint);
+        assert_eq!(Comma::of_text(b"// a, b\n0;0;0\n"), Separates);
+    }
 }

@@ -1,10 +1,12 @@
 //! Reads XYZ.
 
-use super::columns::{Columns, MAX, words_of};
+use super::columns::{Columns, Comma, MAX, words_of};
 use crate::FormatError;
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, SAMPLES};
+use crate::colours::{Stored, decode};
 use crate::float::parse_f64;
-use crate::reading::{Oddities, Reading, Source};
+use crate::oddities::Oddities;
+use crate::reading::{Reading, Source};
 use crate::text::{Cursor, Places, no_text, quoted};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
@@ -17,6 +19,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         places: &places,
         cursor: Cursor::new(source.bytes),
+        comma: Comma::of_text(source.bytes),
         cloud: Cloud::default(),
         colours: Vec::new(),
         intensities: Vec::new(),
@@ -31,9 +34,10 @@ struct Xyz<'a, 'o, 'r> {
     source: &'a Source<'a>,
     places: &'a Places<'a>,
     cursor: Cursor<'a>,
+    comma: Comma,
     cloud: Cloud,
     /// As stored in the file.
-    colours: Vec<[f32; 3]>,
+    colours: Vec<Rgb>,
     intensities: Vec<f32>,
     oddities: Oddities,
 }
@@ -70,7 +74,12 @@ impl Xyz<'_, '_, '_> {
                 Line::Numbers(row) if row.count < 3 && columns.is_none() => {}
                 Line::Numbers(row) => {
                     if columns.is_none() {
-                        columns = Some(Columns::guessed(row.count, &self.rows_from(start)?));
+                        columns = Some(Columns::guessed(row.count, &self.rows_from(start, FIRST)?));
+                    }
+                    if let Some(columns) = &columns
+                        && self.cloud.positions.is_empty()
+                    {
+                        self.cloud = self.cloud_around(columns, start)?;
                     }
                     if let Some(columns) = &columns {
                         self.point(&row, columns)?;
@@ -98,7 +107,8 @@ impl Xyz<'_, '_, '_> {
         let line = self.cursor.rest_of_line();
         let text = line.split(|&b| b == b'#').next().unwrap_or_default();
         let is_comment = text.starts_with(b"//");
-        let words = words_of(if is_comment { &text[2..] } else { text });
+        let text = if is_comment { &text[2..] } else { text };
+        let words = words_of(text, self.comma);
         if words.is_empty() {
             return Ok(Line::Nothing);
         }
@@ -111,6 +121,8 @@ impl Xyz<'_, '_, '_> {
                     return Err(FormatError::malformed(message, self.places.at(start)));
                 }
                 None => {
+                    // A comma between names is no decimal point.
+                    let words = words_of(text, Comma::Separates);
                     let names = words.iter().map(|word| String::from_utf8_lossy(word).into_owned());
                     return Ok(Line::Words(names.collect()));
                 }
@@ -123,12 +135,12 @@ impl Xyz<'_, '_, '_> {
     fn refuse_molecule(&mut self) -> Result<(), FormatError> {
         let mut ahead = self.cursor.clone();
         let mut at = ahead.offset();
-        let mut words = words_of(ahead.rest_of_line());
+        let mut words = words_of(ahead.rest_of_line(), self.comma);
         if words.len() < 4 || parse_f64(words[1]).is_none() {
             // A comment line comes first.
             ahead.end_line();
             at = ahead.offset();
-            words = words_of(ahead.rest_of_line());
+            words = words_of(ahead.rest_of_line(), self.comma);
         }
         let is_atom = |word: &[u8]| word.first().is_some_and(u8::is_ascii_alphabetic) && word.len() <= 3;
         let are_numbers = |words: &[&[u8]]| words.iter().take(3).all(|word| parse_f64(word).is_some());
@@ -141,12 +153,27 @@ impl Xyz<'_, '_, '_> {
         }
     }
 
+    /// An empty cloud near the points from this offset on.
+    fn cloud_around(&mut self, columns: &Columns, start: usize) -> Result<Cloud, FormatError> {
+        let position = |row: &[f64; MAX]| DVec3::from(columns.position.map(|column| row[column]));
+        let first = self.rows_from(start, 1)?.first().map(position).unwrap_or_default();
+        let (rest, mut samples) = (self.source.bytes.len() - start, Vec::new());
+        for sample in 0..SAMPLES {
+            // From the next whole line on.
+            let mut ahead = self.cursor.clone();
+            ahead.seek(start + rest / SAMPLES * sample);
+            ahead.end_line();
+            samples.extend(self.rows_from(ahead.offset(), 1)?.first().map(position));
+        }
+        Ok(Cloud::around(first, &samples))
+    }
+
     /// The numbers of the first points from this offset.
-    fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MAX]>, FormatError> {
+    fn rows_from(&mut self, start: usize, most: usize) -> Result<Vec<[f64; MAX]>, FormatError> {
         let back = self.cursor.clone();
         self.cursor.seek(start);
         let mut rows = Vec::new();
-        while rows.len() < FIRST && !self.cursor.is_done() {
+        while rows.len() < most && !self.cursor.is_done() {
             if let Line::Numbers(row) = self.line()? {
                 rows.push(row.numbers);
             }
@@ -177,7 +204,7 @@ impl Xyz<'_, '_, '_> {
         self.cloud.push(p);
         if let Some(colour) = columns.colour {
             self.reading.budget.take::<Rgb>(1, self.source.name)?;
-            self.colours.push(colour.map(|column| row.numbers[column] as f32));
+            self.colours.push(Rgb::from_array(colour.map(|column| row.numbers[column] as f32)));
         } else if let Some(column) = columns.intensity {
             self.reading.budget.take::<f32>(1, self.source.name)?;
             self.intensities.push(row.numbers[column] as f32);
@@ -191,11 +218,8 @@ impl Xyz<'_, '_, '_> {
             return Err(FormatError::malformed(message, self.places.whole()));
         }
         self.reading.budget.take::<Rgb>(self.cloud.positions.len(), self.source.name)?;
-        // Display-encoded, with a maximum of 1, 255 or 65535.
-        let greatest = self.colours.iter().flatten().copied().fold(0.0, f32::max);
-        let one = [1.0, 255.0].into_iter().find(|&one| greatest <= one).unwrap_or(65535.0);
-        let colour = |c: [f32; 3]| Rgb::from_array(c.map(|c| srgb_decode((c / one).clamp(0.0, 1.0))));
-        self.cloud.colours = self.colours.iter().map(|&c| colour(c)).collect();
+        decode(&mut self.colours, Stored::Numbers);
+        self.cloud.colours = self.colours;
         if let Some(grey) = greys(&self.intensities) {
             self.cloud.colours = grey;
         }

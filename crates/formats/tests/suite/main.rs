@@ -4,6 +4,7 @@
 
 mod asc;
 mod clouds;
+mod colours;
 mod gltf;
 mod gltf_choices;
 mod gltf_conventions;
@@ -29,6 +30,7 @@ mod ply_types;
 mod round_trips;
 mod shared_files;
 mod stl;
+mod tolerance;
 mod wrong_files;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};

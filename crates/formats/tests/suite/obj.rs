@@ -2,6 +2,7 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read};
+use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::texture::Wrap;
 use bilux_scene::{SceneBuilder, Spec, Value};
@@ -98,10 +99,11 @@ fn names_groups_and_materials_make_objects() {
 fn vertex_colours_and_weights() {
     let scene =
         read_text("obj", "v 0 0 0 1 .5 .25\nv 1 0 0\nv 0 1 0 2\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
-    assert_eq!(scene.objects[0].mesh.vertex_kd, [Rgb::new(1.0, 0.5, 0.25), Rgb::WHITE, Rgb::WHITE]);
+    let shown = |r, g, b| Rgb::new(r, g, b).map(srgb_decode);
+    assert_eq!(scene.objects[0].mesh.vertex_kd, [shown(1.0, 0.5, 0.25), Rgb::WHITE, Rgb::WHITE]);
     // After a weight, the colour is one column further.
     let scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
-    assert_eq!(scene.objects[0].mesh.vertex_kd[2], Rgb::new(0.1, 0.2, 0.3));
+    assert_eq!(scene.objects[0].mesh.vertex_kd[2], shown(0.1, 0.2, 0.3));
 }
 
 #[test]

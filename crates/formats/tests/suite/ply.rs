@@ -64,7 +64,7 @@ fn normals_uvs_and_colours_by_all_their_names() {
     let scene =
         read_text("ply", format!("{floats}0 0 0 .5 .5 .5\n1 0 0 1 1 1\n1 1 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n"))
             .unwrap();
-    assert_eq!(scene.objects[0].mesh.vertex_kd[0], Rgb::grey(0.5));
+    assert_eq!(scene.objects[0].mesh.vertex_kd[0], Rgb::grey(srgb_decode(0.5)));
 }
 
 #[test]

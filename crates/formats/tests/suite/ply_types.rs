@@ -128,8 +128,7 @@ fn colours_are_of_any_type_in_both_byte_orders() {
         let scene =
             read_text("ply", &file.bytes).unwrap_or_else(|error| panic!("{kind}, {encoding}: {error}"));
         let part = |i: usize| (stored[i] / one) as f32;
-        // Whole numbers follow the sRGB curve; floats are linear.
-        let light = |i: usize| if one > 1.0 { srgb_decode(part(i)) } else { part(i) };
+        let light = |i: usize| srgb_decode(part(i));
         let wanted = Rgb::new(light(0), light(1), light(2));
         for colour in &scene.objects[0].mesh.vertex_kd {
             let off = (*colour - wanted).map(f32::abs).max_channel();

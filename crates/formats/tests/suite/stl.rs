@@ -47,11 +47,12 @@ fn each_solid_is_an_object_and_empty_ones_are_none() {
 
 #[test]
 fn false_counts_are_reported() {
-    let message = refusal("stl", binary("x", 4_000_000_000, 2));
-    assert!(message.contains("says 4000000000 triangles, but there are bytes for only 2"), "{message}");
+    let cut_off = &binary("x", 4_000_000_000, 2)[..84 + 99];
+    let message = refusal("stl", cut_off);
+    assert!(message.contains("says 4000000000 triangles, but there are bytes for only 1"), "{message}");
     let scene = read_text("stl", binary("x", 1, 2)).unwrap();
-    assert_eq!(scene.objects[0].mesh.triangles.len(), 1);
-    assert!(warnings(&scene).contains("bytes after the last triangle"));
+    assert_eq!(scene.objects[0].mesh.triangles.len(), 2);
+    assert!(warnings(&scene).contains("says 1 triangles, but the file has 2"), "{}", warnings(&scene));
 }
 
 #[test]

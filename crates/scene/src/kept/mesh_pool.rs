@@ -82,12 +82,20 @@ fn is_same_mesh(a: &Mesh, b: &Mesh) -> bool {
         tangents,
         vertex_kd,
         vertex_ks,
+        emission_by_kd,
+        vertex_opacity,
+        opacity_threshold,
+        point_widths,
         triangles,
         points,
         lines,
     } = a;
     name == &b.name
         && (triangles, points, lines) == (&b.triangles, &b.points, &b.lines)
+        && (*emission_by_kd, opacity_threshold.map(f32::to_bits))
+            == (b.emission_by_kd, b.opacity_threshold.map(f32::to_bits))
+        && alike(vertex_opacity, &b.vertex_opacity, |x| [*x])
+        && alike(point_widths, &b.point_widths, |x| [*x])
         && alike(positions, &b.positions, |v| v.to_array())
         && alike(normals, &b.normals, |v| v.to_array())
         && alike(uvs, &b.uvs, |v| v.to_array())

@@ -5,6 +5,7 @@ use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, c
 use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, Sides};
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
+use crate::mesh::Mesh;
 use crate::surface::{Surface, gamma};
 use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_accel::Primitive;
@@ -12,6 +13,7 @@ use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::any::Any;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness.
 ///
@@ -44,12 +46,18 @@ pub struct Picture {
     pub opacity: Option<NumberMap>,
     /// The texture coordinates of each triangle's corners.
     pub uvs: Vec<[UvPair; 3]>,
+    /// The mesh, whose vertices may have factors on emission and opacity.
+    pub mesh: Arc<Mesh>,
 }
 
 impl Picture {
     fn at(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
         let uv = UvPair::between(self.uvs[triangle], weights);
-        self.map.at(uv) * self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv))
+        let opacity = self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv));
+        let corners = self.mesh.triangles[triangle];
+        self.map.at(uv)
+            * self.mesh.emission_factor(corners, weights)
+            * self.mesh.opacity(opacity, corners, weights)
     }
 
     /// The mean over a triangle, from the centres of its sixteen sub-triangles.

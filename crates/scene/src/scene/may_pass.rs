@@ -2,13 +2,14 @@
 
 use crate::geometry::Geometry;
 use crate::materials::Material;
+use crate::mesh::Mesh;
 use crate::sides::Sides;
 use std::sync::Arc;
 
 /// Which rays an object may let pass.
 #[derive(Clone, Copy)]
 pub(super) struct MayPass {
-    /// It has an opacity mask.
+    /// It has an opacity mask, or vertices with an opacity.
     pub(super) has_holes: bool,
     /// The camera sees through its back.
     pub(super) is_one_sided: bool,
@@ -19,12 +20,14 @@ impl MayPass {
     pub(super) fn of_all(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Vec<MayPass> {
         let count = geometry.objects().len() + geometry.spheres().len();
         let material = |object: u32| &*materials[geometry.material_of(object) as usize];
-        (0..count as u32).map(|object| MayPass::of(material(object))).collect()
+        let mesh = |object: u32| geometry.objects().get(object as usize).map(|placed| &*placed.mesh);
+        (0..count as u32).map(|object| MayPass::of(material(object), mesh(object))).collect()
     }
 
-    fn of(material: &dyn Material) -> MayPass {
+    fn of(material: &dyn Material, mesh: Option<&Mesh>) -> MayPass {
         MayPass {
-            has_holes: material.opacity().is_some(),
+            has_holes: material.opacity().is_some()
+                || mesh.is_some_and(|mesh| !mesh.vertex_opacity.is_empty()),
             is_one_sided: material.visible_sides() == Sides::Front,
         }
     }

@@ -49,11 +49,16 @@ fn of_object(
     let object = &geometry.objects()[index as usize];
     let (triangles, motion) = geometry.object_triangles(index);
     let even = || ColourMap { colour: material.emission(), texture: None };
-    let varies = material.emission_map().is_some() || material.opacity().is_some();
+    let mesh = &object.mesh;
+    let varies = material.emission_map().is_some()
+        || material.opacity().is_some()
+        || mesh.emission_by_kd
+        || !mesh.vertex_opacity.is_empty();
     let picture = varies.then(|| Picture {
         map: material.emission_map().cloned().unwrap_or_else(even),
         opacity: material.opacity().cloned(),
-        uvs: corner_uvs(&object.mesh),
+        uvs: corner_uvs(mesh),
+        mesh: mesh.clone(),
     });
     let given = (material.emission(), picture, material.emission_sides());
     let mirrored = object.motion.at(0.0).mirrors();

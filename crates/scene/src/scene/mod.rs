@@ -182,11 +182,21 @@ impl Scene {
             Some(map) => map.at(surface.uv_pair()),
             None => material.emission(),
         };
+        let emission = emission * self.emission_factor(surface);
         let shines = || match self.light_index_of(surface.object) {
             Some(light) => self.lights()[light].light.emits_towards(surface, wo),
             None => true,
         };
         if emission.is_black() || !shines() { Rgb::BLACK } else { emission }
+    }
+
+    /// The factor of an object's vertices on its emission.
+    #[inline]
+    fn emission_factor(&self, surface: &Surface) -> Rgb {
+        match self.parts.geometry.objects().get(surface.object as usize) {
+            Some(placed) if placed.mesh.emission_by_kd => surface.vertex_kd.unwrap_or(Rgb::WHITE),
+            _ => Rgb::WHITE,
+        }
     }
 
     /// True when some object's medium has a priority.

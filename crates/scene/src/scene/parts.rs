@@ -108,9 +108,9 @@ impl SceneParts {
         let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
         let has_nested = geometry.objects().iter().any(|o| materials[o.material as usize].nested().is_some());
-        let has_holes = materials.iter().any(|material| material.opacity().is_some());
         let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let passes = MayPass::of_all(&geometry, &materials);
+        let has_holes = passes.iter().any(|passes| passes.has_holes);
         let disperses = materials.iter().any(|material| material.disperses());
         let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();

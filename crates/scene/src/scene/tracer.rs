@@ -77,11 +77,12 @@ impl SceneParts {
         if !has_holes {
             return true;
         }
-        let (material, uv) = self.geometry.material_and_uv(hit);
-        let Some(opacity) = self.materials[material as usize].opacity() else { return true };
+        let opacity = self.geometry.opacity_at(hit, |material, uv| {
+            self.materials[material as usize].opacity().map_or(1.0, |opacity| opacity.at(uv))
+        });
         let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
         let number = hash_words([ray_hash(ray), place, u64::from(hit.t.to_bits())]) as u32;
-        unit_f32(number) < opacity.at(uv)
+        unit_f32(number) < opacity
     }
 }
 

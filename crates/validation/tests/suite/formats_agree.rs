@@ -153,3 +153,47 @@ fn bare_meshes_look_the_same_in_every_format() {
         assert!(p > UNLIKELY, "{file}: p = {p}");
     }
 }
+
+/// Meshes whose vertices have colours, from formats that store them linear and from those that store them in sRGB.
+#[test]
+fn coloured_meshes_look_the_same_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let coloured = || {
+        let mut scene = scene();
+        let plain = scene.add_material(Spec::new("vertices", "phong").with("kd", 1.0f32));
+        for object in &mut scene.objects {
+            let mesh = std::sync::Arc::make_mut(&mut object.mesh);
+            let colour = |p: &bilux::math::Vec3| {
+                let more = p.x.fract().abs() * 0.2;
+                bilux::math::Rgb::new(0.2 + more, 0.4 + more, 0.6 + more)
+            };
+            mesh.vertex_kd = mesh.positions.iter().map(colour).collect();
+            (object.material, object.mesh) = (plain, object.mesh.clone());
+        }
+        scene
+    };
+    let dressed = |mut scene: SceneBuilder| {
+        let original = self::scene();
+        (scene.cameras, scene.lights) = (original.cameras, original.lights);
+        for material in &mut scene.materials {
+            *material = Spec::new(&material.name, "diffuse").with("reflectance", 1.0f32);
+        }
+        scene.environment_unspecified = false;
+        scene.warnings.clear();
+        scene
+    };
+    let ours = blocks(&dressed(coloured()), 0);
+    for (i, file) in ["c.obj", "c.ply", "c.off", "c.glb", "c.toml"].into_iter().enumerate() {
+        let back = dressed(there(&coloured(), folder.path(), file));
+        let p = agreement(&ours, &blocks(&back, 100 * (i as i64 + 1)));
+        assert!(p > UNLIKELY, "{file}: p = {p}");
+    }
+    // A planted bug: colours of sRGB taken for linear ones.
+    let mut bright = coloured();
+    for object in &mut bright.objects {
+        let mesh = std::sync::Arc::make_mut(&mut object.mesh);
+        mesh.vertex_kd.iter_mut().for_each(|kd| *kd = kd.map(bilux::math::colour::srgb_encode));
+    }
+    let p = agreement(&ours, &blocks(&dressed(bright), 900));
+    assert!(p < UNLIKELY, "colours of sRGB taken for linear ones pass: p = {p}");
+}

@@ -28,7 +28,7 @@ use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::reading::Oddities;
+use crate::oddities::Oddities;
 use std::collections::{HashMap, HashSet};
 
 /// The state of a validation.
