@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn white_follows_from_the_type_and_from_the_greatest_number_of_all() {
-        let white = |c: f32, stored| Greatest::of(&[Rgb::grey(0.5), Rgb::new(0.1, c, f32::NAN)]).white(stored);
+        let white =
+            |c: f32, stored| Greatest::of(&[Rgb::grey(0.5), Rgb::new(0.1, c, f32::NAN)]).white(stored);
         for (greatest, numbers, integers) in [
             (0.4, 1.0, 255.0),
             (1.0, 1.0, 255.0),

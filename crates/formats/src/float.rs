@@ -87,7 +87,9 @@ fn small_integer(text: &[u8]) -> Option<i32> {
 
 /// A number with a decimal comma or with an exponent as Fortran writes it, in the usual form; `None` if it has neither.
 fn localised(text: &str) -> Option<String> {
-    let is_number = text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b',' | b'e' | b'E' | b'd' | b'D'));
+    let is_number = text
+        .bytes()
+        .all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b',' | b'e' | b'E' | b'd' | b'D'));
     let commas = text.bytes().filter(|&b| b == b',').count();
     let has_exponent = text.contains(['d', 'D']);
     let is_plain = commas > 1 || (commas == 1 && text.contains('.')) || (commas == 0 && !has_exponent);
@@ -162,7 +164,9 @@ mod tests {
             assert!(parse_f32(text.as_bytes()).is_some_and(f32::is_nan), "{text}");
         }
         assert_eq!(parse_f32(b"-1.#INF"), Some(f32::NEG_INFINITY));
-        for text in ["", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5,2", "1,5.2", "1,", ",5", "d5", "0x10", "1f", "one"] {
+        for text in [
+            "", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5,2", "1,5.2", "1,", ",5", "d5", "0x10", "1f", "one",
+        ] {
             assert_eq!(parse_f32(text.as_bytes()), None, "{text}");
         }
     }

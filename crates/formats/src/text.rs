@@ -26,7 +26,7 @@ pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
 
 /// The encoding of a text and the length of its byte order mark.
 ///
-/// Without a mark, two ASCII characters with zeros between them show UTF-16, as in JSON. [RFC 4627, 3]
+/// Without a mark, two ASCII characters with zeros between them show UTF-16, as readers of JSON tell it.
 fn encoding(bytes: &[u8]) -> (TextEncoding, usize) {
     let ascii = |byte: u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
     match bytes {

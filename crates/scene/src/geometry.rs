@@ -268,7 +268,11 @@ impl Geometry {
         };
         let (mesh, weights) = (&*placed.mesh, [1.0 - hit.u - hit.v, hit.u, hit.v]);
         let corners = mesh.triangles[triangle as usize];
-        mesh.opacity(of_material(material, UvPair::between(uv_pairs(mesh, corners), weights)), corners, weights)
+        mesh.opacity(
+            of_material(material, UvPair::between(uv_pairs(mesh, corners), weights)),
+            corners,
+            weights,
+        )
     }
 
     /// An object's transform at a time, and whether it mirrors.

@@ -57,7 +57,17 @@ fn vertices_tint_what_they_emit() {
         let off = (*pixel - wanted).map(f32::abs).max_channel();
         assert!(off < 0.03, "{i}: {pixel:?}, not {wanted:?}");
     }
-    let untinted = render(&square(|mesh| { tints(mesh); mesh.emission_by_kd = false; }, glowing(2.0)), "path", 1);
+    let untinted = render(
+        &square(
+            |mesh| {
+                tints(mesh);
+                mesh.emission_by_kd = false;
+            },
+            glowing(2.0),
+        ),
+        "path",
+        1,
+    );
     assert_eq!(untinted[0], Rgb::grey(2.0));
 }
 
@@ -141,10 +151,10 @@ fn points_have_their_own_widths() {
         scene.objects[0].motion = bilux::math::motion::Motion::still(place);
         for instanced in [false, true] {
             scene.objects[0].instanced = instanced;
-            let pixels = render(&scene, "path", 256);
+            let pixels = render(&scene, "path", 1024);
             for (side, width) in [(0, 0.5 * scale), (1, 0.25 * scale)] {
                 let area = half_area(&pixels, side);
-                assert!((area / disc(width) - 1.0).abs() < 0.05, "{scale} {instanced} {side}: {area}");
+                assert!((area / disc(width) - 1.0).abs() < 0.1, "{scale} {instanced} {side}: {area}");
             }
         }
     }

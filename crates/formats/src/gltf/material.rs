@@ -1,5 +1,6 @@
 //! Materials and their extensions, mapped to the `principled` material.
 
+use super::alpha::Alpha;
 use super::json::JsonNode;
 use super::reader::Gltf;
 use super::textures::ChannelSelection;
@@ -26,18 +27,6 @@ pub(super) struct UsedMaterial {
     pub(super) alpha: Alpha,
 }
 
-/// What alpha does to a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Alpha {
-    /// Nothing.
-    #[default]
-    Opaque,
-    /// It is the opacity.
-    Blend,
-    /// Below this the surface is not there, elsewhere it is opaque.
-    Mask(f32),
-}
-
 /// A material by its index in the file (`None` for the default one), by whether glass is solid, and by whether it is
 /// for vertices with alpha.
 pub(super) type MaterialKey = (Option<usize>, bool, bool);
@@ -52,8 +41,8 @@ pub(super) struct Draft {
     /// True if transmission without a thickness means a solid.
     is_solid: bool,
     /// True if the vertices have alpha, with which a threshold is compared only after it has been multiplied.
-    has_vertex_alpha: bool,
-    alpha: Alpha,
+    pub(super) has_vertex_alpha: bool,
+    pub(super) alpha: Alpha,
 }
 
 impl Draft {
@@ -158,40 +147,6 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "base_metalness", metal, picture_of, Channel::B, &at)?;
         self.scalar(draft, "specular_roughness", rough, picture_of, Channel::G, &at)?;
         self.opacity(node, picture, alpha, draft)
-    }
-
-    /// Sets the opacity from the alpha channel of the base colour texture.
-    pub(super) fn opacity(
-        &mut self,
-        node: JsonNode<'d>,
-        picture: Option<JsonNode<'d>>,
-        alpha: f32,
-        draft: &mut Draft,
-    ) -> Result<(), FormatError> {
-        let mode = node.text("alphaMode")?.unwrap_or("OPAQUE");
-        draft.alpha = match mode {
-            "OPAQUE" => return Ok(()),
-            "BLEND" => Alpha::Blend,
-            "MASK" => Alpha::Mask(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
-            other => {
-                return Err(node.error(format!("'{other}' is not an alphaMode: use OPAQUE, MASK or BLEND")));
-            }
-        };
-        let threshold = match draft.alpha {
-            Alpha::Mask(cutoff) if !draft.has_vertex_alpha => Some(cutoff),
-            _ => None,
-        };
-        let opacity = match (picture, threshold) {
-            (Some(info), _) => {
-                let taken =
-                    ChannelSelection { threshold, ..ChannelSelection::channel(Channel::A, f64::from(alpha)) };
-                self.texture(info, taken, &mut draft.uv_sets)?
-            }
-            (None, Some(threshold)) => (if alpha < threshold { 0.0 } else { 1.0 }).into(),
-            (None, None) => alpha.into(),
-        };
-        draft.set("opacity", opacity, node.at());
-        Ok(())
     }
 
     /// The back faces of transmissive surfaces are always visible, since light travels inside.

@@ -1,6 +1,7 @@
 //! glTF 2.0, as GLB or as JSON with external files. See `docs/formats/gltf.md`.
 
 mod accessor;
+mod alpha;
 mod animation;
 mod area_lights;
 mod cameras;

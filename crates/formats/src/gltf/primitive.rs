@@ -1,8 +1,9 @@
 //! Mesh primitives: converts attributes and indices to triangles.
 
 use super::accessor::Accessor;
+use super::alpha::Alpha;
 use super::json::JsonNode;
-use super::material::{Alpha, UsedMaterial};
+use super::material::UsedMaterial;
 use super::reader::Gltf;
 use super::skin::Joints;
 use super::tangents;
@@ -175,21 +176,21 @@ impl<'d> Gltf<'d, '_, '_> {
 
     /// The colours of vertices, which are linear, and their alphas if any is not 1. All are clamped to 0 to 1.
     /// [glTF 2.0, 3.7.2.1]
-    fn colours(
-        &mut self,
-        index: JsonNode<'d>,
-        count: usize,
-    ) -> Result<(Vec<Rgb>, Vec<f32>), FormatError> {
+    fn colours(&mut self, index: JsonNode<'d>, count: usize) -> Result<(Vec<Rgb>, Vec<f32>), FormatError> {
         let mut accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
         same_count(index, &accessor, Some(count))?;
         if accessor.normalise() {
-            let what = "colours of vertices are integers without 'normalized'; they are taken as if they had it";
+            let what =
+                "colours of vertices are integers without 'normalized'; they are taken as if they had it";
             self.oddities.note(what, || index.at());
         }
         let budget = &mut self.reading.budget;
         if accessor.width() == 3 {
             let colours = accessor.floats::<3>(budget)?;
-            return Ok((colours.into_iter().map(|c| Rgb::from_array(c).clamp(0.0, 1.0)).collect(), Vec::new()));
+            return Ok((
+                colours.into_iter().map(|c| Rgb::from_array(c).clamp(0.0, 1.0)).collect(),
+                Vec::new(),
+            ));
         }
         let colours = accessor.floats::<4>(budget)?;
         let mut alphas = Vec::new();

@@ -3,8 +3,8 @@
 use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
-use crate::polygon::Triangulator;
 use crate::oddities::Oddities;
+use crate::polygon::Triangulator;
 use crate::reading::{Reading, Source, plain_material};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};

@@ -5,7 +5,7 @@ use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::colours::UNCOLOURED;
-use crate::float::{parse_f32, parse_f64};
+use crate::float::{parse_f32, parse_relative};
 use crate::indexed_faces::{Corner, NONE};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::oddities::Oddities;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(super) struct Block {
     pub(super) positions: Vec<Vec3>,
-    /// One per position, as stored, or none if no position has a colour.
+    /// One per position, as stored, or none.
     pub(super) colours: Vec<Rgb>,
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
@@ -202,8 +202,7 @@ impl<'a> Reader<'a> {
         } else if let Some(again) = &mut again {
             // Parses again as f64 to keep all digits.
             for (number, origin) in numbers.iter_mut().zip(self.origin.to_array()) {
-                let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
-                *number = (wide - origin) as f32;
+                *number = parse_relative(again.word(), origin).unwrap_or(f32::NAN);
             }
         }
         self.budget.take::<Vec3>(1, self.file)?;

@@ -267,5 +267,4 @@ impl Ply<'_, '_, '_> {
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }
-
 }

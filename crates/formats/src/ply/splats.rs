@@ -21,7 +21,8 @@ pub(super) struct Splats {
 
 /// The properties that are used, in this order.
 const PROPERTIES: [&str; 13] = [
-    "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "red", "green", "blue",
+    "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "red", "green",
+    "blue",
 ];
 const HARMONICS: Range<usize> = 3..6;
 const SCALES: Range<usize> = 7..10;
@@ -58,7 +59,8 @@ impl Ply<'_, '_, '_> {
             at,
         );
         self.reading.budget.take_bytes(element.count * 32, self.source.name)?;
-        let mut splats = Splats { are_plain: !has(element, PROPERTIES[HARMONICS.start]), ..Splats::default() };
+        let mut splats =
+            Splats { are_plain: !has(element, PROPERTIES[HARMONICS.start]), ..Splats::default() };
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut values = [0f64; PROPERTIES.len()];

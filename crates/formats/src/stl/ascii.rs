@@ -3,8 +3,8 @@
 use crate::FormatError;
 use crate::colours::{Stored, UNCOLOURED, decode};
 use crate::float::{parse_f32, parse_relative};
-use crate::polygon::Triangulator;
 use crate::oddities::Oddities;
+use crate::polygon::Triangulator;
 use crate::reading::{Reading, Source};
 use crate::text::{Cursor, Places, is_comment, name_of, quoted};
 use bilux_math::{Rgb, Vec3};
@@ -56,7 +56,6 @@ impl Ascii<'_, '_, '_> {
             let word = self.cursor.word();
             match word.to_ascii_lowercase().as_slice() {
                 b"" => {}
-                b"solid" => self.begin_solid()?,
                 b"facet" => facet = Some(start),
                 b"color" | b"colour" => self.colour(start),
                 line if is_comment(line) => {
@@ -69,6 +68,10 @@ impl Ascii<'_, '_, '_> {
                 }
                 b"outer" | b"endloop" | b"end" => {}
                 // Some programs write the name without a blank.
+                word if word.starts_with(b"solid") => {
+                    self.cursor.seek(start + b"solid".len());
+                    self.begin_solid()?;
+                }
                 word if word.starts_with(b"endsolid") => {}
                 _ => {
                     let message = format!(
@@ -178,7 +181,8 @@ impl Ascii<'_, '_, '_> {
 
 /// Replaces the stored colours of all solids by reflectances.
 fn decode_all(scene: &mut SceneBuilder) {
-    let mut all: Vec<Rgb> = scene.objects.iter().flat_map(|object| object.mesh.vertex_kd.iter().copied()).collect();
+    let mut all: Vec<Rgb> =
+        scene.objects.iter().flat_map(|object| object.mesh.vertex_kd.iter().copied()).collect();
     if all.is_empty() {
         return;
     }

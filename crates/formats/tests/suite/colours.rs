@@ -141,9 +141,14 @@ fn colours_come_back_within_a_255th() {
         ..Mesh::default()
     };
     original.objects.push(bilux_scene::Object::new("a", std::sync::Arc::new(mesh), 0));
-    for (name, ascii) in
-        [("a.obj", false), ("a.ply", false), ("a.ply", true), ("a.off", false), ("a.glb", false), ("a.toml", false)]
-    {
+    for (name, ascii) in [
+        ("a.obj", false),
+        ("a.ply", false),
+        ("a.ply", true),
+        ("a.off", false),
+        ("a.glb", false),
+        ("a.toml", false),
+    ] {
         let path = folder.path().join(name);
         write(&path, &original, &WriteOptions { ascii }).unwrap();
         let back = read(&path, &ReadOptions::default()).unwrap();
@@ -167,7 +172,8 @@ fn faces_of_ply_and_off_have_colours_of_their_own() {
         )
     };
     let off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 220 30 51\n3 0 2 3 0 128 255 255 # last\n";
-    let unit = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 0.862745 .117647 .2\n3 0 2 3 0 0.5019608 1 .5\n";
+    let unit =
+        "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 0.862745 .117647 .2\n3 0 2 3 0 0.5019608 1 .5\n";
     let wanted = shown(&[[220.0 / 255.0, 30.0 / 255.0, 0.2], [0.0, 128.0 / 255.0, 1.0]]);
     for (format, text) in [("ply", &ply("", "")[..]), ("off", off), ("off", unit)] {
         let scene = read_text(format, text).unwrap();
@@ -179,7 +185,8 @@ fn faces_of_ply_and_off_have_colours_of_their_own() {
             }
         }
         // The colours are the reflectances.
-        let kd = scene.materials[scene.objects[0].material].parameters.find("kd").map(|(value, _)| value.clone());
+        let kd =
+            scene.materials[scene.objects[0].material].parameters.find("kd").map(|(value, _)| value.clone());
         assert_eq!(kd, Some(Value::from(1.0f32)));
         assert_eq!(warnings(&scene), "");
     }
@@ -187,7 +194,10 @@ fn faces_of_ply_and_off_have_colours_of_their_own() {
     let scene = read_text("ply", both).unwrap();
     assert_near(&kd(&scene), &[Rgb::new(1.0, 0.0, 0.0); 4], 0.0, "both");
     let said = warnings(&scene);
-    assert!(said.contains("more than the picture shows: colours of faces, since vertices have colours"), "{said}");
+    assert!(
+        said.contains("more than the picture shows: colours of faces, since vertices have colours"),
+        "{said}"
+    );
     let indexed = read_text("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 7\n").unwrap();
     assert!(warnings(&indexed).contains("indices into a table"), "{}", warnings(&indexed));
     assert_eq!(kd(&indexed), []);
@@ -217,7 +227,8 @@ fn stl_has_colours_by_both_conventions() {
     let of = |c: [u16; 3]| Rgb::from_array(c.map(|c| srgb_decode(f32::from(c) / 31.0)));
     let each = |scene: &SceneBuilder| kd(scene).chunks(3).map(|corners| corners[0]).collect::<Vec<_>>();
     // VisCAM: blue is lowest, the highest bit says that there is a colour.
-    let scene = read_text("stl", stl(b"binary", &[VALID | packed(3, 2, 31), packed(1, 2, 3), VALID])).unwrap();
+    let scene =
+        read_text("stl", stl(b"binary", &[VALID | packed(3, 2, 31), packed(1, 2, 3), VALID])).unwrap();
     assert_near(&each(&scene), &[of([31, 2, 3]), Rgb::WHITE, Rgb::BLACK], 1e-6, "viscam");
     assert_eq!(warnings(&scene), "");
     // Magics: red is lowest, the highest bit says that the triangle has the colour of the whole.
@@ -235,8 +246,10 @@ fn stl_has_colours_by_both_conventions() {
     let scene = read_text("stl", stl(b"binary", &[7, 7])).unwrap();
     assert_eq!((kd(&scene), warnings(&scene)), (Vec::new(), String::new()));
     assert!(scene.notes.iter().any(|note| note.message.contains("two bytes after each triangle")));
-    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    let text = format!("solid a\ncolor 0.5 0 1\n{facet}color 1 1 0\n{facet}endsolid\nsolid b\n{facet}endsolid\n");
+    let facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let text =
+        format!("solid a\ncolor 0.5 0 1\n{facet}color 1 1 0\n{facet}endsolid\nsolid b\n{facet}endsolid\n");
     let scene = read_text("stl", text).unwrap();
     assert_near(&each(&scene), &shown(&[[0.5, 0.0, 1.0], [1.0, 1.0, 0.0], [1.0; 3]]), 1e-6, "text");
 }

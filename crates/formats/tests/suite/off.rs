@@ -47,7 +47,10 @@ fn normals_colours_and_uvs_come_in_this_order() {
 #[test]
 fn oddities_that_can_be_drawn_give_a_warning() {
     let cases = [
-        (SQUARE.replace("4 0 1 2 3", "4 0 1 2 3 red"), "scene.off:7:1: a face has more than vertices and a colour"),
+        (
+            SQUARE.replace("4 0 1 2 3", "4 0 1 2 3 red"),
+            "scene.off:7:1: a face has more than vertices and a colour",
+        ),
         (SQUARE.replace("1 1 0", "1 1 0 9 9"), "scene.off:5:1: a vertex has more numbers"),
         (SQUARE.replace("4 1 4", "4 2 4") + "2 0 1\n", "scene.off:8:1: a face has fewer than 3 corners"),
         (SQUARE.replace("1 1 0", "1 nan 0"), "scene.off:5:1: a vertex has numbers that are infinite"),

@@ -65,7 +65,8 @@ fn every_format_of_text_may_have_a_byte_order_mark_or_be_utf_16() {
             assert_eq!(warnings(&scene), warnings(&plain), "{format}, {name}");
             // The format is recognised too.
             let bare = bilux_formats::read_bytes(&bytes, "", None, "a", &ReadOptions::default());
-            let is_recognised = bilux_formats::read_bytes(text.as_bytes(), "", None, "a", &ReadOptions::default());
+            let is_recognised =
+                bilux_formats::read_bytes(text.as_bytes(), "", None, "a", &ReadOptions::default());
             assert_eq!(bare.is_ok(), is_recognised.is_ok(), "{format}, {name}");
         }
     }
@@ -78,16 +79,17 @@ fn files_beside_a_scene_may_be_marked_too() {
     let marked = |text: &str| [b"\xef\xbb\xbf", text.as_bytes()].concat();
     let of_m = |scene: &SceneBuilder, key: &str| {
         let spec = scene.materials.iter().find(|spec| spec.name == "m").expect("the material m");
-        spec.parameters.find(key).map(|(value, _)| value.clone())
+        spec.colour(key)
     };
-    let red = bilux_scene::Value::triple([0.8, 0.1, 0.1]);
+    let red = bilux_math::Rgb::new(0.8, 0.1, 0.1);
     fs::write(at("a.mtl"), marked("newmtl m\nKd 0.8 0.1 0.1\n")).unwrap();
     fs::write(at("a.obj"), marked("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")).unwrap();
     let scene = read(&at("a.obj"), &ReadOptions::default()).unwrap();
-    assert_eq!((of_m(&scene, "kd"), warnings(&scene)), (Some(red.clone()), String::new()));
+    assert_eq!((of_m(&scene, "kd"), warnings(&scene)), (Some(red), String::new()));
     let material = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = [0.8, 0.1, 0.1]\n";
     fs::write(at("m.toml"), marked(material)).unwrap();
-    fs::write(at("a.toml"), "include = [\"m.toml\"]\n[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n").unwrap();
+    fs::write(at("a.toml"), "include = [\"m.toml\"]\n[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n")
+        .unwrap();
     assert_eq!(of_m(&read(&at("a.toml"), &ReadOptions::default()).unwrap(), "reflectance"), Some(red));
     let shape = "Shape \"sphere\"\n";
     fs::write(at("b.pbrt"), [b"\xff\xfe", &utf16(shape, u16::to_le_bytes)[..]].concat()).unwrap();
@@ -98,11 +100,11 @@ fn files_beside_a_scene_may_be_marked_too() {
 #[test]
 fn decimal_commas_and_exponents_of_fortran_are_numbers() {
     let wanted = [Vec3::new(0.5, -0.25, 0.0), Vec3::new(1.5, 0.0, 20.0), Vec3::new(0.0, 1.25, 0.0)];
-    for corners in [
-        ["0,5 -0,25 0", "1,5 0 2,0E1", "0 1,25 0"],
-        ["0.5D0 -2.5d-01 0", "1.5 0 2D+1", "0 1.25 0"],
-    ] {
-        for (format, template) in TRIANGLES.into_iter().filter(|(name, _)| !matches!(*name, "pbrt" | "gltf")) {
+    for corners in
+        [["0,5 -0,25 0", "1,5 0 2,0E1", "0 1,25 0"], ["0.5D0 -2.5d-01 0", "1.5 0 2D+1", "0 1.25 0"]]
+    {
+        for (format, template) in TRIANGLES.into_iter().filter(|(name, _)| !matches!(*name, "pbrt" | "gltf"))
+        {
             let scene = read_text(format, triangle(template, corners));
             let scene = scene.unwrap_or_else(|error| panic!("{format}: {error}"));
             assert_eq!(positions(&scene), wanted, "{format}: {corners:?}");
@@ -131,14 +133,20 @@ fn commas_of_xyz_separate_or_are_decimal_as_its_lines_show() {
     let text = format!("{}0,5 0,25 1\n", "0 0 0\n".repeat(100));
     assert_eq!(points(&text).last(), Some(&wanted[0]));
     let coloured = read_text("xyz", "0,5;0,25;1,0;220;30;30\n1,5;0,25;2,0;220;30;30\n").unwrap();
-    assert!((coloured.objects[0].mesh.vertex_kd[0].r - bilux_math::colour::srgb_decode(220.0 / 255.0)).abs() < 1e-6);
+    assert!(
+        (coloured.objects[0].mesh.vertex_kd[0].r - bilux_math::colour::srgb_decode(220.0 / 255.0)).abs()
+            < 1e-6
+    );
 }
 
 /// Coordinates of a national grid, whose millimetres are beyond 32-bit floats.
 #[test]
 fn every_format_keeps_the_digits_of_coordinates_far_from_zero() {
-    let corners =
-        ["500123.251 4649777.502 200.003", "500124.251 4649777.502 200.003", "500123.251 4649778.502 200.003"];
+    let corners = [
+        "500123.251 4649777.502 200.003",
+        "500124.251 4649777.502 200.003",
+        "500123.251 4649778.502 200.003",
+    ];
     let wide: Vec<DVec3> = corners
         .iter()
         .map(|c| {
@@ -216,7 +224,8 @@ fn a_binary_stl_may_begin_with_solid_and_be_wrong_about_its_size() {
 
 #[test]
 fn marks_of_joined_files_are_blanks() {
-    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nendfacet\n";
+    let facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nendfacet\n";
     let stl = format!("solid a\n{facet}endsolida\n\u{feff}solid b\n{facet}end solid b\n");
     assert_eq!(read_text("stl", stl).unwrap().objects.len(), 2);
     let obj = read_text("obj", "v 0 0 0\n\u{feff}v 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
@@ -227,7 +236,8 @@ fn marks_of_joined_files_are_blanks() {
 
 #[test]
 fn a_text_stl_may_begin_with_comments_and_lack_its_first_line() {
-    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     for text in [
         format!("; made by tool\nsolid cube\n{facet}endsolid cube\n"),
         format!("# a\n\n// b\nsolid UNITS=mm\n# c\n{facet}; d\nendsolid\n"),
@@ -248,7 +258,8 @@ fn a_text_stl_may_begin_with_comments_and_lack_its_first_line() {
 fn a_ply_header_of_crs_ends_before_a_body_that_begins_with_a_line_feed() {
     let x = f32::from_le_bytes([0x0a, 0, 0, 0x3f]);
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    let mut body: Vec<u8> = [x, 0., 0., 1., 0., 0., 0., 1., 0.].into_iter().flat_map(f32::to_le_bytes).collect();
+    let mut body: Vec<u8> =
+        [x, 0., 0., 1., 0., 0., 0., 1., 0.].into_iter().flat_map(f32::to_le_bytes).collect();
     body.push(3);
     body.extend([0i32, 1, 2].into_iter().flat_map(i32::to_le_bytes));
     for end in ["\r", "\n", "\r\n"] {
@@ -261,7 +272,9 @@ fn a_ply_header_of_crs_ends_before_a_body_that_begins_with_a_line_feed() {
 #[test]
 fn the_json_of_a_glb_may_be_padded_with_zeros() {
     let json = triangle(TRIANGLES[7].1, UNIT).into_bytes();
-    for (before, padding) in [(&b""[..], &b"\0"[..]), (b"", b" "), (b"\xef\xbb\xbf", b"\0\0"), (b"", b"\r\n\x1a\0")] {
+    for (before, padding) in
+        [(&b""[..], &b"\0"[..]), (b"", b" "), (b"\xef\xbb\xbf", b"\0\0"), (b"", b"\r\n\x1a\0")]
+    {
         let mut chunk = [before, &json, padding].concat();
         while chunk.len() % 4 != 0 {
             chunk.push(padding[padding.len() - 1]);
