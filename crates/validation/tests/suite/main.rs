@@ -11,3 +11,4 @@ mod light_contract;
 mod pbrt_scenes;
 mod principled_contract;
 mod shared_scenes;
+mod vertex_looks;
