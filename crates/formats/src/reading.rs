@@ -7,7 +7,7 @@ use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::texture::{Channel, Image};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
+use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read;
