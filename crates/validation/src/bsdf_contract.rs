@@ -6,6 +6,7 @@ use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::{Bsdf, Lobe};
 use bilux_scene::{BsdfSample, TransportMode};
+use std::sync::LazyLock;
 
 /// A BSDF as its three functions, so that a bug can be planted in any of them. Directions are local, with the normal as
 /// z.
@@ -74,15 +75,20 @@ const IMPORTANCE: TransportMode = TransportMode::Importance;
 const SAMPLES: u64 = 60_000;
 /// Probability of a false alarm of one suite over all its directions, divided evenly among them.
 const SIGNIFICANCE: f64 = 1e-4;
+/// How many directions are tested.
+const DIRECTIONS_TESTED: usize = 5;
 
 /// Test directions: above and below the surface, steep and grazing.
-fn known_directions() -> [Vec3; 5] {
-    let at = |degrees: f32, turn: f32| {
-        let (sin, cos) = sin_cos(degrees.to_radians());
-        let (y, x) = sin_cos(turn);
-        Vec3::new(sin * x, sin * y, cos)
-    };
-    [at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
+fn known_directions() -> [Vec3; DIRECTIONS_TESTED] {
+    static DIRECTIONS: LazyLock<[Vec3; DIRECTIONS_TESTED]> = LazyLock::new(|| {
+        let at = |degrees: f32, turn: f32| {
+            let (sin, cos) = sin_cos(degrees.to_radians());
+            let (y, x) = sin_cos(turn);
+            Vec3::new(sin * x, sin * y, cos)
+        };
+        [at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
+    });
+    *DIRECTIONS
 }
 
 /// χ² test of `sample` against `pdf`; delta samples are compared with their probabilities instead.
@@ -186,28 +192,52 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
     Ok(())
 }
 
+/// What measures and what shines: broad shapes about each of the known directions.
+fn shapes(d: Vec3) -> [f64; DIRECTIONS_TESTED] {
+    known_directions().map(|about| {
+        let x = f64::from(1.0 + d.dot(about));
+        x * x
+    })
+}
+
+/// A direction from which a path comes, the same for all that is tested, and the random numbers for what follows.
+#[derive(Clone, Copy)]
+struct Known {
+    direction: Vec3,
+    shapes: [f64; DIRECTIONS_TESTED],
+    choice: f32,
+    u: Vec2,
+}
+
+/// For radiance, and for importance.
+static ENDS: LazyLock<[Vec<Known>; 2]> = LazyLock::new(|| {
+    [0, 1].map(|end| {
+        let known = |k| {
+            let direction = warp::sample_sphere(uniforms(600 + end, k).1);
+            let (choice, u) = uniforms(602 + end, k);
+            Known { direction, shapes: shapes(direction), choice, u }
+        };
+        (0..SAMPLES).map(known).collect()
+    })
+});
+
 /// ⟨g, S h⟩ = ⟨S* g, h⟩: incident light `h` that is measured with `g` gives the same, whether directions are sampled
 /// for radiance from the measuring side or for importance from the incident side. [Veach 1997, 4.4]
 pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), String> {
-    let tested = known_directions();
-    let shape = |d: Vec3, about: Vec3| {
-        let x = f64::from(1.0 + d.dot(about));
-        x * x
-    };
-    let pairs = tested.len() * tested.len();
+    let pairs = DIRECTIONS_TESTED * DIRECTIONS_TESTED;
     let mut tallies = vec![[Tally::default(); 2]; pairs];
-    for k in 0..SAMPLES {
+    for k in 0..SAMPLES as usize {
         for (end, mode) in [RADIANCE, IMPORTANCE].into_iter().enumerate() {
-            let (_, u) = uniforms(600 + end as u64, k);
-            let known = warp::sample_sphere(u);
-            let sample = draw(s, known, 602 + end as u64, k, mode);
-            let weight = sample.map_or(0.0, |x| f64::from(x.weight.luminance() * known.dot(s.n_geom).abs()));
-            let found = sample.map_or(known, |x| x.wi);
-            let (looked_from, light_from) = if mode == RADIANCE { (known, found) } else { (found, known) };
-            let measured = tested.map(|g| shape(looked_from, g) * weight);
-            let incident = tested.map(|h| shape(light_from, h));
+            let Known { direction, shapes: at_known, choice, u } = ENDS[end][k];
+            let sample = (s.sample)(direction, choice, u, mode);
+            let cos = direction.dot(s.n_geom).abs();
+            let weight = sample.map_or(0.0, |x| f64::from(x.weight.luminance() * cos));
+            let at_found = sample.map_or(at_known, |x| shapes(x.wi));
+            let (measured, incident) =
+                if mode == RADIANCE { (at_known, at_found) } else { (at_found, at_known) };
+            let measured = measured.map(|g| g * weight);
             for (tally, i) in tallies.iter_mut().zip(0..) {
-                tally[end].add(measured[i % tested.len()] * incident[i / tested.len()]);
+                tally[end].add(measured[i % DIRECTIONS_TESTED] * incident[i / DIRECTIONS_TESTED]);
             }
         }
     }
