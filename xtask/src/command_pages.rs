@@ -15,6 +15,7 @@ pub(crate) const COMMANDS: &[&str] = &[
     "generate",
     "merge",
     "farm",
+    "worker",
     "bench",
     "list",
     "completions",

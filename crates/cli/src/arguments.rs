@@ -1,20 +1,16 @@
 //! The command line. Help, shell completions and man pages are all generated from this one description.
 
 use crate::choices::{Choices, Posed};
-pub use crate::comparison::Compare;
-pub use crate::denoising::Denoise;
-pub use crate::explaining::Explain;
-pub use crate::farming::Farm;
-use crate::help;
-use crate::lasting::Lasting;
 pub use crate::measuring::{Bench, BenchKind};
-use crate::serving::Serve;
-use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
     parse_noise, parse_positive, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed,
     parse_spp, parse_time, parse_turntable, parse_vector,
 };
+pub use crate::{
+    comparison::Compare, denoising::Denoise, explaining::Explain, farming::Farm, working::Worker,
+};
+use crate::{help, lasting::Lasting, serving::Serve, studio::StudioArguments};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -102,6 +98,8 @@ pub enum Command {
     Merge(Merge),
     /// Split a picture or an animation into tasks for a farm
     Farm(Farm),
+    /// Render a stream of jobs in one process that stays warm
+    Worker(Worker),
     /// Run a benchmark
     Bench(Box<Bench>),
     /// List integrators, accelerators, materials, formats and more

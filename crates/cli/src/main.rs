@@ -29,6 +29,7 @@ mod studio;
 mod usage;
 mod values;
 mod version;
+mod working;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -76,6 +77,7 @@ fn run(arguments: Arguments) -> anyhow::Result<u8> {
         Command::Generate(generate) => commands::generate::run(&generate, common),
         Command::Merge(merge) => commands::merge::run(&merge, common),
         Command::Farm(farm) => commands::farm::run(&farm, common),
+        Command::Worker(worker) => commands::worker::run(&worker, common),
         Command::Bench(bench) => commands::bench::run(&bench, common),
         Command::List(list) => commands::list::run(&list),
         Command::Completions { shell } => commands::manual::completions(shell),

@@ -25,6 +25,7 @@ mod stats;
 mod targets;
 mod time_limit;
 mod watching;
+pub mod worker;
 mod written;
 
 use crate::arguments::Common;

@@ -12,6 +12,7 @@ use crate::arguments::Common;
 use crate::{interrupt, memory, output};
 use anyhow::bail;
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 /// What the kernel enforces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,8 +106,11 @@ impl SandboxPaths {
         if common.sandbox {
             self.restrict(common)?;
         }
-        interrupt::listen()?;
-        memory::begin_threads()
+        // A process that takes one job after the other comes here for each.
+        static BEGUN: Once = Once::new();
+        let mut begun = Ok(());
+        BEGUN.call_once(|| begun = interrupt::listen().and_then(|()| memory::begin_threads()));
+        begun
     }
 
     fn restrict(&self, common: &Common) -> anyhow::Result<()> {

@@ -12,4 +12,5 @@ mod resume;
 mod serve;
 mod servers;
 mod witness;
+mod worker;
 mod wrong_inputs;

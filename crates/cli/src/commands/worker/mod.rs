@@ -1,0 +1,67 @@
+//! `bilux worker`: a stream of jobs, each a line of JSON, rendered one after the other by a process that stays warm.
+//!
+//! Two processes share the work. One reads the jobs, limits each, and writes the results. The other renders, and is
+//! replaced if it dies, if it does not stop in time, or if its sandbox does not fit the next job: so no job can harm
+//! those after it.
+
+mod job;
+mod lines;
+mod process;
+mod signals;
+mod warm;
+
+use super::DONE;
+use crate::arguments::{Common, Worker};
+use crate::output;
+use job::{Job, Limits};
+use lines::Lines;
+use process::{Ending, Process};
+use serde_json::{Value, json};
+use signals::Signals;
+use std::time::Instant;
+
+/// Reads jobs and writes results, until the jobs or the process end.
+pub fn run(arguments: &Worker, common: &Common) -> anyhow::Result<u8> {
+    if arguments.warm {
+        return warm::run();
+    }
+    let signals = Signals::listen()?;
+    let limits = Limits::of(arguments, common);
+    let (lines, mut process) = (Lines::of_stdin(), None);
+    while let Some((number, line)) = lines.next(&signals) {
+        let result = match Job::read(line, &limits) {
+            Ok(job) => rendered(&job, &mut process, &signals),
+            Err((id, error)) => json!({ "id": id, "line": number, "status": 2, "error": error }),
+        };
+        output::print(result)?;
+        if signals.status().is_some() {
+            break;
+        }
+    }
+    drop(process);
+    Ok(signals.status().unwrap_or(DONE))
+}
+
+/// Renders a job, and says how that went. The process is the one of the jobs before it, if there is one.
+fn rendered(job: &Job, process: &mut Option<Process>, signals: &Signals) -> Value {
+    let begun = Instant::now();
+    if process.as_ref().is_some_and(|process| !process.may_take(job)) {
+        *process = None;
+    }
+    let ended = match process.take().map_or_else(Process::start, Ok) {
+        Ok(mut started) => {
+            let ended = started.render(job, signals);
+            if ended.is_alive {
+                *process = Some(started);
+            }
+            ended
+        }
+        Err(error) => Ending::failed(format!("cannot start a process: {error}")),
+    };
+    let warnings: Vec<&Value> =
+        ended.pictures.iter().filter_map(|picture| picture["warnings"].as_array()).flatten().collect();
+    json!({
+        "id": job.id, "status": ended.status, "output": job.output, "seconds": begun.elapsed().as_secs_f64(),
+        "error": ended.error, "warnings": warnings, "pictures": ended.pictures,
+    })
+}

@@ -1,0 +1,220 @@
+//! `bilux worker`: jobs in, results out, one process.
+#![cfg(unix)]
+
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const CARD: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    for name in ["a", "b", "c"] {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        std::fs::write(folder.path().join(format!("{name}/card.obj")), CARD).unwrap();
+    }
+    folder
+}
+
+fn bilux(folder: &Path) -> Command {
+    let mut bilux = Command::new(env!("CARGO_BIN_EXE_bilux"));
+    bilux.current_dir(folder);
+    bilux
+}
+
+fn started(folder: &Path, options: &[&str]) -> Child {
+    let mut worker = bilux(folder);
+    worker.arg("worker").args(options).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    worker.spawn().unwrap()
+}
+
+/// The results of jobs, each a line, and what came on standard error.
+fn results(folder: &Path, options: &[&str], lines: &[String]) -> Vec<Value> {
+    let mut worker = started(folder, options);
+    let mut input = worker.stdin.take().unwrap();
+    for line in lines {
+        writeln!(input, "{line}").unwrap();
+    }
+    drop(input);
+    let output = worker.wait_with_output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn job(id: u32, scene: &str, more: Value) -> String {
+    let mut job = json!({ "id": id, "scene": scene, "output": format!("{id}.png"), "size": [24, 16], "spp": 2, "integrator": "path" });
+    job.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    job.to_string()
+}
+
+#[test]
+fn every_line_gets_its_result_and_pictures_are_those_of_render() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("broken.obj"), "v 0 0 0\nf 1 2 9\n").unwrap();
+    let lines = [
+        job(1, "a/card.obj", json!({})),
+        "this is no JSON".to_owned(),
+        job(2, "missing.obj", json!({})),
+        String::new(),
+        job(3, "broken.obj", json!({})),
+        job(4, "a/card.obj", json!({ "sze": 5 })),
+        job(5, "a/card.obj", json!({ "spp": "many" })),
+        job(6, "a/card.obj", json!({ "output": "none/6.png" })),
+        job(7, "b/card.obj", json!({ "orbit": [30, 20], "ground": "shadow" })),
+        job(8, "a/card.obj", json!({ "output": "8-{frame}.png", "turntable": 3 })),
+        job(
+            9,
+            "a/card.obj",
+            json!({ "aov": ["depth", "position"], "output": "9.exr", "integrator": "path" }),
+        ),
+    ];
+    let results = results(path, &[], &lines);
+    let statuses: Vec<(Value, i64)> =
+        results.iter().map(|result| (result["id"].clone(), result["status"].as_i64().unwrap())).collect();
+    let wanted = [(1, 0), (0, 2), (2, 1), (3, 1), (4, 2), (5, 2), (6, 2), (7, 0), (8, 0), (9, 0)];
+    let wanted = wanted.map(|(id, status)| (if id == 0 { Value::Null } else { json!(id) }, status));
+    assert_eq!(statuses, wanted, "{results:#?}");
+    assert_eq!(results[1]["line"], 2);
+    let error = |index: usize| results[index]["error"].as_str().unwrap().to_owned();
+    assert!(error(1).contains("no JSON object"), "{}", error(1));
+    assert!(error(2).contains("missing.obj"), "{}", error(2));
+    assert!(error(3).contains("broken.obj:2:1"), "{}", error(3));
+    assert!(error(4).contains("did you mean 'size'?"), "{}", error(4));
+    assert!(error(5).contains("--spp"), "{}", error(5));
+    assert!(error(6).contains("there is no folder 'none'"), "{}", error(6));
+    for (index, pictures) in [(0, 1), (7, 1), (8, 3), (9, 1)] {
+        let result = &results[index];
+        assert!(result["error"].is_null() && result["warnings"] == json!([]), "{result:#}");
+        assert!(result["seconds"].as_f64().unwrap() > 0.0);
+        assert_eq!(result["pictures"].as_array().unwrap().len(), pictures, "{result:#}");
+        assert_eq!((&result["pictures"][0]["width"], &result["pictures"][0]["spp"]), (&json!(24), &json!(2)));
+    }
+    let rendered = |options: &[&str]| {
+        let common = ["--size", "24x16", "--spp", "2", "-i", "path", "-q", "-o", "same.png"];
+        assert!(bilux(path).arg("render").args(options).args(common).status().unwrap().success());
+        std::fs::read(path.join("same.png")).unwrap()
+    };
+    assert!(std::fs::read(path.join("1.png")).unwrap() == rendered(&["a/card.obj"]));
+    let options = ["b/card.obj", "--orbit", "30,20", "--ground", "shadow"];
+    assert!(
+        std::fs::read(path.join("7.png")).unwrap() == rendered(&options),
+        "no job is changed by those before it"
+    );
+    assert!(path.join("8-0002.png").is_file() && path.join("9.exr").is_file());
+    assert!(!path.join("2.png").exists() && !path.join("3.png").exists());
+}
+
+#[test]
+fn a_job_that_takes_too_long_is_stopped_and_the_next_is_not() {
+    let folder = folder();
+    let path = folder.path();
+    let long = json!({ "spp": 4_000_000, "size": "100x100", "timeout": 0.5 });
+    let lines =
+        [job(1, "a/card.obj", long), job(2, "a/card.obj", json!({})), job(3, "a/card.obj", json!({}))];
+    let begun = Instant::now();
+    let results = results(path, &["--timeout", "60"], &lines);
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+    assert_eq!(results[0]["status"], 124, "{results:#?}");
+    assert!(results[0]["error"].as_str().unwrap().contains("the time of 0.5 s was up"), "{results:#?}");
+    assert!(path.join("1.png").is_file(), "what was rendered is saved");
+    assert_eq!(results[0]["pictures"][0]["complete"], false);
+    assert_eq!((&results[1]["status"], &results[2]["status"]), (&json!(0), &json!(0)));
+}
+
+#[test]
+fn the_worker_s_own_limit_ends_a_job_too() {
+    let folder = folder();
+    let long = job(1, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100", "timeout": 1000 }));
+    let results = results(folder.path(), &["--timeout", "0.3", "--max-memory", "1M"], &[long.clone()]);
+    assert_eq!(results[0]["status"], 1, "{results:#?}");
+    assert!(results[0]["error"].as_str().unwrap().contains("--max-memory"), "{results:#?}");
+    let results = self::results(folder.path(), &["--timeout", "0.3"], &[long]);
+    assert_eq!(results[0]["status"], 124, "{results:#?}");
+}
+
+#[test]
+fn a_sandbox_holds_for_each_job() {
+    let folder = folder();
+    let path = folder.path();
+    for name in ["a", "b"] {
+        let text = format!("[[model]]\nfile = \"../c/card.obj\"\n[[model]]\nfile = \"card.obj\"\n# {name}\n");
+        std::fs::write(path.join(format!("{name}/out.toml")), text).unwrap();
+    }
+    let lines = [
+        job(1, "a/card.obj", json!({ "output": "a/1.png" })),
+        job(2, "a/out.toml", json!({ "output": "a/2.png", "sandbox": false })),
+        job(3, "b/card.obj", json!({ "output": "b/3.png" })),
+        job(4, "b/card.obj", json!({ "output": "b/4.png" })),
+        job(5, "a/card.obj", json!({ "output": "b/5.png" })),
+    ];
+    let results = results(path, &["--sandbox"], &lines);
+    let statuses: Vec<i64> = results.iter().map(|result| result["status"].as_i64().unwrap()).collect();
+    assert_eq!(statuses, [0, 1, 0, 0, 0], "{results:#?}");
+    assert!(results[1]["error"].as_str().unwrap().contains("../c/card.obj"), "{results:#?}");
+    assert!(path.join("b/5.png").is_file() && !path.join("a/2.png").exists());
+    let many: Vec<String> = (0..30).map(|id| job(id, "a/card.obj", json!({ "size": "4x4" }))).collect();
+    let results = self::results(path, &["--sandbox"], &many);
+    assert!(results.len() == 30 && results.iter().all(|result| result["status"] == 0), "{results:#?}");
+}
+
+#[test]
+fn a_signal_ends_the_stream_with_a_result_for_the_job_under_way() {
+    let folder = folder();
+    let mut worker = started(folder.path(), &[]);
+    let mut input = worker.stdin.take().unwrap();
+    let mut output = BufReader::new(worker.stdout.take().unwrap());
+    let mut result = || {
+        let mut line = String::new();
+        output.read_line(&mut line).unwrap();
+        serde_json::from_str::<Value>(&line).unwrap_or(Value::Null)
+    };
+    writeln!(input, "{}", job(1, "a/card.obj", json!({}))).unwrap();
+    assert_eq!(result()["status"], 0);
+    writeln!(input, "{}", job(2, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100" }))).unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let begun = Instant::now();
+    assert!(Command::new("kill").arg(worker.id().to_string()).status().unwrap().success());
+    let last = result();
+    assert_eq!((&last["id"], &last["status"]), (&json!(2), &json!(143)), "{last:#}");
+    assert_eq!(worker.wait().unwrap().code(), Some(143));
+    assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+    assert!(folder.path().join("2.png").is_file());
+    // And one that waits for jobs ends at once.
+    let mut idle = started(folder.path(), &[]);
+    let _open = idle.stdin.take();
+    std::thread::sleep(Duration::from_millis(300));
+    let begun = Instant::now();
+    assert!(Command::new("kill").arg(idle.id().to_string()).status().unwrap().success());
+    assert_eq!(idle.wait().unwrap().code(), Some(143));
+    assert!(begun.elapsed() < Duration::from_secs(2));
+}
+
+#[test]
+fn a_process_that_dies_takes_one_job_with_it() {
+    let folder = folder();
+    let mut worker = started(folder.path(), &[]);
+    let mut input = worker.stdin.take().unwrap();
+    let mut output = BufReader::new(worker.stdout.take().unwrap());
+    let mut result = || {
+        let mut line = String::new();
+        output.read_line(&mut line).unwrap();
+        serde_json::from_str::<Value>(&line).unwrap_or(Value::Null)
+    };
+    writeln!(input, "{}", job(1, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100" }))).unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let children = Command::new("pgrep").arg("-P").arg(worker.id().to_string()).output().unwrap();
+    let child = String::from_utf8(children.stdout).unwrap();
+    assert!(Command::new("kill").arg("-KILL").arg(child.trim()).status().unwrap().success());
+    let dead = result();
+    assert_eq!((&dead["id"], &dead["status"]), (&json!(1), &json!(1)), "{dead:#}");
+    assert!(dead["error"].as_str().unwrap().contains("has ended (signal: 9"), "{dead:#}");
+    writeln!(input, "{}", job(2, "a/card.obj", json!({}))).unwrap();
+    assert_eq!(result()["status"], 0);
+    drop(input);
+    assert_eq!(worker.wait().unwrap().code(), Some(0));
+}
