@@ -1,5 +1,6 @@
 //! Transforms that change with time: keyframes of translation, rotation and scale.
 
+mod chain;
 pub mod numbers;
 
 use crate::transcendental::{atan2_f64, sin_f64};
@@ -9,7 +10,8 @@ use std::sync::Arc;
 
 /// A transform as a function of time. Between keys, translation and scale are interpolated linearly, and rotation
 /// along the shorter great arc at constant speed [Shoemake 1985]; before the first and after the last key the
-/// transform is constant.
+/// transform is constant. Motions are [composed](Motion::then) as they are at each time: a point that is placed on a
+/// turning object moves along an arc.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     course: Course,
@@ -36,6 +38,8 @@ enum Course {
     Still(Arc<Transform>),
     /// At least two poses, in order of time.
     Keys(Arc<Vec<Pose>>),
+    /// At least two motions, none of them a chain; the first is applied first.
+    Chain(Arc<Vec<Motion>>),
 }
 
 /// A key in f64, its rotation normalised.
@@ -74,7 +78,7 @@ impl Motion {
         match &self.course {
             Course::Rest => Some(&Transform::IDENTITY),
             Course::Still(transform) => Some(transform),
-            Course::Keys(_) => None,
+            Course::Keys(_) | Course::Chain(_) => None,
         }
     }
 
@@ -84,6 +88,10 @@ impl Motion {
             Course::Rest => 0,
             Course::Still(_) => size_of::<(Transform, [usize; 2])>(),
             Course::Keys(poses) => size_of::<(Vec<Pose>, [usize; 2])>() + size_of_val(poses.as_slice()),
+            Course::Chain(parts) => {
+                let inner: usize = parts.iter().map(Motion::heap_bytes).sum();
+                size_of::<(Vec<Motion>, [usize; 2])>() + size_of_val(parts.as_slice()) + inner
+            }
         }
     }
 
@@ -117,25 +125,42 @@ impl Motion {
         if let Some(transform) = self.static_transform() {
             return *transform;
         }
+        Transform::from_matrix(self.matrix_at(f64::from(time_seconds))).unwrap_or_default()
+    }
+
+    fn matrix_at(&self, time: f64) -> DMat4 {
+        if let Some(transform) = self.static_transform() {
+            return transform.matrix().as_dmat4();
+        }
+        if let Course::Chain(parts) = &self.course {
+            return parts.iter().fold(DMat4::IDENTITY, |all, part| part.matrix_at(time) * all);
+        }
         let poses = self.poses();
-        let time = f64::from(time_seconds);
         let next = poses.partition_point(|pose| pose.time <= time);
         match (next.checked_sub(1).map(|i| &poses[i]), poses.get(next)) {
-            (Some(from), Some(to)) => Segment::new(from, to).at(from.fraction(to, time)).transform(),
-            (Some(pose), None) | (None, Some(pose)) => pose.transform(),
-            (None, None) => Transform::IDENTITY,
+            (Some(from), Some(to)) => Segment::new(from, to).at(from.fraction(to, time)).matrix(),
+            (Some(pose), None) | (None, Some(pose)) => pose.matrix(),
+            (None, None) => DMat4::IDENTITY,
         }
     }
 
-    /// First this motion, then `next`. `None` when this one moves and `next` is not a similarity (a rotation, a
-    /// uniform scale and a translation; uniform and orthogonal to within a thousandth), because then no keys describe
-    /// the same motion.
-    pub fn then(&self, next: &Transform) -> Option<Motion> {
-        if let Some(transform) = self.static_transform() {
-            return Some(Motion::still(transform.then(next)));
+    /// First this motion, then `next`, at each time.
+    pub fn then(&self, next: &Motion) -> Motion {
+        match (self.static_transform(), next.static_transform()) {
+            (Some(first), Some(next)) => return Motion::still(first.then(next)),
+            (Some(first), None) if first.is_identity() => return next.clone(),
+            (None, Some(next)) if next.is_identity() => return self.clone(),
+            _ => {}
         }
-        let (scale, rotation, translation) = similarity(next)?;
-        let moved = self.poses().iter().map(|pose| Pose {
+        self.moved_by(next).unwrap_or_else(|| self.followed_by(next))
+    }
+
+    /// A motion by keys, then a transform that is a similarity (a rotation, a uniform scale and a translation; uniform
+    /// and orthogonal to within a thousandth), for which other keys describe the same motion.
+    fn moved_by(&self, next: &Motion) -> Option<Motion> {
+        let Course::Keys(poses) = &self.course else { return None };
+        let (scale, rotation, translation) = similarity(next.static_transform()?)?;
+        let moved = poses.iter().map(|pose| Pose {
             time: pose.time,
             translation: translation + rotation * (pose.translation * scale),
             rotation: rotation * pose.rotation,
@@ -144,7 +169,8 @@ impl Motion {
         Some(Motion { course: Course::Keys(Arc::new(moved.collect())) })
     }
 
-    /// The keys, in order of time, with rotations of unit length; empty if there were none or only one.
+    /// The keys, in order of time, with rotations of unit length; empty if there were none or only one, and for motions
+    /// of several [parts](Motion::parts), each of which has its own.
     pub fn keys(&self) -> Vec<MotionKey> {
         let key = |pose: &Pose| MotionKey {
             time_seconds: pose.time as f32,
@@ -157,11 +183,17 @@ impl Motion {
 
     /// True when it never moves.
     pub fn is_still(&self) -> bool {
+        if let Course::Chain(parts) = &self.course {
+            return parts.iter().all(Motion::is_still);
+        }
         self.poses().windows(2).all(|pair| pair[0].same_place(&pair[1]))
     }
 
     /// True when [`Motion::at`] is the same, to the bit, for all times in this closed interval.
     pub fn is_still_over(&self, seconds: [f32; 2]) -> bool {
+        if let Course::Chain(parts) = &self.course {
+            return parts.iter().all(|part| part.is_still_over(seconds));
+        }
         self.segments_over(seconds).all(|(segment, _)| segment.from.same_place(&segment.to))
     }
 
@@ -176,10 +208,13 @@ impl Motion {
             return Aabb::EMPTY;
         }
         if let Some(transform) = self.static_transform() {
-            return moved_by(transform, bounds);
+            return moved_by(transform, bounds, EXACT);
+        }
+        if let Course::Chain(parts) = &self.course {
+            return chain::bounds_over(parts, bounds, seconds);
         }
         let segments = self.segments_over(seconds);
-        let rests = [self.at(seconds[0]), self.at(seconds[1])].map(|t| moved_by(&t, bounds));
+        let rests = [self.at(seconds[0]), self.at(seconds[1])].map(|t| moved_by(&t, bounds, EXACT));
         segments.fold(rests[0].union(rests[1]), |all, (segment, span)| {
             all.union(segment.bounds_over(bounds, span))
         })
@@ -195,13 +230,14 @@ impl Motion {
         if let Some(transform) = self.static_transform() {
             return stretch(transform);
         }
+        if let Course::Chain(parts) = &self.course {
+            return chain::stretch_over(parts, seconds);
+        }
         let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| stretch(&transform));
         let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        // On top of the scales, 2⁻²⁰ covers the rounding of the matrix to f32.
-        let slack = 1.0 + 1.0 / 1_048_576.0;
         self.segments_over(seconds).fold(larger(still[0], still[1]), |all, (segment, _)| {
             let (s, r) = (segment.from.scale.abs(), segment.to.scale.abs());
-            larger(all, [s.max(r).max_element() * slack, slack / s.min(r).min_element()])
+            larger(all, [s.max(r).max_element() * SLACK, SLACK / s.min(r).min_element()])
         })
     }
 
@@ -331,12 +367,18 @@ impl Segment {
 /// entries' magnitudes is at most √3 times the length of the scaled point.
 const ROUNDING: f64 = 8.0 / 16_777_216.0;
 
+/// The relative error of f64 arithmetic, for a matrix that is not rounded.
+const EXACT: f64 = 1e-14;
+
+/// The factor, 1 + 2⁻²⁰, that covers how the rounding of a matrix to f32 changes its stretch.
+const SLACK: f64 = 1.0 + 1.0 / 1_048_576.0;
+
 fn frobenius(m: DMat3) -> f64 {
     m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The bounding box of a box transformed by a matrix, which is taken as exact.
-fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
+/// The bounding box of a box transformed by a matrix with this relative error.
+fn moved_by(transform: &Transform, bounds: &Aabb, error: f64) -> Aabb {
     let matrix = transform.matrix().as_dmat4();
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut far = 0f64;
@@ -346,7 +388,7 @@ fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
         let sum = DMat3::from_mat4(matrix).abs() * corner.abs() + matrix.w_axis.truncate().abs();
         far = far.max(sum.max_element());
     }
-    expanded_outwards(low, high, far * 1e-14)
+    expanded_outwards(low, high, far * error)
 }
 
 /// An f32 box that contains an f64 box enlarged by `margin`.
@@ -405,15 +447,33 @@ mod tests {
             DVec3::new(1.0, -2.0, 3.0),
         );
         let next = Transform::from_matrix(next).unwrap();
-        let both = spin().then(&next).unwrap();
+        let both = spin().then(&Motion::still(next));
+        assert_eq!(both.keys().len(), 2, "keys of its own");
         for time in [0.0, 1.0, 1.7, 2.5, 4.0] {
             let p = Vec3::new(0.3, -0.7, 1.1);
             let apart = both.at(time).point(p) - next.point(spin().at(time).point(p));
             assert!(apart.length() < 1e-5, "{time}: {apart}");
         }
-        let uneven = Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 2.0, 1.0))).unwrap();
-        assert!(spin().then(&uneven).is_none());
-        assert!(Motion::still(Transform::IDENTITY).then(&uneven).is_some());
+    }
+
+    #[test]
+    fn what_is_placed_on_a_turning_object_moves_along_an_arc() {
+        // A half turn about z in 2 s, seen at 60 degrees: the point (1/2, 0, 0) of an object at (2, 0, 0).
+        let half_turn = |time_seconds, rotation| key(time_seconds, Vec3::ZERO, rotation, Vec3::ONE);
+        let turn = Motion::from_keys(vec![
+            half_turn(0.0, Quat::IDENTITY),
+            half_turn(2.0, Quat::from_xyzw(0.0, 0.0, 1.0, 0.0)),
+        ]);
+        let place = Motion::still(Transform::translate(Vec3::X * 2.0).unwrap());
+        let flattened = Motion::still(Transform::scale(Vec3::new(1.0, 0.5, 1.0)).unwrap());
+        let orbit = place.then(&turn.unwrap()).then(&flattened);
+        let (sin, cos) = (60f32.to_radians().sin(), 60f32.to_radians().cos());
+        let expected = Vec3::new(2.5 * cos, 2.5 * sin * 0.5, 0.0);
+        let p = orbit.at(2.0 / 3.0).point(Vec3::X * 0.5);
+        assert!(p.abs_diff_eq(expected, 1e-6), "{p} instead of {expected}");
+        assert_eq!(orbit.parts().len(), 3);
+        assert!(!orbit.is_still() && orbit.is_still_over([2.0, 3.0]) && orbit.static_transform().is_none());
+        assert_eq!(place.then(&flattened).parts().len(), 1, "what is still is one transform");
     }
 
     #[test]
@@ -449,11 +509,19 @@ mod tests {
         Motion::from_keys(keys.collect()).unwrap()
     }
 
+    /// Two motions and a transform that is no similarity between them.
+    fn random_chain(seed: u64) -> Motion {
+        let place = DMat4::from_translation(DVec3::new(0.3, -5.0, 1.0))
+            * DMat4::from_scale(DVec3::new(0.2, 1.0, 3.0));
+        let uneven = Motion::still(Transform::from_matrix(place).unwrap());
+        random_motion(seed).then(&uneven).then(&random_motion(seed + 1000))
+    }
+
     /// How many of many sampled points of moving boxes lie outside the box shrunk by `shrink` of its size.
-    fn escapes(shrink: f64) -> usize {
+    fn escapes(of: fn(u64) -> Motion, shrink: f64) -> usize {
         let mut escaped = 0;
         for seed in 0..200 {
-            let motion = random_motion(seed);
+            let motion = of(seed);
             let local = Aabb { min: Vec3::new(-2.0, 0.5, -1.0), max: Vec3::new(1.0, 0.75, 3.0) };
             let window =
                 [unit_f32(hash_words([seed, 99]) as u32), 0.8 + unit_f32(hash_words([seed, 98]) as u32)];
@@ -476,8 +544,9 @@ mod tests {
     fn its_numbers_give_the_same_motion() {
         let place =
             Transform::rotate(Vec3::Y, 0.7).unwrap().then(&Transform::translate(Vec3::X * 3.0).unwrap());
-        let moved = spin().then(&Transform::rotate(Vec3::X, 0.3).unwrap()).unwrap();
-        for motion in [Motion::REST, Motion::still(place), spin(), moved] {
+        let moved = spin().then(&Motion::still(Transform::rotate(Vec3::X, 0.3).unwrap()));
+        let orbit = Motion::still(place).then(&moved);
+        for motion in [Motion::REST, Motion::still(place), spin(), moved, orbit] {
             assert_eq!(Motion::from_numbers(&motion.numbers()), Some(motion));
         }
         let mut wrong = spin().numbers();
@@ -490,14 +559,16 @@ mod tests {
 
     #[test]
     fn bounds_hold_every_moment_and_a_slightly_smaller_box_does_not() {
-        assert_eq!(escapes(0.0), 0);
-        assert!(escapes(0.02) > 0);
+        assert_eq!(escapes(random_motion, 0.0), 0);
+        assert!(escapes(random_motion, 0.02) > 0);
+        assert_eq!(escapes(random_chain, 0.0), 0);
+        // The bounds of a chain are those of a box that moves, so they are wider than the motion.
+        assert!(escapes(random_chain, 0.4) > 0);
     }
 
     #[test]
     fn stretch_bounds_how_lengths_change() {
-        for seed in 0..100 {
-            let motion = random_motion(seed);
+        for motion in (0..100).flat_map(|seed| [random_motion(seed), random_chain(seed)]) {
             let [grow, shrink] = motion.stretch_over([0.0, 2.0]);
             for i in 0..=100 {
                 let matrix = DMat3::from_mat4(motion.at(i as f32 / 50.0).matrix().as_dmat4());

@@ -87,8 +87,15 @@ fn rich() -> SceneBuilder {
     let place =
         Transform::rotate(Vec3::ONE, 0.4).unwrap().then(&Transform::translate(Vec3::Z * -1.0).unwrap());
     scene.objects.push(Object::new("a", mesh.clone(), paint).placed(place));
-    scene.objects.push(Object { instanced: true, ..Object::new("b", mesh, mixed) });
-    scene.objects[1].motion = Motion::from_keys(vec![key(0.0, 0.1), key(2.0, 1.7)]).unwrap();
+    let moving = Motion::from_keys(vec![key(0.0, 0.1), key(2.0, 1.7)]).unwrap();
+    scene.objects.push(Object {
+        instanced: true,
+        motion: moving.clone(),
+        ..Object::new("b", mesh.clone(), mixed)
+    });
+    scene
+        .objects
+        .push(Object { motion: Motion::still(place).then(&moving), ..Object::new("c", mesh, mixed) });
     scene.lights.push(Spec::new("lamp", "point").with("position", Vec3::new(1.0, 2.0, 3.0)));
     let mut moves = Parameters::default();
     moves.set("position", Vec3::Z * 5.0);

@@ -133,7 +133,17 @@ impl Coded for Spec {
 
 impl Coded for Motion {
     fn write(&self, to: &mut Encoder) {
-        match self.numbers() {
+        self.numbers().write(to);
+    }
+    fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
+        let numbers = MotionNumbers::read(from)?;
+        Motion::from_numbers(&numbers).ok_or_else(|| from.wrong("a motion that is not possible"))
+    }
+}
+
+impl Coded for MotionNumbers {
+    fn write(&self, to: &mut Encoder) {
+        match self {
             MotionNumbers::Rest => 0u8.write(to),
             MotionNumbers::Still(numbers) => {
                 1u8.write(to);
@@ -143,16 +153,20 @@ impl Coded for Motion {
                 2u8.write(to);
                 keys.write(to);
             }
+            MotionNumbers::Chain(parts) => {
+                3u8.write(to);
+                parts.write(to);
+            }
         }
     }
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
-        let numbers = match u8::read(from)? {
+        Ok(match u8::read(from)? {
             0 => MotionNumbers::Rest,
             1 => MotionNumbers::Still(Coded::read(from)?),
             2 => MotionNumbers::Keys(Coded::read(from)?),
+            3 => MotionNumbers::Chain(from.nested(Coded::read)?),
             tag => return Err(from.wrong(format!("no motion has the tag {tag}"))),
-        };
-        Motion::from_numbers(&numbers).ok_or_else(|| from.wrong("a motion that is not possible"))
+        })
     }
 }
 

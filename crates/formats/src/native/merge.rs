@@ -1,11 +1,7 @@
 //! Merges one scene into another.
 
 use super::scene::Native;
-use crate::FormatError;
-use crate::bake::transformed;
-use bilux_math::Motion;
-use bilux_scene::{Object, SceneBuilder, SceneError, Span, Spec, Value};
-use std::sync::Arc;
+use bilux_scene::{SceneBuilder, Spec, Value};
 
 impl Native<'_, '_> {
     /// Adds the textures and materials of a scene; returns the new index of its first material.
@@ -30,35 +26,5 @@ impl Native<'_, '_> {
             }
         }
         spec
-    }
-}
-
-/// An object transformed by the motion of its model.
-pub(super) fn moved(object: &Object, by: &Motion, at: &Span) -> Result<Object, FormatError> {
-    let is_unmoved = |motion: &Motion| motion.is_still() && motion.at(0.0).is_identity();
-    let object = object.clone();
-    if is_unmoved(by) {
-        return Ok(object);
-    }
-    if is_unmoved(&object.motion) {
-        return Ok(Object { motion: by.clone(), ..object });
-    }
-    match (object.motion.is_still(), by.is_still()) {
-        (true, true) => {
-            let motion = Motion::still(object.motion.at(0.0).then(&by.at(0.0)));
-            Ok(Object { motion, ..object })
-        }
-        (true, false) => {
-            let mesh = Arc::new(transformed(&object.mesh, &object.motion.at(0.0)));
-            Ok(Object { mesh, motion: by.clone(), ..object })
-        }
-        _ => {
-            let name = &object.name;
-            let message = format!(
-                "'{name}' in this model is animated, so the model cannot be placed as well: remove its \
-                         transform"
-            );
-            Err(SceneError::invalid(message, at).into())
-        }
     }
 }

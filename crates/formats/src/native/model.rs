@@ -2,7 +2,6 @@
 
 use super::document::{Item, Table, TomlValue};
 use super::include::Part;
-use super::merge::moved;
 use super::place::{self, motion};
 use super::scene::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
@@ -10,7 +9,7 @@ use super::specs::{missing, plain_value};
 use crate::FormatError;
 use crate::formats::{format_named, read_file, unknown};
 use bilux_math::registry::{Entry, ParameterKind};
-use bilux_math::{DMat4, Transform};
+use bilux_math::{DMat4, Motion, Transform};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
 use std::collections::HashMap;
@@ -54,11 +53,8 @@ impl Native<'_, '_> {
         let mut first = origin.as_ref().and_then(|path| self.brought.get(path).copied());
         for object in &model.objects {
             self.reading.budget.take::<[Object; 2]>(1, &table.at.file)?;
-            let mut placed = moved(object, &motion, &table.at)?;
+            let mut placed = Object { motion: object.motion.then(&motion), ..object.clone() };
             self.reading.budget.take_bytes(placed.motion.heap_bytes() as u64, &table.at.file)?;
-            if !Arc::ptr_eq(&placed.mesh, &object.mesh) {
-                self.charge_mesh(&placed.mesh, table)?;
-            }
             placed.instanced |= instanced;
             placed.material = match (renamed.get(object.material).copied().flatten(), given) {
                 (Some(index), _) | (None, Some(index)) => index,
@@ -139,9 +135,8 @@ impl Native<'_, '_> {
         if let Some(origin) =
             Transform::from_matrix(DMat4::from_translation(origin)).filter(|t| !t.is_identity())
         {
-            let moved =
-                model.objects.iter_mut().filter_map(|object| Some((object.motion.then(&origin)?, object)));
-            moved.for_each(|(motion, object)| object.motion = motion);
+            let origin = Motion::still(origin);
+            model.objects.iter_mut().for_each(|object| object.motion = object.motion.then(&origin));
         }
         self.scene.warnings.append(&mut model.warnings);
         self.scene.notes.append(&mut model.notes);

@@ -6,7 +6,7 @@ use crate::bake::name_of;
 use crate::ply::encode;
 use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
-use bilux_math::MotionKey;
+use bilux_math::{Motion, MotionKey};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value};
 use std::collections::HashMap;
@@ -30,9 +30,9 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         out.push_str("\n[[material]]\n");
         write_spec(spec, name, scene, writing, &mut out)?;
     }
-    let mut meshes = HashMap::new();
+    let mut files = ModelFiles::default();
     for object in &scene.objects {
-        write_model(object, &names, &mut meshes, writing, &mut out)?;
+        write_model(object, &names, &mut files, writing, &mut out)?;
     }
     writing.main = out.trim_start().as_bytes().to_vec();
     Ok(())
@@ -94,25 +94,52 @@ fn write_camera(
     Ok(())
 }
 
+/// The files of models that are written already.
+#[derive(Default)]
+struct ModelFiles {
+    meshes: HashMap<*const Mesh, String>,
+    /// Models with a motion, by their content.
+    moved: HashMap<String, String>,
+}
+
+impl ModelFiles {
+    fn of_mesh(&mut self, mesh: &Arc<Mesh>, writing: &mut Writing) -> Result<String, FormatError> {
+        if let Some(file) = self.meshes.get(&Arc::as_ptr(mesh)) {
+            return Ok(file.clone());
+        }
+        let Some(bytes) = encode(&[mesh], writing.options.ascii) else {
+            let message = "a mesh has more vertices than its file can hold";
+            return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
+        };
+        let file = writing.add_numbered("mesh", self.meshes.len() + 1, "ply", bytes);
+        self.meshes.insert(Arc::as_ptr(mesh), file.clone());
+        Ok(file)
+    }
+
+    /// A scene file with the model of another file, and its motion.
+    fn of_moved(&mut self, file: &str, motion: &Motion, writing: &mut Writing) -> String {
+        let mut content = format!("[[model]]\nfile = {}\n", quoted(file));
+        write_motion(motion, &mut content);
+        let number = self.moved.len() + 1;
+        let add =
+            |content: &String| writing.add_numbered("moved", number, "toml", content.clone().into_bytes());
+        self.moved.entry(content).or_insert_with_key(add).clone()
+    }
+}
+
 fn write_model(
     object: &Object,
     materials: &[String],
-    meshes: &mut HashMap<*const Mesh, String>,
+    files: &mut ModelFiles,
     writing: &mut Writing,
     out: &mut String,
 ) -> Result<(), FormatError> {
-    let file = match meshes.get(&Arc::as_ptr(&object.mesh)) {
-        Some(file) => file.clone(),
-        None => {
-            let Some(bytes) = encode(&[&object.mesh], writing.options.ascii) else {
-                let message = "a mesh has more vertices than its file can hold";
-                return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
-            };
-            let file = writing.add_numbered("mesh", meshes.len() + 1, "ply", bytes);
-            meshes.insert(Arc::as_ptr(&object.mesh), file.clone());
-            file
-        }
-    };
+    let mut file = files.of_mesh(&object.mesh, writing)?;
+    // A model has one motion. What moves within something that moves is a model within a model.
+    let (outer, inner) = object.motion.parts().split_last().unwrap_or((&Motion::REST, &[]));
+    for motion in inner {
+        file = files.of_moved(&file, motion, writing);
+    }
     out.push_str(&format!("\n[[model]]\nname = {}\nfile = {}\n", quoted(name_of(object)), quoted(&file)));
     if let Some(name) = materials.get(object.material) {
         out.push_str(&format!("material = {}\n", quoted(name)));
@@ -120,15 +147,19 @@ fn write_model(
     if object.instanced {
         out.push_str("instance = true\n");
     }
-    let transform = object.motion.at(0.0);
-    let keys = object.motion.keys();
+    write_motion(outer, out);
+    Ok(())
+}
+
+/// Writes a motion of one part.
+fn write_motion(motion: &Motion, out: &mut String) {
+    let (transform, keys) = (motion.at(0.0), motion.keys());
     if !keys.is_empty() {
         keys.iter().for_each(|key| write_key(key, out));
     } else if !transform.is_identity() {
         let rows = transform.matrix().transpose().to_cols_array_2d().map(|row| list(&row));
         out.push_str(&format!("matrix = [{}]\n", rows.join(", ")));
     }
-    Ok(())
 }
 
 fn write_key(key: &MotionKey, out: &mut String) {

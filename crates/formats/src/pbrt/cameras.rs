@@ -2,11 +2,12 @@
 
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
-use super::state::half_tangent;
+use super::state::{Matrices, half_tangent};
 use super::unknown;
 use crate::FormatError;
-use bilux_math::transcendental::atan;
-use bilux_math::{DMat4, DVec3};
+use bilux_math::glam::DQuat;
+use bilux_math::transcendental::{atan, atan2_f64};
+use bilux_math::{DMat3, DMat4, DVec3, Motion, MotionKey, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Parameters, Spec};
 
@@ -64,8 +65,8 @@ impl Pbrt<'_, '_> {
         self.lens(list, &mut spec, half_height, sizes)?;
         let mut keyframes = Vec::new();
         if to_world[0] != to_world[1] {
-            for (time, matrix) in self.options.times.iter().zip(&to_world) {
-                keyframes.push((*time as f32, place(matrix)?));
+            for (time, matrix) in between(self.options.times, &to_world, &entity)? {
+                keyframes.push((time, place(&matrix)?));
             }
         }
         for name in ["shutteropen", "shutterclose"] {
@@ -147,6 +148,51 @@ impl Pbrt<'_, '_> {
 }
 
 /// The placement of a camera.
+/// The largest angle, in degrees, between two keyframes of a camera that turns. Cameras interpolate the point that they look
+/// at, which differs from a rotation by less than 10⁻⁶ radians over such an angle.
+const MAX_STEP: f64 = 2.0;
+
+/// Where a moving camera is, at as many times as its rotation needs: its position along a line, its axes at constant angular
+/// speed, as pbrt interpolates them.
+fn between(times: [f64; 2], to_world: &Matrices, entity: &Entity) -> Result<Vec<(f32, DMat4)>, FormatError> {
+    let ends = || Ok([0, 1].map(|i| (times[i] as f32, to_world[i])).to_vec());
+    let [from, to] =
+        [axes(&to_world[0], entity)?, axes(&to_world[1], entity)?].map(|axes| DQuat::from_mat3(&axes));
+    let key = |i: usize, rotation: DQuat| MotionKey {
+        time_seconds: times[i] as f32,
+        translation: to_world[i].w_axis.truncate().as_vec3(),
+        rotation: rotation.as_quat(),
+        scale: Vec3::ONE,
+    };
+    let Some(motion) = Motion::from_keys(vec![key(0, from), key(1, to)]) else { return ends() };
+    let cos = from.dot(to).abs().min(1.0);
+    let angle = 2.0 * atan2_f64((1.0 - cos * cos).sqrt(), cos).to_degrees();
+    let steps = (angle / MAX_STEP).ceil() as u32;
+    if steps <= 1 {
+        return ends();
+    }
+    let at = |step: u32| {
+        let time = (times[0] + (times[1] - times[0]) * f64::from(step) / f64::from(steps)) as f32;
+        (time, motion.at(time).matrix().as_dmat4())
+    };
+    let mut keys: Vec<_> = (0..=steps).map(at).collect();
+    // Far from 0, 32-bit floats may not resolve the times in between.
+    keys.dedup_by_key(|(time, _)| *time);
+    Ok(keys)
+}
+
+/// The directions to the right, up and ahead: a rotation, whatever the transform's scales are.
+fn axes(to_world: &DMat4, entity: &Entity) -> Result<DMat3, FormatError> {
+    let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
+    let forward = axis(DVec3::Z);
+    let right = forward.and_then(|forward| axis(DVec3::Y)?.cross(forward).try_normalize());
+    let Some((right, forward)) = right.zip(forward) else {
+        let message = "this camera has a scale of zero: correct the transforms before it";
+        return Err(FormatError::malformed(message, entity.at.clone()));
+    };
+    Ok(DMat3::from_cols(right, forward.cross(right), forward))
+}
+
 fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
     let position = to_world.w_axis.truncate();
     let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();

@@ -55,23 +55,19 @@ impl Pbrt<'_, '_> {
         used: Option<&ObjectInstance>,
         resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<(), FormatError> {
-        let matrices = match used {
-            Some(used) => [0, 1].map(|i| used.matrices[i] * piece.matrices[i]),
-            None => piece.matrices,
-        };
         let (at, name) = match used {
             Some(used) => (&used.at, used.object.as_str()),
             None => (&piece.at, ""),
         };
         let glow = self.area_emission_of(piece, used, resolved_attributes)?;
-        if self.place_sphere_light(piece, glow.as_ref(), &matrices)? {
+        if self.place_sphere_light(piece, glow.as_ref(), &piece.matrices)? {
             return Ok(());
         }
         let (mesh, matrices) = match &piece.form {
-            ShapeGeometry::Mesh(mesh) => (mesh.clone(), matrices),
+            ShapeGeometry::Mesh(mesh) => (mesh.clone(), piece.matrices),
             ShapeGeometry::Sphere { radius, reversed } => {
                 let grown = DMat4::from_scale(DVec3::splat(f64::from(*radius)));
-                (self.unit_sphere(*reversed), matrices.map(|m| m * grown))
+                (self.unit_sphere(*reversed), piece.matrices.map(|m| m * grown))
             }
         };
         let radiance =
@@ -80,7 +76,7 @@ impl Pbrt<'_, '_> {
         else {
             return Ok(());
         };
-        let Some(motion) = self.motion(&matrices, at) else { return Ok(()) };
+        let Some(motion) = self.motion_within(used, &matrices, at) else { return Ok(()) };
         let mesh = if glow.is_some() {
             let both = resolved_attributes.fronted.entry(Arc::as_ptr(&mesh));
             both.or_insert_with(|| [mesh.clone(), fronted(&mesh)])[1].clone()
@@ -272,6 +268,19 @@ impl Pbrt<'_, '_> {
         };
         spec.parameters.set("opacity", share);
         Ok(Some(spec))
+    }
+
+    /// The motion of a shape with these matrices, in an object instance if there is one.
+    ///
+    /// The shape's own matrices and those of the instance are each interpolated on their own, as in pbrt: a shape moves along
+    /// an arc about the origin of an instance that turns.
+    fn motion_within(&mut self, used: Option<&ObjectInstance>, own: &Matrices, at: &Span) -> Option<Motion> {
+        let Some(used) = used else { return self.motion(own, at) };
+        if own[0] == own[1] && used.matrices[0] == used.matrices[1] {
+            let both = used.matrices[0] * own[0];
+            return self.motion(&[both, both], at);
+        }
+        Some(self.motion(own, at)?.then(&self.motion(&used.matrices, at)?))
     }
 
     /// Converts two matrices to a motion; `None`, with a warning, for a degenerate matrix.

@@ -199,9 +199,44 @@ fn scenes_in_scenes_are_moved_as_one() {
         place("keyframes = [{ time = 0 }, { time = 1, translate = [0, 0, 5] }]", 1.0),
         Vec3::new(1.0, 0.0, 5.0),
     );
-    let moving = "[[model]]\nshape = \"box\"\nkeyframes = [{ time = 0 }, { time = 1, scale = 2 }]\n";
-    let message = file_refusal(&[("main.toml", &outer("scale = 2")), ("inner.toml", moving)]);
-    assert!(message.contains("main.toml:1:") && message.contains("is animated"), "{message}");
+    // It stands on a turntable that turns by 90 degrees: an arc of radius 1, not its chord.
+    let (sin, cos) = (30f32.to_radians().sin(), 30f32.to_radians().cos());
+    let turntable = "keyframes = [{ time = 0 }, { time = 1, rotate = [0, 0, 90] }]";
+    assert_near(place(turntable, 1.0 / 3.0), Vec3::new(cos, sin, 0.0));
+}
+
+#[test]
+fn what_moves_within_what_moves_is_interpolated_first_and_placed_then() {
+    // An arm that swings by 90 degrees about its end at x = 2, on a table that turns by 180 degrees meanwhile, in a room
+    // that is squeezed to a half across y.
+    let arm = "[[model]]\nshape = \"box\"\nname = \"arm\"\nkeyframes = [{ time = 0 }, { time = 1, rotate = [0, 0, 90] }]\n";
+    let table = "[[model]]\nfile = \"arm.toml\"\nkeyframes = [{ time = 0, translate = [2, 0, 0] }, { time = 1, translate = [2, 0, 0], scale = 3 }]\n";
+    let room = "[[model]]\nfile = \"table.toml\"\nkeyframes = [{ time = 0 }, { time = 1, rotate = { axis = [0, 0, 1], degrees = 170 } }]\n";
+    let main = "[[model]]\nfile = \"room.toml\"\nscale = [1, 0.5, 1]\n";
+    let files = [("main.toml", main), ("room.toml", room), ("table.toml", table), ("arm.toml", arm)];
+    let scene = read_files(&files).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let back = there_and_back(&scene, folder.path());
+    assert!(back.objects[0].name.contains("arm"), "{}", back.objects[0].name);
+    for time in [0.0f32, 0.25, 0.4, 1.0] {
+        let swung = (90.0 * time).to_radians();
+        let grown = 1.0 + 2.0 * time;
+        let p = Vec3::new(2.0 + grown * swung.cos(), grown * swung.sin(), 0.0);
+        let turned = (170.0 * time).to_radians();
+        let (sin, cos) = turned.sin_cos();
+        let expected = Vec3::new(cos * p.x - sin * p.y, 0.5 * (sin * p.x + cos * p.y), 0.0);
+        for scene in [&scene, &back] {
+            assert_near(scene.objects[0].motion.at(time).point(Vec3::X), expected);
+        }
+    }
+    // glTF files have a node for each, and are read at one time.
+    let path = folder.path().join("nested.glb");
+    assert_eq!(write(&path, &scene, &WriteOptions::default()).unwrap(), []);
+    for time in [0.25, 1.0] {
+        let read = read(&path, &ReadOptions { time, ..ReadOptions::default() }).unwrap();
+        let [ours, theirs] = [&scene, &read].map(|scene| scene.objects[0].motion.at(time).point(Vec3::ONE));
+        assert!(ours.abs_diff_eq(theirs, 1e-4), "{time}: {ours} {theirs}");
+    }
 }
 
 #[test]

@@ -132,6 +132,69 @@ fn moving_objects_have_two_keyframes() {
     assert_eq!(scene.settings.find("shutter").unwrap().0, &Value::from(0.5f32));
 }
 
+/// [pbrt 2023, 7.1.2 and 2.10]: the transform of an instance is interpolated on its own and applied to the shapes in it; that of
+/// a single shape is interpolated as a whole, so its translation is linear.
+#[test]
+fn shapes_of_an_instance_that_turns_move_along_an_arc() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let turning = "ActiveTransform EndTime\nRotate 90 0 0 1\nActiveTransform All\nScale 0.5 1 1";
+    let scene = world(&format!(
+        r#"
+        ObjectBegin "arm"
+            Translate 2 0 0
+            {TRIANGLE}
+            ActiveTransform EndTime
+            Translate 0 4 0
+            ActiveTransform All
+            {TRIANGLE}
+        ObjectEnd
+        Translate 0 0 7
+        {turning}
+        ObjectInstance "arm"
+        Translate 2 0 0
+        {TRIANGLE}"#
+    ));
+    assert_eq!(warnings(&scene), "");
+    let midway = |i: usize| scene.objects[i].motion.at(0.5).point(Vec3::ZERO);
+    // (2, 0) in the object is at (1, 0) of the space that turns by 45 degrees.
+    let near = |a: Vec3, b: Vec3| assert!(a.abs_diff_eq(b, 1e-5), "{a} instead of {b}");
+    near(midway(1), Vec3::new(half, half, 7.0));
+    // (2, 2) is at (1, 2) there.
+    near(midway(2), Vec3::new(half - 2.0 * half, half + 2.0 * half, 7.0));
+    // The shape's own transform goes from (1, 0) to (0, 1) in a line.
+    near(midway(0), Vec3::new(0.5, 0.5, 7.0));
+}
+
+/// [pbrt 2023, 2.10]: rotations are interpolated at constant angular speed, translations along a line.
+#[test]
+fn cameras_that_turn_do_so_at_constant_speed() {
+    for degrees in [90.0f32, 170.0] {
+        let scene = scene(&format!(
+            r#"
+            ActiveTransform EndTime
+            Rotate {degrees} 0 1 0
+            ActiveTransform All
+            Translate -1 0 0
+            ActiveTransform EndTime
+            Translate -2 0 0
+            ActiveTransform All
+            Camera "perspective" "float fov" [40]
+            WorldBegin
+            {TRIANGLE}"#
+        ));
+        let camera = bilux_scene::cameras::build(&scene.cameras[0], 1.0).unwrap();
+        for time in [0.0f32, 0.1, 0.25, 0.5, 0.9, 1.0] {
+            // `Rotate` turns the world about the camera, so the camera turns the other way.
+            let angle = -(degrees * time).to_radians();
+            let expected = Vec3::new(angle.sin(), 0.0, angle.cos());
+            let forward = camera.forward(time);
+            assert!(forward.abs_diff_eq(expected, 2e-5), "{degrees} at {time}: {forward} for {expected}");
+            let position = camera.matrices(time).to_camera.inverse().transform_point3(Vec3::ZERO);
+            assert!(position.abs_diff_eq(Vec3::new(1.0 + 2.0 * time, 0.0, 0.0), 1e-4), "{time}: {position}");
+        }
+    }
+}
+
 #[test]
 fn objects_are_put_where_they_are_used() {
     let scene = world(&format!(

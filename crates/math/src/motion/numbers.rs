@@ -14,6 +14,8 @@ pub enum MotionNumbers {
     Still([f32; 32]),
     /// At least two keys, each with its time in seconds, translation (3), rotation (4, of unit length) and scale (3).
     Keys(Vec<[f64; 11]>),
+    /// At least two motions of the other kinds, the first of which is applied first.
+    Chain(Vec<MotionNumbers>),
 }
 
 impl Motion {
@@ -28,11 +30,12 @@ impl Motion {
                 MotionNumbers::Still(numbers)
             }
             Course::Keys(poses) => MotionNumbers::Keys(poses.iter().map(Pose::numbers).collect()),
+            Course::Chain(parts) => MotionNumbers::Chain(parts.iter().map(Motion::numbers).collect()),
         }
     }
 
-    /// The motion of these numbers; `None` when one is not finite, a matrix is not affine, or keys are not as
-    /// [`Motion::from_keys`] wants them.
+    /// The motion of these numbers; `None` when one is not finite, a matrix is not affine, keys are not as
+    /// [`Motion::from_keys`] wants them, or a chain contains another.
     pub fn from_numbers(numbers: &MotionNumbers) -> Option<Motion> {
         match numbers {
             MotionNumbers::Rest => Some(Motion::REST),
@@ -48,6 +51,13 @@ impl Motion {
                 };
                 let is_sound = poses.len() >= 2 && poses.windows(2).all(is_next);
                 is_sound.then(|| Motion { course: Course::Keys(Arc::new(poses)) })
+            }
+            MotionNumbers::Chain(parts) => {
+                if parts.len() < 2 || parts.iter().any(|part| matches!(part, MotionNumbers::Chain(_))) {
+                    return None;
+                }
+                let parts = parts.iter().map(Motion::from_numbers).collect::<Option<Vec<_>>>()?;
+                Some(Motion { course: Course::Chain(Arc::new(parts)) })
             }
         }
     }

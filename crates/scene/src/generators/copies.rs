@@ -1,7 +1,7 @@
 //! The paper's script: copies of a model, each at a fixed offset from the last.
 
 use crate::builder::{Object, SceneBuilder};
-use bilux_math::{DMat4, Transform, Vec3};
+use bilux_math::{DMat4, Motion, Transform, Vec3};
 
 /// The scene with `count` copies of each object; copy `i` (from 0, the original) is moved by `i * offset`.
 ///
@@ -22,7 +22,6 @@ fn moved(object: &Object, i: u32, by: Vec3) -> Object {
         return object.clone();
     }
     let shift = Transform::from_matrix(DMat4::from_translation(by.as_dvec3())).unwrap_or_default();
-    // Apply the shift after every motion.
-    let motion = object.motion.then(&shift).unwrap_or_else(|| object.motion.clone());
+    let motion = object.motion.then(&Motion::still(shift));
     Object { name: format!("{} {}", object.name, i + 1), motion, ..object.clone() }
 }

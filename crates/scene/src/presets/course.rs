@@ -107,7 +107,7 @@ const LIGHTS: [(Vec3, Rgb); 3] = [
 const BACKGROUND: [u8; 3] = [128, 112, 96];
 
 fn apply(scene: &mut SceneBuilder, view: &CourseView) -> Result<(), SceneError> {
-    move_all(scene, &model())?;
+    move_all(scene, &model());
     let plastic = Spec::new("course", "phong")
         .with("ka", 0.1f32)
         .with("kd", 0.7f32)

@@ -18,7 +18,7 @@ use crate::builder::SceneBuilder;
 use crate::error::SceneError;
 use crate::parameters::{Span, Value};
 use bilux_math::registry::Entry;
-use bilux_math::{DMat3, DMat4, DVec3, Transform};
+use bilux_math::{DMat3, DMat4, DVec3, Motion, Transform};
 
 /// A row of [`PRESETS`].
 #[derive(Clone, Copy, Debug)]
@@ -45,15 +45,12 @@ pub fn apply(name: &str, scene: &mut SceneBuilder) -> Result<(), SceneError> {
     (row.apply)(scene)
 }
 
-/// Moves all objects. Keyframed motion cannot be scaled non-uniformly: presets only rotate, scale and translate.
-fn move_all(scene: &mut SceneBuilder, by: &Transform) -> Result<(), SceneError> {
+/// Moves all objects.
+fn move_all(scene: &mut SceneBuilder, by: &Transform) {
+    let by = Motion::still(*by);
     for object in &mut scene.objects {
-        object.motion = object.motion.then(by).ok_or_else(|| {
-            let message = format!("the moving object '{}' cannot be moved by this preset", object.name);
-            SceneError::invalid(message, &Span::default())
-        })?;
+        object.motion = object.motion.then(&by);
     }
-    Ok(())
 }
 
 /// The affine map `p ↦ linear · p + translation`.

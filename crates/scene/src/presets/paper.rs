@@ -32,7 +32,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
         // Rotate as the course's renderer rotates models, and then into the space of its camera.
         let turn = course::FIRST_VIEW.axes().transpose() * course::turn();
         let linear = turn * if radius > 0.0 { RADIUS / radius } else { 1.0 };
-        move_all(scene, &affine(linear, DVec3::Z * RADIUS - linear * ((low + high) * 0.5)))?;
+        move_all(scene, &affine(linear, DVec3::Z * RADIUS - linear * ((low + high) * 0.5)));
     }
     let eye = Spec::new("paper", "perspective")
         .with("position", Vec3::NEG_Z)

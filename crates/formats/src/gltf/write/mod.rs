@@ -89,21 +89,29 @@ impl Document<'_> {
             return Ok(());
         }
         let mesh = self.mesh(&object.mesh, object.material, writing)?;
-        let mut node = Map::new();
         let name = name_of(object);
-        if !name.is_empty() {
-            node.insert("name".into(), json!(name));
+        let mut child = None;
+        // The node with the mesh, within one node for each further part of its motion.
+        for motion in object.motion.parts() {
+            let mut node = Map::new();
+            match child {
+                None => node.insert("mesh".into(), json!(mesh)),
+                Some(child) => node.insert("children".into(), json!([child])),
+            };
+            if child.is_none() && !name.is_empty() {
+                node.insert("name".into(), json!(name));
+            }
+            let (place, keys) = (motion.at(0.0), motion.keys());
+            if keys.is_empty() && !place.is_identity() {
+                node.insert("matrix".into(), json!(place.matrix().to_cols_array()));
+            }
+            let index = self.push("nodes", Json::Object(node));
+            if !keys.is_empty() {
+                self.animate(index, &keys);
+            }
+            child = Some(index);
         }
-        node.insert("mesh".into(), json!(mesh));
-        let place = object.motion.at(0.0);
-        let keys = object.motion.keys();
-        if keys.is_empty() && !place.is_identity() {
-            node.insert("matrix".into(), json!(place.matrix().to_cols_array()));
-        }
-        let index = self.root(Json::Object(node));
-        if !keys.is_empty() {
-            self.animate(index, &keys);
-        }
+        self.roots.extend(child);
         Ok(())
     }
 

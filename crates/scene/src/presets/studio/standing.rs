@@ -38,9 +38,9 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
         return (is_asked || is_open).then_some(orientation);
     }
     let by = affine(linear, shift);
-    move_all(scene, &by).ok()?;
+    move_all(scene, &by);
     if let Some(movement) = &mut scene.movement {
-        move_all(Arc::make_mut(movement), &by).ok()?;
+        move_all(Arc::make_mut(movement), &by);
     }
     // Nothing may rotate it a second time.
     (scene.up, scene.unit) = (UpHint::default(), 0.0);
