@@ -7,12 +7,17 @@ use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
+use std::sync::{Mutex, PoisonError};
 
 /// The mask of rays from the camera, which pass back faces that it does not see.
 const FROM_CAMERA: u32 = u32::MAX >> 1;
 
 /// The mask of rays that end at the camera.
 const TO_CAMERA: u32 = u32::MAX >> 2;
+
+/// The mask of rays for labels: from the camera, and stopped by surfaces of at least this opacity.
+const FOR_LABELS: u32 = u32::MAX >> 3;
+const LABELLED_OPACITY: f32 = 0.5;
 
 impl Scene {
     /// A ray from the camera: it passes the backs of one-sided surfaces.
@@ -25,6 +30,14 @@ impl Scene {
     #[inline]
     pub fn to_camera(&self, ray: Ray) -> Ray {
         if self.parts.hides_backs { Ray { mask: TO_CAMERA, ..ray } } else { ray }
+    }
+
+    /// A ray from the camera that an opacity mask stops where the opacity is at least one half: what it hits is the same for
+    /// all rays through one point.
+    #[inline]
+    pub fn for_labels(&self, ray: Ray) -> Ray {
+        let passes = self.parts.has_holes || self.parts.hides_backs;
+        if passes { Ray { mask: FOR_LABELS, ..ray } } else { ray }
     }
 
     /// True when some rays pass surfaces that they hit.
@@ -58,7 +71,7 @@ impl SceneParts {
     ///
     /// It does not where the camera sees through its back, nor where the ray starts or ends on the other shell of a
     /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray and the hit, and of nothing
-    /// else.
+    /// else, except for labels.
     fn stops(&self, ray: &Ray, hit: &Hit, (sheets, end): (Option<&Sheets>, Option<End>)) -> bool {
         let object = self.geometry.object_of(hit);
         let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
@@ -80,6 +93,9 @@ impl SceneParts {
         let opacity = self.geometry.opacity_at(hit, |material, uv| {
             self.materials[material as usize].opacity().map_or(1.0, |opacity| opacity.at(uv))
         });
+        if ray.mask == FOR_LABELS {
+            return opacity >= LABELLED_OPACITY;
+        }
         let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
         let number = hash_words([ray_hash(ray), place, u64::from(hit.t.to_bits())]) as u32;
         unit_f32(number) < opacity
@@ -203,6 +219,23 @@ impl<'s> Tracer<'s> {
         let is_plain = !self.counting && scene.parts.geometry.spheres().is_empty();
         let tree = scene.alone.as_deref().filter(|_| is_plain)?;
         rays.iter().all(|ray| ray.mask != 0).then_some(tree)
+    }
+
+    /// Visits everything that a ray hits between its ends, in no particular order; some of it perhaps more than once.
+    ///
+    /// It does not count as a ray.
+    pub fn visit_all(&mut self, ray: &Ray, visit: impl FnMut(&Hit) + Send) {
+        let (scene, shells) = (self.scene, (self.scene.sheets.as_ref(), self.end));
+        let visit = Mutex::new(visit);
+        let passes = |hit: &Hit| {
+            if scene.parts.stops(ray, hit, shells) {
+                visit.lock().unwrap_or_else(PoisonError::into_inner)(hit);
+            }
+            false
+        };
+        let rays = self.counters.rays;
+        self.any_hit(ray, &Query { filter: Some(&passes), ..scene.query });
+        self.counters.rays = rays;
     }
 
     /// The surface at a hit of a ray.

@@ -74,6 +74,82 @@ fn light_through_overlapping_slabs_is_what_fresnel_and_beer_say() {
     assert!((glass_wins / water_wins - 1.0).abs() > 0.02);
 }
 
+/// Glass, water that fills it exactly, and glass, over a bright floor: the faces between them coincide. The heights are no
+/// sums of powers of two, so that rounding puts them in one order here and in another there.
+fn stacked(order: [usize; 3], priorities: [f32; 2]) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    let bright = diffuse(0.0f32).with("emission", 1.0f32);
+    put(&mut builder, "floor", floor(-1.0, 3.0), bright);
+    let (glass, water) = ((GLASS.0, GLASS.1, priorities[0]), (WATER.0, WATER.1, priorities[1]));
+    let layers = [(0.1, 0.7, glass), (0.7, 1.3, water), (1.3, 1.9, glass)];
+    for i in order {
+        let (low, high, (eta, absorption, priority)) = layers[i];
+        // A little larger or smaller, so that the triangles differ.
+        let mut mesh = (*slab(low, high)).clone();
+        mesh.positions.iter_mut().for_each(|p| (p.x, p.z) = (p.x * (1.0 + 0.13 * i as f32), p.z * 0.9));
+        put(&mut builder, "", Arc::new(mesh), medium(eta, absorption, priority));
+    }
+    builder
+}
+
+/// The same as [`light_through_overlapping_slabs_is_what_fresnel_and_beer_say`] for faces that coincide, whatever the order and the
+/// priorities are, and also for a camera in the water.
+#[test]
+fn coincident_faces_are_one_surface() {
+    let (glass, water) = ((GLASS.0, GLASS.1, 0.6), (WATER.0, WATER.1, 0.6));
+    let from_air = through(&[glass, water, glass]);
+    let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(32, 32, 32) };
+    let look_down = |builder: &mut SceneBuilder, height: f32| {
+        let eye = Spec::new("eye", "perspective").with("position", Vec3::new(0.01, height, 0.02));
+        let eye = eye.with("look_at", Vec3::new(0.01, 0.0, 0.02)).with("up", Vec3::X).with("fov", 1.0f32);
+        builder.cameras.push(bilux_scene::cameras::CameraSpec { spec: eye, keyframes: Vec::new() });
+    };
+    for (order, priorities) in
+        [([0, 1, 2], [2.0, 1.0]), ([1, 2, 0], [2.0, 1.0]), ([2, 0, 1], [1.0, 2.0]), ([1, 0, 2], [1.0, 1.0])]
+    {
+        let mut builder = stacked(order, priorities);
+        look_down(&mut builder, 6.0);
+        let scene = built(&builder);
+        for name in ["path", "bdpt"] {
+            let film = shoot(&scene, &*integrator(name), &settings).film;
+            let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
+            assert!((found / from_air - 1.0).abs() < 4e-3, "{name}, {order:?}: {found}, not {from_air}");
+        }
+        // From within the water the floor is there at all: no face of it lets a path out into air by mistake. Light that
+        // is reflected up and comes back is little.
+        let mut builder = stacked(order, priorities);
+        look_down(&mut builder, 1.0);
+        let film = shoot(&built(&builder), &*integrator("path"), &settings).film;
+        let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
+        let fresnel = |a: f32, b: f32| ((a - b) / (a + b)) * ((a - b) / (a + b));
+        let (at_glass, at_air) = (fresnel(WATER.0, GLASS.0), fresnel(GLASS.0, 1.0));
+        let down = (1.0 - at_glass) * (1.0 - at_air) * exp(-WATER.1 * 0.3 - GLASS.1 * 0.6);
+        assert!((found / down - 1.0).abs() < 0.03, "{order:?}: {found}, not {down}");
+    }
+    // Without the water between them, which is what a lost face makes of it.
+    let lost = through(&[glass, (1.0, 0.0, 0.6), glass]);
+    assert!((lost / from_air - 1.0).abs() > 0.02);
+}
+
+#[test]
+fn coincident_media_look_the_same_from_both_ends() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    for (low, high, eta, absorption, priority) in [(0.1, 0.7, 1.5, 0.2, 2.0), (0.7, 1.3, 1.33, 0.5, 1.0)] {
+        put(&mut builder, "", slab(low, high), medium(eta, absorption, priority).with("roughness", 0.5f32));
+    }
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    builder.lights.push(panel);
+    sky(&mut builder, 0.2);
+    look(&mut builder, Vec3::new(0.0, 3.0, 5.0), Vec3::new(0.0, 0.6, 0.0), 36.0);
+    let scene = built(&builder);
+    let path = blocks(&scene, &*integrator("path"), 0);
+    for (i, other) in ["light", "bdpt"].into_iter().enumerate() {
+        let p = agreement(&path, &blocks(&scene, &*integrator(other), 100 * (i as u64 + 1)));
+        assert!(p > 1e-4, "path and {other}: p = {p}");
+    }
+}
+
 /// A glass ball and a water ball that overlap, with a light in both.
 fn overlapping(roughness: f32, priorities: [f32; 2]) -> SceneBuilder {
     let mut builder = SceneBuilder::default();

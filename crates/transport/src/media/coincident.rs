@@ -1,0 +1,56 @@
+//! Surfaces of media that coincide.
+
+use bilux_math::Vec3;
+use bilux_scene::{Ray, Surface, Tracer};
+
+/// Maximum number of surfaces that coincide with another; further ones are ignored.
+pub(super) const MAX_COINCIDENT: usize = 3;
+
+/// Surfaces coincide if they are closer than this part of the error of a hit. Rays that leave a surface start beyond the
+/// whole error, and so beyond all that coincide with it.
+const PART_OF_ERROR: f32 = 0.5;
+
+/// Minimum cosine of the angle between their normals.
+const PARALLEL: f32 = 0.9;
+
+/// Surfaces of other media where a ray hits the surface of one.
+pub(super) struct Coincident {
+    /// One for each object.
+    pub(super) others: Vec<Surface>,
+    /// The largest distance along the ray.
+    pub(super) t: f32,
+}
+
+impl Coincident {
+    /// Those that coincide with the closest surface along a ray; none unless it is that of a medium with a priority.
+    pub(super) fn with(tracer: &mut Tracer, ray: &Ray, surface: &Surface) -> Coincident {
+        let (scene, direction) = (tracer.scene, Vec3::from(ray.direction));
+        let is_nested = |object| scene.material_of(object).nested().is_some();
+        let mut found = Coincident { others: Vec::new(), t: surface.t };
+        if !scene.has_nested() || !is_nested(surface.object) {
+            return found;
+        }
+        let reach = PART_OF_ERROR * surface.n_geom.abs().dot(surface.p_error);
+        let reach = reach / surface.n_geom.dot(direction).abs();
+        let around = Ray { t_min: surface.t, t_max: (surface.t + reach).min(ray.t_max), ..*ray };
+        let mut hits = Vec::new();
+        tracer.visit_all(&around, |hit| {
+            let object = scene.geometry().object_of(hit);
+            if object != surface.object && is_nested(object) {
+                hits.push(*hit);
+            }
+        });
+        for hit in hits {
+            let other = tracer.surface(ray, &hit);
+            let is_known = found.others.iter().any(|known| known.object == other.object);
+            let is_parallel = other.n_geom.dot(surface.n_geom).abs() >= PARALLEL;
+            if is_parallel && !is_known && found.others.len() < MAX_COINCIDENT {
+                found.t = found.t.max(other.t);
+                found.others.push(other);
+            }
+        }
+        // Whatever the order in which the tree is visited.
+        found.others.sort_by_key(|other| other.object);
+        found
+    }
+}
