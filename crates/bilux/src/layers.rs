@@ -12,7 +12,7 @@ use std::ops::Range;
 /// The value of the setting `denoise` that lets the kind of picture decide.
 const FOR_DISPLAY: &str = "display";
 /// The layers that guide denoisers.
-const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
+const FOR_DENOISERS: [Aov; 2] = [Aov::Guides, Aov::Variance];
 
 impl Job {
     /// From now on, loads no third-party library and looks for no file that might be one. A library that
@@ -21,10 +21,10 @@ impl Job {
         self.sandboxed = true;
     }
 
-    /// Keeps the layers in `wanted`: albedo, normals, depth, ids and variance ([`Outcome::layered`]). This changes no
+    /// Keeps the layers in `wanted`: albedo, normals, depth, ids, guides and variance ([`Outcome::layered`]). This changes no
     /// sample.
     pub fn with_layers(&mut self, wanted: &[Aov]) {
-        self.features |= wanted.iter().any(|aov| aov.is_feature());
+        self.features |= wanted.iter().any(|aov| aov.is_feature() || *aov == Aov::Guides);
         self.render.batch_means |= wanted.contains(&Aov::Variance);
         self.render.ids |= wanted.contains(&Aov::Ids);
     }
@@ -76,6 +76,9 @@ impl Outcome {
         if let Some(features) = &self.features {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
             features.push_layers(picture, wants)?;
+            if let Some(coverage) = self.model_coverage.as_ref().filter(|_| wanted.contains(&Aov::Guides)) {
+                picture.push_channel("guide_coverage.A", coverage.clone())?;
+            }
         }
         if let Some(batches) = self.rendered.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance))
         {
@@ -118,13 +121,17 @@ impl Source for Outcome {
             layers.push(Layer { colour: light(Film::splatted), variance: light_paths });
         }
         let features = self.features.as_ref();
+        let coverage = self.model_coverage.as_ref().or(self.coverage.as_ref());
+        let (albedo, normal) =
+            features.map(|features| features.guides(coverage.is_some(), pixels.clone())).unzip();
         let noisy = Noisy {
             width,
             height,
             layers,
-            albedo: features.map(|features| features.albedo[pixels.clone()].to_vec()),
-            normal: features.map(|f| f.normal[pixels.clone()].iter().map(|n| n.to_array()).collect()),
-            depth: features.map(|features| features.depth[pixels.clone()].to_vec()),
+            coverage: coverage.map(|coverage| coverage[pixels.clone()].to_vec()),
+            albedo,
+            normal,
+            depth: features.map(|features| features.mean_depth[pixels.clone()].to_vec()),
         };
         Ok(noisy.separated())
     }

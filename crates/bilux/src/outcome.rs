@@ -13,6 +13,8 @@ pub struct Outcome {
     pub features: Option<Features>,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,
+    /// The fraction of each pixel that shows the model, if alpha has the shadow on an invisible ground besides.
+    pub(crate) model_coverage: Option<Vec<f32>>,
     pub(crate) linear_transfer: bool,
 }
 

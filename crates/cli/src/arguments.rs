@@ -147,7 +147,7 @@ pub enum Command {
     bilux render *.obj -o '{stem}.png'\n  \
     bilux render fox.glb -o fox.png --animation Walk --at 0.5\n  \
     bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
-    bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
+    bilux render scene.toml -o noisy.exr --spp 64 --aov guides,variance\n  \
     bilux render scene.toml -o comp.exr --spp 64 --aov crypto_object,direct,indirect,groups,position\n  \
     bilux render scene.toml -o scene.png --noise 0.5% --resume    Resume if it was interrupted\n  \
     bilux render scene.toml -o draft.png --fast --watch --preview\n  \

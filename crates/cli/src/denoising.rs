@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
     bilux denoise noisy.exr -o clean.png --tonemap agx\n  \
     bilux denoise photo.png -o clean.png --by builtin\n\n\
     The result is much better if the .exr has the layers albedo, normal, depth and variance. To write them:\n  \
-    bilux render scene.toml -o noisy.exr --aov albedo,normal,depth,variance")]
+    bilux render scene.toml -o noisy.exr --aov guides,variance")]
 pub struct Denoise {
     /// The noisy picture
     pub input: PathBuf,

@@ -18,6 +18,8 @@ pub enum Aov {
     Depth,
     /// [`crate::Features::object`] and [`crate::Features::material`].
     Ids,
+    /// [`crate::Features::push_guides`].
+    Guides,
     /// [`crate::push_variance`].
     Variance,
     /// [`crate::Visible::position`].
@@ -52,11 +54,12 @@ pub enum Aov {
 
 impl Aov {
     /// The AOVs that are layers of the picture.
-    pub const ALL_LAYERS: [Aov; 19] = [
+    pub const ALL_LAYERS: [Aov; 20] = [
         Aov::Albedo,
         Aov::Normal,
         Aov::Depth,
         Aov::Ids,
+        Aov::Guides,
         Aov::Variance,
         Aov::Position,
         Aov::Uv,
@@ -82,6 +85,7 @@ impl Aov {
             Aov::Normal => Some("normal"),
             Aov::Depth => Some("depth"),
             Aov::Ids => Some("id"),
+            Aov::Guides => Some("guide"),
             Aov::Variance => Some("variance"),
             Aov::Position => Some("position"),
             Aov::Uv => Some("uv"),
@@ -181,14 +185,28 @@ pub const AOVS: &[AovEntry] = &[
         "albedo",
         "the fraction of light that surfaces scatter, from 0 to 1: albedo.R, .G, .B",
     ),
-    layer(Aov::Normal, "normal", "shading normals in world space, on the visible side: normal.X, .Y, .Z"),
+    layer(
+        Aov::Normal,
+        "normal",
+        "shading normals in world space, on the visible side, at the pixels' centres: normal.X, .Y, .Z",
+    ),
     layer(
         Aov::Depth,
         "depth",
-        "distance from the camera along its rays in metres, infinite for the background: \
-                       depth.Z",
+        "distance from the camera along the rays through the pixels' centres, in metres, infinite for the background: \
+         depth.Z",
     ),
-    layer(Aov::Ids, "ids", "object and material indices: id.object, id.material, counted from 1; 0 for none"),
+    layer(
+        Aov::Ids,
+        "ids",
+        "object and material indices at the pixels' centres: id.object, id.material, counted from 1; 0 for none",
+    ),
+    layer(
+        Aov::Guides,
+        "guides",
+        "what guides a later `bilux denoise`, as means of the pixels: guide_albedo.R, .G, .B, guide_normal.X, .Y, .Z, \
+         guide_depth.Z",
+    ),
     layer(
         Aov::Variance,
         "variance",
@@ -198,13 +216,13 @@ pub const AOVS: &[AovEntry] = &[
     layer(
         Aov::Position,
         "position",
-        "the first visible point in world space, in metres, 0 where nothing is visible: position.X, .Y, .Z",
+        "the points at the pixels' centres in world space, in metres, 0 where nothing is visible: position.X, .Y, .Z",
     ),
-    layer(Aov::Uv, "uv", "texture coordinates of the first visible point: uv.U, uv.V"),
+    layer(Aov::Uv, "uv", "texture coordinates at the pixels' centres: uv.U, uv.V"),
     layer(
         Aov::Motion,
         "motion",
-        "motion vectors to the next frame, in pixels, to the right and upwards: motion.X, .Y",
+        "motion vectors of the pixels' centres to the next frame, in pixels, to the right and upwards: motion.X, .Y",
     ),
     matte(Aov::CryptoObject, "crypto_object", "Cryptomatte of objects by name: CryptoObject00.red, …"),
     matte(

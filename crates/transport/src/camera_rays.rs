@@ -90,6 +90,15 @@ impl<'a> CameraRays<'a> {
         (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
     }
 
+    /// The ray of a pixel's [labels](crate::labels): through the centre of the pixel and of the lens, when the shutter opens.
+    pub(crate) fn of_labels(&self, x: u32, y: u32) -> Ray {
+        let place = Vec2::splat(self.settings.pixel_anchor.offset());
+        let [opens, _] = self.scene.shutter();
+        let sample =
+            CameraSample { film: on_film(self.settings, x, y, place), lens: Vec2::ZERO, time: opens };
+        self.scene.for_labels(self.camera.ray(&sample))
+    }
+
     /// The time of a sample, and the task for its light subpath alone: streams of random numbers do not depend on what was drawn
     /// before them.
     #[inline]

@@ -1,15 +1,17 @@
 //! What the camera sees of surfaces, whatever their lighting: albedo, normal, depth and ids, pixel by pixel. Denoisers
 //! use these features to distinguish edges and textures from noise, and compositors to select objects.
 //!
-//! They take a pass of their own over the film, with the camera rays of the picture's first samples. At smooth mirrors
-//! and glass a ray goes on, along the more likely of reflection and refraction, to the surface that is visible there,
-//! so that reflected and refracted images have their edges too; depth and ids are those of the first surface. Each
+//! They take a pass of their own over the film. Albedo, and the normals and depths that guide denoisers, are means over the
+//! camera rays of the picture's first samples. At smooth mirrors and glass a ray goes on, along the more likely of
+//! reflection and refraction, to the surface that is visible there, so that reflected and refracted images have their
+//! edges too; depth is that of the first surface. The other features are [labels](crate::labels), all of one surface. Each
 //! pixel is summed on its own, in the order of its samples: the bytes are the same for any number of threads, any crop
 //! and any range of samples.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::zeroed;
+use crate::labels::{Labelled, labels, visible_normal};
 use crate::media::Media;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
@@ -19,6 +21,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, ClassicMaterial, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Camera rays per pixel, even where the picture has fewer samples: they show denoisers which mixture of surfaces an
@@ -35,17 +38,22 @@ pub struct Features {
     pub window: Window,
     /// The fraction of light that surfaces scatter, 0..=1; for lights and the background their emission, at most 1.
     pub albedo: Vec<Rgb>,
-    /// The mean shading normal in world space, on the visible side: shorter than 1 where normals differ, zero where
-    /// nothing is visible.
+    /// The shading normal of the labelled surface in world space, on the visible side: of unit length, or zero where nothing is
+    /// visible.
     pub normal: Vec<Vec3>,
-    /// Metres from the camera along its rays to the first surface, averaged over the rays that hit one; infinite where
-    /// none does.
+    /// Metres from the camera to the labelled surface along the ray through the pixel's centre; infinite where nothing is
+    /// visible.
     pub depth: Vec<f32>,
-    /// One more than the index of the object that a pixel's first sample hits; 0 for none. Empty unless it was asked for
-    /// ([`RenderSettings::ids`]).
+    /// One more than the index of the labelled object; 0 for none. Empty unless it was asked for ([`RenderSettings::ids`]).
     pub object: Vec<u32>,
     /// The same for its material.
     pub material: Vec<u32>,
+    /// The mean of the samples' shading normals: shorter than 1 where normals differ.
+    pub mean_normal: Vec<Vec3>,
+    /// The mean depth of the samples that hit something; infinite where none does.
+    pub mean_depth: Vec<f32>,
+    /// The fraction of the samples that hit something, 0..=1.
+    pub coverage: Vec<f32>,
 }
 
 /// Sums over the samples of one pixel.
@@ -55,8 +63,30 @@ struct Sums {
     normal: Vec3,
     depth: f32,
     hits: u32,
+    label: Label,
+}
+
+/// What is kept of a pixel's label.
+#[derive(Clone, Copy)]
+struct Label {
+    normal: Vec3,
+    depth: f32,
     object: u32,
     material: u32,
+}
+
+impl Default for Label {
+    fn default() -> Label {
+        Label { normal: Vec3::ZERO, depth: f32::INFINITY, object: 0, material: 0 }
+    }
+}
+
+impl Label {
+    fn of(scene: &Scene, labelled: &Labelled) -> Label {
+        let Surface { t, object, .. } = labelled.surface;
+        let material = scene.geometry().material_of(object) + 1;
+        Label { normal: labelled.normal(), depth: t, object: object + 1, material }
+    }
 }
 
 /// Evaluates the first [`FEATURE_SAMPLES`] samples of each pixel, and no more than fit into `time` if that is given.
@@ -131,22 +161,28 @@ pub fn coverage(
     Ok(coverage)
 }
 
-/// Adds one sample to each pixel of a tile.
+/// Adds one sample to each pixel of a tile; with the first, its labels.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.scene, false);
+    if sample == 0 {
+        let labels = labels(eye, tile, &mut tracer);
+        for (sum, labelled) in sums.iter_mut().zip(labels) {
+            sum.label = labelled.map_or_else(Label::default, |labelled| Label::of(eye.scene, &labelled));
+        }
+    }
     let places = (0..sums.len()).map(|i| tile.position(i));
     let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(&mut tracer, x, y, sample).0).collect();
     let mut hits = vec![None; rays.len()];
     tracer.hits(&rays, &mut hits);
     for ((sum, ray), hit) in sums.iter_mut().zip(&rays).zip(hits) {
         let surface = hit.map(|hit| tracer.surface(ray, &hit));
-        sum.add(&mut tracer, ray, surface, sample);
+        sum.add(&mut tracer, ray, surface);
     }
 }
 
 impl Sums {
     /// Adds a sample, given its camera ray and the first surface along it.
-    fn add(&mut self, tracer: &mut Tracer, ray: &Ray, mut surface: Option<Surface>, sample: u32) {
+    fn add(&mut self, tracer: &mut Tracer, ray: &Ray, mut surface: Option<Surface>) {
         let scene = tracer.scene;
         let mut media = Media::at_start(tracer, ray);
         let (mut ray, mut beta) = (*ray, Rgb::WHITE);
@@ -162,7 +198,8 @@ impl Sums {
             };
             beta *= passed;
             if event == 0 {
-                self.add_surface(scene, &surface, sample);
+                self.depth += surface.t;
+                self.hits += 1;
             }
             let classic = scene.material(&surface).classic(&surface);
             // Where there is a diffuse lobe, not all lobes are smooth.
@@ -174,23 +211,12 @@ impl Sums {
                 });
             let Some(next) = smooth else {
                 self.albedo += beta * albedo(&classic, scene.emission(&surface, -direction));
-                let faces = surface.n_geom.dot(direction) < 0.0;
-                self.normal += if faces { surface.n_shade } else { -surface.n_shade };
+                self.normal += visible_normal(&surface, direction);
                 return;
             };
             beta *= next.weight.clamp(0.0, 1.0);
             media = media.towards(scene, &surface, -direction, next.wi);
             ray = surface.spawn(next.wi);
-        }
-    }
-
-    /// Records the first surface itself.
-    fn add_surface(&mut self, scene: &Scene, surface: &Surface, sample: u32) {
-        self.depth += surface.t;
-        self.hits += 1;
-        if sample == 0 {
-            self.object = surface.object + 1;
-            self.material = scene.geometry().material_of(surface.object) + 1;
         }
     }
 }
@@ -217,22 +243,27 @@ impl Features {
             depth: zeroed(pixels)?,
             object: zeroed(with_id)?,
             material: zeroed(with_id)?,
+            mean_normal: zeroed(pixels)?,
+            mean_depth: zeroed(pixels)?,
+            coverage: zeroed(pixels)?,
         };
         for (tile, sums) in tiles {
             for (i, sum) in sums.iter().enumerate() {
                 let (x, y) = tile.position(i);
                 let Some(at) = window.index(x, y) else { continue };
-                (all.albedo[at], all.normal[at]) = (sum.albedo * share, sum.normal * share);
-                all.depth[at] = if sum.hits > 0 { sum.depth / sum.hits as f32 } else { f32::INFINITY };
+                (all.albedo[at], all.mean_normal[at]) = (sum.albedo * share, sum.normal * share);
+                all.mean_depth[at] = if sum.hits > 0 { sum.depth / sum.hits as f32 } else { f32::INFINITY };
+                all.coverage[at] = sum.hits as f32 * share;
+                (all.normal[at], all.depth[at]) = (sum.label.normal, sum.label.depth);
                 if ids {
-                    (all.object[at], all.material[at]) = (sum.object, sum.material);
+                    (all.object[at], all.material[at]) = (sum.label.object, sum.label.material);
                 }
             }
         }
         Ok(all)
     }
 
-    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth` and `id` to a picture of the window.
+    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth`, `id` and `guide` to a picture of the window.
     ///
     /// # Errors
     /// When the picture has a different size, or already has such layers.
@@ -252,6 +283,33 @@ impl Features {
             picture.push_integer_plane("id.object", self.object.clone())?;
             picture.push_integer_plane("id.material", self.material.clone())?;
         }
+        if wanted("guide") {
+            self.push_guides(picture)?;
+        }
         Ok(())
+    }
+
+    /// Adds what guides denoisers: albedo, normal and depth, each the mean of a pixel's samples. In a picture with an alpha channel
+    /// the mean is that of the samples that hit something.
+    ///
+    /// # Errors
+    /// When the picture has a different size, or already has such layers.
+    pub fn push_guides(&self, picture: &mut Picture) -> Result<(), FilmError> {
+        let is_cut_out = picture.channel("A").is_some();
+        let (albedo, normal) = self.guides(is_cut_out, 0..self.albedo.len());
+        picture.push_rgb("guide_albedo", &albedo)?;
+        for (axis, name) in ["guide_normal.X", "guide_normal.Y", "guide_normal.Z"].into_iter().enumerate() {
+            picture.push_channel(name, normal.iter().map(|n| n[axis]).collect())?;
+        }
+        Ok(picture.push_channel("guide_depth.Z", self.mean_depth.clone())?)
+    }
+
+    /// The mean albedo and normal of some pixels; if the picture `is_cut_out` of its background, those of the samples that hit
+    /// something.
+    pub fn guides(&self, is_cut_out: bool, pixels: Range<usize>) -> (Vec<Rgb>, Vec<[f32; 3]>) {
+        let factor =
+            |i: usize| if is_cut_out && self.coverage[i] > 0.0 { 1.0 / self.coverage[i] } else { 1.0 };
+        let albedo = pixels.clone().map(|i| self.albedo[i] * factor(i));
+        (albedo.collect(), pixels.map(|i| (self.mean_normal[i] * factor(i)).to_array()).collect())
     }
 }

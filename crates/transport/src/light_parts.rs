@@ -7,7 +7,6 @@ use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::{Film, scale_exponent};
-use crate::integrators::path::Path;
 use crate::layers::Strategy;
 use crate::photon_tracing::iterations;
 use crate::photons::{Merging, Photons};
@@ -21,7 +20,6 @@ use crate::window::{TILE, Window};
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Camera, Scene, Tracer};
 use rayon::prelude::*;
-use std::any::Any;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -53,11 +51,7 @@ pub struct LightParts {
 impl dyn PixelIntegrator {
     /// True when its light can be divided into parts ([`light_parts`]), or that of whatever it chooses.
     pub fn has_light_parts(&self) -> bool {
-        self.chooser().is_some() || self.has_strategies() || self.is_path()
-    }
-
-    fn is_path(&self) -> bool {
-        (self as &dyn Any).is::<Path>()
+        self.chooser().is_some() || self.has_strategies() || self.reports_light()
     }
 }
 

@@ -26,6 +26,11 @@ pub trait PixelIntegrator: Any + Send + Sync {
         CameraSpread::FULL
     }
 
+    /// True if it reports each piece of light that a path finds (`Task::find`), so that light can be divided into parts.
+    fn reports_light(&self) -> bool {
+        false
+    }
+
     /// Its subpaths from the lights, if it traces any.
     fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
         None

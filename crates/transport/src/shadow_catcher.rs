@@ -58,7 +58,7 @@ struct Sums {
 }
 
 /// The alpha of each pixel: 1 where the model is visible, and on the ground the fraction of light that the model
-/// blocks.
+/// blocks. And the fraction of each pixel that shows the model, 0..=1.
 ///
 /// Pixels are in rows of the film's window, the top row first. `samples` is the picture's number of samples per pixel.
 /// With a denoiser, the shadow takes fewer samples and is denoised; the model's outline stays as it is.
@@ -73,7 +73,7 @@ pub fn shadow_alpha(
     samples: u32,
     catcher: ShadowCatcher,
     denoiser: Option<&dyn Denoiser>,
-) -> Result<Vec<f32>, RenderError> {
+) -> Result<[Vec<f32>; 2], RenderError> {
     settings.check()?;
     let window = settings.window();
     let (eye, lights) =
@@ -100,7 +100,9 @@ pub fn shadow_alpha(
         None => Vec::new(),
     };
     let blocked = |i: usize| smooth.get(i).map_or_else(|| pixels[i].blocked(), |smooth| f64::from(smooth.r));
-    Ok(pixels.iter().enumerate().map(|(i, sums)| sums.alpha(blocked(i), samples)).collect())
+    let alpha = pixels.iter().enumerate().map(|(i, sums)| sums.alpha(blocked(i), samples));
+    let model = pixels.iter().map(|sums| sums.model as f32 / samples.max(1) as f32);
+    Ok([alpha.collect(), model.collect()])
 }
 
 /// The blocked fraction of the light as a picture to denoise. Pixels that show only the model have another depth, so that
@@ -123,6 +125,7 @@ impl Source for Shadow<'_> {
             width: self.width,
             height: rows.len(),
             layers: vec![Layer { colour: grey(Sums::blocked), variance: Some(grey(Sums::variance)) }],
+            coverage: None,
             albedo: None,
             normal: None,
             depth: Some(pixels.iter().map(depth).collect()),

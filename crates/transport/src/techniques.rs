@@ -154,6 +154,11 @@ impl<const N: usize> Contribution<N> {
         Contribution { light: self.light * passed, ..*self }
     }
 
+    /// Its MIS weight: the balance heuristic, except for [`favour`].
+    pub(crate) fn mis_weight(&self) -> f32 {
+        self.own.0[0] * (self.favour / (self.own.0[0] + self.others.0[0]))
+    }
+
     /// Weighted by the balance heuristic [Veach 1997, eq. 9.8], except for [`favour`].
     pub(crate) fn weighted(&self) -> Rgb {
         self.light * (self.favour / (self.own.0[0] + self.others.0[0]))

@@ -1,12 +1,13 @@
 //! What the camera sees first, for compositors: where its surfaces are, how they move over the picture, and how much of
 //! each pixel each object covers.
 //!
-//! As for [`crate::features()`], this takes a pass of its own with the camera rays of the picture's first samples. Mirrors
-//! and glass are surfaces like any other.
+//! Positions, texture coordinates and motion are [labels](crate::labels). Coverage is counted in camera rays of the picture's
+//! first samples. Mirrors and glass are surfaces like any other.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::film::zeroed;
+use crate::labels::labels;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
@@ -51,7 +52,7 @@ pub struct Moment<'a> {
 /// What is seen; planes of the window in rows, the top row first, and empty if they were not asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Visible {
-    /// The point of the first sample that hits something, in world space, in metres; 0 where none does.
+    /// The point that the ray through the pixel's centre hits, in world space, in metres; 0 where nothing is visible.
     pub position: Vec<Vec3>,
     /// Its texture coordinates.
     pub uv: Vec<Vec2>,
@@ -78,7 +79,6 @@ pub fn visible(
 ) -> Result<Option<Visible>, RenderError> {
     settings.check()?;
     let least = if integrator.is_random() { MIN_SAMPLES } else { 1 };
-    let samples = if wanted.ids.is_empty() { samples.min(MIN_SAMPLES) } else { samples };
     let look = Look {
         eye: CameraRays::new(scene, camera, integrator, settings),
         camera,
@@ -112,37 +112,45 @@ impl<'a> Look<'a> {
     fn tile(&self, tile: Window) -> Vec<Seen> {
         let mut tracer = Tracer::new(self.eye.scene, false);
         let mut counts = vec![Vec::new(); self.wanted.ids.len()];
-        (0..tile.pixels()).map(|i| self.pixel(tile.position(i), &mut tracer, &mut counts)).collect()
+        let mut seen = vec![Seen::default(); tile.pixels()];
+        if self.wanted.position || self.wanted.uv || self.wanted.motion.is_some() {
+            for (seen, label) in seen.iter_mut().zip(labels(&self.eye, &tile, &mut tracer)) {
+                seen.first = label.map(|label| (label.surface, self.motion(&label.hit, &label.surface)));
+            }
+        }
+        if !counts.is_empty() {
+            for (i, seen) in seen.iter_mut().enumerate() {
+                seen.mattes = self.mattes(tile.position(i), &mut tracer, &mut counts);
+            }
+        }
+        seen
     }
 
-    /// Takes the samples of a pixel. `counts` is memory for its ids.
-    fn pixel(&self, (x, y): (u32, u32), tracer: &mut Tracer<'a>, counts: &mut [Vec<(u32, u32)>]) -> Seen {
+    /// The mattes of a pixel, counted in its samples. `counts` is memory for its ids.
+    fn mattes(
+        &self,
+        (x, y): (u32, u32),
+        tracer: &mut Tracer<'a>,
+        counts: &mut [Vec<(u32, u32)>],
+    ) -> Vec<Ranks> {
         let rays: Vec<Ray> =
             (0..self.samples).map(|sample| self.eye.sample(tracer, x, y, sample).0).collect();
         let mut hits = vec![None; rays.len()];
         tracer.hits(&rays, &mut hits);
         counts.iter_mut().for_each(Vec::clear);
-        let mut seen = Seen::default();
-        for (ray, hit) in rays.iter().zip(&hits) {
-            let Some(hit) = hit else { continue };
-            if seen.first.is_none() {
-                let surface = tracer.surface(ray, hit);
-                seen.first = Some((surface, self.motion(hit, &surface)));
-            }
+        for hit in hits.iter().flatten() {
             let object = self.eye.scene.geometry().object_of(hit) as usize;
             for (counts, ids) in counts.iter_mut().zip(&self.wanted.ids) {
                 count(counts, ids.get(object).copied().unwrap_or_default());
             }
         }
-        seen.mattes = counts.iter_mut().map(|counts| ranked(counts, self.samples)).collect();
-        seen
+        counts.iter_mut().map(|counts| ranked(counts, self.samples)).collect()
     }
 
     /// How far the point moves over the picture, in pixels.
     fn motion(&self, hit: &Hit, surface: &Surface) -> Vec2 {
         let Some(next) = &self.wanted.motion else { return Vec2::ZERO };
         let opens = self.eye.scene.shutter()[0];
-        // As it was when the shutter opened, so that all samples of a pixel move over the same time.
         let here = self.eye.scene.geometry();
         let [from, to] = here.moved(hit, surface.p, next.scene.geometry(), [opens, next.time]);
         let from = self.camera.project(from, opens);

@@ -265,7 +265,7 @@ impl Job {
     ) -> Result<Outcome, Error> {
         let render = &self.render;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
-        let coverage = self.coverage(render, samples)?;
+        let [coverage, model_coverage] = self.coverage(render, samples)?;
         if rendered.cancelled {
             rendered.batch_means = None;
         }
@@ -274,19 +274,21 @@ impl Job {
         }
         let chosen = || self.chosen().map(|plan| plan.choice.clone());
         rendered.choice = rendered.choice.or_else(chosen);
-        Ok(Outcome { rendered, features, coverage, linear_transfer: self.settings.linear_transfer })
+        let linear_transfer = self.settings.linear_transfer;
+        Ok(Outcome { rendered, features, coverage, model_coverage, linear_transfer })
     }
 
-    /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel.
-    fn coverage(&self, render: &RenderSettings, samples: u32) -> Result<Option<Vec<f32>>, Error> {
+    /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel. If a shadow is part of it,
+    /// also the coverage by the model alone.
+    fn coverage(&self, render: &RenderSettings, samples: u32) -> Result<[Option<Vec<f32>>; 2], Error> {
         let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
         Ok(match (self.settings.background.is_cut_out(), self.catcher) {
-            (false, _) => None,
-            (true, None) => Some(coverage(scene, camera, integrator, render, samples)?),
+            (false, _) => [None, None],
+            (true, None) => [Some(coverage(scene, camera, integrator, render, samples)?), None],
             (true, Some(catcher)) => {
                 let denoiser = self.shadow_denoiser()?;
                 let denoiser = denoiser.as_deref();
-                Some(shadow_alpha(scene, camera, integrator, render, samples, catcher, denoiser)?)
+                shadow_alpha(scene, camera, integrator, render, samples, catcher, denoiser)?.map(Some)
             }
         })
     }

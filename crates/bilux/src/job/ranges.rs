@@ -78,11 +78,11 @@ impl Job {
                 return Ok(None);
             }
         }
-        let coverage = self.coverage(&render, self.render.spp)?;
+        let [coverage, model_coverage] = self.coverage(&render, self.render.spp)?;
         let choice = self.chosen().map(|plan| plan.choice.clone());
         let rendered = Rendered { choice, interval: None, ..rendered };
         let linear_transfer = self.settings.linear_transfer;
-        *so_far = Some(Outcome { rendered, features, coverage, linear_transfer });
+        *so_far = Some(Outcome { rendered, features, coverage, model_coverage, linear_transfer });
         Ok(Some(()))
     }
 

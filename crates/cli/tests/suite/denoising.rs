@@ -66,7 +66,7 @@ fn default_settings_have_a_budget() {
 fn layers_in_the_exr_guide_denoising() {
     let folder = folder();
     let path = folder.path();
-    let aovs = ["--spp", "4", "--aov", "albedo,normal,depth,ids,variance"];
+    let aovs = ["--spp", "4", "--aov", "albedo,normal,depth,ids,guides,variance"];
     render(path, "plain.exr", &["--spp", "4"]);
     render(path, "noisy.exr", &aovs);
     let (plain, noisy) = (read(path.join("plain.exr")).unwrap(), read(path.join("noisy.exr")).unwrap());
@@ -74,7 +74,8 @@ fn layers_in_the_exr_guide_denoising() {
     assert_eq!(plain.to_rgb(), noisy.to_rgb());
     let mut layers = noisy.layers();
     layers.sort_unstable();
-    assert_eq!(layers, ["albedo", "depth", "id", "normal", "variance"]);
+    let guides = ["guide_albedo", "guide_depth", "guide_normal"];
+    assert_eq!(layers, [&["albedo", "depth"], &guides[..], &["id", "normal", "variance"]].concat());
     render(path, "shown.png", &aovs);
     assert_eq!(read(path.join("shown.layers.exr")).unwrap().to_rgb(), noisy.to_rgb());
     let said = bilux(path, &["denoise", "noisy.exr", "-o", "smooth.exr"]);

@@ -147,17 +147,20 @@ pub fn denoise(picture: &Picture, denoiser: &dyn Denoiser) -> Result<Picture, Pi
     Ok(repainted(picture, &smooth))
 }
 
-/// The picture with other colours, row by row. Pixels that are not finite stay as they are.
+/// The picture with other colours, row by row. Pixels that are not finite stay as they are, and so do those whose alpha is 0.
 pub fn repainted(mut picture: Picture, colours: &[Rgb]) -> Picture {
-    let finite: Vec<bool> = match picture.rgb_planes() {
+    let is_changed: Vec<bool> = match picture.rgb_planes() {
         Some(planes) => {
-            (0..picture.pixel_count()).map(|i| planes.iter().all(|plane| plane[i].is_finite())).collect()
+            let alpha = picture.channel("A");
+            let is_there = |i: usize| alpha.is_none_or(|alpha| alpha[i] != 0.0);
+            let is_finite = |i: usize| planes.iter().all(|plane| plane[i].is_finite());
+            (0..picture.pixel_count()).map(|i| is_there(i) && is_finite(i)).collect()
         }
         None => Vec::new(),
     };
     for (component, channel) in [("R", 0), ("G", 1), ("B", 2), ("Y", 1)] {
         let samples = picture.channel_mut(component).unwrap_or_default();
-        for (i, sample) in samples.iter_mut().enumerate().filter(|(i, _)| finite[*i]) {
+        for (i, sample) in samples.iter_mut().enumerate().filter(|(i, _)| is_changed[*i]) {
             *sample = colours[i][channel];
         }
     }

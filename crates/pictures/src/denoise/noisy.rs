@@ -3,6 +3,7 @@
 use crate::limits::reserved;
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
+use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Supplies a denoiser with its picture, as many rows at a time as it needs: for a large picture, the complete input
@@ -39,6 +40,9 @@ pub struct Noisy {
     /// The parts whose sum is the picture: first the contribution of camera paths, then, if present, the splats of
     /// light paths. Each has its own noise.
     pub layers: Vec<Layer>,
+    /// The fraction of each pixel that is not background, 0..=1, of a picture that was cut out; its light is
+    /// multiplied by it.
+    pub coverage: Option<Vec<f32>>,
     /// The fraction of light that surfaces reflect, 0..=1.
     pub albedo: Option<Vec<Rgb>>,
     /// Shading normals, zero where nothing is visible.
@@ -81,14 +85,32 @@ impl Noisy {
             let variance = rgb(["light_variance.R", "light_variance.G", "light_variance.B"])?;
             layers.push(Layer { colour, variance });
         }
-        let normal = rgb(["normal.X", "normal.Y", "normal.Z"])?;
+        let plane = |names: [&str; 2]| {
+            let plane = names.into_iter().find_map(|name| picture.channel(name));
+            plane.map(|plane| plane[pixels.clone()].to_vec())
+        };
+        let coverage = plane(["guide_coverage.A", "A"]);
+        // Layers that are not meant as guides are second best: normals and depths do not know mixtures, and the albedo is
+        // multiplied by alpha.
+        let normal = match rgb(["guide_normal.X", "guide_normal.Y", "guide_normal.Z"])? {
+            Some(normal) => Some(normal),
+            None => rgb(["normal.X", "normal.Y", "normal.Z"])?,
+        };
+        let mut albedo = rgb(["guide_albedo.R", "guide_albedo.G", "guide_albedo.B"])?;
+        if albedo.is_none() {
+            albedo = rgb(["albedo.R", "albedo.G", "albedo.B"])?;
+            if let (Some(albedo), Some(coverage)) = (&mut albedo, &coverage) {
+                divide(albedo, coverage, |coverage| coverage);
+            }
+        }
         let noisy = Noisy {
             width,
             height,
             layers,
-            albedo: rgb(["albedo.R", "albedo.G", "albedo.B"])?,
+            coverage,
+            albedo,
             normal: normal.map(|plane| plane.into_iter().map(|n| n.to_array()).collect()),
-            depth: picture.channel("depth.Z").map(|depth| depth[pixels.clone()].to_vec()),
+            depth: plane(["guide_depth.Z", "depth.Z"]),
         };
         Ok(noisy.separated())
     }
@@ -111,12 +133,84 @@ impl Noisy {
         }
         let normals = self.normal.iter_mut().flatten();
         normals.filter(|n| !n.iter().all(|x| x.is_finite())).for_each(|n| *n = [0.0; 3]);
+        for coverage in self.coverage.iter_mut().flatten() {
+            *coverage = if coverage.is_finite() { coverage.clamp(0.0, 1.0) } else { 0.0 };
+        }
+        self.coverage = self.coverage.filter(|coverage| coverage.iter().any(|&coverage| coverage < 1.0));
         self
+    }
+
+    /// Divides light by the coverage, and takes that out: in a cut-out, light varies with the coverage, which has no noise
+    /// that is independent of it. Where nothing covers the pixel, light stays as it is.
+    pub(super) fn take_coverage(&mut self) -> Option<Vec<f32>> {
+        let coverage = self.coverage.take()?;
+        for layer in &mut self.layers {
+            divide(&mut layer.colour, &coverage, |coverage| coverage);
+            if let Some(variance) = &mut layer.variance {
+                divide(variance, &coverage, |coverage| coverage * coverage);
+            }
+        }
+        Some(coverage)
+    }
+
+    /// Extends everything beyond the outline of a cut-out: a denoiser that knows no coverage would mix the background in.
+    pub(super) fn extend(&mut self, coverage: &[f32]) {
+        let nearest = nearest_covered(coverage, self.width);
+        for layer in &mut self.layers {
+            extend(&mut layer.colour, &nearest);
+        }
+        self.albedo.iter_mut().for_each(|albedo| extend(albedo, &nearest));
+        self.normal.iter_mut().for_each(|normal| extend(normal, &nearest));
     }
 
     /// Total number of pixels.
     pub fn pixels(&self) -> usize {
         self.width * self.height
+    }
+}
+
+/// Divides colours where something covers the pixel.
+fn divide(colours: &mut [Rgb], coverage: &[f32], by: fn(f32) -> f32) {
+    for (colour, &coverage) in colours.iter_mut().zip(coverage) {
+        if coverage > 0.0 {
+            *colour = *colour / by(coverage);
+        }
+    }
+}
+
+/// For each pixel of a picture of this width, the nearest that is mostly covered, counted in steps to neighbours; itself if it is
+/// covered at all, or none is.
+fn nearest_covered(coverage: &[f32], width: usize) -> Vec<usize> {
+    const MOSTLY: f32 = 0.5;
+    const UNKNOWN: usize = usize::MAX;
+    let mut nearest = vec![UNKNOWN; coverage.len()];
+    let mut waiting: VecDeque<usize> = (0..coverage.len()).filter(|&i| coverage[i] >= MOSTLY).collect();
+    waiting.iter().for_each(|&i| nearest[i] = i);
+    while let Some(i) = waiting.pop_front() {
+        let (x, below) = (i % width, i + width);
+        let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1)];
+        let across = [i.checked_sub(width), (below < coverage.len()).then_some(below)];
+        for j in beside.into_iter().chain(across).flatten() {
+            if nearest[j] == UNKNOWN {
+                nearest[j] = nearest[i];
+                waiting.push_back(j);
+            }
+        }
+    }
+    let own = |(i, nearest)| if coverage[i] > 0.0 || nearest == UNKNOWN { i } else { nearest };
+    nearest.into_iter().enumerate().map(own).collect()
+}
+
+fn extend<T: Copy>(pixels: &mut [T], nearest: &[usize]) {
+    for (i, &from) in nearest.iter().enumerate() {
+        pixels[i] = pixels[from];
+    }
+}
+
+/// Multiplies denoised light by the coverage that it was divided by.
+pub(super) fn multiply(light: &mut [Rgb], coverage: Option<&[f32]>) {
+    for (light, &coverage) in light.iter_mut().zip(coverage.unwrap_or_default()) {
+        *light = *light * coverage;
     }
 }
 

@@ -241,3 +241,69 @@ fn edges_are_reconstructed_from_surface_features() {
     let [before, after] = error_of_edge(|i| covered(i, 4));
     assert!(after > 0.3 * before, "{before} to {after}");
 }
+
+/// A disc of one colour, cut out of its background with 16 samples per pixel, of which so many hit as its area says by chance:
+/// what covers a pixel has the same light everywhere, and a tenth of noise.
+fn cut_out() -> (Picture, Vec<f32>) {
+    const LIGHT: f32 = 0.8;
+    let middle = SIZE as f32 * 0.5;
+    let inside = |i: usize, k: u64| {
+        let jitter = |axis: u64| unit_f32(hash_words([i as u64, k, axis]) as u32);
+        let (x, y) = ((i % SIZE) as f32 + jitter(1), (i / SIZE) as f32 + jitter(2));
+        (x - middle) * (x - middle) + (y - middle) * (y - middle) < 900.0
+    };
+    let (mut colours, mut variances, mut alpha) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..SIZE * SIZE {
+        let light = |k: u64| if inside(i, k) { LIGHT * (1.0 + 0.4 * number(i, 50 + k)) } else { 0.0 };
+        let mean = (0..16).map(light).sum::<f32>() / 16.0;
+        let squares = (0..16).map(|k| (light(k) - mean) * (light(k) - mean)).sum::<f32>();
+        colours.push(Rgb::grey(mean));
+        variances.push(Rgb::grey(squares / (15.0 * 16.0)));
+        alpha.push((0..16).filter(|&k| inside(i, k)).count() as f32 / 16.0);
+    }
+    let mut picture = Picture::from_rgb(SIZE, SIZE, colours).unwrap();
+    picture.push_channel("A", alpha.clone()).unwrap();
+    picture.push_rgb("variance", &variances).unwrap();
+    let covered = |value: f32| alpha.iter().map(|&a| if a > 0.0 { value } else { 0.0 }).collect::<Vec<f32>>();
+    let albedo: Vec<Rgb> = covered(LIGHT).into_iter().map(Rgb::grey).collect();
+    picture.push_rgb("guide_albedo", &albedo).unwrap();
+    for (name, value) in [("guide_normal.X", 0.0), ("guide_normal.Y", 0.0), ("guide_normal.Z", 1.0)] {
+        picture.push_channel(name, covered(value)).unwrap();
+    }
+    let depth = alpha.iter().map(|&a| if a > 0.0 { 5.0 } else { f32::INFINITY }).collect();
+    picture.push_channel("guide_depth.Z", depth).unwrap();
+    (picture, alpha)
+}
+
+/// The root mean square error of the colour that a compositor gets where the outline runs through the pixels, relative to the
+/// light of the disc.
+fn error_of_outline(picture: &Picture, alpha: &[f32]) -> f32 {
+    let straight = picture.to_rgb().unwrap().into_iter().zip(alpha).filter(|(_, a)| **a > 0.0 && **a < 1.0);
+    let squares: Vec<f32> = straight.map(|(colour, a)| (colour.g / a / 0.8 - 1.0).powi(2)).collect();
+    assert!(squares.len() > 100);
+    (squares.iter().sum::<f32>() / squares.len() as f32).sqrt()
+}
+
+#[test]
+fn the_outline_of_a_cut_out_keeps_its_colour() {
+    let (noisy, alpha) = cut_out();
+    let before = error_of_outline(&noisy, &alpha);
+    each(|name, chosen| {
+        let smooth = denoise(&noisy, &*chosen.denoiser).unwrap();
+        let after = error_of_outline(&smooth, &alpha);
+        assert!(after < 0.5 * before, "{name}: {before} to {after}");
+        assert_eq!(smooth.channel("A"), noisy.channel("A"));
+        let outside = |i: usize| alpha[i] == 0.0;
+        let light = smooth.to_rgb().unwrap();
+        assert!(
+            (0..SIZE * SIZE).filter(|&i| outside(i)).all(|i| light[i].is_black()),
+            "{name}: light beside it"
+        );
+    });
+    // Without alpha, light is smoothed across the outline: the planted fault.
+    let mut opaque = noisy.clone();
+    opaque.channel_mut("A").unwrap().fill(1.0);
+    let builtin = denoiser("builtin", &task(1)).unwrap();
+    let blind = denoise(&opaque, &*builtin.denoiser).unwrap();
+    assert!(error_of_outline(&blind, &alpha) > before, "{}", error_of_outline(&blind, &alpha));
+}

@@ -100,6 +100,10 @@ impl PixelIntegrator for Path {
             }
         }
     }
+
+    fn reports_light(&self) -> bool {
+        true
+    }
 }
 
 impl Path {

@@ -29,6 +29,28 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
     }
 }
 
+/// A lamp that moves over a floor from left to right while the shutter is open lights both halves alike, in a single iteration
+/// too: each light subpath has a time of its own.
+#[test]
+fn a_lamp_that_moves_lights_both_sides_of_its_way() {
+    let scene = common::moving().build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    for name in ["path", "light", "bdpt", "vcm", "sppm"] {
+        let settings = RenderSettings::new(32, 32, 1);
+        let film = shoot(&scene, &*integrator(name), &settings).film;
+        let half = |first: u32| {
+            let pixels = (0..32).flat_map(|y| (first..first + 16).map(move |x| (x, y)));
+            pixels.map(|(x, y)| film.pixel(x, y).g).sum::<f32>()
+        };
+        let (left, right) = (half(0), half(16));
+        assert!(left > 1.0 && (0.75..1.33).contains(&(left / right)), "{name}: {left} and {right}");
+    }
+    let path = blocks(&scene, &*integrator("path"), 0);
+    for (i, name) in ["light", "bdpt"].into_iter().enumerate() {
+        let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
+        assert!(p > UNLIKELY, "{name}: p = {p}");
+    }
+}
+
 #[test]
 fn one_sided_lights_illuminate_only_their_front() {
     let panel = |edge_u: Vec3, sides: &str| {

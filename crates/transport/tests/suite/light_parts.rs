@@ -105,6 +105,69 @@ fn each_group_is_what_its_light_alone_gives() {
     assert!(indirect.to_rgb().iter().all(|light| light.is_black()), "the light scatters once");
 }
 
+/// A corner of two walls, under a red and a green lamp and a blue sky.
+fn corner() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
+    let wall = common::quad(Vec3::new(-3.0, 0.0, -1.0), Vec3::X * 6.0, Vec3::Y * 3.0);
+    put(&mut builder, "wall", wall, diffuse(0.7f32));
+    let lamp = |name: &str, x: f32, colour: Rgb| {
+        let lamp = Spec::new(name, "rect").with("position", Vec3::new(x, 2.0, 1.0));
+        lamp.with("edge_u", Vec3::X * 0.5).with("edge_v", Vec3::Z * 0.5).with("radiance", colour)
+    };
+    builder.lights.push(lamp("red", -1.0, Rgb::new(9.0, 0.0, 0.0)));
+    builder.lights.push(Spec::new("sky", "environment").with("radiance", Rgb::new(0.0, 0.0, 0.5)));
+    builder.lights.push(lamp("green", 1.0, Rgb::new(0.0, 9.0, 0.0)));
+    look(&mut builder, Vec3::new(0.0, 1.5, 4.0), Vec3::new(0.0, 0.6, 0.0), 40.0);
+    builder
+}
+
+/// Integrators that divide their light, `vcm` with photons and without connections, too.
+fn dividing() -> [Spec; 4] {
+    let vcm = |joins: bool| Spec::new("", "vcm").with("radius", 0.05f32).with("joins", joins);
+    [Spec::new("", "path"), Spec::new("", "bdpt"), vcm(true), vcm(false)]
+}
+
+/// Grey surfaces keep the colour of light: each group has that of its own lamp, and nothing else.
+#[test]
+fn the_light_of_each_group_has_the_colour_of_its_lamp() {
+    let scene = built(&corner());
+    for integrator in dividing() {
+        let found = parts(&scene, &integrator, &RenderSettings::new(24, 16, 4));
+        for (group, channel) in [(0, 0), (1, 2), (2, 1)] {
+            let light = found.groups[group].to_rgb().iter().fold(Rgb::BLACK, |sum, pixel| sum + *pixel);
+            assert!(light[channel] > 1.0, "{integrator:?}, group {group}: {light:?}");
+            let others =
+                light.max_channel() - light[channel] + (light[0] + light[1] + light[2] - light[channel]);
+            assert!(others.abs() < 1e-4 * light[channel], "{integrator:?}, group {group}: {light:?}");
+        }
+    }
+}
+
+/// Direct light is the picture of at most one scattering event, and where surfaces see nothing but lights it is all there is.
+#[test]
+fn direct_light_is_that_of_one_event() {
+    let (corner, open) = (corner(), {
+        let mut open = corner();
+        open.objects.pop();
+        open
+    });
+    for integrator in dividing() {
+        let settings = |max_depth| RenderSettings { max_depth, ..RenderSettings::new(24, 16, 64) };
+        let [direct, indirect] = parts(&built(&open), &integrator, &settings(6)).by_events.unwrap();
+        let brightest = indirect.to_rgb().iter().fold(0.0, |most: f32, light| most.max(light.max_channel()));
+        assert!(brightest < 1e-5, "{integrator:?}: a floor sees no floor, but {brightest}");
+        assert!(direct.pixel(12, 12).max_channel() > 0.05, "{integrator:?}");
+        let scene = built(&corner);
+        let [direct, indirect] = parts(&scene, &integrator, &settings(6)).by_events.unwrap();
+        let once = shoot(&scene, &*integrators::build(&integrator).unwrap(), &settings(1)).film;
+        let mean = |film: &Film| film.to_rgb().iter().map(|light| light.g).sum::<f32>() / (24.0 * 16.0);
+        let (direct, indirect, once) = (mean(&direct), mean(&indirect), mean(&once));
+        assert!((direct / once - 1.0).abs() < 0.03, "{integrator:?}: {direct} for {once}");
+        assert!(indirect > 0.1 * direct, "{integrator:?}: {indirect} beside {direct}");
+    }
+}
+
 #[test]
 fn the_same_for_any_number_of_threads() {
     let scene = built(&mixed());

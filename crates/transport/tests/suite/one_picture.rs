@@ -225,6 +225,33 @@ fn the_vertices_of_a_replayed_path_bring_the_light_of_its_sample() {
     assert!(bright > 10, "{bright}");
 }
 
+/// Each contribution is named by its technique: the light in the sample's own pixel is their sum, as [Veach 1997, eq. 10.3]
+/// adds it up.
+#[test]
+fn replays_of_bidirectional_integrators_name_each_contribution() {
+    let scene = built(&still_life());
+    let camera = &*scene.cameras()[0].1;
+    for name in ["bdpt", "vcm"] {
+        let integrator = integrator(name);
+        let mut kinds = std::collections::BTreeSet::new();
+        for place in (0..30).map(|i| SamplePlace { x: i % 37, y: 3 + i % 16, sample: i }) {
+            let story = replay(&scene, camera, &*integrator, &settings(), place).unwrap();
+            let own = story.contributions.iter().filter(|found| found.film.is_none());
+            let sum: Rgb = own.map(|found| found.light).sum();
+            assert!((sum - story.radiance).max_channel().abs() <= 1e-5 * story.radiance.max_channel());
+            for found in &story.contributions {
+                assert!((0.0..=1.0).contains(&found.weight), "{name}: {found}");
+                assert_eq!(found.film.is_some(), found.t == 1 && !found.is_merged, "{name}: {found}");
+                assert!(story.to_string().contains(&format!("s = {}, t = {}", found.s, found.t)));
+                kinds.insert((found.s.min(2), found.t.min(2), found.is_merged));
+            }
+        }
+        // A point on a light (s = 1), a light that is hit (s = 0), two vertices, and for `vcm` merged ones.
+        let wanted = [(0, 2, false), (1, 2, false), (2, 2, false), (2, 2, name == "vcm")];
+        assert!(wanted.iter().all(|kind| kinds.contains(kind)), "{name}: {kinds:?}");
+    }
+}
+
 #[test]
 fn senseless_settings_are_refused() {
     let scene = built(&still_life());

@@ -120,6 +120,13 @@ fn every_kind_of_surface_and_light_is_the_same() {
     assert_same("black", &built(&black));
 }
 
+/// Each sample has a time of its own, at which its light subpath begins too.
+#[test]
+fn what_moves_while_the_shutter_is_open_is_the_same() {
+    let scene = common::moving().build(&AccelChoice::default(), [0.0, 1.0], 1.0).unwrap();
+    assert_same("moving", &scene);
+}
+
 #[test]
 fn every_kind_of_shape_is_the_same() {
     // Points and lines have the material of the triangles, and no colours of their own.

@@ -26,10 +26,8 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
         Value::Material(index) => document.scene.materials.get(*index),
         _ => None,
     });
-    writing.warn(format!(
-        "glTF files cannot store the material '{}': its first part is written instead",
-        spec.kind
-    ));
+    let instead = if first.is_some() { "its first part is" } else { "a plain one with its name is" };
+    writing.warn(format!("glTF files cannot store the material '{}': {instead} written instead", spec.kind));
     match first.filter(|first| first.kind != "mix") {
         Some(first) => Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
         None => Spec::new(&spec.name, "principled"),

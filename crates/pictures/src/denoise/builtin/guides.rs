@@ -5,7 +5,7 @@ use crate::PictureError;
 use crate::denoise::Noisy;
 use bilux_math::Rgb;
 
-/// The planes: 1 within the picture and 0 beyond; albedo; normals; depth, its slope across columns and down rows, and
+/// The planes: within the picture the fraction of the pixel that is not background, and 0 beyond; albedo; normals; depth, its slope across columns and down rows, and
 /// the reciprocal of the expected depth difference between neighbours; and inverse depth, 0 where nothing is visible.
 pub(super) struct Guides {
     pub(super) planes: Planes,
@@ -26,7 +26,7 @@ const NEAR: f32 = 0.005;
 
 impl Guides {
     /// Missing layers are constant.
-    pub(super) fn of(noisy: &Noisy) -> Result<Guides, PictureError> {
+    pub(super) fn of(noisy: &Noisy, coverage: Option<&[f32]>) -> Result<Guides, PictureError> {
         let (width, height) = (noisy.width, noisy.height);
         let depth = |i: usize| {
             noisy.depth.as_ref().map_or(1.0, |depth| if depth[i].is_finite() { depth[i] } else { 0.0 })
@@ -52,7 +52,11 @@ impl Guides {
             let mut within = vec![0.0; planes.planes[WITHIN].len()];
             for y in 0..height {
                 let first = planes.index(0, y);
-                within[first..first + width].fill(1.0);
+                let row = &mut within[first..first + width];
+                match coverage {
+                    Some(coverage) => row.copy_from_slice(&coverage[y * width..(y + 1) * width]),
+                    None => row.fill(1.0),
+                }
             }
             within
         };

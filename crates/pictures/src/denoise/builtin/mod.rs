@@ -2,6 +2,8 @@
 //! stay sharp, and averages the result over neighbours that show the same surface and, as far as the noise allows a
 //! decision, the same light: it compares small patches, relative to the variance of both. The passes cover increasing
 //! distances, with gaps (à-trous). [Dammertz 2010; Rousselle 2012; Schied 2017]
+//!
+//! In a cut-out it filters the light of what covers the pixels, and weights each by how much of it is covered.
 
 mod edges;
 mod guides;
@@ -10,7 +12,7 @@ mod outliers;
 mod pass;
 mod planes;
 
-use super::{Denoiser, DenoiserEntry, Noisy, Source};
+use super::{Denoiser, DenoiserEntry, Noisy, Source, noisy};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
@@ -85,11 +87,13 @@ impl Denoiser for Builtin {
 
 /// The sum of the denoised layers. What is not needed any more is freed as early as possible: this takes some hundred bytes per pixel.
 fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
+    let coverage = noisy.take_coverage();
     let (size, layers) = ((noisy.width, noisy.height), std::mem::take(&mut noisy.layers));
     let albedo = noisy.albedo.as_deref();
-    let divided = |layer| Light::of(size, layer, &|i| albedo.map_or(Rgb::WHITE, |a| planes::divisor(a[i])));
+    let by = |i: usize| albedo.map_or(Rgb::WHITE, |a| planes::divisor(a[i]));
+    let divided = |layer| Light::of(size, layer, &by, coverage.as_deref());
     let lights = layers.into_iter().map(divided).collect::<Result<Vec<_>, _>>()?;
-    let guides = Guides::of(&noisy)?;
+    let guides = Guides::of(&noisy, coverage.as_deref())?;
     let has_albedo = albedo.is_some();
     drop(noisy);
     let mut sum: Option<Planes> = None;
@@ -104,11 +108,14 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
         }
     }
     let Some(mut colours) = sum else { return Ok(Vec::new()) };
-    if !has_albedo {
-        return Ok((0..size.0 * size.1).map(|i| colours.rgb(i)).collect());
-    }
-    colours.pad();
-    edges::rebuilt(&colours, &guides)
+    let mut smooth = if has_albedo {
+        colours.pad();
+        edges::rebuilt(&colours, &guides)?
+    } else {
+        (0..size.0 * size.1).map(|i| colours.rgb(i)).collect()
+    };
+    noisy::multiply(&mut smooth, coverage.as_deref());
+    Ok(smooth)
 }
 
 /// Multiplies light by the albedo that it was divided by.

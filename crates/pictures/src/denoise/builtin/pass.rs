@@ -86,16 +86,21 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// Adds the pixels themselves, with a weight of 1.
+    /// Adds the pixels themselves, with the fraction that is not background as their weight; one that is nothing else keeps its
+    /// light.
     fn take_itself(&mut self) {
         let width = self.light.width;
         for (row, y) in self.rows.clone().enumerate() {
             let (to, from) = (row * width..(row + 1) * width, self.light.index(0, y));
+            let within = &self.guides.planes[WITHIN][from..from + width];
+            let weights = &mut self.weights[..width];
+            weights.iter_mut().zip(within).for_each(|(to, &own)| *to = if own > 0.0 { own } else { 1.0 });
             for k in 0..4 {
-                let own = &self.light.planes[k][from..from + width];
-                self.sums[k][to.clone()].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+                let own = self.light.planes[k][from..from + width].iter().zip(weights.iter());
+                let sums = self.sums[k][to.clone()].iter_mut().zip(own);
+                sums.for_each(|(sum, (own, w))| *sum += own * if k == 3 { w * w } else { *w });
             }
-            self.sums[4][to].iter_mut().for_each(|sum| *sum += 1.0);
+            self.sums[4][to].iter_mut().zip(weights.iter()).for_each(|(sum, weight)| *sum += weight);
         }
     }
 

@@ -107,11 +107,12 @@ pub(super) fn divisor(albedo: Rgb) -> Rgb {
 }
 
 impl Light {
-    /// The light of a layer, divided by the albedo: `by`.
+    /// The light of a layer, divided by the albedo: `by`. Where `coverage` is 0 there is only background.
     pub(super) fn of(
         size: (usize, usize),
         layer: Layer,
         by: &(impl Fn(usize) -> Rgb + Sync),
+        coverage: Option<&[f32]>,
     ) -> Result<Light, PictureError> {
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
@@ -127,7 +128,7 @@ impl Light {
         drop((layer, guessed));
         let pixels = outliers::without(size, pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
-        let blurred = blur(&pixels, size.0);
+        let blurred = blur(&pixels, size.0, coverage);
         let planes = Planes::filled(size, |i| {
             let Rgb { r, g, b } = pixels[i].0;
             [r, g, b, blurred[i]]
@@ -157,16 +158,22 @@ fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec
     (0..width * height).map(one).collect()
 }
 
-/// Means of the variances of 3 × 3 pixels.
-fn blur(pixels: &[(Rgb, f32)], width: usize) -> Vec<f32> {
+/// Means of the variances of 3 × 3 pixels, of those that are not background.
+fn blur(pixels: &[(Rgb, f32)], width: usize, coverage: Option<&[f32]>) -> Vec<f32> {
     let height = pixels.len() / width;
     let mut all = vec![0.0; pixels.len()];
     all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        let rows =
-            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &pixels[y * width..(y + 1) * width]);
-        for (x, sum) in row.iter_mut().enumerate() {
-            let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
-            *sum = rows.iter().map(|row| row[left].1 + row[x].1 + row[right].1).sum::<f32>() / 9.0;
+        let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| y * width);
+        let weight = |i: usize| coverage.map_or(1.0, |coverage| if coverage[i] > 0.0 { 1.0 } else { 0.0 });
+        for (x, mean) in row.iter_mut().enumerate() {
+            let columns = [x.saturating_sub(1), x, (x + 1).min(width - 1)];
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for row in rows {
+                let [a, b, c] = columns.map(|x| row + x);
+                sum += pixels[a].1 * weight(a) + pixels[b].1 * weight(b) + pixels[c].1 * weight(c);
+                weights += weight(a) + weight(b) + weight(c);
+            }
+            *mean = if weights > 0.0 { sum / weights } else { 0.0 };
         }
     });
     all

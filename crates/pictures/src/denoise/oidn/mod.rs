@@ -8,7 +8,7 @@ mod python;
 mod shared;
 
 use super::builtin::Builtin;
-use super::{Denoiser, DenoiserEntry, Noisy, Source, Task};
+use super::{Denoiser, DenoiserEntry, Noisy, Source, Task, noisy};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
@@ -131,7 +131,11 @@ impl Denoiser for Oidn {
         if size.0.min(size.1) < MIN_SIDE {
             return Builtin::new(self.threads)?.denoise(source);
         }
-        let noisy = source.rows(0..size.1)?;
+        let mut noisy = source.rows(0..size.1)?;
+        let coverage = noisy.take_coverage();
+        if let Some(coverage) = &coverage {
+            noisy.extend(coverage);
+        }
         let failed = |what: String| PictureError::NoDenoiser { what: format!("Open Image Denoise: {what}") };
         let features = [noisy.albedo.is_some(), noisy.normal.is_some()];
         let filters = match self.ahead.take(size, features) {
@@ -141,6 +145,7 @@ impl Denoiser for Oidn {
         let mut sum: Vec<Rgb> = reserved("denoising", noisy.pixels())?;
         sum.resize(noisy.pixels(), Rgb::BLACK);
         filters.and_then(|mut filters| add_layers(&mut filters, &noisy, &mut sum)).map_err(failed)?;
+        noisy::multiply(&mut sum, coverage.as_deref());
         Ok(sum)
     }
 }

@@ -3,10 +3,11 @@
 
 pub mod statistics;
 
+use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::sin_cos;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Quat, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{AccelChoice, Mesh, Object, Scene, SceneBuilder, Spec};
+use bilux_scene::{AccelChoice, Mesh, Object, Parameters, Scene, SceneBuilder, Spec};
 use bilux_transport::{PixelIntegrator, RenderSettings, Rendered, Silent, integrators, render};
 use std::sync::Arc;
 
@@ -130,6 +131,38 @@ pub fn still_life() -> SceneBuilder {
     let sky = Spec::new("sky", "environment").with("radiance", Rgb::new(0.25, 0.32, 0.45));
     builder.lights.push(sky.with("ground", 0.1f32));
     look(&mut builder, Vec3::new(0.0, 3.0, 8.0), Vec3::new(0.0, 0.8, 0.0), 36.0);
+    builder
+}
+
+/// Along a line, from one place at 0 s to another at 1 s.
+pub fn along(from: Vec3, to: Vec3) -> Motion {
+    let key = |time_seconds, translation| MotionKey {
+        time_seconds,
+        translation,
+        rotation: Quat::IDENTITY,
+        scale: Vec3::ONE,
+    };
+    Motion::from_keys(vec![key(0.0, from), key(1.0, to)]).unwrap()
+}
+
+/// A lamp that moves from left to right over a floor within a second, a ball that rises, and a camera that does, too.
+pub fn moving() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 6.0), diffuse(0.6f32));
+    put(&mut builder, "ball", ball(Vec3::ZERO, 0.3, 8, true), diffuse(0.4f32));
+    builder.objects[1].motion = along(Vec3::new(0.0, 0.4, -0.5), Vec3::new(0.0, 1.0, -0.5));
+    let shine = diffuse(0.0f32).with("emission", 30.0f32).with("emission_sides", "front");
+    let panel = quad(Vec3::new(-0.1, 0.0, -0.1), Vec3::X * 0.2, Vec3::Z * 0.2);
+    put(&mut builder, "lamp", panel, shine);
+    builder.objects[2].motion = along(Vec3::new(-1.5, 0.5, 0.0), Vec3::new(1.5, 0.5, 0.0));
+    look(&mut builder, Vec3::new(0.0, 4.0, 4.0), Vec3::ZERO, 50.0);
+    builder.cameras[0].keyframes = [(0.0, 3.9f32), (1.0, 4.1)]
+        .map(|(time, height)| {
+            let mut changes = Parameters::default();
+            changes.set("position", Vec3::new(0.0, height, 4.0));
+            (time, changes)
+        })
+        .to_vec();
     builder
 }
 
