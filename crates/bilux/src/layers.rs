@@ -77,7 +77,7 @@ impl Outcome {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
             features.push_layers(picture, wants)?;
             if let Some(coverage) = self.model_coverage.as_ref().filter(|_| wanted.contains(&Aov::Guides)) {
-                picture.push_channel("guide_coverage.A", coverage.clone())?;
+                picture.push_channel("guides.A", coverage.clone())?;
             }
         }
         if let Some(batches) = self.rendered.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance))

@@ -51,6 +51,7 @@ pub(crate) fn channels(layer: &str, count: usize) -> Vec<String> {
         (Some(aov), 1) if aov.is_work() => &["mean"],
         (Some(Aov::Ids), 2) => &["object", "material"],
         (Some(Aov::Uv), 2) => &["U", "V"],
+        (Some(Aov::Guides), 7) => &["R", "G", "B", "X", "Y", "Z", "depth"],
         (Some(Aov::Normal | Aov::Position), 3) => &["X", "Y", "Z"],
         (_, 1) => &[""],
         (_, 2) => &["X", "Y"],

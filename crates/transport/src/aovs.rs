@@ -85,7 +85,7 @@ impl Aov {
             Aov::Normal => Some("normal"),
             Aov::Depth => Some("depth"),
             Aov::Ids => Some("id"),
-            Aov::Guides => Some("guide"),
+            Aov::Guides => Some("guides"),
             Aov::Variance => Some("variance"),
             Aov::Position => Some("position"),
             Aov::Uv => Some("uv"),
@@ -204,8 +204,8 @@ pub const AOVS: &[AovEntry] = &[
     layer(
         Aov::Guides,
         "guides",
-        "what guides a later `bilux denoise`, as means of the pixels: guide_albedo.R, .G, .B, guide_normal.X, .Y, .Z, \
-         guide_depth.Z",
+        "what guides a later `bilux denoise`, as means of the pixels: guides.R, .G, .B, \
+         .X, .Y, .Z, .depth",
     ),
     layer(
         Aov::Variance,

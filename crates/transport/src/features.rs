@@ -263,7 +263,7 @@ impl Features {
         Ok(all)
     }
 
-    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth`, `id` and `guide` to a picture of the window.
+    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth`, `id` and `guides` to a picture of the window.
     ///
     /// # Errors
     /// When the picture has a different size, or already has such layers.
@@ -283,7 +283,7 @@ impl Features {
             picture.push_integer_plane("id.object", self.object.clone())?;
             picture.push_integer_plane("id.material", self.material.clone())?;
         }
-        if wanted("guide") {
+        if wanted("guides") {
             self.push_guides(picture)?;
         }
         Ok(())
@@ -297,11 +297,11 @@ impl Features {
     pub fn push_guides(&self, picture: &mut Picture) -> Result<(), FilmError> {
         let is_cut_out = picture.channel("A").is_some();
         let (albedo, normal) = self.guides(is_cut_out, 0..self.albedo.len());
-        picture.push_rgb("guide_albedo", &albedo)?;
-        for (axis, name) in ["guide_normal.X", "guide_normal.Y", "guide_normal.Z"].into_iter().enumerate() {
+        picture.push_rgb("guides", &albedo)?;
+        for (axis, name) in ["guides.X", "guides.Y", "guides.Z"].into_iter().enumerate() {
             picture.push_channel(name, normal.iter().map(|n| n[axis]).collect())?;
         }
-        Ok(picture.push_channel("guide_depth.Z", self.mean_depth.clone())?)
+        Ok(picture.push_channel("guides.depth", self.mean_depth.clone())?)
     }
 
     /// The mean albedo and normal of some pixels; if the picture `is_cut_out` of its background, those of the samples that hit

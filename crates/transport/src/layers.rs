@@ -31,7 +31,7 @@ impl Strategy {
 
     pub(crate) fn of(technique: Technique) -> Strategy {
         match technique {
-            Technique::Joined { s, t } => Strategy { edges: s + t - 1, merges: false, s },
+            Technique::Connected { s, t } => Strategy { edges: s + t - 1, merges: false, s },
             Technique::Merged { s, t } => Strategy { edges: s + t - 2, merges: true, s },
         }
     }

@@ -138,7 +138,7 @@ impl<'a> Sums<'a> {
         iteration: u32,
     ) -> Result<Option<Photons>, FilmError> {
         let Some(merging) = eye.integrator.merging() else { return Ok(None) };
-        let shown = Merging::shows_photons(merging);
+        let shown = Merging::splats_photons(merging);
         if shown {
             self.make_room_for_splats()?;
         }
@@ -195,8 +195,8 @@ impl<'a> Sums<'a> {
     fn parts(self, integrator: &dyn PixelIntegrator) -> Result<LightParts, FilmError> {
         let mut films = self.films.into_inner().unwrap_or_else(PoisonError::into_inner);
         let splats = self.splats.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let shows_photons = integrator.merging().is_some_and(Merging::shows_photons);
-        if integrator.splats() || shows_photons {
+        let splats_photons = integrator.merging().is_some_and(Merging::splats_photons);
+        if integrator.splats() || splats_photons {
             for (film, splats) in films.iter_mut().zip(splats) {
                 film.add_iterations(splats, self.settings.samples.len() as u32)?;
             }

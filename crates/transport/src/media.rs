@@ -73,7 +73,7 @@ impl Media {
                     }
                 }
             }
-            ray = beyond(&ray, &Surface { t: coincident.t, ..closest });
+            ray = behind(&ray, &Surface { t: coincident.t, ..closest });
         }
         media.sigma_a = innermost.unwrap_or_else(|| media.sigma_of_strongest(scene));
         media
@@ -105,7 +105,7 @@ impl Media {
         let (mut last, mut passed) = (surface, passed);
         loop {
             self.cross(scene, &last, direction);
-            let surface = tracer.closest(&beyond(ray, &last))?;
+            let surface = tracer.closest(&behind(ray, &last))?;
             let surface = self.arrive(tracer, ray, surface);
             passed *= transmittance(self.sigma_a, surface.t - last.t);
             if self.separates(scene, &surface) {
@@ -130,7 +130,7 @@ impl Media {
             return Ok(surface);
         }
         self.cross(scene, &surface, Vec3::from(ray.direction));
-        Err(beyond(ray, &surface))
+        Err(behind(ray, &surface))
     }
 
     /// The transmittance of a ray that begins in these media and is `distance` metres long; `None` where something
@@ -164,7 +164,7 @@ impl Media {
             }
             passed *= transmittance(media.sigma_a, (surface.t - begin) * length);
             media.cross(scene, &surface, direction);
-            (begin, rest) = (surface.t, beyond(&rest, &surface));
+            (begin, rest) = (surface.t, behind(&rest, &surface));
         }
         Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
     }
@@ -334,7 +334,7 @@ fn strength(object: u32, nested: &Nested) -> (u32, std::cmp::Reverse<u32>) {
 }
 
 /// The same ray, from behind a surface that it has hit.
-fn beyond(ray: &Ray, surface: &Surface) -> Ray {
+fn behind(ray: &Ray, surface: &Surface) -> Ray {
     Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::bidirectional::{LightPaths, PATHS, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
-use crate::photons::{Merging, Photon, Photons, Spot};
+use crate::photons::{Merging, Photon, PhotonPosition, Photons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
 use crate::techniques::{LightPathVisitor, Tally, TechniqueCounts};
@@ -82,7 +82,7 @@ impl<const N: usize> Photons<N> {
                 paths.trace(&samples, &mut task, merging.roulette_depth, &techniques);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
-                    paths.show_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
+                    paths.connect_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
                         if current != Some(i) {
                             O::begin(tally, places[i].0, places[i].1, iteration);
                             current = Some(i);
@@ -99,7 +99,7 @@ impl<const N: usize> Photons<N> {
             }
             (photons, tracer.counters)
         };
-        let (parts, counters): (Vec<Vec<(Spot, Photon<N>)>>, Vec<Counters>) =
+        let (parts, counters): (Vec<Vec<(PhotonPosition, Photon<N>)>>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);

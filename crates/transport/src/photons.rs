@@ -1,7 +1,7 @@
 //! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
 //! to merge with. [Jensen 1996; Georgiev 2012]
 
-use crate::techniques::{Lanes, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
@@ -34,14 +34,16 @@ impl Merging {
     /// All techniques of an iteration whose photons give this η, with this many light subpaths per pixel.
     pub(crate) fn techniques(&self, eta: f32, light_paths: f32) -> TechniqueCounts {
         let splats =
-            if self.shows_photons() { self.techniques.splats * light_paths } else { self.techniques.splats };
-        TechniqueCounts { eta: Lanes([eta]), splats, ..self.techniques }
+            if self.splats_photons() { self.techniques.splats * light_paths } else { self.techniques.splats };
+        TechniqueCounts { eta: PerSet([eta]), splats, ..self.techniques }
     }
 
     /// True where light subpaths are connected with the camera but not with camera subpaths: the photons' light
     /// subpaths then serve both purposes.
-    pub(crate) fn shows_photons(&self) -> bool {
-        self.radius > 0.0 && self.techniques.splats != Lanes::ZERO && self.techniques.joins == Lanes::ZERO
+    pub(crate) fn splats_photons(&self) -> bool {
+        self.radius > 0.0
+            && self.techniques.splats != PerSet::ZERO
+            && self.techniques.connections == PerSet::ZERO
     }
 
     /// The merging radius of an iteration, in metres: it depends only on the iteration's number. [Knaus 2011, eq. 20]
@@ -53,7 +55,7 @@ impl Merging {
 
 /// The position of a light subpath's vertex: the only part of most photons that is read.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct PhotonPosition {
     pub(crate) p: Vec3,
     /// Twice the number of scattering events before it, plus one where the subpath carries a single wavelength.
     pub(crate) steps: u16,
@@ -61,9 +63,9 @@ pub(crate) struct Spot {
     pub(crate) origin: u16,
 }
 
-impl Spot {
-    pub(crate) fn new(p: Vec3, depth: u32, is_split: bool, origin: u16) -> Spot {
-        Spot { p, steps: (depth << 1) as u16 | u16::from(is_split), origin }
+impl PhotonPosition {
+    pub(crate) fn new(p: Vec3, depth: u32, is_split: bool, origin: u16) -> PhotonPosition {
+        PhotonPosition { p, steps: (depth << 1) as u16 | u16::from(is_split), origin }
     }
 
     /// Scattering events before it.
@@ -87,8 +89,8 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
     /// What the MIS weights of [`crate::bidirectional`] know of the vertex.
-    pub(crate) joined: Lanes<N>,
-    pub(crate) d_vc: Lanes<N>,
+    pub(crate) connected: PerSet<N>,
+    pub(crate) d_vc: PerSet<N>,
 }
 
 /// All photons of an iteration, in a grid whose cells are as wide as the discs that merge.
@@ -98,7 +100,7 @@ pub struct Photons<const N: usize = 1> {
     radius: f32,
     /// With the number of light subpaths times the area that they are merged over: η of [Georgiev 2012].
     techniques: TechniqueCounts<N>,
-    spots: Vec<Spot>,
+    positions: Vec<PhotonPosition>,
     photons: Vec<Photon<N>>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
     starts: Vec<u32>,
@@ -107,13 +109,13 @@ pub struct Photons<const N: usize = 1> {
 impl<const N: usize> Photons<N> {
     /// Sorts the photons by cell; within a cell they keep the order in which they are given.
     pub(crate) fn new(
-        given: Vec<(Spot, Photon<N>)>,
+        given: Vec<(PhotonPosition, Photon<N>)>,
         radius: f32,
         techniques: TechniqueCounts<N>,
     ) -> Photons<N> {
         let mask = given.len().next_power_of_two().max(MIN_BUCKETS) as u32 - 1;
         let buckets: Vec<u32> =
-            given.par_iter().map(|(spot, _)| bucket(cell(spot.p, radius), mask)).collect();
+            given.par_iter().map(|(position, _)| bucket(cell(position.p, radius), mask)).collect();
         // Photons before each bucket; after the loop that fills `order`, photons up to its end.
         let mut starts = vec![0; mask as usize + 2];
         for &bucket in &buckets {
@@ -130,8 +132,8 @@ impl<const N: usize> Photons<N> {
         }
         starts.rotate_right(1);
         starts[0] = 0;
-        let (spots, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
-        Photons { radius, techniques, spots, photons, starts }
+        let (positions, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
+        Photons { radius, techniques, positions, photons, starts }
     }
 
     /// All techniques of this iteration.
@@ -141,7 +143,7 @@ impl<const N: usize> Photons<N> {
 
     /// Calls `visit` with every photon within the radius of a point.
     #[inline]
-    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Spot, &Photon<N>)) {
+    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&PhotonPosition, &Photon<N>)) {
         let mask = self.starts.len() as u32 - 2;
         // Cells are two radii wide: photons in range lie in the point's own cell or in the nearer neighbour on each
         // axis.
@@ -159,11 +161,11 @@ impl<const N: usize> Photons<N> {
         let is_shared = share_buckets(&buckets, mask);
         let radius2 = self.radius * self.radius;
         for (i, range) in ranges.into_iter().enumerate() {
-            for (spot, photon) in self.spots[range.clone()].iter().zip(&self.photons[range]) {
-                if spot.p.distance_squared(p) <= radius2
-                    && (!is_shared || cell(spot.p, self.radius) == corner(i))
+            for (position, photon) in self.positions[range.clone()].iter().zip(&self.photons[range]) {
+                if position.p.distance_squared(p) <= radius2
+                    && (!is_shared || cell(position.p, self.radius) == corner(i))
                 {
-                    visit(spot, photon);
+                    visit(position, photon);
                 }
             }
         }
@@ -205,9 +207,9 @@ mod tests {
 
     fn photons(count: u64, radius: f32, is_flat: bool) -> Photons {
         let photon = |i| {
-            let spot = Spot::new(point(i, is_flat), 0, false, i as u16);
+            let position = PhotonPosition::new(point(i, is_flat), 0, false, i as u16);
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
-            (spot, Photon { wo, n_geom, beta: Rgb::WHITE, joined: Lanes::ZERO, d_vc: Lanes::ZERO })
+            (position, Photon { wo, n_geom, beta: Rgb::WHITE, connected: PerSet::ZERO, d_vc: PerSet::ZERO })
         };
         Photons::new((0..count).map(photon).collect(), radius, TechniqueCounts::CAMERA)
     }
@@ -222,7 +224,7 @@ mod tests {
                 let photons = photons(count, radius, is_flat);
                 for at in (0..300).map(|i| point(1 << 32 | i, is_flat)) {
                     let mut found = Vec::new();
-                    photons.around(at, |spot, _| found.push(u64::from(spot.origin)));
+                    photons.around(at, |position, _| found.push(u64::from(position.origin)));
                     found.sort_unstable();
                     let is_near = |i: &u64| point(*i, is_flat).distance_squared(at) <= radius * radius;
                     assert!(found.into_iter().eq((0..count).filter(is_near)), "{count} {radius} {at}");
@@ -235,10 +237,10 @@ mod tests {
     fn photons_of_a_cell_keep_their_order() {
         let photons = photons(2000, 4.0, false);
         let mut last = [0; 8];
-        for spot in &photons.spots {
-            let octant = cell(spot.p, 4.0).iter().fold(0, |sum, c| sum * 2 + usize::from(*c == 0));
-            assert!(spot.origin >= last[octant]);
-            last[octant] = spot.origin;
+        for position in &photons.positions {
+            let octant = cell(position.p, 4.0).iter().fold(0, |sum, c| sum * 2 + usize::from(*c == 0));
+            assert!(position.origin >= last[octant]);
+            last[octant] = position.origin;
         }
     }
 }

@@ -228,9 +228,9 @@ impl<'a> Run<'a> {
         let (pool, settings) = (&self.pool, self.settings);
         let window = settings.sampled_window(self.integrator);
         let whole = Window::whole(settings.width, settings.height).tiles(TILE);
-        let shows_photons = self.integrator.merging().is_some_and(Merging::shows_photons);
+        let splats_photons = self.integrator.merging().is_some_and(Merging::splats_photons);
         let film = &mut rendered.film;
-        let splats = shows_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
+        let splats = splats_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
         let mut splats = splats.transpose()?;
         let trace = |splats: Option<&IterationSplats>| {
             pool.install(|| Photons::of_iteration(&self.eye(), &whole, iteration, splats))

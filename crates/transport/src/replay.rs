@@ -55,7 +55,7 @@ pub struct Contributed {
 impl Contributed {
     fn of(technique: Technique, found: &Contribution, film: Option<Vec2>) -> Contributed {
         let (s, t, is_merged) = match technique {
-            Technique::Joined { s, t } => (s, t, false),
+            Technique::Connected { s, t } => (s, t, false),
             Technique::Merged { s, t } => (s, t, true),
         };
         let weight = found.mis_weight();

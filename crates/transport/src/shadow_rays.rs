@@ -10,7 +10,7 @@ pub(crate) struct ShadowRays<T> {
     rays: Vec<Ray>,
     /// The [normals](bilux_scene::Scene::normal_towards) at their ends; zero where there is no surface.
     normals: Vec<Vec3>,
-    brought: Vec<T>,
+    contributions: Vec<T>,
     /// The media at the start of each ray, and its length in metres (0 for light from infinity); none where no medium
     /// changes light.
     media: Vec<(Media, f32)>,
@@ -19,8 +19,8 @@ pub(crate) struct ShadowRays<T> {
 
 impl<T> Default for ShadowRays<T> {
     fn default() -> ShadowRays<T> {
-        let (rays, normals, brought) = (Vec::new(), Vec::new(), Vec::new());
-        ShadowRays { rays, normals, brought, media: Vec::new(), occluded: Vec::new() }
+        let (rays, normals, contributions) = (Vec::new(), Vec::new(), Vec::new());
+        ShadowRays { rays, normals, contributions, media: Vec::new(), occluded: Vec::new() }
     }
 }
 
@@ -28,28 +28,28 @@ impl<T> ShadowRays<T> {
     pub(crate) fn clear(&mut self) {
         self.rays.clear();
         self.normals.clear();
-        self.brought.clear();
+        self.contributions.clear();
         self.media.clear();
     }
 
     /// Adds a ray that ends on a surface with the normal `n`. All rays come with their media, or none does.
     #[inline]
-    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, brought: T) {
+    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, contributions: T) {
         self.rays.push(ray);
         self.normals.push(n);
         self.media.extend(media);
-        self.brought.push(brought);
+        self.contributions.push(contributions);
     }
 
     /// Traces the rays. `add` receives what the unoccluded ones bring and their transmittance, in the order in which
     /// they were added.
     pub(crate) fn trace(&mut self, task: &mut Task, mut add: impl FnMut(&T, Rgb)) {
-        let ShadowRays { rays, normals, brought, media, occluded } = self;
+        let ShadowRays { rays, normals, contributions, media, occluded } = self;
         occluded.clear();
         occluded.resize(rays.len(), false);
         task.tracer.all_occluded(rays, |i| normals[i], occluded);
         let has_nested = task.scene().has_nested();
-        for (i, brought) in brought.iter().enumerate() {
+        for (i, contributions) in contributions.iter().enumerate() {
             let passed = match (occluded[i], media.get(i)) {
                 (false, None) => Rgb::WHITE,
                 (false, Some((media, distance))) => media.unoccluded(*distance),
@@ -64,7 +64,7 @@ impl<T> ShadowRays<T> {
                 }
                 (true, _) => continue,
             };
-            add(brought, passed);
+            add(contributions, passed);
         }
     }
 }

@@ -101,7 +101,7 @@ impl Sums {
         progress: &dyn Progress,
     ) -> Result<(), FilmError> {
         let both_ends = eye.integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(eye.photons));
-        let Some(both_ends) = both_ends.map(BothEnds::showing) else { return Ok(()) };
+        let Some(both_ends) = both_ends.map(BothEnds::splatting) else { return Ok(()) };
         let sums = Mutex::new(self);
         tiles.par_iter().try_for_each(|tile| {
             let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);

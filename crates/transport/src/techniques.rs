@@ -1,6 +1,6 @@
 //! The techniques that find paths, and what one technique contributes before its MIS weight.
 //!
-//! Everything is computed for `N` sets of techniques at once. The first set weights the light. The others are rivals
+//! Everything is computed for `N` sets of techniques at once, one number per set. The first set weights the light. The others are rivals
 //! whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
 
 use bilux_math::{Rgb, Vec2};
@@ -8,18 +8,18 @@ use std::ops::{Add, Mul};
 
 /// One number per set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
+pub(crate) struct PerSet<const N: usize>(pub(crate) [f32; N]);
 
 /// The number of samples of each technique per camera subpath. Light sampling (s = 1) and hitting an emitter by chance
 /// (s = 0) always count one each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// Light subpaths that are connected with the camera (t = 1).
-    pub(crate) splats: Lanes<N>,
+    pub(crate) splats: PerSet<N>,
     /// Light subpaths whose vertices are connected with those of the camera subpath (s, t > 1).
-    pub(crate) joins: Lanes<N>,
+    pub(crate) connections: PerSet<N>,
     /// η: light subpaths that a merged vertex counts, times the area of merging.
-    pub(crate) eta: Lanes<N>,
+    pub(crate) eta: PerSet<N>,
     /// Light subpaths are connected with the camera, and merged, also where they come straight from a light.
     ///
     /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
@@ -33,12 +33,12 @@ pub(crate) struct Contribution<const N: usize = 1> {
     /// Its light, over the density with which one camera subpath finds it by this technique.
     pub(crate) light: Rgb,
     /// How often this technique finds it.
-    pub(crate) own: Lanes<N>,
+    pub(crate) own: PerSet<N>,
     /// How often all other techniques find it.
-    pub(crate) others: Lanes<N>,
+    pub(crate) others: PerSet<N>,
     /// A factor on its weight, for the sake of the other technique that a camera subpath has for finding a light:
-    /// [`favour`].
-    pub(crate) favour: f32,
+    /// [`power_factor`].
+    pub(crate) power_factor: f32,
     /// The cell in which its light subpath began: [`crate::emission::Start::cell`]; without a light subpath, the
     /// [number](crate::emission::light_number) of the light.
     pub(crate) origin: u16,
@@ -49,7 +49,7 @@ pub(crate) struct Contribution<const N: usize = 1> {
 pub(crate) enum Technique {
     /// Their last vertices are connected. With s = 0 the camera subpath hits an emitter by chance, with s = 1 a point
     /// on a light is sampled, and with t = 1 a light subpath is connected with the camera.
-    Joined { s: u32, t: u32 },
+    Connected { s: u32, t: u32 },
     /// Their last vertices are merged into one.
     Merged { s: u32, t: u32 },
 }
@@ -66,7 +66,7 @@ pub(crate) enum Step {
     /// A point on a light is sampled.
     Picked,
     /// Two vertices are connected.
-    Joined,
+    Connected,
     /// Photons around a vertex are looked up.
     Lookup,
 }
@@ -107,35 +107,44 @@ pub(crate) trait LightPathVisitor<const N: usize>: Sync {
 
 impl TechniqueCounts {
     /// Camera subpaths alone.
-    pub(crate) const CAMERA: TechniqueCounts =
-        TechniqueCounts { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
+    pub(crate) const CAMERA: TechniqueCounts = TechniqueCounts {
+        splats: PerSet([0.0]),
+        connections: PerSet([0.0]),
+        eta: PerSet([0.0]),
+        direct: true,
+    };
     /// With or without splats, and with or without connections.
-    pub(crate) fn with_splats_and_joins(splats: bool, joins: bool) -> TechniqueCounts {
+    pub(crate) fn with_splats_and_connections(splats: bool, connections: bool) -> TechniqueCounts {
         TechniqueCounts {
-            splats: Lanes([f32::from(splats)]),
-            joins: Lanes([f32::from(joins)]),
+            splats: PerSet([f32::from(splats)]),
+            connections: PerSet([f32::from(connections)]),
             ..TechniqueCounts::CAMERA
         }
     }
 
     /// True where each camera subpath has a light subpath of its own.
     pub(crate) fn begins_at_lights(&self) -> bool {
-        self.splats != Lanes::ZERO || self.joins != Lanes::ZERO
+        self.splats != PerSet::ZERO || self.connections != PerSet::ZERO
     }
 
     /// All techniques except merging.
     pub(crate) const BOTH_ENDS: TechniqueCounts =
-        TechniqueCounts { splats: Lanes([1.0]), joins: Lanes([1.0]), ..TechniqueCounts::CAMERA };
+        TechniqueCounts { splats: PerSet([1.0]), connections: PerSet([1.0]), ..TechniqueCounts::CAMERA };
 }
 
 impl<const N: usize> TechniqueCounts<N> {
-    /// Packs single sets into lanes; they treat direct light alike.
+    /// Packs single sets; they treat direct light alike.
     pub(crate) fn pack(mut sets: impl Iterator<Item = TechniqueCounts>) -> TechniqueCounts<N> {
-        let mut all =
-            TechniqueCounts { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
+        let mut all = TechniqueCounts {
+            splats: PerSet::ZERO,
+            connections: PerSet::ZERO,
+            eta: PerSet::ZERO,
+            direct: true,
+        };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
-            (all.splats.0[k], all.joins.0[k], all.eta.0[k]) = (set.splats.0[0], set.joins.0[0], set.eta.0[0]);
+            (all.splats.0[k], all.connections.0[k], all.eta.0[k]) =
+                (set.splats.0[0], set.connections.0[0], set.eta.0[0]);
             all.direct = set.direct;
         }
         all
@@ -145,7 +154,7 @@ impl<const N: usize> TechniqueCounts<N> {
 impl<const N: usize> Contribution<N> {
     /// A contribution that no other technique finds.
     pub(crate) fn only(light: Rgb) -> Contribution<N> {
-        Contribution { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
+        Contribution { light, own: PerSet::ONE, others: PerSet::ZERO, power_factor: 1.0, origin: 0 }
     }
 
     /// The same along a connection with this transmittance.
@@ -154,14 +163,14 @@ impl<const N: usize> Contribution<N> {
         Contribution { light: self.light * passed, ..*self }
     }
 
-    /// Its MIS weight: the balance heuristic, except for [`favour`].
+    /// Its MIS weight: the balance heuristic, except for [`power_factor`].
     pub(crate) fn mis_weight(&self) -> f32 {
-        self.own.0[0] * (self.favour / (self.own.0[0] + self.others.0[0]))
+        self.own.0[0] * (self.power_factor / (self.own.0[0] + self.others.0[0]))
     }
 
-    /// Weighted by the balance heuristic [Veach 1997, eq. 9.8], except for [`favour`].
+    /// Weighted by the balance heuristic [Veach 1997, eq. 9.8], except for [`power_factor`].
     pub(crate) fn weighted(&self) -> Rgb {
-        self.light * (self.favour / (self.own.0[0] + self.others.0[0]))
+        self.light * (self.power_factor / (self.own.0[0] + self.others.0[0]))
     }
 }
 
@@ -171,7 +180,7 @@ impl<const N: usize> Contribution<N> {
 /// A camera subpath samples a point on the light, or hits the light by chance. Against all other techniques these two
 /// count together as in the balance heuristic. Their joint share is split by the power heuristic
 /// [Veach 1997, eq. 9.17], since one of the two is often so good that any share of the other is noise.
-pub(crate) fn favour(other: f32) -> f32 {
+pub(crate) fn power_factor(other: f32) -> f32 {
     // The inverse, where squares of large numbers would overflow.
     if other <= 1.0 {
         (1.0 + other) / (1.0 + other * other)
@@ -181,15 +190,15 @@ pub(crate) fn favour(other: f32) -> f32 {
     }
 }
 
-impl<const N: usize> Lanes<N> {
-    pub(crate) const ONE: Lanes<N> = Lanes([1.0; N]);
-    pub(crate) const ZERO: Lanes<N> = Lanes([0.0; N]);
+impl<const N: usize> PerSet<N> {
+    pub(crate) const ONE: PerSet<N> = PerSet([1.0; N]);
+    pub(crate) const ZERO: PerSet<N> = PerSet([0.0; N]);
 }
 
-impl<const N: usize> Add for Lanes<N> {
-    type Output = Lanes<N>;
+impl<const N: usize> Add for PerSet<N> {
+    type Output = PerSet<N>;
     #[inline(always)]
-    fn add(mut self, other: Lanes<N>) -> Lanes<N> {
+    fn add(mut self, other: PerSet<N>) -> PerSet<N> {
         for (x, y) in self.0.iter_mut().zip(other.0) {
             *x += y;
         }
@@ -197,10 +206,10 @@ impl<const N: usize> Add for Lanes<N> {
     }
 }
 
-impl<const N: usize> Mul<f32> for Lanes<N> {
-    type Output = Lanes<N>;
+impl<const N: usize> Mul<f32> for PerSet<N> {
+    type Output = PerSet<N>;
     #[inline(always)]
-    fn mul(mut self, factor: f32) -> Lanes<N> {
+    fn mul(mut self, factor: f32) -> PerSet<N> {
         for x in &mut self.0 {
             *x *= factor;
         }

@@ -89,14 +89,14 @@ impl Noisy {
             let plane = names.into_iter().find_map(|name| picture.channel(name));
             plane.map(|plane| plane[pixels.clone()].to_vec())
         };
-        let coverage = plane(["guide_coverage.A", "A"]);
+        let coverage = plane(["guides.A", "A"]);
         // Layers that are not meant as guides are second best: normals and depths do not know mixtures, and the albedo is
         // multiplied by alpha.
-        let normal = match rgb(["guide_normal.X", "guide_normal.Y", "guide_normal.Z"])? {
+        let normal = match rgb(["guides.X", "guides.Y", "guides.Z"])? {
             Some(normal) => Some(normal),
             None => rgb(["normal.X", "normal.Y", "normal.Z"])?,
         };
-        let mut albedo = rgb(["guide_albedo.R", "guide_albedo.G", "guide_albedo.B"])?;
+        let mut albedo = rgb(["guides.R", "guides.G", "guides.B"])?;
         if albedo.is_none() {
             albedo = rgb(["albedo.R", "albedo.G", "albedo.B"])?;
             if let (Some(albedo), Some(coverage)) = (&mut albedo, &coverage) {
@@ -110,7 +110,7 @@ impl Noisy {
             coverage,
             albedo,
             normal: normal.map(|plane| plane.into_iter().map(|n| n.to_array()).collect()),
-            depth: plane(["guide_depth.Z", "depth.Z"]),
+            depth: plane(["guides.depth", "depth.Z"]),
         };
         Ok(noisy.separated())
     }

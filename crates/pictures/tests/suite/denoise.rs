@@ -266,12 +266,12 @@ fn cut_out() -> (Picture, Vec<f32>) {
     picture.push_rgb("variance", &variances).unwrap();
     let covered = |value: f32| alpha.iter().map(|&a| if a > 0.0 { value } else { 0.0 }).collect::<Vec<f32>>();
     let albedo: Vec<Rgb> = covered(LIGHT).into_iter().map(Rgb::grey).collect();
-    picture.push_rgb("guide_albedo", &albedo).unwrap();
-    for (name, value) in [("guide_normal.X", 0.0), ("guide_normal.Y", 0.0), ("guide_normal.Z", 1.0)] {
+    picture.push_rgb("guides", &albedo).unwrap();
+    for (name, value) in [("guides.X", 0.0), ("guides.Y", 0.0), ("guides.Z", 1.0)] {
         picture.push_channel(name, covered(value)).unwrap();
     }
     let depth = alpha.iter().map(|&a| if a > 0.0 { 5.0 } else { f32::INFINITY }).collect();
-    picture.push_channel("guide_depth.Z", depth).unwrap();
+    picture.push_channel("guides.depth", depth).unwrap();
     (picture, alpha)
 }
 

@@ -5,10 +5,12 @@
 //! same light, bit for bit.
 
 use super::connect::{Connection, merged, to_light, to_vertex};
-use super::{CameraSubpath, Partial, Vertex, Walk, emitted, from_infinity, light_vertices, show_to_camera};
+use super::{
+    CameraSubpath, Partial, Vertex, Walk, connect_to_camera, emitted, from_infinity, light_vertices,
+};
 use crate::photons::Photons;
 use crate::task::Task;
-use crate::techniques::{Lanes, Step, Tally, Technique, TechniqueCounts};
+use crate::techniques::{PerSet, Step, Tally, Technique, TechniqueCounts};
 use bilux_scene::Ray;
 
 /// One subpath from each end, and all that they find.
@@ -16,34 +18,34 @@ pub struct BothEnds<'a, const N: usize = 1> {
     pub(super) techniques: TechniqueCounts<N>,
     photons: Option<&'a Photons<N>>,
     /// Its own light subpath is connected with the camera; false where those of the photons replace it.
-    pub(super) shows: bool,
+    pub(super) splats: bool,
     pub(super) roulette_depth: u32,
 }
 
 impl<'a, const N: usize> BothEnds<'a, N> {
     /// Without merging.
     pub(crate) fn new(techniques: TechniqueCounts<N>, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { techniques, photons: None, shows: techniques.splats != Lanes::ZERO, roulette_depth }
+        BothEnds { techniques, photons: None, splats: techniques.splats != PerSet::ZERO, roulette_depth }
     }
 
     /// With photons that camera subpaths are merged with.
-    pub(crate) fn merging(photons: &'a Photons<N>, shows: bool, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { techniques: *photons.techniques(), photons: Some(photons), shows, roulette_depth }
+    pub(crate) fn merging(photons: &'a Photons<N>, splats: bool, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { techniques: *photons.techniques(), photons: Some(photons), splats, roulette_depth }
     }
 
     /// The same where its own light subpath is connected with the camera, if the technique counts at all.
-    pub(crate) fn showing(self) -> BothEnds<'a, N> {
-        BothEnds { shows: self.techniques.splats != Lanes::ZERO, ..self }
+    pub(crate) fn splatting(self) -> BothEnds<'a, N> {
+        BothEnds { splats: self.techniques.splats != PerSet::ZERO, ..self }
     }
 
     /// Whether light subpaths are connected with camera subpaths.
-    pub(super) fn joins(&self) -> bool {
-        self.techniques.joins != Lanes::ZERO
+    pub(super) fn connects(&self) -> bool {
+        self.techniques.connections != PerSet::ZERO
     }
 
     /// Traces both subpaths; the one from the camera only where it `is_wanted`.
     pub(crate) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
-        let light_path = if !self.shows && !self.joins() {
+        let light_path = if !self.splats && !self.connects() {
             Vec::new()
         } else {
             let rays = task.tracer.counters.rays;
@@ -51,8 +53,8 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
             vertices
         };
-        if self.shows {
-            show_to_camera(task, &light_path, &self.techniques, tally);
+        if self.splats {
+            connect_to_camera(task, &light_path, &self.techniques, tally);
         }
         if is_wanted {
             self.follow(ray, &light_path, task, tally);
@@ -66,7 +68,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
     }
 
     fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>) {
-        let technique = Technique::Joined { s: 0, t: walk.count() };
+        let technique = Technique::Connected { s: 0, t: walk.count() };
         from_infinity(task, walk, |hit| tally.add_sample(technique, &hit.by(walk.seen(task), &walk.partial)));
     }
 
@@ -84,7 +86,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             walk.partial = z.partial;
         }
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
-            let (seen, technique) = (walk.seen(task), Technique::Joined { s: 0, t: z.count() });
+            let (seen, technique) = (walk.seen(task), Technique::Connected { s: 0, t: z.count() });
             let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
             tally.add_sample(technique, &found);
         }
@@ -113,13 +115,13 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
                 visit(task, Step::Picked, connection);
             }
         }
-        if is_delta || !self.joins() {
+        if is_delta || !self.connects() {
             return;
         }
         let max_depth = task.max_depth;
         for y in light_path.filter(|y| z.depth + y.depth + 2 <= max_depth) {
             let connection = to_vertex(task, z, y, &self.techniques);
-            visit(task, Step::Joined, connection);
+            visit(task, Step::Connected, connection);
         }
     }
 

@@ -6,7 +6,7 @@ use crate::media::Media;
 use crate::photons::Photons;
 use crate::shadow_rays::ShadowRays;
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, Technique, TechniqueCounts, favour};
+use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
 
@@ -35,9 +35,9 @@ impl<const N: usize> Connection<N> {
 
     /// Adds its ray to a list, with what it brings. Where no medium changes light, as `is_clear` says, none is stored.
     #[inline]
-    pub(super) fn list<T>(&self, shadow_rays: &mut ShadowRays<T>, is_clear: bool, brought: T) {
+    pub(super) fn list<T>(&self, shadow_rays: &mut ShadowRays<T>, is_clear: bool, contribution: T) {
         let media = (!is_clear).then_some((self.media, self.distance));
-        shadow_rays.push(self.ray, self.n, media, brought);
+        shadow_rays.push(self.ray, self.n, media, contribution);
     }
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn to_camera<const N: usize>(
     let light = task.seen(y.beta * scattered * seen.density, y.is_split());
     let found =
         Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) };
-    let technique = Technique::Joined { s: y.count(), t: 1 };
+    let technique = Technique::Connected { s: y.count(), t: 1 };
     let distance = seen.p.distance(y.surface.p);
     Some((seen.film, Connection { technique, found, ray, distance, n: Vec3::ZERO, media }))
 }
@@ -105,12 +105,12 @@ pub(crate) fn to_light<const N: usize>(
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.seen(light, z.is_split());
     let found = Contribution {
-        others: Lanes::ONE * ratio + from_light,
-        favour: favour(ratio),
+        others: PerSet::ONE * ratio + from_light,
+        power_factor: power_factor(ratio),
         origin: light_number(index),
         ..Contribution::only(light)
     };
-    let technique = Technique::Joined { s: 1, t: z.count() };
+    let technique = Technique::Connected { s: 1, t: z.count() };
     let ray = z.surface.spawn_to_light(&sample);
     Some(Connection { technique, found, ray, distance, n: sample.n_light, media })
 }
@@ -143,8 +143,9 @@ pub(crate) fn to_vertex<const N: usize>(
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
     let light = task.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
     let others = from_camera + from_light;
-    let found = Contribution { own: techniques.joins, others, origin: y.origin, ..Contribution::only(light) };
-    let technique = Technique::Joined { s: y.count(), t: z.count() };
+    let found =
+        Contribution { own: techniques.connections, others, origin: y.origin, ..Contribution::only(light) };
+    let technique = Technique::Connected { s: y.count(), t: z.count() };
     Some(Connection { technique, found, ray: spawn_between(z, y), distance: distance2.sqrt(), n, media })
 }
 
@@ -156,9 +157,9 @@ pub(crate) fn merged<const N: usize>(
     mut visit: impl FnMut(Technique, &Contribution<N>),
 ) {
     let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
-    photons.around(z.surface.p, |spot, y| {
+    photons.around(z.surface.p, |position, y| {
         // Merge only on the same surface, not with the other side of a sheet or around a corner.
-        if z.depth + spot.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + position.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };
@@ -166,11 +167,11 @@ pub(crate) fn merged<const N: usize>(
         // cosine to the shading normal. With the normal at `z`, a grazing photon from around a bend could have any
         // brightness.
         let cos = y.n_geom.dot(y.wo).abs();
-        let others = y.joined + y.d_vc * pdf + z.partial.before(back);
-        let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || spot.is_split());
-        let technique = Technique::Merged { s: count(spot.depth()), t: z.count() };
+        let others = y.connected + y.d_vc * pdf + z.partial.before(back);
+        let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || position.is_split());
+        let technique = Technique::Merged { s: count(position.depth()), t: z.count() };
         let own = photons.techniques().eta;
-        visit(technique, &Contribution { own, others, origin: spot.origin, ..Contribution::only(light) });
+        visit(technique, &Contribution { own, others, origin: position.origin, ..Contribution::only(light) });
     });
 }
 

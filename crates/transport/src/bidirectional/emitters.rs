@@ -3,7 +3,7 @@
 use super::{Partial, Walk};
 use crate::emission::light_number;
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, favour};
+use crate::techniques::{Contribution, PerSet, power_factor};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Surface;
 
@@ -33,8 +33,8 @@ impl EmitterHit {
     /// The contribution along a camera subpath with the throughput `beta`.
     pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
         let picked = partial.d_vcm * self.pdf_direct;
-        let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
-        Contribution { favour: favour(picked), others, ..self.alone(beta) }
+        let others = PerSet::ONE * picked + partial.d_vc * self.pdf_emission;
+        Contribution { power_factor: power_factor(picked), others, ..self.alone(beta) }
     }
 }
 

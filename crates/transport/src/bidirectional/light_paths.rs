@@ -59,7 +59,7 @@ fn goes_on<const N: usize>(
 }
 
 /// Connects every vertex of a light subpath with the camera.
-pub(crate) fn show_to_camera<const N: usize>(
+pub(crate) fn connect_to_camera<const N: usize>(
     task: &mut Task,
     light_path: &[Vertex<N>],
     techniques: &TechniqueCounts<N>,
@@ -213,7 +213,7 @@ impl<const N: usize> LightPaths<N> {
 
     /// Those of them that are connected with the camera.
     #[inline]
-    pub(super) fn shown(
+    pub(super) fn connectible(
         &self,
         sample: usize,
         techniques: &TechniqueCounts<N>,
@@ -221,9 +221,9 @@ impl<const N: usize> LightPaths<N> {
         self.of(sample).filter(|y| is_shown(y, techniques))
     }
 
-    /// Connects every vertex with the camera, as [`show_to_camera`] does. `add` receives the index of the sample, the
+    /// Connects every vertex with the camera, as [`connect_to_camera`] does. `add` receives the index of the sample, the
     /// point of the film, and what was found, in the order of the samples.
-    pub(crate) fn show_to_camera(
+    pub(crate) fn connect_to_camera(
         &mut self,
         samples: &[QueuedSample],
         task: &mut Task,
@@ -235,7 +235,7 @@ impl<const N: usize> LightPaths<N> {
         let is_clear = task.scene().has_clear_media();
         for (i, sample) in samples.iter().enumerate() {
             sample.enter(task);
-            for y in self.shown(i, techniques) {
+            for y in self.connectible(i, techniques) {
                 task.enter_light_vertex(y.depth);
                 let Some((film, connection)) = to_camera(task, y, techniques) else { continue };
                 let Connection { technique, found, .. } = connection;

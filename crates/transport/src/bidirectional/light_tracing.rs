@@ -73,7 +73,7 @@ impl SampleQueue for LightTracingSamples {
         add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
     ) -> Vec<Rgb> {
         self.light_paths.trace(samples, task, self.light_tracing.roulette_depth, &TECHNIQUES);
-        self.light_paths.show_to_camera(samples, task, &TECHNIQUES, |i, film, _, found| {
+        self.light_paths.connect_to_camera(samples, task, &TECHNIQUES, |i, film, _, found| {
             add_splat(i, film, found.light);
         });
         self.rays.clear();

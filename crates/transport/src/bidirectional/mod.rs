@@ -30,7 +30,7 @@ pub(crate) use camera_queue::CameraQueue;
 pub(crate) use camera_subpath::CameraSubpath;
 pub(crate) use connect::merged;
 pub(crate) use emitters::{emitted, from_infinity};
-pub(crate) use light_paths::{LightPaths, light_vertices, show_to_camera};
+pub(crate) use light_paths::{LightPaths, connect_to_camera, light_vertices};
 pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
 pub(crate) use partial::Partial;
 pub(crate) use queue::{BothEndsQueue, BothEndsSamples};

@@ -1,6 +1,6 @@
 //! What a subpath carries along for the weights of its techniques.
 
-use crate::techniques::{Lanes, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
@@ -8,50 +8,50 @@ pub(crate) struct Partial<const N: usize = 1> {
     /// dVCM: 1 over the density of the last step, times the density of connecting there instead.
     pub(crate) d_vcm: f32,
     /// dVCM times the number of techniques that connect there.
-    pub(crate) joined: Lanes<N>,
+    pub(crate) connected: PerSet<N>,
     /// The same, where the connection is one with the camera.
-    pub(crate) shown: Lanes<N>,
+    pub(crate) splatted: PerSet<N>,
     /// Light subpaths that merging here counts, times the area of merging.
-    pub(crate) merged: Lanes<N>,
+    pub(crate) merged: PerSet<N>,
     /// dVC: what connections and merging count together, summed over the steps before.
-    pub(crate) d_vc: Lanes<N>,
+    pub(crate) d_vc: PerSet<N>,
     /// The part of it that does not count if an emitter is hit next, since light subpaths leave direct light to others.
-    pub(crate) beyond: Lanes<N>,
+    pub(crate) except_direct: PerSet<N>,
 }
 
 impl<const N: usize> Partial<N> {
     /// The start of a camera subpath, before any surface.
     pub(crate) const START: Partial<N> = Partial {
         d_vcm: 0.0,
-        joined: Lanes::ZERO,
-        shown: Lanes::ZERO,
-        merged: Lanes::ZERO,
-        d_vc: Lanes::ZERO,
-        beyond: Lanes::ZERO,
+        connected: PerSet::ZERO,
+        splatted: PerSet::ZERO,
+        merged: PerSet::ZERO,
+        d_vc: PerSet::ZERO,
+        except_direct: PerSet::ZERO,
     };
 
     /// A light subpath that leaves its light under the cosine `cos`. `pdf_direct` does not yet know the point that
     /// would sample the light.
     pub(super) fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
-        Partial { d_vcm: pdf_direct / pdf_emission, d_vc: Lanes::ONE * d_vc, ..Partial::START }
+        Partial { d_vcm: pdf_direct / pdf_emission, d_vc: PerSet::ONE * d_vc, ..Partial::START }
     }
 
     /// A camera subpath at its first surface, given the density over area of hitting it there.
     pub(crate) fn of_camera(pdf_area: f32, techniques: &TechniqueCounts<N>) -> Partial<N> {
         let d_vcm = 1.0 / pdf_area;
-        Partial { d_vcm, shown: techniques.splats * d_vcm, merged: techniques.eta, ..Partial::START }
+        Partial { d_vcm, splatted: techniques.splats * d_vcm, merged: techniques.eta, ..Partial::START }
     }
 
-    /// Arrives at a surface from the distance √`distance2`, under the cosine `cos`, where `joins` techniques connect
+    /// Arrives at a surface from the distance √`distance2`, under the cosine `cos`, where `connections` techniques connect
     /// the last vertex with this one, and merging counts `merged`.
-    pub(super) fn arrive(&mut self, distance2: f32, cos: f32, joins: Lanes<N>, merged: Lanes<N>) {
+    pub(super) fn arrive(&mut self, distance2: f32, cos: f32, connections: PerSet<N>, merged: PerSet<N>) {
         self.d_vcm *= distance2 / cos;
-        self.joined = joins * self.d_vcm;
-        self.shown = Lanes::ZERO;
+        self.connected = connections * self.d_vcm;
+        self.splatted = PerSet::ZERO;
         self.merged = merged;
         self.d_vc = self.d_vc * (1.0 / cos);
-        self.beyond = self.beyond * (1.0 / cos);
+        self.except_direct = self.except_direct * (1.0 / cos);
     }
 
     /// Leaves under the cosine `cos`, with the forward and reverse densities; `None` for a delta event. `counts` is
@@ -60,17 +60,17 @@ impl<const N: usize> Partial<N> {
         match pdfs {
             None => {
                 self.d_vcm = 0.0;
-                self.d_vc = (self.d_vc + self.beyond) * cos;
-                self.beyond = Lanes::ZERO;
+                self.d_vc = (self.d_vc + self.except_direct) * cos;
+                self.except_direct = PerSet::ZERO;
             }
             Some((pdf, pdf_back)) => {
-                let here = (self.merged + self.shown) * (cos / pdf);
-                self.d_vc = ((self.d_vc + self.beyond) * pdf_back + self.joined) * (cos / pdf);
-                self.beyond = Lanes::ZERO;
+                let here = (self.merged + self.splatted) * (cos / pdf);
+                self.d_vc = ((self.d_vc + self.except_direct) * pdf_back + self.connected) * (cos / pdf);
+                self.except_direct = PerSet::ZERO;
                 if counts {
                     self.d_vc = self.d_vc + here;
                 } else {
-                    self.beyond = here;
+                    self.except_direct = here;
                 }
                 self.d_vcm = 1.0 / pdf;
             }
@@ -81,20 +81,20 @@ impl<const N: usize> Partial<N> {
     ///
     /// The other side would find this subpath's end with density `pdf_area`, and from there the vertex before it with
     /// `pdf_back`.
-    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> Lanes<N> {
+    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> PerSet<N> {
         (self.merged + self.before(pdf_back)) * pdf_area
     }
 
     /// The same where the vertex on the other side is on a light.
-    pub(crate) fn others_of_direct(&self, pdf_area: f32, pdf_back: f32, counts: bool) -> Lanes<N> {
+    pub(crate) fn others_of_direct(&self, pdf_area: f32, pdf_back: f32, counts: bool) -> PerSet<N> {
         if counts {
             return self.others(pdf_area, pdf_back);
         }
-        (self.joined + (self.d_vc + self.beyond) * pdf_back) * pdf_area
+        (self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
     }
 
     /// The same over the density of finding this vertex, without merging here.
-    pub(super) fn before(&self, pdf_back: f32) -> Lanes<N> {
-        self.joined + self.shown + (self.d_vc + self.beyond) * pdf_back
+    pub(super) fn before(&self, pdf_back: f32) -> PerSet<N> {
+        self.connected + self.splatted + (self.d_vc + self.except_direct) * pdf_back
     }
 }

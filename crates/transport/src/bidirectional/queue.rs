@@ -28,7 +28,7 @@ impl<const N: usize> BothEndsQueue<N> {
         add_splat: impl FnMut(usize, Vec2, Technique, &Contribution<N>),
     ) {
         let techniques = &both_ends.techniques;
-        if both_ends.shows || both_ends.joins() {
+        if both_ends.splats || both_ends.connects() {
             let rays = task.tracer.counters.rays;
             self.light_paths.trace(samples, task, both_ends.roulette_depth, techniques);
             // Who counts steps adds up those of all samples.
@@ -36,10 +36,10 @@ impl<const N: usize> BothEndsQueue<N> {
         } else {
             self.light_paths.clear(samples.len());
         }
-        if both_ends.shows {
-            self.light_paths.show_to_camera(samples, task, techniques, add_splat);
+        if both_ends.splats {
+            self.light_paths.connect_to_camera(samples, task, techniques, add_splat);
             for (i, tally) in tallies.iter_mut().enumerate() {
-                tally.spend(Step::Seen, self.light_paths.shown(i, techniques).count());
+                tally.spend(Step::Seen, self.light_paths.connectible(i, techniques).count());
             }
         }
         self.camera.follow(both_ends, samples, &self.light_paths, task, tallies);
@@ -81,7 +81,7 @@ mod tests {
     use crate::settings::RenderSettings;
     use crate::shapes::{ball, built, integrator, mixed, put, still_life};
     use crate::splats::IterationSplats;
-    use crate::techniques::{Lanes, TechniqueCounts};
+    use crate::techniques::{PerSet, TechniqueCounts};
     use crate::window::Window;
     use bilux_math::Vec3;
     use bilux_scene::{SceneBuilder, Spec, Tracer};
@@ -98,8 +98,9 @@ mod tests {
     }
 
     fn bits(found: &Contribution<N>, film: Vec2) -> Vec<u32> {
-        let Contribution { light, own, others, favour, origin } = *found;
-        let parts = [&light.to_array()[..], &own.0, &others.0, &[favour, f32::from(origin), film.x, film.y]];
+        let Contribution { light, own, others, power_factor, origin } = *found;
+        let parts =
+            [&light.to_array()[..], &own.0, &others.0, &[power_factor, f32::from(origin), film.x, film.y]];
         parts.concat().into_iter().map(f32::to_bits).collect()
     }
 
@@ -116,8 +117,8 @@ mod tests {
     }
 
     fn techniques(eta: f32, direct: bool) -> TechniqueCounts<N> {
-        let (splats, joins) = (Lanes([1.0, 0.25, 0.0]), Lanes([1.0, 0.0, 1.0]));
-        TechniqueCounts { splats, joins, eta: Lanes([eta, 0.0, 2.0 * eta]), direct }
+        let (splats, connections) = (PerSet([1.0, 0.25, 0.0]), PerSet([1.0, 0.0, 1.0]));
+        TechniqueCounts { splats, connections, eta: PerSet([eta, 0.0, 2.0 * eta]), direct }
     }
 
     /// Compares all contributions of all samples, and the steps of all together.

@@ -3,9 +3,9 @@
 use super::Partial;
 use crate::emission::Start;
 use crate::media::Media;
-use crate::photons::{Photon, Spot};
+use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, Task, VertexKind};
-use crate::techniques::{Lanes, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
@@ -40,10 +40,10 @@ impl<const N: usize> Vertex<N> {
     }
 
     /// The photon that is stored for merging.
-    pub(crate) fn photon(&self) -> (Spot, Photon<N>) {
-        let spot = Spot::new(self.surface.p, self.depth, self.came_split, self.origin);
+    pub(crate) fn photon(&self) -> (PhotonPosition, Photon<N>) {
+        let position = PhotonPosition::new(self.surface.p, self.depth, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
-        (spot, Photon { wo, n_geom, beta, joined: self.partial.joined, d_vc: self.partial.d_vc })
+        (position, Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc })
     }
 
     /// The media in which light travels on along `direction`.
@@ -155,10 +155,10 @@ impl<'w, const N: usize> Walk<'w, N> {
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
         // Light sampling connects the first surface of a light subpath with the light.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
-        let joins = if is_at_light { Lanes::ONE } else { self.techniques.joins };
-        let merged = if is_at_light && !self.techniques.direct { Lanes::ZERO } else { self.techniques.eta };
+        let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
+        let merged = if is_at_light && !self.techniques.direct { PerSet::ZERO } else { self.techniques.eta };
         let distance2 = distance2 * self.light_sampling_ratio(task.scene(), surface.p);
-        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins, merged);
+        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), connections, merged);
         self.by_area = false;
         let bsdf = media.bsdf(task.scene(), &surface, &task.wavelength);
         let (beta, partial, depth, origin) = (self.beta, self.partial, self.depth, self.origin);

@@ -35,7 +35,7 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 };
 
 /// Whether subpaths are connected with each other, and whether light subpaths are connected with the camera.
-pub(super) const JOINS: Parameter = switch("joins", "connect the vertices of the two subpaths");
+pub(super) const CONNECTIONS: Parameter = switch("connections", "connect the vertices of the two subpaths");
 pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to the camera");
 
 /// Whether light subpaths look for direct light as well.

@@ -9,7 +9,7 @@ use crate::bidirectional::{
 };
 use crate::photons::{Merging, Photons};
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, PixelSum, Tally, Technique, TechniqueCounts};
+use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::Ray;
@@ -78,7 +78,7 @@ impl CameraSubpath for PhotonGathering<'_> {
 
     /// Lights are seen directly, in mirrors too; photons bring the light that they give to other surfaces.
     fn escape(&self, walk: &Walk, task: &Task, tally: &mut impl Tally<1>) {
-        let technique = Technique::Joined { s: 0, t: walk.count() };
+        let technique = Technique::Connected { s: 0, t: walk.count() };
         from_infinity(task, walk, |hit| {
             tally.add_sample(technique, &hit.alone(walk.seen(task)));
         });
@@ -86,7 +86,7 @@ impl CameraSubpath for PhotonGathering<'_> {
 
     fn arrive(&self, walk: &mut Walk, z: &mut Vertex, task: &mut Task, tally: &mut impl Tally<1>) -> bool {
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
-            let technique = Technique::Joined { s: 0, t: z.count() };
+            let technique = Technique::Connected { s: 0, t: z.count() };
             tally.add_sample(technique, &hit.alone(walk.seen(task)));
         }
         task.sampler.enter(u64::from(z.depth) + 1);
@@ -98,7 +98,7 @@ impl CameraSubpath for PhotonGathering<'_> {
             && !z.bsdf.is_delta()
         {
             merged(task, photons, z, |technique, found| {
-                tally.add_sample(technique, &Contribution { others: Lanes::ZERO, ..*found });
+                tally.add_sample(technique, &Contribution { others: PerSet::ZERO, ..*found });
             });
         }
     }

@@ -8,7 +8,7 @@ use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
 use crate::photons::{Merging, Photons};
 use crate::task::Task;
-use crate::techniques::{Lanes, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;
@@ -24,7 +24,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             super::merging::radius(0.0),
             super::merging::ALPHA,
             super::merging::LIGHT_PATHS,
-            super::merging::JOINS,
+            super::merging::CONNECTIONS,
             super::merging::SPLATS,
             super::merging::DIRECT,
         ],
@@ -35,7 +35,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     build: |reader| {
         let techniques = TechniqueCounts {
             direct: reader.bool("direct"),
-            ..TechniqueCounts::with_splats_and_joins(reader.bool("splats"), reader.bool("joins"))
+            ..TechniqueCounts::with_splats_and_connections(reader.bool("splats"), reader.bool("connections"))
         };
         Ok(Box::new(Vcm { merging: super::merging::read(reader, techniques), guide: None }))
     },
@@ -61,7 +61,7 @@ impl PixelIntegrator for Vcm {
 impl LightSubpaths for Vcm {
     fn splats(&self) -> bool {
         // Where photons are connected with the camera, that happens before the camera subpaths are traced.
-        self.merging.techniques.begins_at_lights() && !self.merging.shows_photons()
+        self.merging.techniques.begins_at_lights() && !self.merging.splats_photons()
     }
 
     fn merging(&self) -> Option<&Merging> {
@@ -73,9 +73,9 @@ impl LightSubpaths for Vcm {
     }
 
     fn both_ends<'a>(&self, photons: Option<&'a Photons>) -> Option<BothEnds<'a>> {
-        let shows = !self.merging.shows_photons() && self.merging.techniques.splats != Lanes::ZERO;
+        let splats = !self.merging.splats_photons() && self.merging.techniques.splats != PerSet::ZERO;
         Some(match photons {
-            Some(photons) => BothEnds::merging(photons, shows, self.merging.roulette_depth),
+            Some(photons) => BothEnds::merging(photons, splats, self.merging.roulette_depth),
             None => self.unmerged(),
         })
     }

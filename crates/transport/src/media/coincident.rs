@@ -30,8 +30,8 @@ impl Coincident {
         if !scene.has_nested() || !is_nested(surface.object) {
             return found;
         }
-        let reach = PART_OF_ERROR * surface.n_geom.abs().dot(surface.p_error);
-        let reach = reach / surface.n_geom.dot(direction).abs();
+        let near = PART_OF_ERROR * surface.n_geom.abs().dot(surface.p_error);
+        let reach = near / surface.n_geom.dot(direction).abs();
         let around = Ray { t_min: surface.t, t_max: (surface.t + reach).min(ray.t_max), ..*ray };
         let mut hits = Vec::new();
         tracer.visit_all(&around, |hit| {
@@ -44,7 +44,9 @@ impl Coincident {
             let other = tracer.surface(ray, &hit);
             let is_known = found.others.iter().any(|known| known.object == other.object);
             let is_parallel = other.n_geom.dot(surface.n_geom).abs() >= PARALLEL;
-            if is_parallel && !is_known && found.others.len() < MAX_COINCIDENT {
+            // A grazing ray reaches far.
+            let is_near = surface.n_geom.dot(other.p - surface.p).abs() <= near + other.p_error.max_element();
+            if is_parallel && is_near && !is_known && found.others.len() < MAX_COINCIDENT {
                 found.t = found.t.max(other.t);
                 found.others.push(other);
             }

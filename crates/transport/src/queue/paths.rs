@@ -21,7 +21,7 @@ pub(super) struct QueuedPath {
 }
 
 impl QueuedPath {
-    /// Starts an event: no connection has brought anything yet.
+    /// Starts an event: no connection has contribution anything yet.
     #[inline]
     pub(super) fn begin_event(&mut self, task: &mut Task) {
         task.wavelength = self.wavelength;
@@ -100,8 +100,8 @@ impl Paths {
     /// before it is weighted by the throughput, as in a single path.
     pub(super) fn add_direct_light(&mut self, task: &mut Task) {
         for list in &mut self.connections.lists {
-            list.trace(task, |brought, passed| {
-                self.paths[brought.path as usize].direct += brought.light * passed;
+            list.trace(task, |contribution, passed| {
+                self.paths[contribution.path as usize].direct += contribution.light * passed;
             });
         }
         for &index in &self.shaded {

@@ -199,19 +199,19 @@ impl Paths {
     ) {
         let is_clear = scene.has_clear_media();
         for (i, &light) in picked.iter().enumerate().take(v.count) {
-            let brought = rgb(&v.shadow.light, i);
-            if brought.is_black() || v.paths[i] == NO_PATH {
+            let contribution = rgb(&v.shadow.light, i);
+            if contribution.is_black() || v.paths[i] == NO_PATH {
                 continue;
             }
             let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
-            let brought = Unoccluded { path: v.paths[i], light: brought };
+            let contribution = Unoccluded { path: v.paths[i], light: contribution };
             let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
             let media = (!is_clear).then(|| {
                 let walk = &self.paths[v.paths[i] as usize].walk;
                 (media(walk, i, vec3(&v.light.wi, i)), v.distance(i))
             });
             let n_light = vec3(&v.light.n_light, i);
-            self.connections.with(light).push(ray, n_light, media, brought);
+            self.connections.with(light).push(ray, n_light, media, contribution);
         }
     }
 }
@@ -251,9 +251,9 @@ impl Stage for Weigh<'_> {
             let light_pdf = light.pdf.0[i];
             let weighted = power_heuristic(light_pdf, pdf.0[i]);
             let weight = if light.is_delta.0[i] != 0.0 { 1.0 } else { weighted };
-            let brought = rgb(scattered, i) * rgb(&light.li, i) * (weight / light_pdf);
+            let contribution = rgb(scattered, i) * rgb(&light.li, i) * (weight / light_pdf);
             let of = |c: f32| if light_pdf > 0.0 { c } else { 0.0 };
-            put(&mut shadow.light, i, [of(brought.r), of(brought.g), of(brought.b)]);
+            put(&mut shadow.light, i, [of(contribution.r), of(contribution.g), of(contribution.b)]);
         }
         for i in 0..LANES {
             let (from, towards) = (vec3(p, i), vec3(&light.towards, i));

@@ -33,7 +33,7 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
 /// too: each light subpath has a time of its own.
 #[test]
 fn a_lamp_that_moves_lights_both_sides_of_its_way() {
-    let scene = common::moving().build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    let scene = crate::common::moving().build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
     for name in ["path", "light", "bdpt", "vcm", "sppm"] {
         let settings = RenderSettings::new(32, 32, 1);
         let film = shoot(&scene, &*integrator(name), &settings).film;
@@ -422,12 +422,12 @@ fn merging_agrees_with_path() {
     ));
     let path = blocks(&scene, &*integrator("path"), 0);
     let spec = |name: &str| Spec::new("", name).with("radius", 0.01f32);
-    let unjoined = spec("vcm").with("joins", false);
+    let unconnected = spec("vcm").with("connections", false);
     // Light subpaths for only a part of the pixels, connected with the camera on behalf of all.
-    let few = unjoined.clone().with("light_paths", bilux_scene::Value::Integer(90));
+    let few = unconnected.clone().with("light_paths", bilux_scene::Value::Integer(90));
     let unshown = spec("vcm").with("splats", false);
-    let alone = unjoined.clone().with("splats", false);
-    let switched = [unjoined, unshown, alone];
+    let alone = unconnected.clone().with("splats", false);
+    let switched = [unconnected, unshown, alone];
     let indirect = switched.clone().map(|spec| spec.with("direct", false));
     let all = [spec("vcm"), spec("vcm").with("direct", false), spec("sppm"), few];
     for (i, spec) in all.iter().chain(&switched).chain(&indirect).enumerate() {
@@ -499,8 +499,9 @@ fn a_technique_with_a_wrong_weight_is_detected() {
 #[test]
 fn a_crop_and_a_range_of_samples_show_the_same_splats() {
     let scene = built(&mixed());
-    let unjoined = Spec::new("", "vcm").with("joins", false);
-    for spec in ["light", "bdpt", "vcm", "auto"].map(|name| Spec::new("", name)).iter().chain([&unjoined]) {
+    let unconnected = Spec::new("", "vcm").with("connections", false);
+    for spec in ["light", "bdpt", "vcm", "auto"].map(|name| Spec::new("", name)).iter().chain([&unconnected])
+    {
         let (name, integrator) = (&spec.kind, integrators::build(spec).unwrap());
         let whole = RenderSettings { threads: 2, ..RenderSettings::new(20, 18, 6) };
         let film = shoot(&scene, &*integrator, &whole).film;

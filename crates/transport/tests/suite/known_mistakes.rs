@@ -129,7 +129,7 @@ fn emissive_meshes_look_the_same_from_both_ends() {
 
 /// SORT #5: the sky is missing where subpaths are connected.
 #[test]
-fn the_sky_is_found_by_joins_and_light_paths_too() {
+fn the_sky_is_found_by_connections_and_light_paths_too() {
     let mut builder = without_mirrors(Spec::new("", "environment").with("zenith", 1.0f32));
     let path = blocks(&built(&builder), &*integrator("path"), 0);
     for (i, name) in ["light", "bdpt", "vcm"].into_iter().enumerate() {

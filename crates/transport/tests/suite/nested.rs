@@ -123,7 +123,9 @@ fn coincident_faces_are_one_surface() {
         let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
         let fresnel = |a: f32, b: f32| ((a - b) / (a + b)) * ((a - b) / (a + b));
         let (at_glass, at_air) = (fresnel(WATER.0, GLASS.0), fresnel(GLASS.0, 1.0));
-        let down = (1.0 - at_glass) * (1.0 - at_air) * exp(-WATER.1 * 0.3 - GLASS.1 * 0.6);
+        // Radiance in water is n² times that in air.
+        let down =
+            WATER.0 * WATER.0 * (1.0 - at_glass) * (1.0 - at_air) * exp(-WATER.1 * 0.3 - GLASS.1 * 0.6);
         assert!((found / down - 1.0).abs() < 0.03, "{order:?}: {found}, not {down}");
     }
     // Without the water between them, which is what a lost face makes of it.

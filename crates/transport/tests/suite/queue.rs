@@ -123,7 +123,7 @@ fn every_kind_of_surface_and_light_is_the_same() {
 /// Each sample has a time of its own, at which its light subpath begins too.
 #[test]
 fn what_moves_while_the_shutter_is_open_is_the_same() {
-    let scene = common::moving().build(&AccelChoice::default(), [0.0, 1.0], 1.0).unwrap();
+    let scene = crate::common::moving().build(&AccelChoice::default(), [0.0, 1.0], 1.0).unwrap();
     assert_same("moving", &scene);
 }
 

@@ -146,7 +146,7 @@ fn light_paths_of_a_part_of_the_pixels_are_weighted_as_in_the_picture() {
     // There the photons are connected with the camera; here every pixel has a light subpath of its own.
     let scene = built(&diffuse_scene());
     let vcm = Spec::new("", "vcm")
-        .with("joins", false)
+        .with("connections", false)
         .with("light_paths", Value::Integer(90))
         .with("radius", 0.02f32);
     let settings = |seed| RenderSettings { max_depth: 5, seed, ..RenderSettings::new(16, 16, 32) };

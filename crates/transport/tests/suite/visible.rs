@@ -1,6 +1,6 @@
 //! What compositors are told of visible surfaces, where it is known without rendering.
 
-use crate::common::{self, ball, built, diffuse, floor, integrator, look, put, quad, still_life};
+use crate::common::{ball, built, diffuse, floor, integrator, look, put, quad, still_life};
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::tan;
 use bilux_math::{Quat, Vec2, Vec3};
@@ -64,7 +64,7 @@ fn a_moving_camera_moves_everything() {
 /// The same camera a second later, higher by 0.2 m: a point of the floor moves down by what the projection says.
 #[test]
 fn motion_counts_where_the_camera_is_at_either_time() {
-    let scene = common::moving().build(&Default::default(), [0.0, 0.5], 1.0).unwrap();
+    let scene = crate::common::moving().build(&Default::default(), [0.0, 0.5], 1.0).unwrap();
     let camera = &*scene.cameras()[0].1;
     let settings = RenderSettings::new(40, 40, 1);
     let moment = Moment { scene: &scene, camera, time: 1.0 };

@@ -17,7 +17,7 @@ use crate::integrators;
 use crate::settings::RenderSettings;
 use crate::shapes;
 use crate::task::Task;
-use crate::techniques::{Contribution, Lanes, TechniqueCounts};
+use crate::techniques::{Contribution, PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Scene, SceneBuilder, Spec, Texture, Tracer, Value};
@@ -135,12 +135,12 @@ fn cameras() -> [Spec; 3] {
 
 /// Without merging, with it, and with it but without connections or without splats.
 fn sets() -> [TechniqueCounts; 4] {
-    let eta = Lanes([300.0]);
+    let eta = PerSet([300.0]);
     [
         TechniqueCounts::BOTH_ENDS,
         TechniqueCounts { eta, ..TechniqueCounts::BOTH_ENDS },
-        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_joins(true, false) },
-        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_joins(false, true) },
+        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_connections(true, false) },
+        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_connections(false, true) },
     ]
 }
 

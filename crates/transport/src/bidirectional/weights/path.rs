@@ -62,8 +62,8 @@ impl Path {
     ) -> Vec<((bool, usize), f64)> {
         let count = self.nodes.len();
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
-        let [splats, joins, eta] =
-            [techniques.splats, techniques.joins, techniques.eta].map(|lanes| f64::from(lanes.0[0]));
+        let [splats, connections, eta] =
+            [techniques.splats, techniques.connections, techniques.eta].map(|counts| f64::from(counts.0[0]));
         // Light subpaths may leave direct light to camera subpaths.
         let leaves_direct = !techniques.direct && flaw != Flaw::Direct;
         // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
@@ -78,7 +78,7 @@ impl Path {
                 (1, _) => 1.0,
                 (2, 1) if leaves_direct => 0.0,
                 (_, 1) => splats,
-                _ => joins,
+                _ => connections,
             };
             if s == 0 || (is_open(s - 1) && is_open(s)) {
                 all.push(((false, s), copies * light[s] * camera[t]));

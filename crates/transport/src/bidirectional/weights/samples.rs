@@ -6,7 +6,7 @@ use crate::bidirectional::connect::{to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
 use crate::photons::Photons;
-use crate::photons::{Photon, Spot};
+use crate::photons::{Photon, PhotonPosition};
 use crate::task::Task;
 use crate::techniques::*;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -31,7 +31,7 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     seen_by_camera(task, verdict, start, &y);
     hit_emitters(task, verdict, &z);
     sampled_lights(task, verdict, &z);
-    joined(task, verdict, start, (&y, &z));
+    connected(task, verdict, start, (&y, &z));
 }
 
 fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
@@ -95,7 +95,7 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
 }
 
 /// Connects all ends; and, as if each light vertex lay at each camera vertex, merges them.
-fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
+fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
     let techniques = &{ verdict.techniques };
     let open = |subpath: &Subpath| {
         (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].bsdf.is_delta()).collect::<Vec<_>>()
@@ -110,7 +110,7 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
         let path = Path { start, nodes, camera_density: z.camera_density };
         verdict.look(task, &found, (false, b + 2), &path);
     }
-    if techniques.eta == Lanes::ZERO {
+    if techniques.eta == PerSet::ZERO {
         return;
     }
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
@@ -119,7 +119,7 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
             continue;
         }
         let (spot, photon) = light_end.photon();
-        let spot = Spot { p: camera_end.surface.p, ..spot };
+        let spot = PhotonPosition { p: camera_end.surface.p, ..spot };
         let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
         let photons = Photons::new(vec![(spot, photon)], 1.0, *techniques);
         // One vertex replaces both: it scatters as it does at the camera's end.

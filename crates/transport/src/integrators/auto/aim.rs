@@ -13,7 +13,7 @@ use super::sets::DARK;
 use crate::emission::Guide;
 use crate::photons::Merging;
 use crate::sampler::PixelSampler;
-use crate::techniques::{Contribution, Lanes, LightPathVisitor, Tally, Technique, TechniqueCounts};
+use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
 use bilux_scene::Counters;
 use rayon::prelude::*;
@@ -29,17 +29,17 @@ const STARTS: u32 = 1 << 16;
 /// and what other techniques contribute stays.
 const WORTH_AIMING: f64 = 2.0;
 
-/// One lane for the techniques of the round itself, one for those that light subpaths are aimed for, and one for the
+/// One set for the techniques of the round itself, one for those that light subpaths are aimed for, and one for the
 /// latter without merging.
-const LANES: usize = 3;
+const SET_COUNT: usize = 3;
 
-/// All lanes, given η of the round's photons and of the film's, and the number of light subpaths that are connected
+/// All sets, given η of the round's photons and of the film's, and the number of light subpaths that are connected
 /// with the camera for each sample of the round.
-fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<LANES> {
+fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<SET_COUNT> {
     TechniqueCounts {
-        splats: Lanes([shown, 1.0, 1.0]),
-        joins: Lanes::ZERO,
-        eta: Lanes([own, film, 0.0]),
+        splats: PerSet([shown, 1.0, 1.0]),
+        connections: PerSet::ZERO,
+        eta: PerSet([own, film, 0.0]),
         direct,
     }
 }
@@ -47,28 +47,28 @@ fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<
 /// Learns from a round whose light subpaths are not aimed. `eta` is that of the film's photons, of which `near` are
 /// merged with a vertex that the camera sees.
 pub(super) fn learn(
-    turn: PilotRound,
+    round: PilotRound,
     merging: &Merging,
     (eta, near): (f32, f64),
 ) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
-    let Some(untrained) = Guide::untrained(turn.eye.scene) else { return (None, counters) };
-    let turn = turn.guided(&Some(Arc::new(untrained.clone())));
-    let grid = Grid::of(turn.eye.settings);
+    let Some(untrained) = Guide::untrained(round.eye.scene) else { return (None, counters) };
+    let round = round.guided(&Some(Arc::new(untrained.clone())));
+    let grid = Grid::of(round.eye.settings);
     let tiles = grid.tiles();
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
-    let shown = turn.light.settings.width as f32 / pixels;
-    let lanes = |own| techniques(own, eta, shown, merging.techniques.direct);
+    let shown = round.light.settings.width as f32 / pixels;
+    let all_sets = |own| techniques(own, eta, shown, merging.techniques.direct);
     let mut lessons = GuideStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
     let mut halves = Vec::new();
     for iteration in 0..SAMPLES {
-        let wall = Wall::default();
-        let (here, rays) = sample_all::<LANES, Contributions, Wall>(
-            &turn,
+        let by_tile = ContributionsByTile::default();
+        let (here, rays) = sample_all::<SET_COUNT, Contributions, ContributionsByTile>(
+            &round,
             merging,
-            &lanes,
+            &all_sets,
             (&grid, &tiles, iteration),
-            Some(&wall),
+            Some(&by_tile),
         );
         counters += rays;
         for (index, finds) in here.into_iter().enumerate() {
@@ -78,7 +78,7 @@ pub(super) fn learn(
                 lessons.finds.extend(finds.here.iter().map(|&(cell, square)| (index as u32, cell, square)));
             }
         }
-        for seen in wall.in_order().into_iter().flat_map(|finds| finds.there) {
+        for seen in by_tile.in_order().into_iter().flat_map(|finds| finds.there) {
             let Some(index) = grid.tile_at(seen.film) else { continue };
             let share = 1.0 / (tiles[index].pixels() as f64 * f64::from(SAMPLES));
             lessons.means[index] += seen.light * share;
@@ -86,7 +86,7 @@ pub(super) fn learn(
         }
         halves.push(lessons.finds.len());
     }
-    let starts = starts(&turn, untrained.cells());
+    let starts = starts(&round, untrained.cells());
     let middle = halves[halves.len() / 2 - 1];
     let parts = [0..middle, middle..lessons.finds.len()].map(|part| lessons.squares(part, starts.len()));
     let gains = [0, 1].map(|i| untrained.gain(&starts, &parts[i], &parts[1 - i]));
@@ -103,12 +103,12 @@ fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
 }
 
 /// How often an unaimed light subpath begins in each cell.
-fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
-    let (scene, seed) = (turn.eye.scene, turn.eye.settings.seed);
+fn starts(round: &PilotRound, cells: usize) -> Vec<f64> {
+    let (scene, seed) = (round.eye.scene, round.eye.settings.seed);
     let cell = |i| {
         let mut sampler = PixelSampler::new(seed, i, 0, 0);
         let (u_light, u) = (sampler.next_1d(), (sampler.next_2d(), sampler.next_2d()));
-        Some(turn.eye.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
+        Some(round.eye.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
     };
     let begun: Vec<Option<u16>> = (0..STARTS).into_par_iter().map(cell).collect();
     let mut counts = vec![0.0; cells];
@@ -168,18 +168,18 @@ struct VisibleContribution {
     light: f64,
 }
 
-/// The light as weighted by the round's techniques, and the square of what the techniques of another lane would find,
+/// The light as weighted by the round's techniques, and the square of what the techniques of another set would find,
 /// times how often they would.
-fn square(found: &Contribution<LANES>, lane: usize) -> Option<(f64, f64)> {
+fn square(found: &Contribution<SET_COUNT>, set: usize) -> Option<(f64, f64)> {
     let all = found.own + found.others;
-    let light = |lane: usize| f64::from(found.light.luminance() * found.favour) / f64::from(all.0[lane]);
-    let often = f64::from(found.own.0[lane]) / f64::from(found.own.0[0]);
-    let square = if often > 0.0 { often * light(lane) * light(lane) } else { 0.0 };
+    let light = |set: usize| f64::from(found.light.luminance() * found.power_factor) / f64::from(all.0[set]);
+    let often = f64::from(found.own.0[set]) / f64::from(found.own.0[0]);
+    let square = if often > 0.0 { often * light(set) * light(set) } else { 0.0 };
     (light(0).is_finite() && square.is_finite()).then_some((light(0), square))
 }
 
-impl Tally<LANES> for Contributions {
-    fn add_sample(&mut self, technique: Technique, found: &Contribution<LANES>) {
+impl Tally<SET_COUNT> for Contributions {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution<SET_COUNT>) {
         let Some((light, square)) = square(found, 1) else { return };
         self.light += light;
         if matches!(technique, Technique::Merged { .. }) {
@@ -187,7 +187,7 @@ impl Tally<LANES> for Contributions {
         }
     }
 
-    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<LANES>) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<SET_COUNT>) {
         if let Some((light, square)) = square(found, 2) {
             self.there.push(VisibleContribution { film, cell: found.origin, square, light });
         }
@@ -196,9 +196,9 @@ impl Tally<LANES> for Contributions {
 
 /// Collects the splats of light subpaths.
 #[derive(Default)]
-struct Wall(Mutex<Vec<(usize, Contributions)>>);
+struct ContributionsByTile(Mutex<Vec<(usize, Contributions)>>);
 
-impl LightPathVisitor<LANES> for Wall {
+impl LightPathVisitor<SET_COUNT> for ContributionsByTile {
     type Tally = Contributions;
 
     fn tally(&self) -> Contributions {
@@ -210,7 +210,7 @@ impl LightPathVisitor<LANES> for Wall {
     }
 }
 
-impl Wall {
+impl ContributionsByTile {
     /// In the order of one thread.
     fn in_order(self) -> Vec<Contributions> {
         let mut all = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);

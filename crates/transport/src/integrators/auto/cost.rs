@@ -51,23 +51,23 @@ impl Steps {
     /// Nanoseconds of a sample with the techniques of a set, which merges with η.
     pub(super) fn nanoseconds(&self, set: &Set, eta: f32) -> f64 {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
-        let Set { sees, joins, photons, .. } = *set;
+        let Set { sees, connections, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
-        if !sees && !joins && !merges {
+        if !sees && !connections && !merges {
             let mean = |[any, columns]: [f64; 2]| any + (columns - any) * self.in_columns;
             return of(Step::Camera, mean(CAMERA_IN_QUEUE)) + of(Step::Picked, mean(PICKED_IN_QUEUE));
         }
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
         // Photons serve as splats without further work; connections cannot use them, so light subpaths are traced
         // again.
-        if joins || (sees && !merges) {
+        if connections || (sees && !merges) {
             sum += of(Step::Light, LIGHT);
         }
         if sees {
-            sum += of(Step::Seen, SEEN) * if joins || !merges { 1.0 } else { photons };
+            sum += of(Step::Seen, SEEN) * if connections || !merges { 1.0 } else { photons };
         }
-        if joins {
-            sum += of(Step::Joined, JOINED);
+        if connections {
+            sum += of(Step::Connected, JOINED);
         }
         if merges {
             sum += of(Step::Light, PHOTON) * photons + of(Step::Lookup, LOOKUP);

@@ -128,15 +128,15 @@ impl PixelIntegrator for Auto {
 impl Chooser for Auto {
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Plan {
         let settings = pilot::settings(film);
-        let least = |turn| if turn == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
-        let sources = [0, 1, 2].map(|turn| pilot::photon_settings(film, &settings[turn], least(turn)));
+        let least = |round| if round == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
+        let sources = [0, 1, 2].map(|round| pilot::photon_settings(film, &settings[round], least(round)));
         let eye = |settings| CameraRays::new(scene, camera, self, settings).merging();
-        let turn = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
+        let round = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
         // A point on each of few lights is always sampled; of many, photons find the nearest by themselves.
         merging.techniques.direct = !LightChoice::new(scene).takes_all();
         if merging.radius == 0.0 {
-            let pixel = pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
+            let pixel = pilot::pixel_radius(&round(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
         }
         let light_paths =
@@ -146,17 +146,17 @@ impl Chooser for Auto {
         let mut counters = Counters::default();
         let mut guide = None;
         if self.aims {
-            let (learned, rays) = aim::learn(turn(0), &merging, (eta, NEAR));
+            let (learned, rays) = aim::learn(round(0), &merging, (eta, NEAR));
             counters += rays;
             guide = learned.map(Arc::new);
         }
-        let lanes = |own: f32| {
+        let all_sets = |own: f32| {
             let all = std::iter::once(merging.techniques(own, 1.0)).chain(SETS.iter().map(techniques));
             TechniqueCounts::pack(all)
         };
-        let turns: Vec<PilotRound> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
-        let mut seen = pilot::look(&turns, &merging, lanes);
-        seen.steps.in_columns = pilot::share_in_columns(&turns[0].eye, film);
+        let rounds: Vec<PilotRound> = (1..settings.len()).map(|i| round(i).guided(&guide)).collect();
+        let mut seen = pilot::look(&rounds, &merging, all_sets);
+        seen.steps.in_columns = pilot::share_in_columns(&rounds[0].eye, film);
         counters += seen.counters;
         let candidates: Vec<Candidate> = SETS
             .iter()
@@ -190,7 +190,7 @@ impl Auto {
     }
 
     fn made_of(&self, set: &Set, merging: Merging, guide: Option<Arc<Guide>>) -> Box<dyn PixelIntegrator> {
-        if !set.sees && !set.joins && !set.merges() {
+        if !set.sees && !set.connections && !set.merges() {
             return Box::new(Path::new(self.merging.roulette_depth));
         }
         Box::new(Vcm { merging: set.merging(merging), guide })

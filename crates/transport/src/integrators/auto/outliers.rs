@@ -61,12 +61,12 @@ pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::contributions::Contributions;
-    use super::super::sets::LANES;
+    use super::super::sets::SET_COUNT;
     use super::*;
 
     /// 100 blocks of light 1 with variance 0.5, one of which has a part of its light in rare contributions.
     fn film(part: f64, found: f64) -> Vec<Block> {
-        let mut blocks = vec![Block { mean: 1.0, variance: [0.5; LANES], ..Block::default() }; 100];
+        let mut blocks = vec![Block { mean: 1.0, variance: [0.5; SET_COUNT], ..Block::default() }; 100];
         blocks[7].finds[2].add(part, found);
         blocks
     }

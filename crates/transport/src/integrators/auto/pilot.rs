@@ -7,7 +7,7 @@
 
 use super::contributions::Contributions;
 use super::cost::Steps;
-use super::sets::LANES;
+use super::sets::SET_COUNT;
 use crate::bidirectional::{BothEnds, BothEndsQueue, QueuedSample};
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
@@ -26,8 +26,7 @@ use std::sync::Arc;
 /// where light subpaths should be aimed.
 pub(super) const TURNS: u64 = 2;
 
-/// Samples per pixel in a round: enough to show the gain of their even distribution, which is large for some techniques
-/// and small for others.
+/// Samples per pixel in a round: enough to show the gain of their even distribution, which differs between techniques.
 pub(super) const SAMPLES: u32 = 8;
 
 /// Side of a block of pixels that is evaluated as a whole.
@@ -52,12 +51,12 @@ const LIGHT_PART: u64 = 8;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) mean: f64,
-    /// Expected variance of a pixel, times its samples, for each lane: without the second moment of `finds`.
-    pub(super) variance: [f64; LANES],
-    /// What single techniques of each lane are expected to find.
-    pub(super) finds: [Contributions; LANES],
-    /// What the techniques of a lane cannot find at all.
-    pub(super) lost: [f64; LANES],
+    /// Expected variance of a pixel, times its samples, for each set: without the second moment of `finds`.
+    pub(super) variance: [f64; SET_COUNT],
+    /// What single techniques of each set are expected to find.
+    pub(super) finds: [Contributions; SET_COUNT],
+    /// What the techniques of a set cannot find at all.
+    pub(super) lost: [f64; SET_COUNT],
 }
 
 /// The results of a pilot.
@@ -71,12 +70,12 @@ pub(super) struct Pilot {
 /// The settings of a film's pilot rounds. They depend neither on the number of samples nor on the crop, so that all
 /// parts of a picture are rendered in the same way.
 pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + TURNS as usize] {
-    [0, 1, 2].map(|turn| RenderSettings {
+    [0, 1, 2].map(|round| RenderSettings {
         spp: SAMPLES,
         samples: 0..SAMPLES,
         crop: None,
         // No sample of the picture may be one that decided how to render it.
-        seed: hash_words([film.seed, 0x7069_6c6f_7421 + turn]),
+        seed: hash_words([film.seed, 0x7069_6c6f_7421 + round]),
         ..film.clone()
     })
 }
@@ -140,10 +139,10 @@ pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
 }
 
 /// The settings of the pilot's photons: the light subpaths of a film of its own, `least` or more.
-pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings, least: u64) -> RenderSettings {
+pub(super) fn photon_settings(film: &RenderSettings, round: &RenderSettings, least: u64) -> RenderSettings {
     let pixels = u64::from(film.width) * u64::from(film.height);
     let wanted = (pixels / LIGHT_PART).clamp(least, MAX_LIGHT_PATHS.max(least));
-    RenderSettings { width: wanted as u32, height: 1, ..turn.clone() }
+    RenderSettings { width: wanted as u32, height: 1, ..round.clone() }
 }
 
 /// The radius of a disc as large as a pixel's footprint on the first surface there, in metres: the median over the
@@ -180,13 +179,13 @@ impl PilotRound<'_> {
     }
 }
 
-/// Runs the pilot. `techniques` gives all lanes, given the η of the pilot's own photons.
+/// Runs the pilot. `techniques` gives all sets, given the η of the pilot's own photons.
 pub(super) fn look(
-    turns: &[PilotRound],
+    rounds: &[PilotRound],
     merging: &Merging,
-    techniques: impl Fn(f32) -> TechniqueCounts<LANES> + Sync,
+    techniques: impl Fn(f32) -> TechniqueCounts<SET_COUNT> + Sync,
 ) -> Pilot {
-    let grid = Grid::of(turns[0].eye.settings);
+    let grid = Grid::of(rounds[0].eye.settings);
     let tiles = grid.tiles();
     let mut pilot = Pilot {
         blocks: vec![Block::default(); tiles.len()],
@@ -194,14 +193,14 @@ pub(super) fn look(
         counters: Counters::default(),
     };
     let pixels = tiles.iter().map(Window::pixels).sum::<usize>();
-    let sums = |turn: &PilotRound, pilot: &mut Pilot| -> Vec<Vec<[f64; LANES]>> {
-        let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; LANES]; tile.pixels()]).collect();
+    let sums = |round: &PilotRound, pilot: &mut Pilot| -> Vec<Vec<[f64; SET_COUNT]>> {
+        let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; SET_COUNT]; tile.pixels()]).collect();
         for iteration in 0..SAMPLES {
-            one_sample(turn, merging, &techniques, (&grid, &tiles, iteration), pilot, &mut sums);
+            one_sample(round, merging, &techniques, (&grid, &tiles, iteration), pilot, &mut sums);
         }
         sums
     };
-    let both: Vec<_> = turns.iter().map(|turn| sums(turn, &mut pilot)).collect();
+    let both: Vec<_> = rounds.iter().map(|round| sums(round, &mut pilot)).collect();
     for (index, block) in pilot.blocks.iter_mut().enumerate() {
         block.compare(&both[0][index], &both[1][index]);
     }
@@ -211,15 +210,15 @@ pub(super) fn look(
 
 /// Takes one sample of each pixel.
 fn one_sample(
-    turn: &PilotRound,
+    round: &PilotRound,
     merging: &Merging,
-    techniques: &(impl Fn(f32) -> TechniqueCounts<LANES> + Sync),
+    techniques: &(impl Fn(f32) -> TechniqueCounts<SET_COUNT> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
     pilot: &mut Pilot,
-    sums: &mut [Vec<[f64; LANES]>],
+    sums: &mut [Vec<[f64; SET_COUNT]>],
 ) {
-    let (looked, counters) = sample_all::<LANES, PilotSample, IterationSplats>(
-        turn,
+    let (looked, counters) = sample_all::<SET_COUNT, PilotSample, IterationSplats>(
+        round,
         merging,
         techniques,
         (grid, tiles, iteration),
@@ -303,7 +302,7 @@ fn share(tile: &Window) -> f64 {
 struct PilotSample {
     sample: Sample,
     /// The splats of its light subpath.
-    seen: Vec<(Vec2, Contribution<LANES>)>,
+    seen: Vec<(Vec2, Contribution<SET_COUNT>)>,
     steps: Steps,
 }
 
@@ -313,64 +312,66 @@ struct Sample {
     /// As weighted by the pilot's techniques.
     light: f64,
     /// Sum of what the single techniques of each lane find, and sum of its squares.
-    sums: [f64; LANES],
-    squares: [f64; LANES],
+    sums: [f64; SET_COUNT],
+    squares: [f64; SET_COUNT],
     /// That sum of squares as predicted by all techniques.
-    finds: [Contributions; LANES],
-    lost: [f64; LANES],
+    finds: [Contributions; SET_COUNT],
+    lost: [f64; SET_COUNT],
 }
 
 impl Sample {
     /// The sample of a splat. Splats come one by one: nothing else in the pixel belongs with this one.
-    fn seen(found: &Contribution<LANES>) -> Sample {
+    fn seen(found: &Contribution<SET_COUNT>) -> Sample {
         let mut sample = Sample::default();
         sample.take(found);
-        Sample { squares: [0.0; LANES], ..sample }
+        Sample { squares: [0.0; SET_COUNT], ..sample }
     }
 
-    fn take(&mut self, found: &Contribution<LANES>) {
-        let Contribution { light, own, others, favour, .. } = *found;
+    fn take(&mut self, found: &Contribution<SET_COUNT>) {
+        let Contribution { light, own, others, power_factor, .. } = *found;
         let all = own + others;
         let weighted = f64::from(light.luminance()) / f64::from(all.0[0]);
-        let favour = f64::from(favour);
+        let power_factor = f64::from(power_factor);
         if !weighted.is_finite() {
             return;
         }
-        self.light += weighted * favour;
-        for k in 0..LANES {
+        self.light += weighted * power_factor;
+        for k in 0..SET_COUNT {
             // How often the lane finds this path, for each time that the pilot does.
             let ratio = f64::from(all.0[k]) / f64::from(all.0[0]);
             if ratio <= 0.0 {
-                self.lost[k] += weighted * favour;
+                self.lost[k] += weighted * power_factor;
                 continue;
             }
             let found = weighted / ratio;
             self.finds[k].add(weighted, found);
             let found = found * f64::from(own.0[k]) / f64::from(own.0[0]);
-            self.sums[k] += found * favour;
-            // The prediction replaces these; neither includes `favour`.
+            self.sums[k] += found * power_factor;
+            // The prediction replaces these; neither includes `power_factor`.
             self.squares[k] += found * found;
         }
     }
 }
 
-impl Tally<LANES> for PilotSample {
+impl Tally<SET_COUNT> for PilotSample {
     fn spend(&mut self, step: Step, count: usize) {
         self.steps.count(step, count);
     }
 
-    fn add_sample(&mut self, technique: Technique, found: &Contribution<LANES>) {
+    fn add_sample(&mut self, technique: Technique, found: &Contribution<SET_COUNT>) {
         if matches!(technique, Technique::Merged { .. }) {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
         match technique {
             // Directly visible lights and background: antialiased edges, which all sets resolve alike, and soon.
-            Technique::Joined { s: 0, t: 2 } => self.sample.light += f64::from(found.weighted().luminance()),
+            Technique::Connected { s: 0, t: 2 } => {
+                self.sample.light += f64::from(found.weighted().luminance())
+            }
             _ => self.sample.take(found),
         }
     }
 
-    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<LANES>) {
+    fn add_splat(&mut self, film: Vec2, _technique: Technique, found: &Contribution<SET_COUNT>) {
         self.seen.push((film, *found));
     }
 }
@@ -379,7 +380,7 @@ impl Block {
     /// Adds what a sample shows by itself. The squares of what was found here make room for the predicted ones.
     fn add(&mut self, sample: &Sample, share: f64) {
         self.mean += share * sample.light;
-        for k in 0..LANES {
+        for k in 0..SET_COUNT {
             self.finds[k].plus(&sample.finds[k], share);
             self.variance[k] -= share * sample.squares[k];
             self.lost[k] += share * sample.lost[k];
@@ -388,9 +389,9 @@ impl Block {
 
     /// Adds what the means of each pixel in both rounds show: half the square of their difference is, on average, the
     /// variance of one.
-    fn compare(&mut self, a: &[[f64; LANES]], b: &[[f64; LANES]]) {
+    fn compare(&mut self, a: &[[f64; SET_COUNT]], b: &[[f64; SET_COUNT]]) {
         for (one, other) in a.iter().zip(b) {
-            for k in 0..LANES {
+            for k in 0..SET_COUNT {
                 let apart = one[k] - other[k];
                 self.variance[k] += 0.5 * apart * apart * f64::from(SAMPLES) / a.len() as f64;
             }

@@ -9,33 +9,45 @@ pub(super) struct Set {
     /// Its name as a parameter value.
     pub(super) techniques: &'static str,
     pub(super) sees: bool,
-    pub(super) joins: bool,
+    pub(super) connections: bool,
     /// Light subpaths per pixel whose photons are merged with; 0 without merging.
     pub(super) photons: f32,
 }
 
 /// The sets to choose from, the simplest first.
 pub(super) const SETS: [Set; 8] = [
-    Set { name: "path", techniques: "path", sees: false, joins: false, photons: 0.0 },
-    Set { name: "path and light", techniques: "path-light", sees: true, joins: false, photons: 0.0 },
-    Set { name: "bdpt", techniques: "bdpt", sees: true, joins: true, photons: 0.0 },
-    Set { name: "path and few photons", techniques: "path-few", sees: false, joins: false, photons: FEW },
-    Set { name: "path and photons", techniques: "path-photons", sees: false, joins: false, photons: 1.0 },
+    Set { name: "path", techniques: "path", sees: false, connections: false, photons: 0.0 },
+    Set { name: "path and light", techniques: "path-light", sees: true, connections: false, photons: 0.0 },
+    Set { name: "bdpt", techniques: "bdpt", sees: true, connections: true, photons: 0.0 },
+    Set {
+        name: "path and few photons",
+        techniques: "path-few",
+        sees: false,
+        connections: false,
+        photons: FEW,
+    },
+    Set {
+        name: "path and photons",
+        techniques: "path-photons",
+        sees: false,
+        connections: false,
+        photons: 1.0,
+    },
     Set {
         name: "path, light and few photons",
         techniques: "path-light-few",
         sees: true,
-        joins: false,
+        connections: false,
         photons: FEW,
     },
     Set {
         name: "path, light and photons",
         techniques: "path-light-photons",
         sees: true,
-        joins: false,
+        connections: false,
         photons: 1.0,
     },
-    Set { name: "vcm", techniques: "vcm", sees: true, joins: true, photons: 1.0 },
+    Set { name: "vcm", techniques: "vcm", sees: true, connections: true, photons: 1.0 },
 ];
 
 /// Light subpaths per pixel of the sets with few photons: enough where they go where they are useful.
@@ -53,7 +65,7 @@ impl Set {
             part: merging.part * self.photons,
             techniques: TechniqueCounts {
                 direct: merging.techniques.direct,
-                ..TechniqueCounts::with_splats_and_joins(self.sees, self.joins)
+                ..TechniqueCounts::with_splats_and_connections(self.sees, self.connections)
             },
             ..merging
         }
@@ -72,7 +84,7 @@ pub(super) const TECHNIQUES: [&str; 1 + SETS.len()] = {
 };
 
 /// One lane for the techniques of the pilot itself, and one for each set that is compared.
-pub(super) const LANES: usize = 1 + SETS.len();
+pub(super) const SET_COUNT: usize = 1 + SETS.len();
 
 /// The fraction of the mean below which noise is not visible.
 pub(super) const DARK: f64 = 0.3;
