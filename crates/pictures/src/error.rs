@@ -56,6 +56,26 @@ pub enum PictureError {
         /// All existing names.
         known: String,
     },
+    /// The file is in a format that other programs read.
+    #[error("this is {what}{}: {advice}; picture formats that can be read are: {known}", if *is_picture { "" } else { ", not a picture" })]
+    Foreign {
+        /// What it is, such as `a GIF picture`.
+        what: &'static str,
+        /// Whether it is a picture.
+        is_picture: bool,
+        /// What to do with it.
+        advice: &'static str,
+        /// The names of the formats that can be read.
+        known: String,
+    },
+    /// The picture has no such layer, or no main picture.
+    #[error("{}", no_layer(name.as_deref(), known))]
+    NoLayer {
+        /// The requested layer; `None` for the main picture.
+        name: Option<String>,
+        /// The layers with colours.
+        known: Vec<String>,
+    },
     /// The file violates the rules of its format.
     #[error("{format}: {what}: the file is damaged or was written wrongly; save it again")]
     Invalid {
@@ -169,6 +189,19 @@ pub fn reason(error: &std::io::Error) -> String {
 
 fn bytes_in_words(bytes: u64) -> String {
     if bytes == u64::MAX { "more bytes than any machine has".to_owned() } else { format!("{bytes} bytes") }
+}
+
+fn no_layer(name: Option<&str>, known: &[String]) -> String {
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    match name {
+        Some(name) => format!(
+            "there is no layer '{name}' with colours in this picture; its layers with colours are: {known}"
+        ),
+        None => format!(
+            "the picture has no channels R, G and B, or Y, outside of its layers: choose one of its layers with colours \
+             (--layer NAME, or 'layer' of a texture): {known}"
+        ),
+    }
 }
 
 /// A name without an extension does not name a format.

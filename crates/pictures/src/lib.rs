@@ -31,6 +31,7 @@ pub mod denoise;
 mod error;
 mod font;
 pub mod formats;
+mod layers;
 mod limits;
 pub mod metrics;
 mod panels;
@@ -42,9 +43,9 @@ pub use crop::Crop;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
-    BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
-    guarded_decoding, is_decoding, read, read_bytes, read_crop, read_crop_bytes, read_rgba8, read_with,
-    write, write_atomically, write_bytes,
+    BitDepth, ForeignFormat, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, foreign_format,
+    format_named, format_of_path, guarded_decoding, is_decoding, read, read_bytes, read_crop,
+    read_crop_bytes, read_rgba8, read_with, write, write_atomically, write_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 pub struct Picture {
     width: usize,
     height: usize,
-    channels: Vec<Channel>,
+    pub(crate) channels: Vec<Channel>,
     integer_planes: Vec<IntegerPlane>,
     /// The meaning of the samples of colour channels.
     pub colour_space: ColourSpace,
@@ -28,6 +28,8 @@ pub struct Picture {
     pub metadata: BTreeMap<String, String>,
     /// Which part of a larger picture this is, if it is one. Only EXR stores it.
     pub crop: Option<Crop>,
+    /// What is wrong with the file that it was read from, though it could be read.
+    pub warnings: Vec<String>,
 }
 
 /// One named plane.
@@ -97,6 +99,7 @@ impl Picture {
             alpha: Alpha::default(),
             metadata: BTreeMap::new(),
             crop: None,
+            warnings: Vec::new(),
         })
     }
 
@@ -240,39 +243,6 @@ impl Picture {
         y * self.width + x
     }
 
-    /// The names of the layers other than the main picture, each once, in order of appearance.
-    pub fn layers(&self) -> Vec<&str> {
-        let names = self.channels.iter().map(|c| &c.name[..]);
-        let names = names.chain(self.integer_planes.iter().map(|plane| &plane.name[..]));
-        let mut layers = Vec::new();
-        for layer in names.filter_map(|name| name.rsplit_once('.')).map(|(layer, _)| layer) {
-            if !layers.contains(&layer) {
-                layers.push(layer);
-            }
-        }
-        layers
-    }
-
-    /// The main picture without its layers and texts: `R`, `G`, `B` and `Y` as far as present, and `A`.
-    pub fn main(&self) -> Picture {
-        let mut picture = self.like();
-        let main = self.channels.iter().filter(|c| MAIN.contains(&&c.name[..]));
-        picture.channels.extend(main.cloned());
-        picture
-    }
-
-    /// One layer as a picture of its own, without its name as a prefix; `None` if there is no such layer.
-    pub fn layer(&self, layer: &str) -> Option<Picture> {
-        let prefix = qualified(layer, "");
-        let mut picture = self.like();
-        for channel in &self.channels {
-            if let Some(name) = channel.name.strip_prefix(&prefix).filter(|name| !name.contains('.')) {
-                picture.channels.push(Channel { name: name.to_owned(), samples: channel.samples.clone() });
-            }
-        }
-        (!picture.channels.is_empty()).then_some(picture)
-    }
-
     /// A picture of the same size and meaning, without planes and metadata.
     pub(crate) fn like(&self) -> Picture {
         Picture {
@@ -284,6 +254,7 @@ impl Picture {
             alpha: self.alpha,
             metadata: BTreeMap::new(),
             crop: self.crop,
+            warnings: self.warnings.clone(),
         }
     }
 
@@ -382,9 +353,6 @@ impl ColourSpace {
 
 /// Number of samples that one thread processes at a time.
 const PIECE: usize = 1 << 14;
-
-/// The channels that belong to no layer.
-const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];
 
 /// Clamps a sample to 0..=`most`; NaN becomes 0, whereas `clamp` would keep it.
 pub(crate) fn clamp_sample(sample: f32, most: f32) -> f32 {

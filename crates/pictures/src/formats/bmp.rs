@@ -226,7 +226,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
             samples
         }
     };
-    let mut whole = Interleaved { width, height, samples };
+    let mut whole = Interleaved { width, height, samples, warnings: Vec::new() };
     whole.make_opaque_if_all_transparent();
     Ok(whole)
 }

@@ -5,7 +5,7 @@ use super::guard::guarded;
 use super::primaries::to_rec709;
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
-use crate::{Crop, Limits, Picture, PictureError, component_rank};
+use crate::{Channel, Crop, Limits, Picture, PictureError, component_rank};
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::math::Vec2;
@@ -209,6 +209,7 @@ impl Frame {
                 Samples::Integers(samples) => picture.push_integer_plane(plane.name, samples)?,
             }
         }
+        from_chroma(&mut picture);
         let colours = meta.headers.iter().find_map(|header| header.shared_attributes.chromaticities);
         if let Some(c) = colours {
             let primaries = [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y].map(f64::from));
@@ -230,6 +231,26 @@ impl Frame {
         Ok(picture)
     }
 }
+
+/// Converts luminance and chroma to colours: RY is (R − Y) / Y and BY is (B − Y) / Y. [OpenEXR, luminance/chroma images]
+fn from_chroma(picture: &mut Picture) {
+    let [Some(y), Some(ry), Some(by)] = ["Y", "RY", "BY"].map(|name| picture.channel(name)) else { return };
+    let colour = |i: usize| {
+        let (r, b) = ((ry[i] + 1.0) * y[i], (by[i] + 1.0) * y[i]);
+        let [wr, wg, wb] = LUMINANCE;
+        [r, (y[i] - wr * r - wb * b) / wg, b]
+    };
+    let colours: Vec<[f32; 3]> = (0..picture.pixel_count()).map(colour).collect();
+    picture.channels.retain(|channel| !["Y", "RY", "BY"].contains(&&*channel.name));
+    let planes = ["R", "G", "B"].into_iter().enumerate().map(|(k, name)| Channel {
+        name: name.to_owned(),
+        samples: colours.iter().map(|colour| colour[k]).collect(),
+    });
+    picture.channels.splice(..0, planes);
+}
+
+/// The weights of red, green and blue in the luminance of Rec. 709, the default primaries of the format.
+const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// The window that becomes the picture, and its place in the display window if it is smaller than that.
 fn window(meta: &MetaData, wanted: Wanted) -> (IntegerBounds, Option<Crop>) {

@@ -1,9 +1,11 @@
 //! JPEG: a format for textures, and for pictures on the web. [JPEG]
 
-use super::faults::jpeg::explain;
+use super::faults::jpeg::{explain, is_one_scan, is_progressive};
 use super::guard::guarded;
+use super::orientation::Orientation;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, WriteOptions, check_sides, opaque_planes};
+use crate::limits::reserved;
 use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
 use jpeg_encoder::{ColorType, Encoder};
@@ -31,31 +33,83 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "JPEG";
 
-/// Decoded bytes, the coefficients of progressive files for up to four components, and three planes.
+/// Decoded bytes, the coefficients of progressive files for up to four components, and three planes; the bytes once more
+/// while a picture is turned.
 const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
 
-/// The bytes of one or three channels.
+/// The bytes of one or three channels, as they are shown. Of a file that was cut short, what is there.
 fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
-    let options =
-        DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX));
-    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options());
     decoder.decode_headers().map_err(|error| explain(&error, bytes))?;
     let info = decoder.info().ok_or_else(|| PictureError::invalid(FORMAT, "it has no frame header"))?;
     let pixels = limits.check(FORMAT, info.width.into(), info.height.into(), BYTES_PER_PIXEL)?;
-    // The decoder accepts whatever pixels there are; we report the missing ones instead.
-    if !is_whole(bytes) {
-        return Err(PictureError::truncated(FORMAT, "the pixels"));
-    }
     let grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
     let (channels, space) = if grey { (1, ColorSpace::Luma) } else { (3, ColorSpace::RGB) };
-    decoder.set_options(options.jpeg_set_out_colorspace(space));
+    let warnings = if is_whole(bytes) { Vec::new() } else { vec![loss(bytes, space, info.height.into())?] };
+    decoder.set_options(options().jpeg_set_out_colorspace(space));
     let mut samples = decoder.decode().map_err(|error| explain(&error, bytes))?;
     if samples.len() < pixels.saturating_mul(channels) {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
     samples.truncate(pixels * channels);
-    Ok(Interleaved { width: info.width.into(), height: info.height.into(), samples })
+    let orientation = decoder.exif().map_or(Orientation::of(1), |data| Orientation::of_exif(data));
+    let (width, height) = (info.width.into(), info.height.into());
+    orientation.apply(FORMAT, Interleaved { width, height, samples, warnings })
 }
+
+fn options() -> DecoderOptions {
+    DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX))
+}
+
+/// What a file without an end marker lacks: the rows that would be others if other bytes followed.
+///
+/// # Errors
+/// If it lacks all of its pixels.
+fn loss(bytes: &[u8], space: ColorSpace, height: usize) -> Result<String, PictureError> {
+    if is_progressive(bytes) {
+        // Any number of scans may be missing.
+        return Ok(
+            "JPEG: the file has no end marker: if it was cut short, its picture lacks detail".to_owned()
+        );
+    }
+    let continued = |with: u8, strictly: bool| {
+        let mut whole: Vec<u8> = reserved(FORMAT, bytes.len() + CONTINUED + 2)?;
+        whole.extend_from_slice(bytes);
+        whole.extend([with; CONTINUED]);
+        whole.extend([0xff, 0xd9]);
+        let options = options().jpeg_set_out_colorspace(space).set_strict_mode(strictly);
+        let decoded = JpegDecoder::new_with_options(ZCursor::new(&whole[..]), options).decode();
+        decoded.map_err(|error| explain(&error, bytes))
+    };
+    let one = continued(0, false)?;
+    let mut first = one.len();
+    let mut is_complete = true;
+    for with in [0x55, 0xaa, 0xe7, 0x1c] {
+        let other = continued(with, false)?;
+        first = first.min(one.iter().zip(&other).position(|(a, b)| a != b).unwrap_or(one.len()));
+        // A code that does not exist ends the picture early, whatever follows it.
+        is_complete &= continued(with, true).is_ok();
+    }
+    if first == one.len() && is_complete && is_one_scan(bytes) {
+        return Ok("JPEG: the file has no end marker, but all of its pixels are there".to_owned());
+    }
+    if first == one.len() || is_progressive(bytes) {
+        return Ok("JPEG: the file has no end marker: if it was cut short, rows or details are missing: copy it or save it \
+                   again"
+            .to_owned());
+    }
+    let right = first / (one.len() / height.max(1)).max(1);
+    if right == 0 {
+        return Err(PictureError::truncated(FORMAT, "the pixels"));
+    }
+    Ok(format!(
+        "JPEG: the file was cut short, and the last {} of its {height} rows are missing or wrong: copy it or save it again",
+        height - right.min(height)
+    ))
+}
+
+/// How many bytes are tried in place of missing ones: enough for a difference in the first block.
+const CONTINUED: usize = 64;
 
 /// True when an end marker follows the first scan. Segments before it are skipped, since the thumbnail in one of them
 /// may contain an end marker of its own.

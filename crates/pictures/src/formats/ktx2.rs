@@ -165,7 +165,7 @@ impl<'a> Header<'a> {
                 samples
             }
         };
-        Ok(Interleaved { width: self.width, height: self.height, samples })
+        Ok(Interleaved { width: self.width, height: self.height, samples, warnings: Vec::new() })
     }
 }
 

@@ -5,11 +5,13 @@ mod disk;
 mod exr;
 mod exr_write;
 mod faults;
+mod foreign;
 mod guard;
 mod hdr;
 mod jpeg;
 #[cfg(feature = "ktx2")]
 mod ktx2;
+mod orientation;
 mod pfm;
 mod png;
 mod pnm;
@@ -22,6 +24,7 @@ mod unfinished;
 mod webp;
 
 pub use disk::write_atomically;
+pub use foreign::{FOREIGN_FORMATS, ForeignFormat, foreign_format};
 pub use guard::{guarded_decoding, is_decoding};
 pub use rgba8::{Rgba8, read_rgba8};
 pub use unfinished::{Unfinished, remove_unfinished};
@@ -158,6 +161,10 @@ pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<P
 /// The format of these bytes.
 fn row_of(bytes: &[u8], hint: Option<&str>) -> Result<&'static PictureFormatEntry, PictureError> {
     let by_content = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
+    if let (None, Some(foreign)) = (by_content, foreign_format(bytes)) {
+        let ForeignFormat { what, advice, is_picture, .. } = *foreign;
+        return Err(PictureError::Foreign { what, is_picture, advice, known: known(|_| true) });
+    }
     match (by_content, hint) {
         (Some(row), _) => Ok(row),
         (None, Some(hint)) => format_named(hint).ok_or_else(|| unknown(hint, "read", |_| true)),

@@ -2,6 +2,7 @@
 
 use super::faults::png::explain;
 use super::guard::guarded;
+use super::orientation::Orientation;
 use super::rgba8::Interleaved;
 use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
@@ -66,8 +67,12 @@ pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>,
     let (reader, frame, samples) = decode(bytes, limits, 8 + 4)?;
     let is_plain =
         frame.bit_depth == ::png::BitDepth::Eight && colour_space(reader.info()) == ColourSpace::Srgb;
-    let whole = Interleaved { width: frame.width as usize, height: frame.height as usize, samples };
-    Ok(is_plain.then(|| whole.rgba8()).flatten())
+    if !is_plain {
+        return Ok(None);
+    }
+    let (width, height) = (frame.width as usize, frame.height as usize);
+    let whole = Interleaved { width, height, samples, warnings: Vec::new() };
+    Ok(orientation(reader.info()).apply(FORMAT, whole)?.rgba8())
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
@@ -97,7 +102,12 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     // Texts may come after the pixels; damage there does not affect the picture.
     let _ = reader.finish();
     read_texts(reader.info(), &mut picture);
-    Ok(picture)
+    orientation(reader.info()).apply_to_planes(FORMAT, picture)
+}
+
+/// How the picture is turned, by its `eXIf` chunk.
+fn orientation(info: &Info) -> Orientation {
+    info.exif_metadata.as_ref().map_or(Orientation::of(1), |data| Orientation::of_exif(data))
 }
 
 /// The meaning of the samples: sRGB unless a `gAMA` chunk says otherwise. 1/2.2 is how files say sRGB without the

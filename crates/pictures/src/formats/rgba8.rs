@@ -12,6 +12,8 @@ pub struct Rgba8 {
     pub height: usize,
     /// In rows from the top.
     pub texels: Vec<[u8; 4]>,
+    /// What is wrong with the file, though it could be read.
+    pub warnings: Vec<String>,
 }
 
 /// Decodes a picture that is stored in sRGB bytes. Returns `None` for any other picture, which [`super::read_bytes`]
@@ -29,10 +31,12 @@ pub(super) struct Interleaved {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) samples: Vec<u8>,
+    /// What is wrong with the file, though it could be read.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Interleaved {
-    fn channels(&self) -> usize {
+    pub(super) fn channels(&self) -> usize {
         self.samples.len() / (self.width * self.height).max(1)
     }
 
@@ -47,6 +51,7 @@ impl Interleaved {
         let mut picture = Picture::new(self.width, self.height)?;
         picture.colour_space = ColourSpace::Srgb;
         picture.alpha = Alpha::Straight;
+        picture.warnings.clone_from(&self.warnings);
         let number = |byte: &u8| f32::from(*byte) / 255.0;
         let planes = planes_of(format, self.samples.iter(), names.len(), picture.pixel_count(), number)?;
         for (name, plane) in names.iter().zip(planes) {
@@ -65,7 +70,7 @@ impl Interleaved {
             4 => samples.as_chunks::<4>().0.to_vec(),
             _ => return None,
         };
-        Some(Rgba8 { width: self.width, height: self.height, texels })
+        Some(Rgba8 { width: self.width, height: self.height, texels, warnings: self.warnings.clone() })
     }
 
     /// Makes a picture opaque if its alpha is zero everywhere: writers that do not know alpha leave zeros in its

@@ -153,7 +153,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
             samples.put(at, pixel)?;
         }
     }
-    let mut whole = Interleaved { width, height, samples: samples.out };
+    let mut whole = Interleaved { width, height, samples: samples.out, warnings: Vec::new() };
     if channels == 4 || channels == 2 {
         whole.make_opaque_if_all_transparent();
     }

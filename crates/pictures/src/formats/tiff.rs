@@ -2,6 +2,7 @@
 
 use super::faults::tiff::{colours, explain, unsupported};
 use super::guard::guarded;
+use super::orientation::Orientation;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, Rgba8};
 use crate::limits::{reserved, zeroed};
@@ -189,25 +190,9 @@ impl Decoded {
         }
     }
 
-    /// The picture's size, and which pixel of the file each of its pixels is, if the orientation is not the default.
+    /// The picture's size, and which pixel of the file each of its pixels is.
     fn turned(&self) -> ([usize; 2], impl Fn(usize) -> usize) {
-        let (width, height, orientation) = (self.width, self.height, self.orientation);
-        let size = if matches!(orientation, 5..=8) { [height, width] } else { [width, height] };
-        let of = move |pixel: usize| {
-            let (x, y) = (pixel % size[0], pixel / size[0]);
-            let (column, row) = match orientation {
-                2 => (width - 1 - x, y),
-                3 => (width - 1 - x, height - 1 - y),
-                4 => (x, height - 1 - y),
-                5 => (y, x),
-                6 => (y, height - 1 - x),
-                7 => (width - 1 - y, height - 1 - x),
-                8 => (width - 1 - y, x),
-                _ => (x, y),
-            };
-            row * width + column
-        };
-        (size, of)
+        Orientation::of(self.orientation).turned([self.width, self.height])
     }
 
     /// The channels that are used.
@@ -259,7 +244,7 @@ fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureErr
         let part = (0..decoded.taken()).map(|channel| all.get(decoded.place(channel, pixel)).copied());
         samples.extend(part.map(|sample| sample.unwrap_or(0)));
     }
-    Ok(Interleaved { width, height, samples }.rgba8())
+    Ok(Interleaved { width, height, samples, warnings: Vec::new() }.rgba8())
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {

@@ -2,6 +2,7 @@
 
 use super::faults::webp::explain;
 use super::guard::guarded;
+use super::orientation::Orientation;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, WriteOptions, check_sides, display_planes};
 use crate::limits::zeroed;
@@ -29,7 +30,8 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "WebP";
 
-/// Decoded bytes, as many in the decoder's own planes, and our own four planes.
+/// Decoded bytes, as many in the decoder's own planes, and our own four planes; the bytes once more while a picture is
+/// turned.
 const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
 
 /// Reads the first frame of an animation.
@@ -45,7 +47,10 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
         size.ok_or_else(|| PictureError::invalid(FORMAT, "its header and its pixels differ in size"))?;
     let mut samples = zeroed::<u8>(FORMAT, size)?;
     decoder.read_image(&mut samples).map_err(|error| explain(&error, bytes))?;
-    Ok(Interleaved { width: width as usize, height: height as usize, samples })
+    // Damage in the metadata does not affect the picture.
+    let exif = decoder.exif_metadata().ok().flatten().unwrap_or_default();
+    let (width, height) = (width as usize, height as usize);
+    Orientation::of_exif(&exif).apply(FORMAT, Interleaved { width, height, samples, warnings: Vec::new() })
 }
 
 /// Longer sides do not fit in 14 bits.

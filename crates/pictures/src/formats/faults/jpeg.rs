@@ -36,6 +36,12 @@ pub(in super::super) fn explain(error: &DecodeErrors, bytes: &[u8]) -> PictureEr
         DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
             PictureError::truncated(FORMAT, "the pixels")
         }
+        _ if bits_per_sample(bytes).is_some_and(|bits| bits != 8) => PictureError::Unsupported {
+            format: FORMAT,
+            what: format!("a picture of {} bits per sample", bits_per_sample(bytes).unwrap_or_default()),
+            advice: "convert it to PNG or TIFF of 16 bits, for instance with djpeg of libjpeg-turbo 3 (djpeg -pnm in.jpg > \
+                     out.ppm, which Bilux reads)",
+        },
         DecodeErrors::Unsupported(_) => PictureError::Unsupported {
             format: FORMAT,
             what: "arithmetic coding or lossless compression".to_owned(),
@@ -43,6 +49,48 @@ pub(in super::super) fn explain(error: &DecodeErrors, bytes: &[u8]) -> PictureEr
         },
         other => PictureError::invalid(FORMAT, meaning(&other.to_string(), PHRASES)),
     }
+}
+
+/// The number of bits of a sample, as the frame header gives it.
+fn bits_per_sample(bytes: &[u8]) -> Option<u8> {
+    let (_, frame) = segments(bytes).find(|(marker, _)| is_frame(*marker))?;
+    frame.first().copied()
+}
+
+/// True for a file whose scans add detail to the same pixels.
+pub(in super::super) fn is_progressive(bytes: &[u8]) -> bool {
+    segments(bytes).any(|(marker, _)| matches!(marker, 0xc2 | 0xc6 | 0xca | 0xce))
+}
+
+/// True for a file of a single scan that nothing interrupts, so that one block follows the other.
+pub(in super::super) fn is_one_scan(bytes: &[u8]) -> bool {
+    let restarts = segments(bytes).any(|(marker, _)| marker == 0xdd);
+    let components = segments(bytes).find_map(|(marker, frame)| frame.get(5).filter(|_| is_frame(marker)));
+    let scanned = segments(bytes).find_map(|(marker, scan)| scan.first().filter(|_| marker == 0xda));
+    !restarts && !is_progressive(bytes) && components.is_some() && components == scanned
+}
+
+/// True for the markers of frame headers.
+fn is_frame(marker: u8) -> bool {
+    matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc)
+}
+
+/// The segments up to the first scan: their markers and what follows their lengths.
+fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
+    let (mut at, mut is_done) = (2, false);
+    std::iter::from_fn(move || {
+        while let Some(&[0xff, marker]) = bytes.get(at..at + 2).filter(|_| !is_done) {
+            if marker == 0xff || matches!(marker, 0x01 | 0xd0..=0xd9) {
+                at += if marker == 0xff { 1 } else { 2 };
+                continue;
+            }
+            let length = usize::from(*bytes.get(at + 2)?) << 8 | usize::from(*bytes.get(at + 3)?);
+            let body = bytes.get(at + 4..at + 2 + length)?;
+            (at, is_done) = (at + 2 + length, marker == 0xda);
+            return Some((marker, body));
+        }
+        None
+    })
 }
 
 /// The segment in which the file ends, unless it ends within the pixels.
