@@ -93,6 +93,28 @@ pub enum FormatError {
         /// Its picture format.
         format: &'static str,
     },
+    /// The file is a picture, in a format that Bilux does not read.
+    #[error(
+        "{name}: this is {what}, not a scene: name a scene file; to use it as surroundings (--env) or a texture, {advice}"
+    )]
+    IsForeignPicture {
+        /// The file.
+        name: String,
+        /// What it is.
+        what: &'static str,
+        /// What to do with it.
+        advice: &'static str,
+    },
+    /// The file is in a format of other programs.
+    #[error("{name}: this is {what}, which is not a scene that can be read: {advice}")]
+    IsForeign {
+        /// The file.
+        name: String,
+        /// What it is.
+        what: &'static str,
+        /// What to do with it.
+        advice: &'static str,
+    },
     /// A name or a value in a scene file is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),

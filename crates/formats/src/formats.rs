@@ -8,7 +8,7 @@ use crate::writing::{Writing, write_all};
 use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
 use bilux_math::DVec3;
 use bilux_math::registry::Entry;
-use bilux_pictures::PICTURE_FORMATS;
+use bilux_pictures::{ForeignFormat, PICTURE_FORMATS, foreign_format};
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint, Warning};
 use std::collections::BTreeSet;
@@ -96,9 +96,8 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
     let row = extension(path).and_then(|e| format_named(&e));
     let name = path.display().to_string().into();
     reading.open.extend(std::fs::canonicalize(path));
-    let mut scene = read_file(row, &mut reading, path, &name)?;
-    scene.files = reading.files;
-    Ok(scene)
+    let scene = read_file(row, &mut reading, path, &name)?;
+    reading.complete(scene)
 }
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
@@ -161,7 +160,9 @@ fn read_file_once(
     let bytes = reading.load(path)?;
     let row = row.or_else(|| sniffed(&bytes));
     let row = row.ok_or_else(|| {
-        picture(path, &bytes).unwrap_or_else(|| unknown(path, "read", SceneFormatEntry::reads))
+        not_a_scene(name, &bytes)
+            .or_else(|| picture_by_name(path))
+            .unwrap_or_else(|| unknown(path, "read", SceneFormatEntry::reads))
     })?;
     let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
     reading.release(bytes);
@@ -187,14 +188,15 @@ pub fn read_bytes(
 ) -> Result<SceneBuilder, FormatError> {
     let found = if format.is_empty() { sniffed(bytes) } else { format_named(format) };
     let asked = if format.is_empty() { name } else { format };
-    let row = found.ok_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))?;
+    let row = found.ok_or_else(|| {
+        not_a_scene(name, bytes).unwrap_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))
+    })?;
     let mut reading = Reading::new(options, base);
     reading.budget.take_bytes(bytes.len() as u64, name)?;
     let name = Arc::from(name);
     let source = Source { bytes, name: &name, folder: base };
-    let mut scene = keeping_digits(&mut reading, |reading| Ok((row, read_source(row, reading, &source)?)))?;
-    scene.files = reading.files;
-    Ok(scene)
+    let scene = keeping_digits(&mut reading, |reading| Ok((row, read_source(row, reading, &source)?)))?;
+    reading.complete(scene)
 }
 
 /// Writes a scene and its accompanying files, in the format of the path's extension.
@@ -258,20 +260,21 @@ fn flow(
         return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
-    let mut scene = match read {
-        ReadFormat::Binary(read) => read(reading, source)?,
+    let read = match read {
+        ReadFormat::Binary(read) => read(reading, source),
         ReadFormat::Whole(read) => {
             reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
-            read(reading, &Source { bytes: &plain(source.bytes), ..*source })?
+            read(reading, &Source { bytes: &plain(source.bytes), ..*source })
         }
         ReadFormat::Flowing(read) if is_marked(source.bytes) => {
             // Such files are rare, and need not flow.
             let bytes = read_all(reading, source, from)?;
             let source = Source { bytes: &plain(&bytes), ..*source };
-            read(reading, &source, &mut &source.bytes[..])?
+            read(reading, &source, &mut &source.bytes[..])
         }
-        ReadFormat::Flowing(read) => read(reading, source, from)?,
+        ReadFormat::Flowing(read) => read(reading, source, from),
     };
+    let mut scene = read.map_err(|error| explained(error, row, source))?;
     // A scene that is based on another one keeps what that file says.
     if scene.up == UpHint::default() {
         scene.up = row.up;
@@ -295,12 +298,37 @@ fn read_all(reading: &mut Reading, source: &Source, from: &mut dyn Read) -> Resu
     Ok(bytes)
 }
 
-/// The error for a picture in place of a scene.
-fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
-    let by_bytes = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
-    let row = by_bytes.or_else(|| bilux_pictures::format_named(&extension(path)?))?;
-    let name = path.display().to_string();
-    Some(FormatError::IsPicture { name, format: row.extensions[0] })
+/// The error for a file that is something other than a scene in a known format, by its bytes.
+fn not_a_scene(name: &str, bytes: &[u8]) -> Option<FormatError> {
+    let name = name.to_owned();
+    if let Some(row) = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes)) {
+        return Some(FormatError::IsPicture { name, format: row.extensions[0] });
+    }
+    let &ForeignFormat { what, advice, is_picture, .. } = foreign_format(bytes)?;
+    Some(if is_picture {
+        FormatError::IsForeignPicture { name, what, advice }
+    } else {
+        FormatError::IsForeign { name, what, advice }
+    })
+}
+
+/// The error for a picture in place of a scene, by the file's name.
+fn picture_by_name(path: &Path) -> Option<FormatError> {
+    let row = bilux_pictures::format_named(&extension(path)?)?;
+    Some(FormatError::IsPicture { name: path.display().to_string(), format: row.extensions[0] })
+}
+
+/// An error of a reader, or if the bytes are in another format than the file's name says, that.
+fn explained(error: FormatError, row: &SceneFormatEntry, source: &Source) -> FormatError {
+    // pbrt files may be compressed.
+    let is_as_named =
+        (row.sniff)(source.bytes) || (row.entry.name == "pbrt" && source.bytes.starts_with(b"\x1f\x8b"));
+    match error {
+        FormatError::Malformed { .. } if !is_as_named => {
+            not_a_scene(source.name, source.bytes).unwrap_or(error)
+        }
+        error => error,
+    }
 }
 
 /// The bytes of a marked file that tell its format.

@@ -15,17 +15,28 @@ pub(crate) enum SampleMeaning {
     Numbers,
 }
 
-/// The texels of a picture file; `None` if it has no colour channels.
+/// A picture file's texels, and what is wrong with the file though it could be read.
+pub(crate) struct Decoded {
+    pub(crate) image: Image,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// The texels of a picture file, or of one of its layers; `None` if it has no colour channels.
 pub(crate) fn decoded(
     bytes: &[u8],
-    hint: Option<&str>,
+    (hint, layer): (Option<&str>, Option<&str>),
     means: SampleMeaning,
     limits: &Limits,
-) -> Result<Option<Image>, PictureError> {
-    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, hint, limits)? {
-        return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
+) -> Result<Option<Decoded>, PictureError> {
+    if layer.is_none()
+        && let Some(Rgba8 { width, height, texels, warnings }) = read_rgba8(bytes, hint, limits)?
+    {
+        let image = Image { width, height, texels: Texels::Bytes(texels) };
+        return Ok(Some(Decoded { image, warnings }));
     }
-    Ok(image_of(read_bytes(bytes, hint, limits)?, means))
+    let mut picture = read_bytes(bytes, hint, limits)?.with_main(layer)?;
+    let warnings = std::mem::take(&mut picture.warnings);
+    Ok(image_of(picture, means).map(|image| Decoded { image, warnings }))
 }
 
 /// The texels of a picture, as bytes if it was 8-bit; `None` if it has no colour channels.
@@ -148,7 +159,7 @@ mod tests {
                 assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
                 for means in [SampleMeaning::Colours, SampleMeaning::SrgbColours, SampleMeaning::Numbers] {
                     let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), means).unwrap();
-                    let at_once = decoded(&bytes, None, means, &limits).unwrap().unwrap();
+                    let at_once = decoded(&bytes, (None, None), means, &limits).unwrap().unwrap().image;
                     assert_eq!(
                         format!("{at_once:?}"),
                         format!("{by_planes:?}"),
@@ -197,7 +208,8 @@ mod tests {
         for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
             let options = WriteOptions { bit_depth, ..WriteOptions::default() };
             let bytes = write_bytes("png", &picture, &options).unwrap();
-            let image = decoded(&bytes, None, SampleMeaning::Colours, &Limits::default()).unwrap().unwrap();
+            let decoded = decoded(&bytes, (None, None), SampleMeaning::Colours, &Limits::default());
+            let image = decoded.unwrap().unwrap().image;
             let texture = bilux_scene::Texture::of("", std::sync::Arc::new(image), false);
             assert!((texture.texel(0, 0).r - 1.0).abs() < 1e-4, "{bit_depth:?}: {:?}", texture.texel(0, 0));
         }

@@ -18,6 +18,7 @@ mod gltf;
 mod images;
 mod indexed_faces;
 mod las;
+mod locating;
 mod native;
 mod normals;
 mod obj;

@@ -34,6 +34,9 @@ pub struct ReadOptions {
     pub glass: Glass,
     /// The radius of point lights in metres, if above 0.
     pub light_radius: f32,
+    /// The layer of a picture that the user names next to the scene, such as its surroundings; by default its main
+    /// picture.
+    pub picture_layer: Option<String>,
 }
 
 impl Default for ReadOptions {
@@ -52,6 +55,7 @@ impl Default for ReadOptions {
             variant: None,
             glass: Glass::Auto,
             light_radius: 0.0,
+            picture_layer: None,
         }
     }
 }

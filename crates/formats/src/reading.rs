@@ -1,7 +1,8 @@
 //! The shared state of one read: the options, the memory used, and the files involved.
 
 use crate::budget::Budget;
-use crate::images::{SampleMeaning, decoded, mend};
+use crate::images::{Decoded, SampleMeaning, decoded, mend};
+use crate::locating::Names;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
@@ -50,10 +51,11 @@ pub(crate) struct Reading<'o> {
     /// The origin of positions, if the file's coordinates are large compared with their differences.
     pub(crate) origin: DVec3,
     /// Nothing outside this folder is opened, except files in [`Reading::working_folder`].
-    root: Option<PathBuf>,
+    pub(crate) root: Option<PathBuf>,
     /// A second folder where the current format looks for files.
     pub(crate) working_folder: Option<PathBuf>,
-    textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
+    /// By file, layer and meaning.
+    textures: HashMap<(PathBuf, Option<String>, Texels), Arc<Texture>>,
     texture_bytes: u64,
     /// What was wrong with the texels of pictures, until the scene that uses them is read.
     pub(crate) picture_faults: Vec<Warning>,
@@ -65,6 +67,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) open: Vec<PathBuf>,
     /// Every file that was opened, by its full name.
     pub(crate) files: BTreeSet<PathBuf>,
+    /// What was found under other names.
+    pub(crate) names: Names,
 }
 
 /// Longer chains of nested scenes are refused, since each level uses some of the stack.
@@ -87,6 +91,7 @@ impl<'o> Reading<'o> {
             counted: HashSet::new(),
             open: Vec::new(),
             files: BTreeSet::new(),
+            names: Names::default(),
         }
     }
 
@@ -104,6 +109,16 @@ impl<'o> Reading<'o> {
         self.budget.release(self.budget.spent().saturating_sub(now));
     }
 
+    /// Adds to the scene what is known of all files that it refers to.
+    pub(crate) fn complete(self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
+        scene.files = self.files;
+        self.names.into_notes(&mut scene);
+        match scene.warnings.first() {
+            Some(first) if self.options.strict => Err(FormatError::Strict(first.clone())),
+            _ => Ok(scene),
+        }
+    }
+
     /// Charges memory for texels, for good.
     pub(crate) fn charge_image(&mut self, image: &Image, file: &str) -> Result<(), FormatError> {
         self.budget.take_bytes(image.size(), file)?;
@@ -115,27 +130,33 @@ impl<'o> Reading<'o> {
     pub(crate) fn decode(
         &mut self,
         bytes: &[u8],
-        hint: Option<&str>,
+        (hint, layer): (Option<&str>, Option<&str>),
         means: SampleMeaning,
         (name, at): (&str, &Span),
     ) -> Result<Image, FormatError> {
         // The decoder's planes and the texels exist at the same time for a moment.
         let limits = Limits::new(self.budget.left() / 2);
-        let image = decoded(bytes, hint, means, &limits).map_err(|e| {
+        let decoded = decoded(bytes, (hint, layer), means, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
-        let mut image = image.ok_or_else(|| {
+        let Decoded { mut image, mut warnings } = decoded.ok_or_else(|| {
             FormatError::malformed(
                 format!("the texture '{name}' has no colour channels: use another picture"),
                 at.clone(),
             )
         })?;
-        if let Some(what) = mend(&mut image, means == SampleMeaning::Numbers) {
+        warnings.extend(mend(&mut image, means == SampleMeaning::Numbers));
+        self.note_picture_faults(name, &warnings, at);
+        self.charge_image(&image, name)?;
+        Ok(image)
+    }
+
+    /// Notes what is wrong with a picture that could be read.
+    pub(crate) fn note_picture_faults(&mut self, name: &str, warnings: &[String], at: &Span) {
+        for what in warnings {
             let message = format!("the texture '{name}': {what}");
             self.picture_faults.push(Warning { message, at: at.clone() });
         }
-        self.charge_image(&image, name)?;
-        Ok(image)
     }
 
     /// The size in bytes of all textures read.
@@ -156,62 +177,6 @@ impl<'o> Reading<'o> {
     /// Leaves the scene that [`Reading::enter`] entered.
     pub(crate) fn leave(&mut self) {
         self.open.pop();
-    }
-
-    /// Finds a referenced file, if it exists and may be opened.
-    pub(crate) fn locate(
-        &self,
-        folder: Option<&Path>,
-        name: &str,
-        at: &Span,
-    ) -> Result<PathBuf, FormatError> {
-        self.locate_except(folder, name, &[], at)
-    }
-
-    /// The same, but finds the files in `open`, which are being read, only under their full names.
-    pub(crate) fn locate_except(
-        &self,
-        folder: Option<&Path>,
-        name: &str,
-        open: &[PathBuf],
-        at: &Span,
-    ) -> Result<PathBuf, FormatError> {
-        let Some(folder) = folder.map(non_empty) else {
-            let message = format!("'{name}' cannot be found: the scene was not read from a folder");
-            return Err(FormatError::malformed(message, at.clone()));
-        };
-        let missing =
-            || FormatError::MissingFile { name: name.to_owned(), folder: folder.to_owned(), at: at.clone() };
-        // Files from other machines refer to folders there; the file itself often lies next to the scene.
-        let portable = name.replace('\\', "/");
-        let beside = portable.rsplit('/').next().unwrap_or_default();
-        if beside.is_empty() || name.contains('\0') {
-            return Err(missing());
-        }
-        let there = |path: PathBuf| fs::canonicalize(path).ok();
-        let named = [folder.join(name), folder.join(&portable)].into_iter().find_map(there);
-        if named.is_none()
-            && let Some(found) = self.in_working_folder(&portable)
-        {
-            return Ok(found);
-        }
-        let found = named
-            .or_else(|| there(folder.join(beside)).filter(|path| !open.contains(path)))
-            // This excludes pipes, which might never end.
-            .filter(|path| path.is_file())
-            .ok_or_else(missing)?;
-        match &self.root {
-            Some(root) if found.starts_with(root) || self.options.allow_outside => Ok(found),
-            None if self.options.allow_outside => Ok(found),
-            _ => Err(FormatError::Outside { name: name.to_owned(), at: at.clone() }),
-        }
-    }
-
-    /// A file with this name in or below the working folder.
-    fn in_working_folder(&self, name: &str) -> Option<PathBuf> {
-        let folder = fs::canonicalize(non_empty(self.working_folder.as_deref()?)).ok()?;
-        let found = fs::canonicalize(folder.join(name)).ok()?;
-        (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
 
     /// The bytes of a file. They count as held until [`Reading::release`].
@@ -265,19 +230,31 @@ impl<'o> Reading<'o> {
         holds: Texels,
         at: &Span,
     ) -> Result<Arc<Texture>, FormatError> {
+        self.texture_of_layer(folder, (name, None), holds, at)
+    }
+
+    /// The same of one layer of a picture.
+    pub(crate) fn texture_of_layer(
+        &mut self,
+        folder: Option<&Path>,
+        (name, layer): (&str, Option<&str>),
+        holds: Texels,
+        at: &Span,
+    ) -> Result<Arc<Texture>, FormatError> {
         let path = self.locate(folder, name, at)?;
-        if let Some(texture) = self.textures.get(&(path.clone(), holds)) {
+        let key = (path.clone(), layer.map(str::to_owned), holds);
+        if let Some(texture) = self.textures.get(&key) {
             return Ok(texture.clone());
         }
         let bytes = self.load(&path)?;
         let hint = path.extension().and_then(|e| e.to_str());
         let is_data = holds != Texels::Colours;
         let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::Colours };
-        let image = self.decode(&bytes, hint, means, (name, at))?;
+        let image = self.decode(&bytes, (hint, layer), means, (name, at))?;
         self.release(bytes);
         let channel = if let Texels::Numbers(channel) = holds { channel } else { None };
         let texture = Arc::new(Texture { channel, ..Texture::of(name, Arc::new(image), is_data) });
-        self.textures.insert((path, holds), texture.clone());
+        self.textures.insert(key, texture.clone());
         Ok(texture)
     }
 }
@@ -293,7 +270,7 @@ fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
     Ok((file, metadata.len()))
 }
 
-fn non_empty(folder: &Path) -> &Path {
+pub(crate) fn non_empty(folder: &Path) -> &Path {
     if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 

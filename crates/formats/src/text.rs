@@ -325,6 +325,22 @@ pub(crate) fn name_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// A name without the quotes around it, which some programs write.
+pub(crate) fn unquoted(name: &[u8]) -> &[u8] {
+    let name = name.trim_ascii();
+    match in_quotes(name) {
+        Some((inside, length)) if length == name.len() => inside,
+        _ => name,
+    }
+}
+
+/// The part in quotes at the beginning of a line, without them, and its length with them.
+pub(crate) fn in_quotes(line: &[u8]) -> Option<(&[u8], usize)> {
+    let (&quote, rest) = line.split_first().filter(|(first, _)| matches!(first, b'"' | b'\''))?;
+    let end = rest.iter().position(|&byte| byte == quote)?;
+    Some((rest[..end].trim_ascii(), end + 2))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

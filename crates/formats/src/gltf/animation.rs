@@ -23,6 +23,7 @@ pub(super) enum AnimatedProperty {
     Rotation,
     Scale,
     Weights,
+    Visible,
 }
 
 /// How a sampler interpolates between keys.
@@ -46,6 +47,11 @@ impl Pose {
     /// The weights of a node's morph targets, if they are animated.
     pub(super) fn weights(&self, node: usize) -> Option<&[f64]> {
         self.moved.get(&(node, AnimatedProperty::Weights)).map(Vec::as_slice)
+    }
+
+    /// Whether a node is visible, if that is animated.
+    pub(super) fn is_visible(&self, node: usize) -> Option<bool> {
+        self.moved.get(&(node, AnimatedProperty::Visible)).map(|values| values.first() != Some(&0.0))
     }
 }
 
@@ -131,6 +137,8 @@ impl<'d> Gltf<'d, '_, '_> {
         let output = Accessor::named(self.document, sampler.need("output")?, budget)?;
         let values = output.numbers(budget)?;
         let interpolation = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
+            // What is true or false has no value in between.
+            "LINEAR" if property == AnimatedProperty::Visible => Interpolation::Step,
             "STEP" => Interpolation::Step,
             "LINEAR" => Interpolation::Linear,
             "CUBICSPLINE" => Interpolation::Cubic,
@@ -147,6 +155,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let width = match property {
             AnimatedProperty::Rotation => 4,
             AnimatedProperty::Translation | AnimatedProperty::Scale => 3,
+            AnimatedProperty::Visible => 1,
             AnimatedProperty::Weights => values.len() / (parts * times.len()),
         };
         if width == 0 || values.len() != width * parts * times.len() {
@@ -176,14 +185,31 @@ impl<'d> Gltf<'d, '_, '_> {
 /// The target of a channel; `None` if this reader does not animate it.
 fn target(channel: &JsonNode) -> Option<(usize, AnimatedProperty)> {
     let target = channel.get("target")?;
-    let property = match target.get("path")?.as_text().ok()? {
+    if let Some(pointer) = target.extension("KHR_animation_pointer") {
+        return pointed(pointer.get("pointer")?.as_text().ok()?);
+    }
+    let property = property_named(target.get("path")?.as_text().ok()?)?;
+    Some((target.get("node")?.as_count().ok()?, property))
+}
+
+fn property_named(name: &str) -> Option<AnimatedProperty> {
+    Some(match name {
         "translation" => AnimatedProperty::Translation,
         "rotation" => AnimatedProperty::Rotation,
         "scale" => AnimatedProperty::Scale,
         "weights" => AnimatedProperty::Weights,
         _ => return None,
+    })
+}
+
+/// The node and its property that a JSON pointer names, such as `/nodes/3/translation`. [KHR_animation_pointer]
+fn pointed(pointer: &str) -> Option<(usize, AnimatedProperty)> {
+    let (node, property) = pointer.strip_prefix("/nodes/")?.split_once('/')?;
+    let property = match property {
+        "extensions/KHR_node_visibility/visible" => AnimatedProperty::Visible,
+        name => property_named(name)?,
     };
-    Some((target.get("node")?.as_count().ok()?, property))
+    Some((node.parse().ok()?, property))
 }
 
 /// The index of an item that the user selected by name or by number, from 0.

@@ -30,6 +30,7 @@ const KNOWN: &[&str] = &[
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     #[cfg(feature = "ktx2")]
     "KHR_texture_basisu",
     "KHR_texture_transform",

@@ -15,6 +15,8 @@ pub(super) struct Placed<'d> {
     pub(super) index: usize,
     /// The transform from its space to world space.
     pub(super) world: DMat4,
+    /// Whether its mesh and its lights are shown; cameras always are. [KHR_node_visibility]
+    pub(super) is_visible: bool,
 }
 
 impl<'d> Gltf<'d, '_, '_> {
@@ -28,10 +30,10 @@ impl<'d> Gltf<'d, '_, '_> {
         self.reading.budget.take_bytes((count * size_of::<[Placed; 2]>()) as u64, &self.file)?;
         self.order = vec![None; count];
         let at_origin = DMat4::from_translation(-self.reading.origin);
-        let mut waiting: Vec<(JsonNode<'d>, DMat4)> =
-            self.roots()?.into_iter().rev().map(|node| (node, at_origin)).collect();
+        let mut waiting: Vec<(JsonNode<'d>, DMat4, bool)> =
+            self.roots()?.into_iter().rev().map(|node| (node, at_origin, true)).collect();
         let mut placed = Vec::new();
-        while let Some((index, parent)) = waiting.pop() {
+        while let Some((index, parent, is_parent_visible)) = waiting.pop() {
             let node = self.document.named("nodes", index)?;
             let number = index.as_count()?;
             let slot = &mut self.order[number];
@@ -43,11 +45,26 @@ impl<'d> Gltf<'d, '_, '_> {
             if !world.is_finite() {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
-            placed.push(Placed { node, index: number, world });
+            let is_visible = is_parent_visible && self.is_visible(node, number)?;
+            placed.push(Placed { node, index: number, world, is_visible });
             let children = node.list("children")?;
-            waiting.extend(children.into_iter().rev().map(|child| (child, world)));
+            waiting.extend(children.into_iter().rev().map(|child| (child, world, is_visible)));
         }
         Ok(placed)
+    }
+
+    /// Whether a node is visible if its parents are.
+    fn is_visible(&mut self, node: JsonNode<'d>, number: usize) -> Result<bool, FormatError> {
+        let stated = match node.extension("KHR_node_visibility").and_then(|entry| entry.get("visible")) {
+            Some(value) => value.as_switch()?,
+            None => true,
+        };
+        let is_visible = self.pose.is_visible(number).unwrap_or(stated);
+        if !is_visible {
+            let what = "a node is hidden by KHR_node_visibility, and with it all nodes below it";
+            self.oddities.remark(what, || node.at());
+        }
+        Ok(is_visible)
     }
 
     /// The indices of the scene's root nodes, as the file lists them.

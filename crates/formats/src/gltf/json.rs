@@ -177,9 +177,12 @@ impl<'a> JsonNode<'a> {
         self.get(key).map(|node| node.as_text()).transpose()
     }
 
+    pub(super) fn as_switch(&self) -> Result<bool, FormatError> {
+        self.value.as_bool().ok_or_else(|| self.wrong("true or false"))
+    }
+
     pub(super) fn switch(&self, key: &'a str) -> Result<bool, FormatError> {
-        let read = |node: JsonNode| node.value.as_bool().ok_or_else(|| node.wrong("true or false"));
-        self.get(key).map_or(Ok(false), read)
+        self.get(key).map_or(Ok(false), |node| node.as_switch())
     }
 
     /// A list of exactly `N` numbers.

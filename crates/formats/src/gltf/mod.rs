@@ -11,6 +11,7 @@ mod document;
 mod draco;
 mod extensions;
 mod fitting;
+mod flat;
 mod glass;
 mod glossiness;
 mod graph;

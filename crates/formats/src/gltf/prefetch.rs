@@ -31,15 +31,16 @@ impl<'d> Gltf<'d, '_, '_> {
         let images: Vec<(usize, JsonNode<'d>)> = images.collect();
         let encoded: Vec<_> = images
             .into_iter()
-            .filter_map(|(number, image)| Some((number, self.encoded(image).ok()?)))
+            .filter_map(|(number, image)| Some((number, image, self.encoded(image).ok()?)))
             .collect();
         // Each decoder holds its own buffers as well as the texels, and all decoders run at once.
         let share = Limits::new(self.reading.budget.left() / (2 * encoded.len().max(1) as u64));
         let decode = |bytes: &[u8]| read_rgba8(bytes, None, &share).ok().flatten();
-        let decoded: Vec<_> = encoded.par_iter().map(|(_, (_, bytes))| decode(bytes)).collect();
-        for ((number, (name, bytes)), picture) in encoded.into_iter().zip(decoded) {
+        let decoded: Vec<_> = encoded.par_iter().map(|(_, _, (_, bytes))| decode(bytes)).collect();
+        for ((number, node, (name, bytes)), picture) in encoded.into_iter().zip(decoded) {
             self.release_encoded(bytes);
             let Some(picture) = picture else { continue };
+            self.reading.note_picture_faults(&name, &picture.warnings, &node.at());
             let (width, height) = (picture.width, picture.height);
             let image = Image { width, height, texels: Texels::Bytes(picture.texels) };
             self.reading.charge_image(&image, &name)?;

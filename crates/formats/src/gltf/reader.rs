@@ -8,7 +8,7 @@ use super::instances::Instances;
 use super::json::JsonNode;
 use super::material::{MaterialKey, UsedMaterial};
 use super::primitive::{NodeMesh, Part};
-use super::{cameras, extensions, lights};
+use super::{cameras, extensions, flat, lights};
 use crate::FormatError;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
@@ -168,13 +168,16 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
 
     fn place(&mut self, placed: &Placed<'d>) -> Result<(), FormatError> {
         let node = placed.node;
-        if let Some(index) = node.get("mesh") {
+        if let Some(index) = node.get("mesh").filter(|_| placed.is_visible) {
             self.place_mesh(placed, index)?;
         }
         if let Some(index) = node.get("camera") {
             let camera = self.document.named("cameras", index)?;
             let spec = cameras::camera(camera, node, &placed.world, &mut self.oddities)?;
             self.scene.cameras.extend(spec);
+        }
+        if !placed.is_visible {
+            return Ok(());
         }
         if let Some(light) = node.extension("KHR_lights_punctual") {
             let radius = self.reading.options.light_radius;
@@ -200,7 +203,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         };
         for world in places.iter() {
             let Some(transform) = Transform::from_matrix(world) else {
-                self.oddities.note("a node has a scale of zero and is not rendered", || node.at());
+                self.place_flattened(&name, &parts, &world, node)?;
                 continue;
             };
             let motion = Motion::still(transform);
@@ -210,6 +213,37 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
                 let object = Object::new(&name, part.mesh.clone(), part.material);
                 self.scene.objects.push(Object { motion: motion.clone(), ..object });
             }
+        }
+        Ok(())
+    }
+
+    /// Places a mesh whose transform cannot be inverted: a scale of zero along one axis makes it flat.
+    fn place_flattened(
+        &mut self,
+        name: &str,
+        parts: &[Part],
+        world: &DMat4,
+        node: JsonNode<'d>,
+    ) -> Result<(), FormatError> {
+        match flat::rank(world) {
+            2 => {}
+            // This is how files hide meshes. [glTF 2.0, 3.5.3]
+            0 => {
+                self.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                return Ok(());
+            }
+            _ => {
+                let what =
+                    "a node is scaled to a line or to something that is not finite, and is not rendered";
+                self.oddities.note(what, || node.at());
+                return Ok(());
+            }
+        }
+        for part in parts {
+            let bytes = part.mesh.size() + (size_of::<[Object; 2]>() + name.len()) as u64;
+            self.reading.budget.take_bytes(bytes, &self.file)?;
+            let mesh = Arc::new(flat::flattened(&part.mesh, world));
+            self.scene.objects.push(Object::new(name, mesh, part.material));
         }
         Ok(())
     }

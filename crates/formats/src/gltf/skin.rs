@@ -55,8 +55,9 @@ impl<'d> Gltf<'d, '_, '_> {
     ) -> Result<(), FormatError> {
         let attributes = primitive.need("attributes")?;
         let count = mesh.positions.len();
-        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
+        self.reading.budget.take_bytes((count * size_of::<(DMat4, f64, f32)>()) as u64, &self.file)?;
         let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
+        let mut firsts: Vec<f32> = Vec::new();
         for (key, index) in attributes.entries() {
             let Some(set) = key.strip_prefix("JOINTS_") else { continue };
             let weights = attributes.entries().find(|(key, _)| key.strip_prefix("WEIGHTS_") == Some(set));
@@ -66,6 +67,9 @@ impl<'d> Gltf<'d, '_, '_> {
             let weights = self.attribute::<4>(weights, Some(count))?;
             let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
             let indices = self.attribute::<4>(index, Some(count))?;
+            if set == "0" {
+                firsts = indices.iter().map(|joints| joints[0]).collect();
+            }
             for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
                 for (joint, weight) in indices.into_iter().zip(weights) {
                     // Non-finite weights are skipped, so they are reported as weights that do not sum to one.
@@ -84,16 +88,18 @@ impl<'d> Gltf<'d, '_, '_> {
                 }
             }
         }
-        if sums.iter().any(|&sum| (sum - 1.0).abs() > 0.02) {
+        if sums.iter().any(|&sum| sum != 0.0 && (sum - 1.0).abs() > 0.02) {
             let what = "the weights of a skin do not add up to 1; they are normalised";
             self.oddities.note(what, || attributes.at());
         }
         if sums.contains(&0.0) {
-            self.oddities
-                .note("some vertices of a skin have no joint and stay where they are", || attributes.at());
+            let what = "some vertices of a skin have no weights; they follow the first joint that they name";
+            self.oddities.note(what, || attributes.at());
         }
-        for (blend, sum) in blends.iter_mut().zip(sums) {
-            *blend = if sum == 0.0 { DMat4::IDENTITY } else { *blend * (1.0 / sum) };
+        for (vertex, (blend, sum)) in blends.iter_mut().zip(sums).enumerate() {
+            // The specification does not say where such a vertex is; this is where three.js and its kin put it.
+            let first = || Some(*joints.0.get(*firsts.get(vertex)? as usize)?);
+            *blend = if sum == 0.0 { first().unwrap_or(DMat4::IDENTITY) } else { *blend * (1.0 / sum) };
         }
         moved(mesh, &blends);
         Ok(())

@@ -148,7 +148,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let extension = Path::new(&name).extension().and_then(|e| e.to_str());
         let hint = kind.strip_prefix("image/").or(extension);
         let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::SrgbColours };
-        let decoded = self.reading.decode(&bytes, hint, means, (&name, &at))?;
+        let decoded = self.reading.decode(&bytes, (hint, None), means, (&name, &at))?;
         self.release_encoded(bytes);
         Ok((name, Arc::new(decoded)))
     }
@@ -163,10 +163,10 @@ impl<'d> Gltf<'d, '_, '_> {
         let place = image.need("uri")?;
         Ok(match uri::resolve(self.reading, place)? {
             Resource::Data(bytes) => (image.name().to_owned(), Cow::Owned(bytes)),
-            Resource::File(name) => {
-                let path = self.reading.locate(self.source.folder, &name, &place.at())?;
+            Resource::File(names) => {
+                let path = self.reading.locate_any(self.source.folder, &names, &place.at())?;
                 let bytes = self.reading.load(&path)?;
-                (name, Cow::Owned(bytes))
+                (names.into_iter().next().unwrap_or_default(), Cow::Owned(bytes))
             }
         })
     }

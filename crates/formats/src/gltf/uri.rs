@@ -12,8 +12,8 @@ use std::borrow::Cow;
 pub(super) enum Resource {
     /// The bytes embedded in a data URI.
     Data(Vec<u8>),
-    /// The name of a file, relative to the scene.
-    File(String),
+    /// A file relative to the scene: the spellings of its name, the likeliest first.
+    File(Vec<String>),
 }
 
 /// Resolves a URI without opening anything.
@@ -22,31 +22,73 @@ pub(super) enum Resource {
 /// If it is malformed, or refers to a network.
 pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource, FormatError> {
     let uri = node.as_text()?;
-    if let Some(data) = uri.strip_prefix("data:") {
+    if let Some(data) = without_scheme(uri, "data:") {
         let Some((kind, payload)) = data.split_once(',') else {
             return Err(node.error("this data URI has no comma before its data"));
         };
         reading.budget.take_bytes(payload.len() as u64, &node.at().file)?;
-        if kind.ends_with(";base64") {
-            let decoded = BASE64.decode(payload);
-            let start = uri.len() - payload.len();
-            return decoded.map(Resource::Data).map_err(|error| {
-                node.error(format!(
-                    "the base64 of this data URI is malformed: {}",
-                    fault(&error, payload, start)
-                ))
-            });
-        }
-        return Ok(Resource::Data(percent_decoded(payload).into_owned()));
+        return data_of(kind, payload, uri.len() - payload.len())
+            .map(Resource::Data)
+            .map_err(|what| node.error(what));
     }
-    if scheme(uri).is_some() || uri.starts_with("//") {
+    let is_file = without_scheme(uri, "file:").is_some();
+    if !is_file && (scheme(uri).is_some() || uri.starts_with("//")) {
         return Err(node.error(format!(
             "'{uri}' is a web address, but nothing is loaded from the network: put the file next to the scene, and \
              write its name here"
         )));
     }
-    let name = String::from_utf8(percent_decoded(uri).into_owned());
-    name.map(Resource::File).map_err(|_| node.error("this name is not in UTF-8: rename the file"))
+    let names = spellings(uri);
+    if names.is_empty() {
+        return Err(node.error("this name is not in UTF-8: rename the file"));
+    }
+    Ok(Resource::File(names))
+}
+
+/// The type and the data of a data URI.
+pub(super) fn data(uri: &str) -> Option<(&str, &str)> {
+    without_scheme(uri, "data:")?.split_once(',')
+}
+
+/// What follows a scheme, in upper or lower case. [Berners-Lee 2005, 3.1]
+fn without_scheme<'u>(uri: &'u str, scheme: &str) -> Option<&'u str> {
+    uri.get(..scheme.len()).filter(|start| start.eq_ignore_ascii_case(scheme)).map(|_| &uri[scheme.len()..])
+}
+
+/// The bytes of a data URI whose payload begins at this character, or what is wrong with it. Base64 can contain escapes
+/// like all parts of a URI. [Masinter 1998]
+fn data_of(kind: &str, payload: &str, start: usize) -> Result<Vec<u8>, String> {
+    let is_base64 = kind.rsplit_once(';').is_some_and(|(_, last)| last.trim().eq_ignore_ascii_case("base64"));
+    let bytes = percent_decoded(payload);
+    if !is_base64 {
+        return Ok(bytes.into_owned());
+    }
+    let is_blank = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
+    let bytes = if bytes.iter().any(is_blank) {
+        Cow::Owned(bytes.iter().copied().filter(|byte| !is_blank(byte)).collect())
+    } else {
+        bytes
+    };
+    BASE64.decode(&*bytes).map_err(|error| {
+        let text = String::from_utf8_lossy(&bytes);
+        format!("the base64 of this data URI is malformed: {}", fault(&error, &text, start))
+    })
+}
+
+/// How the name of the file in a URI may be spelt on the disk. A query or a fragment is no part of the name, unless it
+/// is; and some exporters write names as they are, without escapes, even if they contain `%`, `?` or `#`.
+fn spellings(uri: &str) -> Vec<String> {
+    let path = &uri[..uri.find(['?', '#']).unwrap_or(uri.len())];
+    let mut names: Vec<String> = Vec::new();
+    for text in [path, uri] {
+        let decoded = String::from_utf8(percent_decoded(text).into_owned()).ok();
+        for name in decoded.into_iter().chain([text.to_owned()]) {
+            if !name.is_empty() && !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names
 }
 
 /// Describes an error in base64 data that begins at this character of a URI.
@@ -67,16 +109,15 @@ fn fault(error: &DecodeError, payload: &str, start: usize) -> String {
 
 /// True if a data URI has a parameter without a name, which only faulty exporters write.
 pub(super) fn is_odd(uri: &str) -> bool {
-    let kind = uri.strip_prefix("data:").and_then(|data| data.split_once(','));
-    kind.is_some_and(|(kind, _)| kind.contains(";;"))
+    data(uri).is_some_and(|(kind, _)| kind.contains(";;"))
 }
 
 /// Loads the bytes that a URI refers to.
 pub(super) fn load(reading: &mut Reading, source: &Source, node: JsonNode) -> Result<Vec<u8>, FormatError> {
     match resolve(reading, node)? {
         Resource::Data(bytes) => Ok(bytes),
-        Resource::File(name) => {
-            let path = reading.locate(source.folder, &name, &node.at())?;
+        Resource::File(names) => {
+            let path = reading.locate_any(source.folder, &names, &node.at())?;
             reading.load(&path)
         }
     }
@@ -130,5 +171,29 @@ mod tests {
         assert_eq!(&*percent_decoded("f%C3%BCr%2.bin"), "für%2.bin".as_bytes());
         assert_eq!(scheme("https://a"), Some("https"));
         assert_eq!((scheme("a/b:c"), scheme("C:/x"), scheme("plain.bin")), (None, None, None));
+    }
+
+    #[test]
+    fn files_are_looked_for_under_every_spelling_of_their_names() {
+        assert_eq!(spellings("a%20b.png"), ["a b.png", "a%20b.png"]);
+        assert_eq!(spellings("a b.png?v=3#x"), ["a b.png", "a b.png?v=3#x"]);
+        assert_eq!(spellings("100%.png"), ["100%.png"]);
+        assert_eq!(spellings("#1.png"), ["#1.png"]);
+    }
+
+    /// RFC 2397: the media type is optional, and the data of a URI may be escaped.
+    #[test]
+    fn every_form_of_data_uri_is_decoded() {
+        for uri in [
+            "data:text/plain;base64,SGk/PQ==",
+            "DATA:;BASE64,SGk/PQ==",
+            "data:;base64,SGk%2FPQ%3D%3D",
+            "data:application/octet-stream;charset=x;Base64,SGk/\nPQ",
+            "data:,Hi%3F%3D",
+            "data:,Hi?=",
+        ] {
+            let (kind, payload) = data(uri).unwrap();
+            assert_eq!(data_of(kind, payload, 0).as_deref(), Ok(&b"Hi?="[..]), "{uri}");
+        }
     }
 }

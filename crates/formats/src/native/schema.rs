@@ -133,6 +133,7 @@ fn texture(extra: &[(&str, Value)]) -> Value {
         extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
     all.extend(properties(PICTURE.parameters));
     all.insert("texture".to_owned(), described("string", "a picture, relative to this file"));
+    all.insert("layer".to_owned(), described("string", "a layer of an EXR, in place of its main picture"));
     json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }
 

@@ -129,7 +129,7 @@ impl Native<'_, '_> {
         if let Some(item) = table.find("kind") {
             return self.formula(item.text("kind")?, holds, table, part).map(Some);
         }
-        let keys = ["texture", "channel"].into_iter().take(if has_channels { 2 } else { 1 });
+        let keys = ["texture", "layer", "channel"].into_iter().take(if has_channels { 3 } else { 2 });
         let more = PICTURE.parameters.iter().map(|p| p.name);
         table.check_keys(&format!("the texture of '{key}'"), keys.chain(more))?;
         let file = table.find("texture").ok_or_else(|| {
@@ -137,10 +137,10 @@ impl Native<'_, '_> {
             missing(&format!("texture (a file), or kind ({}),", kinds.join(", ")), table)
         })?;
         let name = file.text("texture")?;
-        match self.reading.texture(part.folder.as_deref(), name, holds, &file.at) {
-            Ok(texture) if table.entries.iter().all(|(key, ..)| key == "texture" || key == "channel") => {
-                Ok(Some(texture))
-            }
+        let layer = table.find("layer").map(|item| item.text("layer")).transpose()?;
+        let is_plain = |key: &str| matches!(key, "texture" | "layer" | "channel");
+        match self.reading.texture_of_layer(part.folder.as_deref(), (name, layer), holds, &file.at) {
+            Ok(texture) if table.entries.iter().all(|(key, ..)| is_plain(key)) => Ok(Some(texture)),
             Ok(texture) => Ok(Some(Arc::new(placed(&texture, table)?))),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {

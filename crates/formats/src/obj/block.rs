@@ -9,7 +9,7 @@ use crate::float::{parse_f32, parse_relative};
 use crate::indexed_faces::{Corner, NONE};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::oddities::Oddities;
-use crate::text::{Cursor, TextPosition, name_of, quoted};
+use crate::text::{Cursor, TextPosition, name_of, quoted, unquoted};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
@@ -143,7 +143,7 @@ impl<'a> Reader<'a> {
                     self.turn(StateChange::Name(name));
                 }
                 b"usemtl" => {
-                    let name = name_of(self.cursor.rest_of_line());
+                    let name = name_of(unquoted(self.cursor.rest_of_line()));
                     self.turn(StateChange::Material(name, start));
                 }
                 b"mtllib" => {

@@ -5,7 +5,7 @@ use super::surface::NUMBERS;
 use crate::FormatError;
 use crate::float::parse_f32;
 use crate::reading::Texels;
-use crate::text::name_of;
+use crate::text::{in_quotes, name_of};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::texture::{Channel, Image, Texels as Held, UvTransform, Wrap};
 use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
@@ -51,6 +51,13 @@ impl Library<'_, '_, '_> {
         self.cursor.skip_blanks();
         let mut rest = self.cursor.clone();
         let line = rest.rest_of_line();
+        if let Some((name, length)) = in_quotes(line) {
+            map.file = name_of(name);
+            self.cursor.seek(self.cursor.offset() + length);
+            self.map_options(start, &mut map);
+            self.cursor = rest;
+            return map;
+        }
         let name_length = without_options(line);
         if name_length < line.len() {
             self.cursor.seek(self.cursor.offset() + name_length);
@@ -58,9 +65,18 @@ impl Library<'_, '_, '_> {
         }
         let is_all = self.cursor.peek_word().is_empty();
         // What is no option is part of the name, and so is what precedes it.
-        map.file = name_of(if is_all { &line[..name_length] } else { line });
+        map.file = self.without_comment(name_of(if is_all { &line[..name_length] } else { line }));
         self.cursor = rest;
         map
+    }
+
+    /// A name without a comment after it, if there is no file with the whole name.
+    fn without_comment(&self, name: String) -> String {
+        let Some((before, _)) = name.split_once(" #") else { return name };
+        match self.reading.locate(self.source.folder, &name, &Span::default()) {
+            Ok(_) => name,
+            Err(_) => before.trim_end().to_owned(),
+        }
     }
 
     /// Reads the options of a texture, as far as they go.
@@ -134,7 +150,7 @@ impl Library<'_, '_, '_> {
                 None if is_opacity && has_alpha(&picture) => Channel::A,
                 None => Channel::R,
             };
-            let factor = Rgb::grey(if is_opacity { draft.opacity() } else { 1.0 });
+            let factor = Rgb::grey(if is_opacity && !draft.is_glass { draft.opacity } else { 1.0 });
             put(scene, spec, key, Texture { channel: Some(channel), factor, ..picture }, map);
         }
         for word in ["norm", "map_bump"] {

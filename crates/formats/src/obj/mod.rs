@@ -8,6 +8,7 @@ mod mtl_write;
 mod read;
 mod strokes;
 mod surface;
+mod transparency;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};

@@ -1,4 +1,5 @@
-//! Reads MTL: maps its materials, which date from the 1990s, to Bilux's as `docs/formats/obj.md` describes.
+//! Reads MTL: maps its materials, which date from the 1990s, to Bilux's as `docs/formats/obj.md` describes. A line that
+//! cannot be read costs only itself.
 
 use super::maps::Map;
 use super::surface::{material, unit};
@@ -6,7 +7,7 @@ use crate::FormatError;
 use crate::float::parse_f32;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
-use crate::text::{Cursor, Places, name_of, quoted};
+use crate::text::{Cursor, Places, name_of, quoted, unquoted};
 use bilux_math::Rgb;
 use bilux_scene::{SceneBuilder, Span};
 use std::collections::HashMap;
@@ -25,32 +26,37 @@ pub(super) fn read_library(
         places: Places::new(source.name, source.bytes),
         oddities: Oddities::default(),
     };
-    let mut current: Option<Draft> = None;
+    let mut drafts: Vec<Draft> = Vec::new();
     while !library.cursor.is_done() {
         library.cursor.skip_blanks();
         let start = library.cursor.offset();
         let key = library.cursor.word();
-        match (key, &mut current) {
+        match (key, drafts.last_mut()) {
             (b"newmtl", _) => {
-                library.finish(current.take(), scene, by_name)?;
-                let name = name_of(library.cursor.rest_of_line());
+                let name = name_of(unquoted(library.cursor.rest_of_line()));
                 library.reading.budget.take::<(Draft, [u8; 1024])>(1, source.name)?;
-                current = Some(Draft::new(name, library.places.at(start)));
+                drafts.push(Draft::new(name, library.places.at(start), start));
             }
             (b"", _) => {}
             (key, _) if key.starts_with(b"#") => {
                 library.cursor.rest_of_line();
             }
             (key, Some(draft)) => library.statement(key, start, draft)?,
-            (_, None) => {
-                let message =
-                    format!("{} comes before the first 'newmtl', which begins a material", quoted(key));
-                return Err(FormatError::malformed(message, library.places.at(start)));
+            (key, None) => {
+                let places = &library.places;
+                let what = " comes before the first 'newmtl', which begins a material: this line is left out";
+                library.oddities.note_first(what, || quoted(key), || places.at(start));
             }
         }
         library.cursor.end_line();
     }
-    library.finish(current, scene, by_name)?;
+    library.decide_transparency(&mut drafts);
+    for draft in drafts {
+        let mut spec = material(&draft);
+        library.put_maps(&draft, &mut spec, scene)?;
+        let index = scene.add_material(spec);
+        by_name.entry(draft.name).or_insert(index);
+    }
     library.oddities.into_warnings(scene);
     Ok(())
 }
@@ -60,31 +66,43 @@ pub(super) fn read_library(
 pub(super) struct Draft {
     pub(super) name: String,
     pub(super) span: Span,
-    colours: HashMap<&'static str, Rgb>,
-    numbers: HashMap<&'static str, f32>,
+    /// Where it begins in the file.
+    start: usize,
+    colours: HashMap<&'static str, (Rgb, usize)>,
+    numbers: HashMap<&'static str, (f32, usize)>,
     pub(super) maps: HashMap<&'static str, Map>,
+    /// The opacity, from 0 to 1, once the whole library is known.
+    pub(super) opacity: f32,
+    /// Whether light enters the surface and is refracted, once the whole library is known.
+    pub(super) is_glass: bool,
 }
 
 impl Draft {
-    fn new(name: String, span: Span) -> Draft {
-        Draft { name, span, ..Draft::default() }
+    fn new(name: String, span: Span, start: usize) -> Draft {
+        Draft { name, span, start, opacity: 1.0, ..Draft::default() }
     }
 
     pub(super) fn colour(&self, key: &str) -> Option<Rgb> {
-        self.colours.get(key).copied()
+        self.colours.get(key).map(|(colour, _)| *colour)
     }
 
     pub(super) fn number(&self, key: &str) -> Option<f32> {
-        self.numbers.get(key).copied()
+        self.numbers.get(key).map(|(number, _)| *number)
+    }
+
+    /// True if a line gives this number or colour.
+    pub(super) fn states(&self, key: &str) -> bool {
+        self.numbers.contains_key(key) || self.colours.contains_key(key)
+    }
+
+    /// Where the line of a number or a colour begins; where the material does, if there is none.
+    pub(super) fn offset(&self, key: &str) -> usize {
+        let number = self.numbers.get(key).map(|(_, at)| *at);
+        number.or(self.colours.get(key).map(|(_, at)| *at)).unwrap_or(self.start)
     }
 
     pub(super) fn illum(&self) -> i32 {
         self.number("illum").map_or(2, |n| n as i32)
-    }
-
-    /// The opacity, from 0 to 1.
-    pub(super) fn opacity(&self) -> f32 {
-        self.number("d").or(self.number("Tr").map(|t| 1.0 - t)).unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
     /// The index of refraction, if a valid one is given.
@@ -129,18 +147,23 @@ impl Library<'_, '_, '_> {
             names.iter().copied().find(|name| name.as_bytes().eq_ignore_ascii_case(key))
         };
         if let Some(name) = known(&COLOURS) {
-            if let Some(colour) = self.colour()? {
-                draft.colours.insert(name, colour);
+            if let Some(colour) = self.colour() {
+                draft.colours.insert(name, (colour, start));
             }
         } else if let Some(name) = known(&NUMBERS) {
             if self.cursor.peek_word() == b"-halo" {
                 self.cursor.word();
             }
-            if let Some(number) = self.number()? {
-                draft.numbers.insert(name, number);
+            if let Some(number) = self.number() {
+                draft.numbers.insert(name, (number, start));
             }
         } else if let Some(name) = known(&MAPS) {
             let map = self.map(start);
+            if map.file.is_empty() {
+                let (places, what) = (&self.places, " has no file name, and is left out");
+                self.oddities.note_first(what, || quoted(name.as_bytes()), || places.at(start));
+                return Ok(());
+            }
             self.reading.budget.take::<u8>(2 * map.file.len(), self.source.name)?;
             draft.maps.insert(name, map);
         } else {
@@ -154,59 +177,48 @@ impl Library<'_, '_, '_> {
         Ok(())
     }
 
-    /// Three numbers, or one for all channels; `None` for a spectral file or another colour space.
-    fn colour(&mut self) -> Result<Option<Rgb>, FormatError> {
+    /// Three numbers, or one for all channels; `None`, with a warning, for anything else.
+    fn colour(&mut self) -> Option<Rgb> {
         if [&b"spectral"[..], b"xyz"].contains(&self.cursor.peek_word()) {
             let (places, at) = (&self.places, self.cursor.offset());
             self.oddities.note("spectral and xyz colours are not used", || places.at(at));
             self.cursor.rest_of_line();
-            return Ok(None);
+            return None;
         }
-        let Some(r) = self.number()? else { return Ok(None) };
-        let g = self.next_number()?;
-        let b = self.next_number()?;
-        Ok(Some(Rgb::new(r, g.unwrap_or(r), b.or(g).unwrap_or(r))))
+        let r = self.number()?;
+        let g = if self.has_more() { Some(self.number()?) } else { None };
+        let b = if self.has_more() { Some(self.number()?) } else { None };
+        Some(Rgb::new(r, g.unwrap_or(r), b.or(g).unwrap_or(r)))
     }
 
-    fn next_number(&mut self) -> Result<Option<f32>, FormatError> {
-        match self.cursor.peek_word() {
-            b"" => Ok(None),
-            word if word.starts_with(b"#") => Ok(None),
-            _ => self.number(),
-        }
+    /// True if something other than a comment follows on the line.
+    fn has_more(&self) -> bool {
+        let word = self.cursor.peek_word();
+        !word.is_empty() && !word.starts_with(b"#")
     }
 
-    /// A number; `None`, with a warning, if it is infinite or NaN.
-    fn number(&mut self) -> Result<Option<f32>, FormatError> {
+    /// A number; `None`, with a warning, if it is missing, infinite or NaN, or if it is none.
+    fn number(&mut self) -> Option<f32> {
         let word = self.cursor.word();
         let offset = self.cursor.offset() - word.len();
-        match parse_f32(word) {
-            Some(value) if value.is_finite() => Ok(Some(value)),
-            Some(_) => {
-                let places = &self.places;
-                let what = "a value of a material is infinite or not a number (NaN), and is ignored";
-                self.oddities.note(what, || places.at(offset));
-                Ok(None)
-            }
-            None => {
-                let message =
-                    format!("{} is not a number: write one, such as 0.5, or remove this line", quoted(word));
-                Err(FormatError::malformed(message, self.places.at(offset)))
-            }
-        }
+        let what = match parse_f32(word).or_else(|| self.with_decimal_comma(word, offset)) {
+            Some(value) if value.is_finite() => return Some(value),
+            Some(_) => "a value of a material is infinite or not a number (NaN), and is ignored",
+            None if word.is_empty() => "a number is missing here: this line is left out",
+            None => " is not a number: write one, such as 0.5; this line is left out",
+        };
+        let places = &self.places;
+        let first = || if what.starts_with(' ') { quoted(word) } else { String::new() };
+        self.oddities.note_first(what, first, || places.at(offset));
+        None
     }
 
-    fn finish(
-        &mut self,
-        draft: Option<Draft>,
-        scene: &mut SceneBuilder,
-        by_name: &mut HashMap<String, usize>,
-    ) -> Result<(), FormatError> {
-        let Some(draft) = draft else { return Ok(()) };
-        let mut spec = material(&draft);
-        self.put_maps(&draft, &mut spec, scene)?;
-        let index = scene.add_material(spec);
-        by_name.entry(draft.name).or_insert(index);
-        Ok(())
+    /// The number that a word means if a comma stands for its point, as some programs write in some countries.
+    fn with_decimal_comma(&mut self, word: &[u8], offset: usize) -> Option<f32> {
+        let comma = word.iter().position(|&byte| byte == b',')?;
+        let value = parse_f32(&[&word[..comma], b".", &word[comma + 1..]].concat())?;
+        let places = &self.places;
+        self.oddities.note("a comma in a number is read as a decimal point", || places.at(offset));
+        Some(value)
     }
 }

@@ -208,22 +208,10 @@ fn write_principled(
 fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     let kt = grey("kt", 0.0);
-    // Reading multiplied kd by the opacity `d`; this undoes it.
-    let opacity = if spec.parameters.find("thin").is_some_and(|(v, _)| *v == Value::Bool(true)) {
-        1.0 - kt.max_channel()
-    } else {
-        1.0
-    };
-    if opacity < 1.0 {
-        let kd = if opacity > 0.0 { grey("kd", 0.7) / opacity } else { Rgb::BLACK };
-        push_colour(out, "Kd", kd);
-        push_number(out, "d", opacity);
-        push_colour(out, "Tf", kt / kt.max_channel());
-    } else {
-        push_colour(out, "Kd", grey("kd", 0.7));
-        if !kt.is_black() {
-            push_colour(out, "Kt", kt);
-        }
+    let is_thin = spec.parameters.find("thin").is_some_and(|(v, _)| *v == Value::Bool(true));
+    push_colour(out, "Kd", grey("kd", 0.7));
+    if !kt.is_black() {
+        push_colour(out, "Kt", kt);
     }
     push_colour(out, "Ks", grey("ks", 0.3));
     if let Some(exponent) = number(spec, "exponent") {
@@ -232,14 +220,16 @@ fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
     if let Some(eta) = number(spec, "eta") {
         push_number(out, "Ni", eta);
     }
-    match number(spec, "reflectivity").unwrap_or(1.0) {
-        0.0 => out.extend_from_slice(b"illum 2\n"),
-        part => {
-            // Not in the format, but other programs write it too, and the rest ignore it.
-            push_number(out, "Kr", part);
-            out.extend_from_slice(b"illum 3\n");
-        }
+    let reflectivity = number(spec, "reflectivity").unwrap_or(1.0);
+    if reflectivity > 0.0 {
+        // Not in the format, but other programs write it too, and the rest ignore it.
+        push_number(out, "Kr", reflectivity);
     }
+    out.extend_from_slice(match (!kt.is_black() && is_thin, reflectivity > 0.0) {
+        (true, _) => b"illum 4\n",
+        (false, true) => b"illum 3\n",
+        (false, false) => b"illum 2\n",
+    });
 }
 
 fn push_colour(out: &mut Vec<u8>, key: &str, colour: Rgb) {

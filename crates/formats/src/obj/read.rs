@@ -10,7 +10,7 @@ use crate::indexed_faces::{IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, Smoothing};
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
-use crate::text::{Cursor, Places, TextPosition, no_text, whole_file};
+use crate::text::{Cursor, Places, TextPosition, no_text, unquoted, whole_file};
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use rayon::prelude::*;
@@ -263,8 +263,9 @@ impl Obj<'_, '_, '_> {
     /// `mtllib NAME…`: tries a name with spaces as a whole first.
     fn libraries(&mut self, line: String, at: &Span) -> Result<(), FormatError> {
         let folder = self.source.folder;
-        let names = match self.reading.locate(folder, &line, at) {
-            Ok(_) => vec![line],
+        let whole = String::from_utf8_lossy(unquoted(line.as_bytes())).into_owned();
+        let names = match self.reading.locate(folder, &whole, at) {
+            Ok(_) => vec![whole],
             Err(_) => split_names(&line),
         };
         for name in names {
@@ -329,13 +330,18 @@ fn moved_down(error: FormatError, lines: u32) -> FormatError {
     }
 }
 
-/// Splits names at spaces; a backslash keeps a space in a name.
+/// Splits names at spaces; a backslash or quotes keep a space in a name, and `#` begins a comment.
 fn split_names(line: &str) -> Vec<String> {
     let mut names = vec![String::new()];
     let mut letters = line.chars().peekable();
+    let mut quote = None;
     while let Some(letter) = letters.next() {
         let last = names.len() - 1;
         match letter {
+            c if quote == Some(c) => quote = None,
+            c if quote.is_some() => names[last].push(c),
+            '"' | '\'' if names[last].is_empty() => quote = Some(letter),
+            '#' if names[last].is_empty() => break,
             '\\' if letters.peek().is_some_and(|next| next.is_whitespace()) => {
                 names[last].extend(letters.next());
             }
@@ -356,6 +362,7 @@ mod tests {
     #[test]
     fn names_with_escaped_blanks() {
         assert_eq!(split_names(r"a.mtl b\ c.mtl  d\e.mtl"), ["a.mtl", "b c.mtl", r"d\e.mtl"]);
+        assert_eq!(split_names(r#""a b.mtl" 'c.mtl' it's.mtl # both"#), ["a b.mtl", "c.mtl", "it's.mtl"]);
     }
 
     /// Describes everything that was read, or the error, as text.

@@ -17,24 +17,23 @@ pub(super) const NUMBERS: [(&str, &str, &str); 5] = [
     ("Pcr", "map_Pcr", "coat_roughness"),
 ];
 
-/// True if light enters the surface and is refracted.
-fn is_glass(draft: &Draft) -> bool {
-    matches!(draft.illum(), 4 | 6 | 7 | 9)
+/// True if any keyword of the PBR extension is given.
+pub(super) fn is_of_pbr_extension(draft: &Draft) -> bool {
+    PBR.iter().any(|word| draft.number(word).is_some())
+        || PBR_MAPS.iter().any(|word| draft.maps.contains_key(word))
 }
 
 /// The material without its textures.
 pub(super) fn material(draft: &Draft) -> Spec {
-    let is_principled = PBR.iter().any(|word| draft.number(word).is_some())
-        || PBR_MAPS.iter().any(|word| draft.maps.contains_key(word));
     let ks = draft.colour("Ks").map_or(Rgb::BLACK, unit);
     let is_mirror = matches!(draft.illum(), 3 | 5 | 8)
         && draft.colour("Kr").is_none()
         && draft.colour("Kd").is_none_or(|c| unit(c).is_black())
         && !draft.maps.contains_key("map_Kd")
         && !ks.is_black();
-    let mut spec = if is_principled {
+    let mut spec = if is_of_pbr_extension(draft) {
         principled(draft)
-    } else if is_glass(draft) {
+    } else if draft.is_glass {
         dielectric(draft)
     } else if is_mirror {
         Spec::new(&draft.name, "mirror").with("reflectance", ks)
@@ -54,19 +53,22 @@ pub(super) fn material(draft: &Draft) -> Spec {
 
 fn dielectric(draft: &Draft) -> Spec {
     let spec = Spec::new(&draft.name, "dielectric").with("eta", draft.eta().unwrap_or(1.5));
-    match draft.colour("Tf") {
+    match filter_colour(draft) {
         Some(tint) => spec.with("tint", unit(tint)),
         None => spec,
     }
 }
 
+/// The colour of what passes through glass, unless it is black, which many exporters write for everything.
+fn filter_colour(draft: &Draft) -> Option<Rgb> {
+    draft.colour("Tf").filter(|tf| !tf.is_black())
+}
+
 fn phong(draft: &Draft, ks: Rgb) -> Spec {
     let mut spec = Spec::new(&draft.name, "phong");
     let mut set = |key: &str, value: Value| spec.parameters.set(key, value);
-    // With a texture, opacity means cut-outs; a number alone means a transparent material.
-    let opacity = if draft.maps.contains_key("map_d") { 1.0 } else { draft.opacity() };
     if let Some(kd) = draft.diffuse() {
-        set("kd", (kd * opacity).into());
+        set("kd", kd.into());
     }
     set("ks", if draft.illum() < 2 { Rgb::BLACK } else { ks }.into());
     if let Some(exponent) = draft.number("Ns") {
@@ -74,14 +76,13 @@ fn phong(draft: &Draft, ks: Rgb) -> Spec {
     }
     let reflects = if matches!(draft.illum(), 3 | 5 | 8) { 1.0 } else { 0.0 };
     set("reflectivity", draft.colour("Kr").map_or(reflects, |c| unit(c).max_channel()).into());
-    let through = draft
-        .colour("Kt")
-        .map(unit)
-        .or((opacity < 1.0).then(|| draft.colour("Tf").map_or(Rgb::WHITE, unit) * (1.0 - opacity)));
-    if let Some(kt) = through.filter(|kt| !kt.is_black()) {
+    if let Some(kt) = draft.colour("Kt").map(unit).filter(|kt| !kt.is_black()) {
         set("kt", kt.into());
-        // Opacity implies no refraction: light passes straight through.
-        set("thin", (draft.colour("Kt").is_none()).into());
+        // Glass without refraction.
+        set("thin", (draft.illum() == 4).into());
+    }
+    if draft.opacity < 1.0 {
+        set("opacity", draft.opacity.into());
     }
     if let Some(eta) = draft.eta() {
         set("eta", eta.into());
@@ -111,11 +112,11 @@ fn principled(draft: &Draft) -> Spec {
     if let Some(eta) = draft.eta().filter(|eta| *eta > 1.0) {
         set("specular_ior", eta.into());
     }
-    if draft.opacity() < 1.0 {
-        set("opacity", draft.opacity().into());
-    } else if is_glass(draft) {
+    if draft.opacity < 1.0 {
+        set("opacity", draft.opacity.into());
+    } else if draft.is_glass {
         set("transmission_weight", 1.0f32.into());
-        if let Some(tint) = draft.colour("Tf") {
+        if let Some(tint) = filter_colour(draft) {
             set("transmission_color", unit(tint).into());
         }
     }

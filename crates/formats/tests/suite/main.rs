@@ -5,17 +5,20 @@
 mod asc;
 mod clouds;
 mod colours;
+mod foreign;
 mod gltf;
 mod gltf_choices;
 mod gltf_conventions;
 mod gltf_files;
 mod gltf_motion;
+mod gltf_nodes;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
 mod gltf_packed;
 mod gltf_validated;
 mod gltf_written;
 mod hostile;
 mod left_out;
+mod materials_of_exporters;
 mod messages;
 mod native;
 mod obj;
@@ -27,6 +30,7 @@ mod pbrt;
 mod pbrt_written;
 mod ply;
 mod ply_types;
+mod public_reports;
 mod round_trips;
 mod shared_files;
 mod stl;

@@ -135,8 +135,8 @@ fn materials_map_to_ours() {
     assert_eq!(value(glass, "tint"), Some(&Value::triple([0.9, 1.0, 1.0])));
     assert_eq!((&*mirror.kind, value(mirror, "reflectance")), ("mirror", Some(&Value::triple([0.9; 3]))));
     assert_eq!((&*shiny.kind, value(shiny, "reflectivity")), ("phong", Some(&Value::from(1.0))));
-    assert_eq!(value(veil, "kt"), Some(&Value::triple([0.25; 3])));
-    assert_eq!(value(veil, "kd"), Some(&Value::triple([0.375; 3])));
+    assert_eq!(value(veil, "opacity"), Some(&Value::from(0.75)));
+    assert_eq!(value(veil, "kd"), Some(&Value::triple([0.5; 3])));
     assert_eq!(warnings(&scene), "");
     assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
 }

@@ -2,7 +2,7 @@
 
 use super::{Check, counted, text, whole};
 use crate::gltf::json::JsonNode;
-use crate::gltf::meshopt;
+use crate::gltf::{meshopt, uri};
 
 pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(index) = node.number_in_list() else { return };
@@ -21,7 +21,7 @@ pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
 }
 
 pub(super) fn mime_type<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
-    let Some((kind, _)) = text(node, "uri").and_then(|uri| uri.strip_prefix("data:")?.split_once(',')) else {
+    let Some((kind, _)) = text(node, "uri").and_then(uri::data) else {
         return;
     };
     let kind = kind.split(';').next().unwrap_or_default();
@@ -34,7 +34,7 @@ pub(super) fn mime_type<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
 }
 
 pub(super) fn in_glb<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
-    if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri.starts_with("data:")) {
+    if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri::data(uri).is_some()) {
         let message = "a GLB file should keep its data in its binary chunk, not in a data URI, which takes a third more";
         check.report_key(node, "uri", message);
     }

@@ -4,6 +4,7 @@ use super::{Check, Role, text};
 use crate::FormatError;
 use crate::gltf::json::JsonNode;
 use crate::gltf::reader::Gltf;
+use crate::gltf::uri;
 
 pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     match (node.get("uri"), node.get("bufferView")) {
@@ -17,12 +18,11 @@ pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         _ => {}
     }
     check.assign_role(node, node, Role::Image);
-    if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri.starts_with("data:")) {
+    if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri::data(uri).is_some()) {
         let message = "a GLB file should keep its images in its binary chunk, not in a data URI, which takes a third more";
         check.report_key(node, "uri", message);
     }
-    let in_uri = text(node, "uri").and_then(|uri| uri.strip_prefix("data:")?.split_once(','));
-    if let Some((kind, _)) = in_uri {
+    if let Some((kind, _)) = text(node, "uri").and_then(uri::data) {
         let kind = kind.split(';').next().unwrap_or_default();
         if !kind.starts_with("image/") {
             let message =
@@ -83,7 +83,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     fn validate_kind(&mut self, image: JsonNode<'d>, number: usize, bytes: &[u8]) {
-        let in_uri = || text(image, "uri")?.strip_prefix("data:")?.split([';', ',']).next();
+        let in_uri = || uri::data(text(image, "uri")?)?.0.split(';').next();
         let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
         let Some(found) = recognised(bytes) else {
             let what = "this image is neither PNG nor JPEG, the only two formats in glTF without extensions";
