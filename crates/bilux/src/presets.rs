@@ -48,7 +48,9 @@ pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions)
 /// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.
 fn picture_fault(picture: &Path, options: &ReadOptions) -> Option<Error> {
     let limits = Limits::new(options.max_memory);
-    bilux_pictures::read_with(picture, &limits).err().map(Error::from)
+    let read = bilux_pictures::read_with(picture, &limits);
+    let main = read.and_then(|read| read.with_main(options.picture_layer.as_deref()));
+    main.err().map(|error| error.in_file(picture).into())
 }
 
 /// An environment map as a light; its texture joins the scene's.
@@ -56,9 +58,12 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
     let name = picture.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     // Written as a scene file would be, so that the image is found, decoded and refused exactly as a scene's images
     // are.
-    let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
+    let quoted = |text: &str| format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""));
+    let layer =
+        options.picture_layer.as_deref().map_or_else(String::new, |l| format!(", layer = {}", quoted(l)));
     let text = format!(
-        "[[light]]\nname = \"surroundings\"\nkind = \"environment\"\nradiance = {{ texture = \"{quoted}\" }}\n"
+        "[[light]]\nname = \"surroundings\"\nkind = \"environment\"\nradiance = {{ texture = {}{layer} }}\n",
+        quoted(&name)
     );
     let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let options = ReadOptions { strict: false, ..options.clone() };

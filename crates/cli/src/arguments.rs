@@ -327,6 +327,10 @@ pub struct Convert {
     /// The quality of a JPEG, from 1 to 100 [default: 92]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
     pub quality: Option<u8>,
+    /// The layer of an EXR to convert, such as albedo or ViewLayer.Combined [default: its main picture; all layers for an
+    /// EXR]
+    #[arg(long, value_name = "NAME", conflicts_with = "heat_map", help_heading = help::OUTPUT)]
+    pub layer: Option<String>,
     /// Show one channel of a picture, such as rays.mean or depth.Z, in false colours: black for 0, through violet, red and
     /// orange to pale yellow for its maximum. The name of a layer stands for its first channel
     #[arg(long, value_name = "CHANNEL", help_heading = help::OUTPUT)]

@@ -21,6 +21,9 @@ pub struct Compare {
     pub picture: PathBuf,
     /// The reference picture, or a folder of references with the same names as the pictures
     pub reference: PathBuf,
+    /// The layer to compare, of an EXR that has several [default: its main picture]
+    #[arg(long, value_name = "NAME", help_heading = help::PICTURE)]
+    pub layer: Option<String>,
     /// The maximum mean FLIP error, from 0 to 1
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = parse_bound, help_heading = BOUNDS)]
     pub max_flip: Option<f64>,

@@ -22,6 +22,9 @@ pub struct Denoise {
     /// The denoised picture to write; its extension sets the format
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
+    /// The layer to denoise, of an EXR that has several [default: its main picture]
+    #[arg(long, value_name = "NAME", help_heading = help::PICTURE)]
+    pub layer: Option<String>,
     /// The denoiser (`bilux list denoisers`)
     #[arg(long, value_name = "auto|oidn|builtin", default_value = "auto", help_heading = help::PICTURE)]
     pub by: String,

@@ -30,6 +30,9 @@ pub struct StudioArguments {
     /// studio's lights off for a glTF file with lights of its own
     #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
+    /// The layer of the pictures of --env and --background, of an EXR that has several [default: its main picture]
+    #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
+    pub layer: Option<String>,
     /// The background: transparent, a colour (white, grey, black, '#rrggbb' or R,G,B from 0 to 1) or a picture; it
     /// lights nothing [default: the scene's surroundings]
     #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::COMMON_OPTIONS)]
@@ -66,6 +69,7 @@ impl StudioArguments {
             }
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
+        let options = &ReadOptions { picture_layer: self.layer.clone(), ..options.clone() };
         surround(self.env.as_deref(), scene, options)?;
         if let Some(picture) = self.picture_behind() {
             bilux::presets::set_background(scene, picture, options).context("--background")?;
@@ -96,6 +100,9 @@ impl StudioArguments {
                 "--background {}: write transparent, a colour (white, '#rrggbb', or R,G,B from 0 to 1), or the file of a picture",
                 text.display()
             );
+        }
+        if self.layer.is_some() && self.picture_behind().is_none() && self.env.is_none() {
+            bail!("--layer is of the picture of --env or --background: name one, or leave it out");
         }
         self.change.iter().try_for_each(|change| change_of(change).map(drop))
     }

@@ -285,10 +285,11 @@ impl Scene {
         self.builder(py).notes.iter().map(|note| in_python(&note.to_string())).collect()
     }
 
-    /// Lights the scene with a picture in longitude and latitude, replacing the one that it may have.
-    #[pyo3(signature = (path))]
-    fn surround(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let options = ReadOptions { allow_outside: true, ..ReadOptions::default() };
+    /// Lights the scene with a picture in longitude and latitude, replacing the one that it may have; of an EXR with
+    /// several layers, with the one of this name.
+    #[pyo3(signature = (path, layer = None))]
+    fn surround(&self, py: Python<'_>, path: PathBuf, layer: Option<String>) -> PyResult<()> {
+        let options = ReadOptions { allow_outside: true, picture_layer: layer, ..ReadOptions::default() };
         let mut builder = self.builder(py);
         bilux::presets::surround(&mut builder, &path, &options).map_err(exception)
     }

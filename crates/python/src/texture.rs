@@ -53,17 +53,19 @@ impl Texture {
     ///     file: a picture in any format that Bilux reads: a path, bytes, or a file that is open in binary mode.
     ///     data, wrap, filter: as for `Texture`.
     ///     format: the format (`bilux.picture_formats`), where neither its bytes nor its name says it.
+    ///     layer: a layer of an EXR, in place of its main picture.
     ///
     /// Raises:
-    ///     PictureError: if the file is no picture.
+    ///     PictureError: if the file is no picture, or has no such layer.
     #[staticmethod]
-    #[pyo3(signature = (file, *, data = false, wrap = "repeat", filter = "linear", format = None))]
+    #[pyo3(signature = (file, *, data = false, wrap = "repeat", filter = "linear", format = None, layer = None))]
     fn read(
         file: &Bound<'_, PyAny>,
         data: bool,
         wrap: &str,
         filter: &str,
         format: Option<String>,
+        layer: Option<&str>,
     ) -> PyResult<Texture> {
         let py = file.py();
         let mut source = Source::of("file", file, Limits::default().max_bytes)?;
@@ -72,7 +74,7 @@ impl Texture {
         }
         let (name, format) = (source.file_name(), format.or_else(|| source.extension()));
         let bytes = source.bytes();
-        let image = without_gil(py, || decoded(bytes, format.as_deref(), data)).map_err(of_picture)?;
+        let image = without_gil(py, || decoded(bytes, format.as_deref(), data, layer)).map_err(of_picture)?;
         let image = image.ok_or_else(|| {
             PyValueError::new_err(format!("{}: this picture has no colours", source.name()))
         })?;
@@ -145,12 +147,19 @@ fn unknown(argument: &str, word: &str, known: &str) -> PyErr {
 }
 
 /// The image in a file; `None` if it has no colours.
-fn decoded(bytes: &[u8], extension: Option<&str>, data: bool) -> Result<Option<Image>, PictureError> {
+fn decoded(
+    bytes: &[u8],
+    extension: Option<&str>,
+    data: bool,
+    layer: Option<&str>,
+) -> Result<Option<Image>, PictureError> {
     let limits = Limits::default();
-    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, extension, &limits)? {
+    if layer.is_none()
+        && let Some(Rgba8 { width, height, texels, .. }) = read_rgba8(bytes, extension, &limits)?
+    {
         return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
     }
-    let picture = bilux::pictures::read_bytes(bytes, extension, &limits)?;
+    let picture = bilux::pictures::read_bytes(bytes, extension, &limits)?.with_main(layer)?;
     let (width, height) = (picture.width(), picture.height());
     let picture = if data { picture } else { picture.into_linear() };
     let alpha = picture.channel("A").map_or_else(Vec::new, <[f32]>::to_vec);

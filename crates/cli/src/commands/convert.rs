@@ -1,6 +1,7 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
 use super::heat_map::heat_map;
+use super::pictures::{holds_picture, read_picture, with_main};
 use super::{
     DONE, check_choices, check_folder, check_not_input, check_quality, is_picture, load, read_options_with,
     report_warnings, warn_lost_alpha,
@@ -10,7 +11,7 @@ use crate::sandbox::SandboxPaths;
 use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::{WriteOptions, check_not_read};
-use bilux::pictures::Limits;
+use bilux::pictures::{Limits, Picture};
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
@@ -19,15 +20,12 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     check_not_input(output, [&**input]).map_err(usage::wrong)?;
     let confines = SandboxPaths::default().reading_scene(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
-    match (is_picture(input), is_picture(output)) {
+    match (holds_picture(input), is_picture(output)) {
         (true, true) => {
             bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
             check_quality(arguments.quality, output).map_err(usage::wrong)?;
             confines.enter(common)?;
-            let mut picture = bilux::pictures::read_crop(input, &Limits::new(common.max_memory))?;
-            if let Some(channel) = &arguments.heat_map {
-                picture = heat_map(&picture, channel, arguments.heat_max, common.quiet)?;
-            }
+            let picture = converted(arguments, common)?;
             warn_lost_alpha(&picture, output, None, common)?;
             let mut options = bilux::pictures::WriteOptions::default();
             options.quality = arguments.quality.unwrap_or(options.quality);
@@ -37,6 +35,9 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             bilux::formats::format_of_path(output).map_err(usage::wrong)?;
             if arguments.quality.is_some() {
                 return Err(usage::wrong(anyhow!("--quality is only for JPEG pictures: leave it out")));
+            }
+            if arguments.layer.is_some() {
+                return Err(usage::wrong(anyhow!("--layer is of a picture, not of a scene: leave it out")));
             }
             if arguments.heat_map.is_some() {
                 return Err(usage::wrong(anyhow!(
@@ -64,6 +65,22 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
         }
     }
     Ok(DONE)
+}
+
+/// What becomes of a picture before it is written in another format.
+fn converted(arguments: &Convert, common: &Common) -> anyhow::Result<Picture> {
+    let (input, layer) = (&arguments.input, arguments.layer.as_deref());
+    let picture = read_picture(input, &Limits::new(common.max_memory), common)?;
+    if let Some(channel) = &arguments.heat_map {
+        return heat_map(&picture, channel, arguments.heat_max, common.quiet);
+    }
+    let holds_layers = bilux::pictures::format_of_path(&arguments.output)?.entry.name == "exr";
+    if holds_layers && layer.is_none() {
+        return Ok(picture);
+    }
+    let metadata = picture.metadata.clone();
+    let main = with_main(picture, layer, input, common)?.main();
+    Ok(Picture { metadata, ..main })
 }
 
 fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {

@@ -1,5 +1,6 @@
 //! `bilux denoise`: removes the noise from a picture.
 
+use super::pictures::{read_picture, with_main};
 use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
 use crate::arguments::{Common, Denoise};
 use crate::sandbox::SandboxPaths;
@@ -28,7 +29,8 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;
     confines.enter(common)?;
-    let noisy = bilux::pictures::read_crop(input, &Limits::new(common.max_memory))?;
+    let noisy = read_picture(input, &Limits::new(common.max_memory), common)?;
+    let noisy = with_main(noisy, arguments.layer.as_deref(), input, common)?;
     let begun = Instant::now();
     let smooth = denoise(&noisy, &*chosen.denoiser)?;
     let seconds = begun.elapsed().as_secs_f64();

@@ -18,6 +18,7 @@ pub mod list;
 mod log;
 pub mod manual;
 pub mod merge;
+mod pictures;
 pub mod render;
 mod replaying;
 pub mod serve;

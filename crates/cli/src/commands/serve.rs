@@ -125,8 +125,9 @@ fn command(arguments: &Serve) -> Vec<String> {
     for change in &studio.change {
         say("--change", Some(change.clone()));
     }
-    let StudioArguments { env, preset, .. } = studio;
+    let StudioArguments { env, preset, layer, .. } = studio;
     say("--env", env.as_ref().map(|path| path.display().to_string()));
+    say("--layer", layer.clone());
     say("--background", studio.picture_behind().map(|path| path.display().to_string()));
     say("--preset", preset.clone());
     let Choices { animation, variant, glass, light_radius } = choices;

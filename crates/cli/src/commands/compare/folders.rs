@@ -1,7 +1,7 @@
 //! Folders of pictures, in pairs by their names.
 
 use super::{BEYOND, Compared, TROUBLE, as_json, broken_bounds, page};
-use crate::arguments::Compare;
+use crate::arguments::{Common, Compare};
 use crate::commands::{DONE, is_picture};
 use crate::output;
 use anyhow::{Context, bail};
@@ -20,7 +20,7 @@ struct Row {
 
 /// Compares all pictures of a folder with those of the same names in the other. A picture that has no partner, or that
 /// cannot be compared with it, is trouble; but the others are compared.
-pub(super) fn compare(arguments: &Compare, limits: &Limits) -> anyhow::Result<u8> {
+pub(super) fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
     let folders = [&*arguments.picture, &*arguments.reference];
     let [ours, theirs] = [names(folders[0])?, names(folders[1])?];
     if ours.is_disjoint(&theirs) {
@@ -38,7 +38,7 @@ pub(super) fn compare(arguments: &Compare, limits: &Limits) -> anyhow::Result<u8
         .collect();
     let (mut rows, mut troubles) = (Vec::new(), missing);
     for name in ours.intersection(&theirs) {
-        match row(arguments, name, limits) {
+        match row(arguments, name, common) {
             Ok(row) => rows.push(row),
             Err(error) => troubles.push(format!("{}: {error:#}", name.display())),
         }
@@ -82,9 +82,10 @@ fn names(folder: &Path) -> anyhow::Result<BTreeSet<PathBuf>> {
     Ok(names)
 }
 
-fn row(arguments: &Compare, name: &Path, limits: &Limits) -> anyhow::Result<Row> {
+fn row(arguments: &Compare, name: &Path, common: &Common) -> anyhow::Result<Row> {
     let (picture, reference) = (arguments.picture.join(name), arguments.reference.join(name));
-    let pair = Compared::of(&name.to_string_lossy(), &picture, &reference, limits)?;
+    let layer = arguments.layer.as_deref();
+    let pair = Compared::of(&name.to_string_lossy(), [&picture, &reference], layer, common)?;
     let broken = broken_bounds(arguments, &pair.report);
     let page = arguments.html.is_some().then(|| page::Entry::of(&pair, &broken)).transpose()?;
     Ok(Row { name: pair.name, report: pair.report, broken, page })

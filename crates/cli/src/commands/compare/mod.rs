@@ -3,6 +3,7 @@
 mod folders;
 mod page;
 
+use super::pictures::{read_picture, with_main};
 use super::{DONE, check_folder, check_not_input};
 use crate::arguments::{Common, Compare};
 use crate::output;
@@ -55,13 +56,12 @@ fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
         bilux::pictures::format_of_path(path)?;
     }
     confines.enter(common)?;
-    // Two pictures are read at a time.
-    let limits = Limits::new(common.max_memory / 2);
-    if a { folders::compare(arguments, &limits) } else { compare_one(arguments, &limits) }
+    if a { folders::compare(arguments, common) } else { compare_one(arguments, common) }
 }
 
-fn compare_one(arguments: &Compare, limits: &Limits) -> anyhow::Result<u8> {
-    let pair = Compared::of("", &arguments.picture, &arguments.reference, limits)?;
+fn compare_one(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
+    let paths = [&*arguments.picture, &*arguments.reference];
+    let pair = Compared::of("", paths, arguments.layer.as_deref(), common)?;
     let report = &pair.report;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(report))?)?;
@@ -95,8 +95,8 @@ struct Compared {
 
 impl Compared {
     /// Reads and compares them; warns of samples that are not finite.
-    fn of(name: &str, picture: &Path, reference: &Path, limits: &Limits) -> anyhow::Result<Compared> {
-        let (picture, reference) = read_pair(picture, reference, limits)?;
+    fn of(name: &str, paths: [&Path; 2], layer: Option<&str>, common: &Common) -> anyhow::Result<Compared> {
+        let [picture, reference] = read_pair(paths, layer, common)?;
         let report = bilux::pictures::compare(&picture, &reference)?;
         if report.non_finite != [0, 0] {
             let ([a, b], of) = (report.non_finite, if name.is_empty() { "" } else { ": " });
@@ -114,16 +114,21 @@ impl Compared {
 }
 
 /// Reads two pictures: of two crops only these, but as the picture that a crop belongs to if the other one is that.
-fn read_pair(picture: &Path, reference: &Path, limits: &Limits) -> anyhow::Result<(Picture, Picture)> {
-    let [a, b] = [picture, reference].map(|path| bilux::pictures::read_crop(path, limits));
-    let (a, b) = (a?, b?);
+fn read_pair(paths: [&Path; 2], layer: Option<&str>, common: &Common) -> anyhow::Result<[Picture; 2]> {
+    // Two pictures are read at a time.
+    let limits = Limits::new(common.max_memory / 2);
+    let read = |path: &Path| {
+        let picture = read_picture(path, &limits, common)?;
+        with_main(picture, layer, path, common)
+    };
+    let (a, b) = (read(paths[0])?, read(paths[1])?);
     if [a.width(), a.height()] == [b.width(), b.height()]
         && (a.crop == b.crop || a.crop.is_none() || b.crop.is_none())
     {
-        return Ok((a, b));
+        return Ok([a, b]);
     }
-    let [a, b] = [picture, reference].map(|path| bilux::pictures::read_with(path, limits));
-    Ok((a?, b?))
+    let whole = |path: &Path| anyhow::Ok(bilux::pictures::read_with(path, &limits)?.with_main(layer)?);
+    Ok([whole(paths[0])?, whole(paths[1])?])
 }
 
 fn as_json(report: &Report) -> Value {
