@@ -102,7 +102,7 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         } = Arc::make_mut(mesh);
         all.extend(positions.iter_mut().chain(normals).flat_map(|v| [&mut v.x, &mut v.y, &mut v.z]));
         all.extend(uvs.iter_mut().chain(uvs2).flat_map(|v| [&mut v.x, &mut v.y]));
-        all.extend(tangents.iter_mut().flat_map(|v| [&mut v.x, &mut v.y, &mut v.z, &mut v.w]));
+        all.extend(tangents.iter_mut().flat_map(|v| AsMut::<[f32; 4]>::as_mut(v).iter_mut()));
         all.extend(vertex_kd.iter_mut().chain(vertex_ks).flat_map(|c| [&mut c.r, &mut c.g, &mut c.b]));
     }
     all

@@ -182,9 +182,9 @@ mod tests {
     fn file_uris_name_paths() {
         for (uri, path) in [
             ("file:tex.png", "tex.png"),
-            ("file:/home/a/tex.png", "/home/a/tex.png"),
-            ("file:///home/a/tex.png", "/home/a/tex.png"),
-            ("FILE://localhost/home/a/tex.png", "/home/a/tex.png"),
+            ("file:/srv/a/tex.png", "/srv/a/tex.png"),
+            ("file:///srv/a/tex.png", "/srv/a/tex.png"),
+            ("FILE://localhost/srv/a/tex.png", "/srv/a/tex.png"),
             ("file:///C:/a/tex.png", "C:/a/tex.png"),
             ("file://tex.png", "tex.png"),
             ("file.png", "file.png"),

@@ -79,8 +79,9 @@ fn converted(arguments: &Convert, common: &Common) -> anyhow::Result<Picture> {
         return Ok(picture);
     }
     let metadata = picture.metadata.clone();
-    let main = with_main(picture, layer, input, common)?.main();
-    Ok(Picture { metadata, ..main })
+    let mut main = with_main(picture, layer, input, common)?.main();
+    main.metadata = metadata;
+    Ok(main)
 }
 
 fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {

@@ -54,7 +54,7 @@ fn files_that_are_not_scenes_are_refused_in_one_sentence() {
     refused("index.obj", &["index.obj:4:1: this face refers to vertex 9, but the file has only 3"]);
     refused(
         "picture.gif",
-        &["picture.gif: this is not a scene format", "known are asc, gltf, glb, pbrt, obj"],
+        &["picture.gif: this is a GIF picture, not a scene", "convert it to PNG"],
     );
     assert!(!path.join("out.png").exists());
 }

@@ -185,8 +185,8 @@ fn names_are_found_in_quotes_with_comments_backslashes_and_other_letters() {
         "map_Kd .\\maps\\..\\my tex.png",
         "map_Kd C:\\Users\\me\\MY TEX.png",
         "map_Kd \"C:\\Users\\me\\my tex.png\"",
-        "map_Kd /home/me/my tex.png",
-        "map_Kd file:///home/me/my tex.png",
+        "map_Kd /srv/me/my tex.png",
+        "map_Kd file:///srv/me/my tex.png",
         "map_Kd Sub\\Deep.png",
     ] {
         let scene = with_files(&format!("newmtl m\nKd 1 1 1\n{line}\n"), |folder| {
