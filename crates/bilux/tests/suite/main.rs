@@ -2,6 +2,7 @@
 
 mod examples;
 mod fingerprint;
+mod fingerprint_fields;
 mod ground;
 mod own_light;
 mod parts;

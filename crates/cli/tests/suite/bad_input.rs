@@ -52,10 +52,7 @@ fn files_that_are_not_scenes_are_refused_in_one_sentence() {
     refused("program.asc", &["not plain text"]);
     refused("program.obj", &["program.obj:1:1: this file is not plain text"]);
     refused("index.obj", &["index.obj:4:1: this face refers to vertex 9, but the file has only 3"]);
-    refused(
-        "picture.gif",
-        &["picture.gif: this is a GIF picture, not a scene", "convert it to PNG"],
-    );
+    refused("picture.gif", &["picture.gif: this is a GIF picture, not a scene", "convert it to PNG"]);
     assert!(!path.join("out.png").exists());
 }
 

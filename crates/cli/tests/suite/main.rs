@@ -8,6 +8,7 @@ mod layers;
 mod manual;
 mod output;
 mod overwriting;
+mod picture_layers;
 mod resume;
 mod serve;
 mod servers;

@@ -1,6 +1,7 @@
 //! Picture files as users have them, tone curves, metrics and denoisers.
 
 mod corpus;
+mod damaged_and_turned;
 mod denoise;
 mod hostile;
 mod jpeg_scans;
