@@ -194,7 +194,7 @@ fn the_transparent_colour_of_a_png_is_transparent() {
         (16, vec![1, 2, 3, 4, 5, 6], vec![0, 1, 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 7]),
     ] {
         let header = [&[0, 0, 0, 2, 0, 0, 0, 1][..], &[bits, 2, 0, 0, 0]].concat();
-        // A deflate stream of one stored block. [RFC 1950 and 1951]
+        // A deflate stream of one stored block, with the header and the checksum of zlib.
         let (a, b) = row.iter().fold((1u32, 0u32), |(a, b), &byte| {
             let a = (a + u32::from(byte)) % 65521;
             (a, (b + a) % 65521)
