@@ -5,7 +5,7 @@ use crate::arguments::{Common, Compare};
 use crate::commands::{DONE, is_picture};
 use crate::output;
 use anyhow::{Context, bail};
-use bilux::pictures::{Limits, Report};
+use bilux::pictures::Report;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
