@@ -10,6 +10,7 @@ mod arguments;
 mod choices;
 mod commands;
 mod comparison;
+mod converting;
 mod denoising;
 mod ending;
 mod explaining;
