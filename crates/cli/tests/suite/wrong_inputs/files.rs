@@ -66,7 +66,7 @@ pub(crate) const CASES: &[Case] = &[
             ("a.obj", b"mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
             ("a.mtl", b"newmtl a\nNs shiny\n"),
         ],
-        "render a.obj -o out.png",
+        "render a.obj -o out.png --strict",
     ),
     Case::file(
         "a face with a vertex that the file does not have",
