@@ -99,6 +99,7 @@ fn open_again(arguments: &Serve, read: &ReadOptions, opening: &Opening) -> anyho
     // The choices are those among what is in the scene that the viewer was started with.
     read.animation.clone_from(&opening.animation);
     read.variant = opening.variant.clone();
+    read.picture_layer.clone_from(&arguments.studio.layer);
     let mut scene = load(file, &read)?;
     surround(env.as_deref(), &mut scene, &read)?;
     Ok(scene)
