@@ -285,8 +285,7 @@ impl Scene {
         self.builder(py).notes.iter().map(|note| in_python(&note.to_string())).collect()
     }
 
-    /// Lights the scene with a picture in longitude and latitude, replacing the one that it may have; of an EXR with
-    /// several layers, with the one of this name.
+    /// Lights the scene with a picture, or a layer of one, in longitude and latitude, replacing the one that it may have.
     #[pyo3(signature = (path, layer = None))]
     fn surround(&self, py: Python<'_>, path: PathBuf, layer: Option<String>) -> PyResult<()> {
         let options = ReadOptions { allow_outside: true, picture_layer: layer, ..ReadOptions::default() };
