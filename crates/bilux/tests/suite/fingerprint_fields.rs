@@ -44,6 +44,9 @@ fn scene() -> SceneBuilder {
         triangles: vec![[0, 1, 2]],
         points: vec![1],
         lines: vec![[0, 1]],
+        vertex_opacity: vec![0.5; 3],
+        opacity_threshold: Some(0.25),
+        point_widths: vec![0.5; 3],
         ..Mesh::default()
     };
     scene.objects.push(Object::new("", Arc::new(mesh), 0));
@@ -64,6 +67,8 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         cameras: _,
         // These take effect by what a job adds to the scene.
         environment_unspecified: _,
+        exposure_unspecified: _,
+        describes_all_light: _,
         up: _,
         unit: _,
         settings: _,
@@ -95,6 +100,10 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
             tangents,
             vertex_kd,
             vertex_ks,
+            vertex_opacity,
+            opacity_threshold,
+            point_widths,
+            emission_by_kd: _,
             name: _,
             triangles: _,
             points: _,
@@ -103,6 +112,7 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         all.extend(positions.iter_mut().chain(normals).flat_map(|v| [&mut v.x, &mut v.y, &mut v.z]));
         all.extend(uvs.iter_mut().chain(uvs2).flat_map(|v| [&mut v.x, &mut v.y]));
         all.extend(tangents.iter_mut().flat_map(|v| AsMut::<[f32; 4]>::as_mut(v).iter_mut()));
+        all.extend(vertex_opacity.iter_mut().chain(opacity_threshold).chain(point_widths));
         all.extend(vertex_kd.iter_mut().chain(vertex_ks).flat_map(|c| [&mut c.r, &mut c.g, &mut c.b]));
     }
     all
@@ -140,6 +150,7 @@ fn changed_integers() -> Vec<SceneBuilder> {
         });
     }
     change(&|scene| Arc::make_mut(&mut scene.textures[0]).is_data = true);
+    change(&|scene| Arc::make_mut(&mut scene.objects[0].mesh).emission_by_kd = true);
     for [x, y, turn, u, v] in [
         [0.5, 0.2, 0.3, 1.5, 2.5],
         [0.1, 0.5, 0.3, 1.5, 2.5],
@@ -158,8 +169,8 @@ fn each_number_of_a_scene_counts() {
     let settings = plain();
     let mut seen = HashMap::from([(fingerprint(&scene(), &settings), "nothing".to_owned())]);
     let count = numbers(&mut scene()).len();
-    // 18 of two images and their placements, 60 of a mesh with three vertices.
-    assert_eq!(count, 78);
+    // 18 of two images and their placements, 67 of a mesh with three vertices.
+    assert_eq!(count, 85);
     let changed = (0..count).map(|i| {
         let mut scene = scene();
         *numbers(&mut scene)[i] += 0.375;
