@@ -13,6 +13,7 @@ mod licences;
 mod manual;
 mod mutants;
 mod package;
+mod performance;
 mod process;
 mod python;
 mod strips;
@@ -61,6 +62,11 @@ const CHORES: &[Chore] = &[
         name: "package",
         summary: "check that the libraries can be published to a package registry (minutes)",
         run: package::run,
+    },
+    Chore {
+        name: "performance",
+        summary: "measure the figures of the README and of docs/performance.md again (half an hour)",
+        run: performance::run,
     },
     Chore { name: "wheel", summary: "build the wheel of the Python package", run: python::wheel },
     Chore {

@@ -4,8 +4,10 @@ mod changelog;
 mod chapters;
 mod circles;
 mod citations;
+mod decisions;
 mod dependencies;
 mod directions;
+mod figures;
 mod file_length;
 mod forbidden;
 mod front_page;
@@ -52,6 +54,8 @@ const RULES: &[Rule] = &[
     Rule { name: "dependencies", check: dependencies::check },
     Rule { name: "changelog", check: changelog::check },
     Rule { name: "front-page", check: front_page::check },
+    Rule { name: "figures", check: figures::check },
+    Rule { name: "decisions", check: decisions::check },
 ];
 
 /// A violation of a rule.
