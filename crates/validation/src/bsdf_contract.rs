@@ -1,4 +1,4 @@
-//! The contract of every BSDF, as checks that run on any of them: see DESIGN, "Contract suites".
+//! The contract of every BSDF, as checks that run on any of them: `docs/trust.md` lists what each check finds.
 
 use crate::chi_square::{p_value, uniforms};
 use crate::tally::Tally;

@@ -1,5 +1,5 @@
 //! `unsafe` appears only in the modules listed below, and each use has its `// SAFETY:` comment (or, on the declaration
-//! of an unsafe function, its `# Safety` section) in the lines just above.
+//! of an unsafe function, its `# Safety` section) in the lines just above. ARCHITECTURE.md names all of these modules.
 
 use super::Violation;
 use super::repository::Repository;
@@ -18,6 +18,9 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/transport/src/queue/lanes.rs", "loops over paths, compiled for each level of instructions"),
     ("crates/accel/src/bvh8/kernel/", "the wide tree's walk, a file for each level of instructions"),
 ];
+
+/// What names them for readers.
+const ARCHITECTURE: &str = "ARCHITECTURE.md";
 
 /// How many lines above the word its justification may begin: attributes and longer reasons need room.
 const REACH: usize = 12;
@@ -38,7 +41,17 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
             }
         }
     }
+    violations.extend(unnamed(repository));
     violations
+}
+
+/// The modules that ARCHITECTURE.md leaves out.
+fn unnamed(repository: &Repository) -> Vec<Violation> {
+    let Some(page) = repository.file(ARCHITECTURE) else { return Vec::new() };
+    let left_out = ALLOWED.iter().filter(|(path, _)| !page.text.contains(path));
+    left_out
+        .map(|(path, _)| Violation::new(ARCHITECTURE, 0, format!("does not name {path}, which has `unsafe`")))
+        .collect()
 }
 
 /// Whether a line of code contains the word; `unsafe_code`, the lint, is another word.
@@ -49,6 +62,14 @@ fn contains_unsafe(line: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn places_that_readers_are_not_told_of_are_found() {
+        let all: String = ALLOWED.iter().map(|(path, _)| format!("- `{path}`\n")).collect();
+        assert!(check(&Repository::planted(&[(ARCHITECTURE, &all)])).is_empty());
+        let without = all.replace(ALLOWED[1].0, "an allocator");
+        assert_eq!(check(&Repository::planted(&[(ARCHITECTURE, &without)])).len(), 1);
+    }
 
     #[test]
     fn planted_blocks_are_found() {
