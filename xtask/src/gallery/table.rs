@@ -27,9 +27,9 @@ const PRODUCT: &str = "docs/tutorials/product.md";
 pub(super) const PICTURES: &[Picture] = &[
     // The front page.
     picture("caustics.png", BuiltIn("caustics.toml"), "--size 640x480 --time-limit 100"),
-    picture("lamp-lit.png", BuiltIn("indirect.toml"), "--size 640x480 --time-limit 330"),
-    picture("metals.png", Repository("scenes/brushed-metals.toml"), "--size 640x480 --time-limit 150"),
-    picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --time-limit 100"),
+    picture("lamp-lit.png", BuiltIn("indirect.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
+    picture("metals.png", Repository("scenes/brushed-metals.toml"), "--size 640x480 --spp 256 --denoise=builtin"),
+    picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
     // Models with default settings.
     picture("models/anisotropy.png", Model("gltf/AnisotropyStrengthTest"), ""),
     picture("models/bottle.png", Model("gltf/WaterBottle"), ""),
