@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_that_readers_are_not_told_of_are_found() {
+    fn places_that_the_page_leaves_out_are_found() {
         let all: String = ALLOWED.iter().map(|(path, _)| format!("- `{path}`\n")).collect();
         assert!(check(&Repository::planted(&[(ARCHITECTURE, &all)])).is_empty());
         let without = all.replace(ALLOWED[1].0, "an allocator");
