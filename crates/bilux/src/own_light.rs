@@ -53,7 +53,8 @@ pub(crate) fn measure(
     known: &mut BuiltParts,
 ) -> Result<Option<OwnLight>, Error> {
     let decides = may_be_lit(scene);
-    if !decides && !(scene.exposure_unspecified && has_own_light(scene)) {
+    let exposes = scene.exposure_unspecified && has_own_light(scene);
+    if !decides && !exposes {
         return Ok(None);
     }
     let mut framed = scene.clone();

@@ -28,7 +28,11 @@ pub(super) const PICTURES: &[Picture] = &[
     // The front page.
     picture("caustics.png", BuiltIn("caustics.toml"), "--size 640x480 --time-limit 100"),
     picture("lamp-lit.png", BuiltIn("indirect.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
-    picture("metals.png", Repository("scenes/brushed-metals.toml"), "--size 640x480 --spp 256 --denoise=builtin"),
+    picture(
+        "metals.png",
+        Repository("scenes/brushed-metals.toml"),
+        "--size 640x480 --spp 256 --denoise=builtin",
+    ),
     picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
     // Models with default settings.
     picture("models/anisotropy.png", Model("gltf/AnisotropyStrengthTest"), ""),

@@ -9,7 +9,9 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let records = repository.files.iter().filter(|file| is_record(&file.path));
     let late = records.filter(|file| {
         let mut lines = file.text.lines().skip(1).skip_while(|line| line.is_empty());
-        lines.next().is_none_or(|line| ["#", "|", "- ", "```", "!["].iter().any(|start| line.starts_with(start)))
+        lines
+            .next()
+            .is_none_or(|line| ["#", "|", "- ", "```", "!["].iter().any(|start| line.starts_with(start)))
     });
     late.map(|file| Violation::new(&file.path, 3, "does not begin with its decision, in a few sentences"))
         .collect()
