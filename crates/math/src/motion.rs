@@ -442,7 +442,7 @@ mod tests {
         let place = Motion::still(Transform::translate(Vec3::X * 2.0).unwrap());
         let flattened = Motion::still(Transform::scale(Vec3::new(1.0, 0.5, 1.0)).unwrap());
         let orbit = place.then(&turn.unwrap()).then(&flattened);
-        let (sin, cos) = (60f32.to_radians().sin(), 60f32.to_radians().cos());
+        let (sin, cos) = crate::transcendental::sin_cos(60f32.to_radians());
         let expected = Vec3::new(2.5 * cos, 2.5 * sin * 0.5, 0.0);
         let p = orbit.at(2.0 / 3.0).point(Vec3::X * 0.5);
         assert!(p.abs_diff_eq(expected, 1e-6), "{p} instead of {expected}");

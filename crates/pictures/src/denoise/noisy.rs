@@ -210,7 +210,7 @@ fn extend<T: Copy>(pixels: &mut [T], nearest: &[usize]) {
 /// Multiplies denoised light by the coverage that it was divided by.
 pub(super) fn multiply(light: &mut [Rgb], coverage: Option<&[f32]>) {
     for (light, &coverage) in light.iter_mut().zip(coverage.unwrap_or_default()) {
-        *light = *light * coverage;
+        *light *= coverage;
     }
 }
 

@@ -53,7 +53,10 @@ fn place(
 /// Half of the irradiance of a quarter of a rectangle of radiance 1 above its corner, whose edges have these lengths over its
 /// distance. [Howell 2010, C-11]
 fn corner(x: f64, y: f64) -> f64 {
-    let part = |x: f64, y: f64| x / x.hypot(1.0) * atan2_f64(y, x.hypot(1.0));
+    let part = |x: f64, y: f64| {
+        let far = (x * x + 1.0).sqrt();
+        x / far * atan2_f64(y, far)
+    };
     0.5 * (part(x, y) + part(y, x))
 }
 
@@ -119,7 +122,8 @@ fn places(kind: &str) -> Vec<Place> {
                     let d = f64::from(middle.y) - f64::from(at.y);
                     let [a, b] = [f64::from(size), 0.5 * f64::from(size)];
                     let expected = 4.0 * f64::from(LIGHT) * corner(a / d, b / d);
-                    let cone = (1.05 * a.hypot(b) / d.hypot(a.hypot(b))).min(1.0) as f32;
+                    let across = a * a + b * b;
+                    let cone = (1.05 * (across / (d * d + across)).sqrt()).min(1.0) as f32;
                     let (u, v) = (Vec3::X * 2.0 * size, Vec3::Z * size);
                     let name = format!("rect {kind} of {size}, {distance} half edges away, over {at}");
                     place(name, [20.0 * size, 3.0 * size], at, expected, cone, |builder| {
