@@ -66,7 +66,7 @@ impl Greatest {
 #[inline]
 pub(crate) fn decoded(stored: Rgb, white: f32) -> Rgb {
     // `max` turns what is not a number into 0.
-    stored.map(|c| srgb_decode((c / white).max(0.0).min(1.0)))
+    stored.map(|c| srgb_decode(within_unit(c / white)))
 }
 
 /// A stored colour that is white whatever stands for white: of vertices without a colour where others have one.
@@ -86,7 +86,7 @@ pub(crate) fn decode(colours: &mut [Rgb], stored: Stored) {
 
 /// The numbers that a reflectance is stored as, from 0 to 1.
 pub(crate) fn encoded(colour: Rgb) -> [f32; 3] {
-    colour.map(|c| srgb_encode(c.max(0.0).min(1.0))).to_array()
+    colour.map(|c| srgb_encode(within_unit(c))).to_array()
 }
 
 /// The bytes that a reflectance is stored as, if they mean exactly that.
@@ -98,6 +98,11 @@ pub(crate) fn as_bytes(colour: Rgb) -> Option<[u8; 3]> {
 /// The numbers of 0 to 31 that 16 bits hold for three channels, the first one in the lowest bits.
 pub(crate) fn five_bits(packed: u16) -> [f32; 3] {
     [0, 5, 10].map(|shift| f32::from(packed >> shift & 31))
+}
+
+/// From 0 to 1; 0 for NaN.
+fn within_unit(x: f32) -> f32 {
+    if x > 0.0 { x.min(1.0) } else { 0.0 }
 }
 
 #[cfg(test)]

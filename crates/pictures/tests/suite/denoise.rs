@@ -279,7 +279,8 @@ fn cut_out() -> (Picture, Vec<f32>) {
 /// light of the disc.
 fn error_of_outline(picture: &Picture, alpha: &[f32]) -> f32 {
     let straight = picture.to_rgb().unwrap().into_iter().zip(alpha).filter(|(_, a)| **a > 0.0 && **a < 1.0);
-    let squares: Vec<f32> = straight.map(|(colour, a)| (colour.g / a / 0.8 - 1.0).powi(2)).collect();
+    let squares: Vec<f32> =
+        straight.map(|(colour, a)| (colour.g / a / 0.8 - 1.0) * (colour.g / a / 0.8 - 1.0)).collect();
     assert!(squares.len() > 100);
     (squares.iter().sum::<f32>() / squares.len() as f32).sqrt()
 }
