@@ -211,8 +211,9 @@ mod tests {
     #[test]
     fn an_orbit_about_both_axes_adds_up_azimuth_and_elevation() {
         let at = |azimuth: f64, elevation: f64| {
-            let (a, e) = (azimuth.to_radians(), elevation.to_radians());
-            DVec3::Y + 5.0 * DVec3::new(e.cos() * a.sin(), e.sin(), e.cos() * a.cos())
+            let [(sin_a, cos_a), (sin_e, cos_e)] =
+                [azimuth, elevation].map(|x: f64| sin_cos_f64(x.to_radians()));
+            DVec3::Y + 5.0 * DVec3::new(cos_e * sin_a, sin_e, cos_e * cos_a)
         };
         let (mut azimuth, mut elevation, mut moved) = (0.0, 0.0, eye());
         for [right, up] in [[30.0, 20.0], [-75.0, 25.0], [140.0, -80.0], [10.0, 0.0], [0.0, 12.0]] {
@@ -228,8 +229,8 @@ mod tests {
         let mut looks = eye();
         looks.look(30.0, 20.0);
         let ahead = (looks.pivot - looks.position).normalize();
-        let (a, e) = (30f64.to_radians(), 20f64.to_radians());
-        assert!(ahead.distance(DVec3::new(e.cos() * a.sin(), e.sin(), -e.cos() * a.cos())) < 1e-5, "{ahead}");
+        let [(sin_a, cos_a), (sin_e, cos_e)] = [30f64, 20.0].map(|x| sin_cos_f64(x.to_radians()));
+        assert!(ahead.distance(DVec3::new(cos_e * sin_a, sin_e, -cos_e * cos_a)) < 1e-5, "{ahead}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::{read_text, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
+use bilux_math::transcendental::exp_f64;
 use bilux_scene::{Mesh, SceneBuilder, Value};
 
 fn kd(scene: &SceneBuilder) -> Vec<Rgb> {
@@ -277,9 +278,9 @@ fn gaussian_splats_are_balls_of_their_colour_size_and_opacity() {
     assert_near(&mesh.vertex_kd, &wanted, 1e-5, "splats");
     assert_eq!(mesh.points, [0, 1]);
     let near = |a: f32, b: f64| (f64::from(a) - b).abs() < 1e-5;
-    assert!(near(mesh.point_widths[0], 2.0 * (-2f64).exp()) && near(mesh.point_widths[1], 2.0));
-    assert!(near(mesh.vertex_opacity[0], 1.0 / (1.0 + (-2f64).exp())));
-    assert!(near(mesh.vertex_opacity[1], 1.0 / (1.0 + 1f64.exp())));
+    assert!(near(mesh.point_widths[0], 2.0 * exp_f64(-2.0)) && near(mesh.point_widths[1], 2.0));
+    assert!(near(mesh.vertex_opacity[0], 1.0 / (1.0 + exp_f64(-2.0))));
+    assert!(near(mesh.vertex_opacity[1], 1.0 / (1.0 + exp_f64(1.0))));
     let said = warnings(&scene);
     assert!(said.contains("how Gaussian splats fade") && said.lines().count() == 1, "{said}");
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
@@ -348,7 +349,7 @@ fn splats_may_have_plain_colours() {
     let mesh = &scene.objects[0].mesh;
     assert_near(&mesh.vertex_kd, &shown(&[[1.0, 0.2, 0.0]]), 1e-6, "plain");
     assert_eq!(mesh.vertex_opacity, [0.5]);
-    assert!((f64::from(mesh.point_widths[0]) - 2.0 * (-1f64).exp()).abs() < 1e-6);
+    assert!((f64::from(mesh.point_widths[0]) - 2.0 * exp_f64(-1.0)).abs() < 1e-6);
 }
 
 #[test]

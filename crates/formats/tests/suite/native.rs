@@ -3,6 +3,7 @@
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, SHAPES, WriteOptions, read, toml_schema, write};
 use bilux_math::registry::{Parameter, ParameterKind};
+use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{SceneBuilder, Value};
@@ -200,7 +201,7 @@ fn scenes_in_scenes_are_moved_as_one() {
         Vec3::new(1.0, 0.0, 5.0),
     );
     // It stands on a turntable that turns by 90 degrees: an arc of radius 1, not its chord.
-    let (sin, cos) = (30f32.to_radians().sin(), 30f32.to_radians().cos());
+    let (sin, cos) = sin_cos(30f32.to_radians());
     let turntable = "keyframes = [{ time = 0 }, { time = 1, rotate = [0, 0, 90] }]";
     assert_near(place(turntable, 1.0 / 3.0), Vec3::new(cos, sin, 0.0));
 }
@@ -219,11 +220,10 @@ fn what_moves_within_what_moves_is_interpolated_first_and_placed_then() {
     let back = there_and_back(&scene, folder.path());
     assert!(back.objects[0].name.contains("arm"), "{}", back.objects[0].name);
     for time in [0.0f32, 0.25, 0.4, 1.0] {
-        let swung = (90.0 * time).to_radians();
+        let (up, along) = sin_cos((90.0 * time).to_radians());
         let grown = 1.0 + 2.0 * time;
-        let p = Vec3::new(2.0 + grown * swung.cos(), grown * swung.sin(), 0.0);
-        let turned = (170.0 * time).to_radians();
-        let (sin, cos) = turned.sin_cos();
+        let p = Vec3::new(2.0 + grown * along, grown * up, 0.0);
+        let (sin, cos) = sin_cos((170.0 * time).to_radians());
         let expected = Vec3::new(cos * p.x - sin * p.y, 0.5 * (sin * p.x + cos * p.y), 0.0);
         for scene in [&scene, &back] {
             assert_near(scene.objects[0].motion.at(time).point(Vec3::X), expected);

@@ -25,7 +25,7 @@ fn render(scene: &SceneBuilder, integrator: &str, samples: i64) -> Vec<Rgb> {
     }
     all.set("spp", Value::Integer(samples));
     let picture = Job::new(scene, &all).unwrap().render(&Quiet).unwrap().picture().unwrap();
-    picture.to_rgb().unwrap().into_iter().map(Rgb::from).collect()
+    picture.to_rgb().unwrap()
 }
 
 fn mean(pixels: &[Rgb]) -> Rgb {

@@ -88,10 +88,11 @@ impl OpenScene {
 
     /// Tells all visitors something.
     fn tell(&self, what: impl Fn() -> Request) {
-        self.audience.lock().unwrap_or_else(PoisonError::into_inner).retain(|inbox| match inbox.upgrade() {
+        self.audience.lock().unwrap_or_else(PoisonError::into_inner).retain(|inbox| {
+            let Some(inbox) = inbox.upgrade() else { return false };
             // These requests always find room.
-            Some(inbox) => inbox.post(what()).is_ok() || true,
-            None => false,
+            let _ = inbox.post(what());
+            true
         });
     }
 }
