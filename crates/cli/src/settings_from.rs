@@ -168,3 +168,52 @@ fn scalar(text: &str) -> Value {
 pub fn from_flag(flag: &str) -> Span {
     Span { file: flag.into(), line: 0, column: 0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+    use clap::Parser;
+
+    /// Each option alone gives its own setting and no other, also where options come in pairs.
+    #[test]
+    fn every_option_works_without_the_others() {
+        for (option, key, value) in [
+            ("--up=z", "up", Value::from("z")),
+            ("--front=-y", "front", Value::from("-y")),
+            ("--eye=1,2,3", "eye", Value::from("1,2,3")),
+            ("--look-at=1,2,3", "look_at", Value::from("1,2,3")),
+            ("--orbit=10,20", "orbit", Value::from("10,20")),
+            ("--zoom=2", "zoom", Value::from(2.0f32)),
+            ("--focal=50", "focal", Value::from(50.0f32)),
+            ("--ground=shadow", "ground", Value::from("shadow")),
+            ("--background=white", "background", Value::from("white")),
+            ("--size=4x3", "size", Value::from("4x3")),
+            ("--seed=7", "seed", Value::Integer(7)),
+            ("--threads=2", "threads", Value::Integer(2)),
+            ("--max-depth=3", "max_depth", Value::Integer(3)),
+            ("--camera=1", "camera", Value::from("1")),
+            ("--at=0.5", "time", Value::from(0.5f32)),
+            ("--exposure=1", "exposure", Value::from(1.0f32)),
+            ("--exposure=auto", "auto_exposure", Value::Bool(true)),
+            ("--tonemap=agx", "tonemap", Value::from("agx")),
+            ("--denoise", "denoise", Value::from("auto")),
+            ("--integrator=path", "integrator", Value::from("path")),
+            ("--accel=bvh", "accel", Value::from("bvh")),
+            ("--build=fast", "build", Value::from("fast")),
+            ("--specular=reflect", "specular", Value::from("reflect")),
+            ("--shadow-rule=paper", "shadow_rule", Value::from("paper")),
+            ("--bsp-split=mean", "bsp_split", Value::from("mean")),
+            ("--bsp-group=objects", "bsp_group", Value::from("objects")),
+            ("--set=fps=30", "fps", Value::Integer(30)),
+        ] {
+            let line = ["bilux", "render", "a.toml", "-o", "a.png", option];
+            let Command::Render(arguments) = Arguments::try_parse_from(line).unwrap().command else {
+                panic!("{option}")
+            };
+            let given: Vec<(String, Value)> =
+                render(&arguments).unwrap().0.into_iter().map(|(key, value, _)| (key, value)).collect();
+            assert_eq!(given, [(key.to_owned(), value)], "{option}");
+        }
+    }
+}

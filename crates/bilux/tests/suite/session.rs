@@ -80,6 +80,43 @@ fn after_every_edit_the_picture_is_that_of_a_fresh_job() {
     }
 }
 
+/// The layers after an edit are those of a fresh job: not those from before it, and not missing.
+#[test]
+fn layers_follow_every_edit() {
+    let wanted = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids];
+    let user = settings(&[("integrator", "path".into())]);
+    let mut session = Session::new(cornell(), &user).unwrap();
+    session.with_layers(&wanted).unwrap();
+    let sphere = Arc::new(Mesh::sphere(Vec3::new(0.0, 0.3, 0.6), 0.4, 12));
+    let camera = CameraSpec::new(Spec::new("", "perspective").with("position", Vec3::new(0.1, 0.9, 3.0)));
+    let mut seen = Vec::new();
+    let edits = [
+        vec![],
+        vec![Edit::Add(Object::new("ball", sphere, 0))],
+        vec![Edit::Material(0, Spec::new("", "diffuse").with("reflectance", Rgb::new(0.1, 0.2, 0.9)))],
+        vec![Edit::Camera(0, camera)],
+        vec![Edit::Set("exposure".to_owned(), Value::Number(1.0))],
+        vec![Edit::Remove(0), Edit::Place(0, at(0.1, 0.0, 0.0))],
+    ];
+    for edit in edits {
+        let what = format!("{edit:?}");
+        session.apply_all(edit).unwrap();
+        finished(&mut session);
+        let layers = session.outcome().unwrap().layered(&wanted).unwrap();
+        let mut job = Job::new(session.scene(), &user).unwrap();
+        job.with_layers(&wanted);
+        let alone = job.render(&Quiet).unwrap().layered(&wanted).unwrap();
+        assert_eq!(layers.channels().len(), 3 + 3 + 3 + 1, "{what}");
+        assert!(layers == alone, "{what}");
+        seen.push(layers);
+    }
+    let differ = |i: usize, j: usize| seen[i] != seen[j];
+    assert!(
+        differ(0, 1) && differ(1, 2) && differ(2, 3) && !differ(3, 4) && differ(4, 5),
+        "the edits are seen"
+    );
+}
+
 #[test]
 fn models_in_the_studio_are_edited_too() {
     // Neither a camera nor a light: the studio completes it, with a ground that is made anew each time.

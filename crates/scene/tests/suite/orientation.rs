@@ -216,6 +216,30 @@ fn requested_axes_are_applied_and_scenes_with_cameras_stay() {
     assert_eq!(again.bounds(0.0), before);
 }
 
+/// Of up and front, either may be asked for alone: the other is then as without it, or, where that is on the same axis, another.
+#[test]
+fn one_of_two_axes_is_enough() {
+    for hint in [UpHint::Is(Axis::Y), UpHint::Is(Axis::Z), UpHint::Usually(Axis::Y), UpHint::Usually(Axis::Z)]
+    {
+        let scene = scene(bust(), hint);
+        let free = Orientation::of(&scene, None, None).unwrap();
+        for asked in Axis::ALL {
+            let up = Orientation::of(&scene, Some(asked), None).unwrap();
+            assert_eq!((up.up, up.source), (asked, OrientationSource::Asked), "{hint:?}");
+            assert_ne!(up.up.index(), up.front.index(), "{hint:?}, up {asked:?}");
+            let front = Orientation::of(&scene, None, Some(asked)).unwrap();
+            assert_eq!((front.front, front.source), (asked, OrientationSource::Asked), "{hint:?}");
+            assert_ne!(front.up.index(), front.front.index(), "{hint:?}, front {asked:?}");
+            if free.up.index() != asked.index() {
+                assert_eq!(front.up, free.up, "{hint:?}: the front says nothing about what is up");
+            }
+            if let (UpHint::Is(_), true) = (hint, free.up == asked) {
+                assert_eq!(up.front, free.front, "{hint:?}: what is known is asked for");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_model_far_from_the_origin_is_framed_as_tightly_as_one_at_it() {
     let placed = |shift: DVec3| {

@@ -73,6 +73,11 @@ fn queues_that_are_refilled_give_the_same() {
     put(&mut holes, "lace", ball(Vec3::new(0.0, 0.5, 1.0), 0.5, 8, true), lace);
     assert_same_with("mixed", &built(&mixed()), &settings);
     assert_same_with("holes", &built(&holes), &settings);
+    // A path that takes the place of another has a wavelength of its own, which flint reveals.
+    let mut flint = mixed();
+    let glass = Spec::new("", "dielectric").with("eta", 1.728f32).with("dispersion", 0.7f32);
+    put(&mut flint, "flint", ball(Vec3::new(0.0, 0.5, 1.0), 0.5, 8, true), glass);
+    assert_same_with("flint", &built(&flint), &settings);
     let spec = Spec::new("", "cornell");
     assert_same_with("cornell", &built(&bilux_scene::generators::generate(&spec).unwrap()), &settings);
 }
