@@ -323,44 +323,6 @@ fn a_denoised_picture_is_that_of_a_fresh_job_whatever_the_steps() {
 }
 
 #[test]
-fn layers_follow_every_edit() {
-    let user = settings(&[("integrator", "path".into()), ("spp", Value::Integer(2))]);
-    let layers = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids];
-    let mut session = Session::new(cornell(), &user).unwrap();
-    session.with_layers(&layers).unwrap();
-    let blue = Spec::new("", "diffuse").with("reflectance", Rgb::new(0.0, 0.0, 0.9));
-    let edits = [
-        Edit::Material(0, blue),
-        Edit::Place(0, at(0.0, 0.1, 0.0)),
-        Edit::Remove(1),
-        Edit::Set("eye".to_owned(), "0.1,0.8,3".into()),
-        Edit::Set("size".to_owned(), "20x24".into()),
-    ];
-    for edit in edits {
-        let what = format!("{edit:?}");
-        let before = session.outcome().and_then(|outcome| outcome.features.clone());
-        session.apply(edit).unwrap();
-        finished(&mut session);
-        let mut job = Job::new(session.scene(), &user_of(&session)).unwrap();
-        job.with_layers(&layers);
-        let expected = job.render(&Quiet).unwrap().features;
-        let now = session.outcome().unwrap().features.clone();
-        assert!(now.is_some() && now == expected && now != before, "{what}");
-    }
-}
-
-/// The settings of a session, as far as the test above changes them.
-fn user_of(session: &Session) -> Parameters {
-    let own = session.job().settings();
-    let mut all = settings(&[("integrator", "path".into()), ("spp", Value::Integer(2))]);
-    all.set("size", format!("{}x{}", own.width, own.height));
-    if let Some(eye) = own.view.eye {
-        all.set("eye", format!("{},{},{}", eye.x, eye.y, eye.z));
-    }
-    all
-}
-
-#[test]
 fn sessions_that_share_what_is_built_build_no_tree_and_show_the_same() {
     let user = settings(&[("integrator", "path".into())]);
     let first = Session::new(cornell(), &user).unwrap();

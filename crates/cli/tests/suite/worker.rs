@@ -130,7 +130,8 @@ fn a_job_that_takes_too_long_is_stopped_and_the_next_is_not() {
 fn the_worker_s_own_limit_ends_a_job_too() {
     let folder = folder();
     let long = job(1, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100", "timeout": 1000 }));
-    let results = results(folder.path(), &["--timeout", "0.3", "--max-memory", "1M"], &[long.clone()]);
+    let results =
+        results(folder.path(), &["--timeout", "0.3", "--max-memory", "1M"], std::slice::from_ref(&long));
     assert_eq!(results[0]["status"], 1, "{results:#?}");
     assert!(results[0]["error"].as_str().unwrap().contains("--max-memory"), "{results:#?}");
     let results = self::results(folder.path(), &["--timeout", "0.3"], &[long]);

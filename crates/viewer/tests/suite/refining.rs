@@ -43,7 +43,8 @@ fn apart(a: &[u8], b: &[u8]) -> f64 {
         let y = ((i / GRID) * picture.height() + picture.height() / 2) / GRID;
         f64::from(picture.rgb_planes().unwrap()[channel][y * picture.width() + x])
     };
-    let squares = (0..GRID * GRID * 3).map(|i| (at(&a, i / 3, i % 3) - at(&b, i / 3, i % 3)).powi(2));
+    let differences = (0..GRID * GRID * 3).map(|i| at(&a, i / 3, i % 3) - at(&b, i / 3, i % 3));
+    let squares = differences.map(|difference| difference * difference);
     (squares.sum::<f64>() / (GRID * GRID * 3) as f64).sqrt()
 }
 
