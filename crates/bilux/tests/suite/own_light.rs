@@ -307,7 +307,7 @@ fn mean(scene: &SceneBuilder) -> f32 {
 /// The outgoing radiance of the floor for a panel of radiance 1: albedo / pi times four times the irradiance of a quarter above its
 /// corner. [Howell 2010, C-11]
 fn of_panel() -> f32 {
-    let (half, over) = (0.5f32, 0.5f32.hypot(1.0));
+    let (half, over) = (0.5f32, 1.25f32.sqrt());
     let corner = half / over * bilux::math::transcendental::atan(half / over);
     0.5 / std::f32::consts::PI * 4.0 * corner
 }
