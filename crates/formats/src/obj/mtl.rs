@@ -201,7 +201,7 @@ impl Library<'_, '_, '_> {
     fn number(&mut self) -> Option<f32> {
         let word = self.cursor.word();
         let offset = self.cursor.offset() - word.len();
-        let what = match parse_f32(word).or_else(|| self.with_decimal_comma(word, offset)) {
+        let what = match parse_f32(word) {
             Some(value) if value.is_finite() => return Some(value),
             Some(_) => "a value of a material is infinite or not a number (NaN), and is ignored",
             None if word.is_empty() => "a number is missing here: this line is left out",
@@ -211,14 +211,5 @@ impl Library<'_, '_, '_> {
         let first = || if what.starts_with(' ') { quoted(word) } else { String::new() };
         self.oddities.note_first(what, first, || places.at(offset));
         None
-    }
-
-    /// The number that a word means if a comma stands for its point, as some programs write in some countries.
-    fn with_decimal_comma(&mut self, word: &[u8], offset: usize) -> Option<f32> {
-        let comma = word.iter().position(|&byte| byte == b',')?;
-        let value = parse_f32(&[&word[..comma], b".", &word[comma + 1..]].concat())?;
-        let places = &self.places;
-        self.oddities.note("a comma in a number is read as a decimal point", || places.at(offset));
-        Some(value)
     }
 }

@@ -88,10 +88,10 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     scene("an IGES model of a CAD program", |b| {
         b.get(72..80) == Some(b"S      1") || b.get(72..80) == Some(b"S0000001")
     }),
-    other("a pointer of Git LFS, not the file itself", "fetch the file with `git lfs pull`", |b| {
+    other("a pointer of Git LFS", "fetch the file with `git lfs pull`", |b| {
         b.starts_with(b"version https://git-lfs.github.com/spec/")
     }),
-    other("a web page (HTML), not the file itself", "download the file again", |b| {
+    other("a web page (HTML)", "download the file itself", |b| {
         has_root(b, b"<!DOCTYPE html") || has_root(b, b"<html")
     }),
     other("a compressed archive (zip)", "unpack it, and name the file in it", |b| {
