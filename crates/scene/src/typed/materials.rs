@@ -29,7 +29,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its own mesh; a mirrored copy keeps its front: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -48,7 +48,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its own mesh; a mirrored copy keeps its front: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -69,7 +69,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its own mesh; a mirrored copy keeps its front: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -88,7 +88,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its own mesh; a mirrored copy keeps its front: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
@@ -225,7 +225,7 @@ typed! {
         emission: impl Into<crate::Value>,
         /// Factor on the emission; default `1`.
         emission_scale: bilux_math::Rgb,
-        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise: `both`, `front`; default `both`.
+        /// Which sides emit light: both, or the front, where a triangle's vertices run counter-clockwise in its own mesh; a mirrored copy keeps its front: `both`, `front`; default `both`.
         emission_sides: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
