@@ -72,7 +72,11 @@ fn what_was_edited_is_saved_as_an_overlay_and_as_changes() {
         client.send(json!({ "do": "set", "key": "exposure", "value": 0.5 })).await;
         client.send(json!({ "do": "orbit", "by": [10, 0] })).await;
         let state = client
-            .text("state", |state| state["moved"] == true && state["settings"]["exposure"] == 0.5)
+            .text("state", |state| {
+                // Edits of the scene are made by another thread than what a view alone is about.
+                let is_edited = state["command"].as_str().is_some_and(|all| all.contains("--change camera"));
+                is_edited && state["moved"] == true && state["settings"]["exposure"] == 0.5
+            })
             .await;
         let shown = client.frame(Frame::rests).await;
         let command = state["command"].as_str().unwrap();
