@@ -23,7 +23,8 @@ pub fn in_python(message: &str) -> String {
     let text = own.map_or(&*text, |(_, rest)| rest);
     let text = text
         .replace("no render setting '", "no setting '")
-        .replace("{ texture = \"FILE\" }", "a bilux.Texture");
+        .replace("{ texture = \"FILE\" }", "a bilux.Texture")
+        .replace("name a scene file; ", "give a scene; ");
     with_keywords(&text)
 }
 

@@ -48,7 +48,7 @@ intensity = [0, 0, 30]
 """
 
 SHAPES = {
-    "albedo": (3,), "normal": (3,), "depth": (), "ids": (2,), "variance": (3,), "interval": (3,), "position": (3,),
+    "albedo": (3,), "normal": (3,), "depth": (), "ids": (2,), "guides": (7,), "variance": (3,), "interval": (3,), "position": (3,),
     "uv": (2,), "motion": (2,), "crypto_object": (12,), "crypto_material": (12,), "crypto_instance": (12,),
     "direct": (3,), "indirect": (3,), "samples": (), "rays": (), "path_length": (), "nodes": (), "tests": (),
 }  # fmt: skip

@@ -63,7 +63,7 @@ def test_layers_are_arrays_and_never_copied():
     assert picture["depth"].shape == (30, 40) and np.isfinite(picture["depth"]).any()
     assert picture["id"].dtype == np.uint32 and picture["id"].shape == (30, 40, 2)
     assert picture["albedo"].shape == (30, 40, 3) and picture["albedo"].max() <= 1
-    assert set(picture.layers) >= {"depth", "id", "albedo"} and "normal" not in picture
+    assert set(picture.layers) >= {"depth", "ids", "albedo"} and "normal" not in picture
 
     def address(array):
         return array.__array_interface__["data"][0]
@@ -234,7 +234,7 @@ def test_pictures_are_pickled_and_copied_with_all_that_they_hold(folder):
             assert (folder / f"one.{extension}").read_bytes() == (folder / f"other.{extension}").read_bytes()
     values = list(picture.__reduce__()[1][0])
     with pytest.raises(ValueError, match="another version"):
-        bilux.Picture._restored(tuple([2, *values[1:]]))
+        bilux.Picture._restored(tuple([values[0] + 1, *values[1:]]))
 
 
 def test_a_format_without_alpha_warns(folder):
