@@ -256,7 +256,8 @@ impl Environment {
         }
         let made = output(Command::new(python).args(["-m", "venv", "--clear"]).arg(&folder));
         made.context("cannot make a virtual environment: install Python's module venv")?;
-        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        // What is imported is compiled then, once; most of it never is.
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"];
         let installed = output(environment.python().args(install).args(packages));
         installed.with_context(|| format!("pip cannot install {}", packages.join(", ")))?;
         let lacks =
@@ -274,7 +275,9 @@ impl Environment {
     /// Its Python, in the root of the repository, without influence from the user's own packages.
     pub(crate) fn python(&self) -> Command {
         let mut command = Command::new(&self.interpreter);
-        command.current_dir(root()).env_remove("PYTHONPATH").env("PYTHONDONTWRITEBYTECODE", "1");
+        command.current_dir(root()).env_remove("PYTHONPATH");
+        // Next to the environments, and not among the sources.
+        command.env("PYTHONPYCACHEPREFIX", target_folder().join("python/cache"));
         command
     }
 }

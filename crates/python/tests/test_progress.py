@@ -21,10 +21,10 @@ def long_render(scene, **keywords):
 
 def test_a_callback_follows_the_render():
     seen = []
-    picture = bilux.generate("cornell").render(size=160, spp=200, integrator="path", progress=seen.append)
+    picture = bilux.generate("cornell").render(size=80, spp=60, integrator="path", progress=seen.append)
     assert picture.info["complete"] and seen
     assert all(0 <= a.fraction <= b.fraction <= 1 for a, b in zip(seen, seen[1:]))
-    assert seen[-1].total == 160 * 160 * 200 and seen[-1].rays > 0 and seen[-1].seconds > 0
+    assert seen[-1].total == 80 * 80 * 60 and seen[-1].rays > 0 and seen[-1].seconds > 0
 
 
 def test_a_callback_stops_the_render_and_keeps_the_picture():
@@ -176,7 +176,7 @@ def test_true_shows_a_bar(monkeypatch, capsys, bar):
         pytest.importorskip("tqdm")
     else:
         monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    bilux.generate("cornell").render(size=160, spp=300, integrator="path", progress=True)
+    bilux.generate("cornell").render(size=80, spp=60, integrator="path", progress=True)
     shown = capsys.readouterr().err
     assert "Mrays/s" in shown and "%" in shown
 
