@@ -10,7 +10,7 @@ for argument do
     case $command$before in
         render--size) argument=48x32 ;;
         render--spp) argument=$(least "$argument" 4) ;;
-        render--time-limit) argument=0.3 ;;
+        render--time-limit) argument=0.05 ;;
         render--noise) argument=50% ;;
         render--turntable) argument=$(least "$argument" 3) ;;
         # A 64th of the samples: 64..128 becomes 1..2.
@@ -26,7 +26,7 @@ case " $* " in
 esac
 case " $* " in
     " render "*" --spp "* | " render "*" --noise "* | " render "*" --time-limit "* | " render "*" --samples "* | " render "*" --fast "*) ;;
-    " render "*) set -- "$@" --time-limit 0.3 ;;
+    " render "*) set -- "$@" --time-limit 0.05 ;;
 esac
 # A server runs until somebody ends it: here as soon as it has printed its address, or has ended by itself.
 case "$*" in
