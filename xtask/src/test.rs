@@ -30,7 +30,7 @@ const STEPS: &[Step] = &[
 /// The long forms, which `--long` adds: `docs/trust.md` says what each does beyond its short form.
 const LONG: &[Step] = &[
     Step { name: "long-wheel", run: |_| crate::python::test_wheel() },
-    Step { name: "long-visibility", run: long_visibility },
+    Step { name: "long-suites", run: long_suites },
     Step { name: "long-leaks", run: |_| release_example("bilux-accel", "leak_hunt", &[]) },
     Step {
         name: "long-agreement",
@@ -123,18 +123,25 @@ fn clippy(_: &mut Totals) -> Result<()> {
 }
 
 fn tests(totals: &mut Totals) -> Result<()> {
-    // Examples are left out: clippy has seen that they compile, and these do not run.
-    watched(&["test", "--locked", "--workspace", "--tests", "--no-fail-fast"], totals)
+    watched(&mut cargo(SUITES), totals)
 }
+
+/// The same with more samples, rays, seeds and cases.
+fn long_suites(totals: &mut Totals) -> Result<()> {
+    watched(cargo(SUITES).env("BILUX_LONG", "1"), totals)
+}
+
+/// Examples are left out: clippy has seen that they compile, and these do not run.
+const SUITES: &[&str] = &["test", "--locked", "--workspace", "--tests", "--no-fail-fast"];
 
 /// The examples in the documentation of the libraries.
 fn examples(totals: &mut Totals) -> Result<()> {
-    watched(&["test", "--locked", "--workspace", "--doc", "--no-fail-fast"], totals)
+    watched(&mut cargo(&["test", "--locked", "--workspace", "--doc", "--no-fail-fast"]), totals)
 }
 
-fn watched(arguments: &[&str], totals: &mut Totals) -> Result<()> {
+fn watched(command: &mut std::process::Command, totals: &mut Totals) -> Result<()> {
     let mut suites = 0;
-    let ok = run_watched(&mut cargo(arguments), |line| {
+    let ok = run_watched(command, |line| {
         if let Some(suite) = Totals::read(line) {
             totals.add(suite);
             suites += 1;
@@ -144,17 +151,6 @@ fn watched(arguments: &[&str], totals: &mut Totals) -> Result<()> {
         (true, 1..) => Ok(()),
         (_, 0) => bail!("no test ran"),
         _ => bail!("a test failed: see above"),
-    }
-}
-
-fn long_visibility(totals: &mut Totals) -> Result<()> {
-    let suite = ["test", "--locked", "--release", "-p", "bilux-accel", "--test", "suite", "visibility"];
-    let mut command = cargo(&suite);
-    let read = |line: &str| Totals::read(line).into_iter().for_each(|suite| totals.add(suite));
-    if run_watched(command.env("BILUX_LONG", "1"), read)? {
-        Ok(())
-    } else {
-        bail!("a test failed: see above")
     }
 }
 

@@ -62,7 +62,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     for (label, name, options) in variants().into_iter().filter(|(_, name, _)| chosen(name)) {
         let share = if name.starts_with("brute") { 1000 } else { 1 };
         let rays = (arguments.rays / share).div_ceil(meshes.len() as u64);
-        for closed in &meshes {
+        for closed in meshes {
             let structure = build_variant(name, &options, &Arc::new(closed.mesh()));
             let start = Instant::now();
             let (first, count) = leaks(structure.as_ref(), closed, arguments.seed, rays);

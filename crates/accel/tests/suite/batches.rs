@@ -1,6 +1,6 @@
 //! In a batch, each ray gets the same hit as on its own, bit for bit, whatever else is in the batch.
 
-use crate::support::{Numbers, bits, build_variant, meshes, queries, rays, variants};
+use crate::support::{Numbers, bits, build_variant, effort, meshes, queries, rays, variants};
 use bilux_accel::{Accelerator, BuildOptions, Hit, Query, Ray};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -64,15 +64,17 @@ fn kinds(mesh: &bilux_accel::TriangleMesh, seed: u64) -> Vec<(&'static str, Vec<
     kinds
 }
 
-fn check(name: &str, tree: &dyn Accelerator, rays: &[Ray], query: &Query) {
+fn check(name: &str, tree: &dyn Accelerator, rays: &[Ray], query: &Query, turn: usize) {
     let alone: Vec<Option<Hit>> = rays.iter().map(|ray| tree.closest_hit(ray, query)).collect();
     let mut from = 0;
-    for length in LENGTHS {
+    for (i, length) in LENGTHS.into_iter().enumerate() {
         let batch = &rays[from..rays.len().min(from + length)];
         let alone = &alone[from..from + batch.len()];
         from = (from + 29) % 400.min(rays.len());
-        // As many elements as rays, fewer, more.
-        for places in [batch.len(), batch.len() / 2, batch.len() + 5] {
+        // As many elements as rays, fewer, more; in the short form one of these in turn.
+        let places = [batch.len(), batch.len() / 2, batch.len() + 5];
+        let first = (i + turn) % 3;
+        for places in places[effort(first..first + 1, 0..3)].iter().copied() {
             let mut hits = vec![Some(UNTOUCHED); places];
             tree.closest_hits(batch, query, &mut hits);
             let mut any = vec![false; places];
@@ -104,8 +106,9 @@ fn check_kinds(
         let name = format!("{name}, {kind}");
         let filter = |hit: &Hit| !hit.primitive.is_multiple_of(3) && hit.u < 0.7;
         let filtered = Query { filter: Some(&filter), ..Query::default() };
-        for query in queries()[..if own { 4 } else { 1 }].iter().chain([&filtered]) {
-            check(&name, tree, &rays[..if own { rays.len() } else { 50 }], query);
+        let queries = queries();
+        for (turn, query) in queries[..if own { 4 } else { 1 }].iter().chain([&filtered]).enumerate() {
+            check(&name, tree, &rays[..if own { rays.len() } else { 50 }], query, turn);
         }
         let query = Query::default();
         for ray in rays.iter().step_by(if own { 1 } else { 100 }) {

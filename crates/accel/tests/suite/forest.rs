@@ -1,7 +1,9 @@
 //! Trees over parts of a mesh answer as brute force over the whole mesh does, bit for bit, one ray at a time and in
 //! batches.
 
-use crate::support::{Numbers, Truth, bits, build_variant, is_blocker, meshes, queries, rays, variants};
+use crate::support::{
+    Numbers, Truth, bits, build_variant, effort, is_blocker, meshes, queries, rays, variants,
+};
 use bilux_accel::{
     Accelerator, BuildOptions, Counters, Forest, Hit, Primitive, Query, Ray, TriangleMesh, build,
 };
@@ -9,8 +11,6 @@ use bilux_math::Aabb;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-
-const RAYS: usize = 300;
 
 /// Ranges of triangles, dealt to so many trees at random.
 fn deal(count: usize, trees: usize, seed: u64) -> Vec<Vec<Range<u32>>> {
@@ -42,7 +42,7 @@ fn a_forest_gives_the_hits_of_brute() {
     for (seed, (mesh_name, mesh)) in meshes::all().into_iter().enumerate() {
         let mesh = Arc::new(mesh);
         let brute = build_variant("brute", &BuildOptions::default(), &mesh);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, RAYS, seed as u64));
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, effort(80, 300), seed as u64));
         variants().par_iter().enumerate().for_each(|(i, (name, accelerator, options))| {
             let trees = [1, 2, 3, 12][(seed + i) % 4];
             let dealt = deal(mesh.len(), trees, seed as u64);

@@ -1,21 +1,27 @@
 //! Every structure gives the hits of `brute`, bit for bit, on input that has broken ray tracers.
 
-use crate::support::{Truth, build_variant, meshes, rays, variants};
+use crate::support::{Truth, build_variant, effort, meshes, rays, variants};
 use bilux_accel::registry::Quality;
 use bilux_accel::{ACCELERATORS, BuildOptions, Bvh, Bvh8, Query, RefitError, TriangleMesh};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Rays per mesh; each is queried in about eight variants.
-const RAYS: usize = 400;
+pub(crate) fn rays_per_mesh() -> usize {
+    effort(120, 400)
+}
 
 #[test]
 fn every_structure_gives_the_hits_of_brute() {
     for (seed, (mesh_name, mesh)) in meshes::all().into_iter().enumerate() {
         let mesh = Arc::new(mesh);
         let brute = build_variant("brute", &BuildOptions::default(), &mesh);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, RAYS, seed as u64));
-        assert!(mesh.is_empty() || truth.hits() > RAYS / 4, "{mesh_name}: only {} hits", truth.hits());
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, rays_per_mesh(), seed as u64));
+        assert!(
+            mesh.is_empty() || truth.hits() > rays_per_mesh() / 4,
+            "{mesh_name}: only {} hits",
+            truth.hits()
+        );
         variants().par_iter().for_each(|(name, accelerator, options)| {
             let found = truth.differences(build_variant(accelerator, options, &mesh).as_ref());
             assert!(found.is_empty(), "{name} on {mesh_name}: {} differ, first {:#?}", found.len(), found[0]);
@@ -46,7 +52,7 @@ fn a_refitted_tree_gives_the_hits_of_the_moved_mesh() {
         let mut tree = Bvh::new(&mesh);
         assert!(tree.refit(&moved), "{name}");
         let brute = build_variant("brute", &BuildOptions::default(), &moved);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&moved, RAYS / 4, seed as u64));
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&moved, rays_per_mesh() / 4, seed as u64));
         let found = truth.differences(&tree);
         assert!(found.is_empty(), "{name}: {} differ, first {:#?}", found.len(), found[0]);
         if name == "not numbers" {
@@ -71,7 +77,7 @@ fn a_refitted_wide_tree_gives_the_hits_of_the_moved_mesh() {
             for mesh in [&once, &twice] {
                 assert_eq!(tree.refit(mesh), Ok(()), "{name}");
                 let brute = build_variant("brute", &BuildOptions::default(), &Arc::new(mesh.clone()));
-                let truth = Truth::new(brute.as_ref(), &rays::nasty(mesh, RAYS / 4, seed as u64));
+                let truth = Truth::new(brute.as_ref(), &rays::nasty(mesh, rays_per_mesh() / 4, seed as u64));
                 let found = truth.differences(&tree);
                 assert!(found.is_empty(), "{name}: {} differ, first {:#?}", found.len(), found[0]);
             }

@@ -142,7 +142,7 @@ fn map(path: &std::path::Path) -> Result<Bvh8, StorageError> {
 #[test]
 fn damaged_trees_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mesh = closed::all().swap_remove(0).mesh();
+    let mesh = closed::all()[0].mesh();
     let mut bytes = Vec::new();
     tree(&mesh).save(&mut bytes).expect("saved");
     let refuses = |bytes: &[u8]| {

@@ -1,5 +1,6 @@
 //! Structures with a deliberate mistake, each of which the harness must detect.
 
+use crate::one_answer::rays_per_mesh;
 use crate::support::{Truth, build_variant, closed, meshes, rays};
 use bilux_accel::accelerator::{Traverse, TreeShape};
 use bilux_accel::counters::Count;
@@ -64,7 +65,7 @@ fn differences(make: impl Fn(Arc<TriangleMesh>) -> Boxes) -> usize {
     let differing = |(seed, (_, mesh)): (usize, (_, TriangleMesh))| {
         let mesh = Arc::new(mesh);
         let brute = build_variant("brute", &BuildOptions::default(), &mesh);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, 500, seed as u64));
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, rays_per_mesh(), seed as u64));
         truth.differences(&make(mesh)).len()
     };
     meshes::all().into_iter().enumerate().map(differing).sum()

@@ -1,6 +1,6 @@
 //! Instances found by a tree give the same hits as instances tested one by one, bit for bit.
 
-use crate::support::{Numbers, Truth, build_variant, closed, meshes, rays, variants};
+use crate::support::{Numbers, Truth, build_variant, closed, effort, meshes, rays, variants};
 use bilux_accel::{Accelerator, BuildOptions, Instance, Query, Ray, TopLevel, TriangleMesh, TwoLevel};
 use bilux_math::glam::{DMat4, Quat};
 use bilux_math::{Motion, MotionKey, Transform, Vec3};
@@ -70,7 +70,7 @@ fn both_top_levels_give_the_same_hits_over_every_structure() {
     let chosen = ["one", "random", "grid", "not numbers", "empty", "random far away"];
     let shapes: Vec<_> = meshes::all().into_iter().filter(|(name, _)| chosen.contains(name)).collect();
     let shapes: Vec<_> = shapes.into_iter().map(|(_, mesh)| Arc::new(mesh)).collect();
-    for seed in 0..4 {
+    for seed in 0..effort(2, 4) {
         let mut numbers = Numbers::new(seed);
         let parts: Vec<_> = (0..24).map(|_| (numbers.below(shapes.len()), motion(&mut numbers))).collect();
         let world = |accelerator: &str, options: &BuildOptions, top| {
@@ -117,7 +117,7 @@ fn an_identity_transform_changes_no_bit() {
 #[test]
 fn a_billion_triangles_take_a_few_hundred_megabytes() {
     const SIDE: usize = 390;
-    let mesh = Arc::new(closed::all().into_iter().find(|c| c.name == "sphere").expect("it is there").mesh());
+    let mesh = Arc::new(closed::all().iter().find(|c| c.name == "sphere").expect("it is there").mesh());
     let tree = build_variant("bvh8", &BuildOptions::default(), &mesh);
     let place = |i: usize| [(i % SIDE) as f64 * 3.0, 0.0, (i / SIDE) as f64 * 3.0];
     let instance = |i: usize| {

@@ -1,5 +1,6 @@
 //! Every exact algorithm gives the image of ray casting.
 
+use crate::support::effort;
 use bilux_accel::visibility::{
     BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
 };
@@ -171,12 +172,10 @@ fn nasty(seed: u64) -> (Option<View>, Vec<Triangle>) {
     (view.ok(), triangles.into_iter().map(|t| t.map(place)).collect())
 }
 
-/// The long run is `BILUX_LONG=1 cargo test --release -p bilux-accel --test suite visibility`: minutes.
 #[test]
 fn nasty_scenes() {
-    let long = std::env::var_os("BILUX_LONG").is_some();
-    let mut seen = 0;
-    for seed in 0..if long { 4_000 } else { 400 } {
+    let (mut seen, scenes) = (0, effort(100, 4_000));
+    for seed in 0..scenes {
         if let (Some(view), triangles) = nasty(seed) {
             let culling = if seed % 2 == 0 { Culling::None } else { Culling::Back };
             let middle = triangles.len() as u32 / 2;
@@ -186,7 +185,7 @@ fn nasty_scenes() {
             seen += check_with(&format!("nasty {seed}"), &view, &grouped, &options);
         }
     }
-    assert!(seen > 50_000, "the scenes must be seen: {seen}");
+    assert!(seen > 125 * scenes as usize, "the scenes must be seen: {seen}");
 }
 
 #[test]

@@ -5,6 +5,8 @@
 mod asc;
 mod clouds;
 mod colours;
+#[path = "../../../accel/tests/suite/support/effort.rs"]
+mod effort;
 mod foreign;
 mod gltf;
 mod gltf_choices;

@@ -1,6 +1,7 @@
 //! A scene that is built with what earlier builds left equals one that is built from nothing, bit for bit, whatever was
 //! edited in between; and what was not edited is not built again.
 
+use crate::effort::effort;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{Rgb, Transform, Vec2, Vec3, glam::Quat, hash};
 use bilux_scene::cameras::CameraSpec;
@@ -175,7 +176,7 @@ fn built(builder: &SceneBuilder, parts: &mut BuiltParts, accel: &AccelChoice) ->
 
 #[test]
 fn after_any_edits_the_scene_is_that_of_a_fresh_build() {
-    for seed in 0..12 {
+    for seed in 0..effort(4, 12) {
         let (mut builder, mut parts, mut numbers) = (builder(), BuiltParts::default(), Numbers(seed, 0));
         let name = ["auto", "kd", "auto", "bsp-sah"][seed as usize % 4];
         let accel = AccelChoice { name: name.to_owned(), ..AccelChoice::default() };

@@ -2,7 +2,8 @@
 
 use crate::common::statistics::{agreement, blocks};
 use crate::common::{
-    ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life, without_mirrors,
+    ball, built, diffuse, effort, floor, integrator, look, mixed, put, shoot, sky, still_life,
+    without_mirrors,
 };
 use bilux_math::Vec3;
 use bilux_scene::{Scene, SceneBuilder, Spec};
@@ -67,13 +68,15 @@ fn the_noise_of_every_set_is_predicted() {
     let scene = built(&corner());
     let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
     let mut predicted = vec![0.0; SETS.len()];
-    for seed in 0..60 {
+    let pictures = effort(30, 60);
+    for seed in 0..pictures {
         for (sum, candidate) in predicted.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
-            *sum += candidate.error / 60.0;
+            *sum += candidate.error / pictures as f64;
         }
     }
-    for (set, predicted) in SETS.into_iter().zip(predicted) {
-        let measured = measured(&scene, &*reported(set, false), 60);
+    // In the short form, those that have one part each of what the others join: camera paths, light paths, photons.
+    for (set, predicted) in SETS.into_iter().zip(predicted).step_by(effort(3, 1)) {
+        let measured = measured(&scene, &*reported(set, false), pictures);
         let ratio = predicted / measured;
         assert!((0.8..1.25).contains(&ratio), "{set}: predicted {predicted}, measured {measured}");
     }
@@ -146,7 +149,9 @@ fn lit_by(light: &str) -> SceneBuilder {
 
 #[test]
 fn aimed_light_paths_find_the_same_light_with_less_noise() {
-    for light in ["rect", "sphere", "point", "spot", "sun", "sky"] {
+    // In the short form, one nearby and one at infinity.
+    let lights = effort(vec!["rect", "sun"], vec!["rect", "sphere", "point", "spot", "sun", "sky"]);
+    for light in lights {
         let scene = built(&lit_by(light));
         // `path` is no reference for what only light subpaths find.
         let p = agreement(
@@ -157,7 +162,8 @@ fn aimed_light_paths_find_the_same_light_with_less_noise() {
         if ["sphere", "spot"].contains(&light) {
             continue;
         }
-        let [plain, aimed] = [false, true].map(|aim| measured(&scene, &*reported("path-light", aim), 24));
+        let [plain, aimed] =
+            [false, true].map(|aim| measured(&scene, &*reported("path-light", aim), effort(12, 24)));
         // A sky has no caustics that camera subpaths would not find with less noise.
         let bound = if light == "sky" { 2.0 } else { 1.05 };
         assert!(aimed < bound * plain, "{light}: {aimed} with aim, {plain} without");

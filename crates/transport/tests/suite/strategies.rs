@@ -1,7 +1,7 @@
 //! Pictures of single techniques: weighted they add up to the picture, and unweighted they all have the same mean.
 
 use crate::common::statistics::{UNLIKELY, agreement, channel, estimate};
-use crate::common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot};
+use crate::common::{ball, built, diffuse, effort, floor, integrator, look, mixed, put, quad, shoot};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
@@ -83,7 +83,7 @@ fn defective(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
 fn all_strategies_find_the_same_light() {
     let (scene, bdpt) =
         (built(&diffuse_scene()), Spec::new("", "bdpt").with("roulette_depth", Value::Integer(1)));
-    let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, 256) };
+    let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, effort(128, 256)) };
     let [all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &bdpt, seed, &settings)));
     // Paths of 2 to 4 edges, by 3 to 5 techniques each.
     assert_eq!(all.len(), 3 + 4 + 5);
@@ -104,7 +104,7 @@ fn all_strategies_find_the_same_light() {
 #[test]
 fn merging_finds_the_same_light_with_a_small_radius() {
     let scene = built(&diffuse_scene());
-    let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, 128) };
+    let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, effort(64, 128)) };
     let vcm = Spec::new("", "vcm").with("radius", 0.02f32).with("alpha", 1.0f32);
     let [mut all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &vcm, seed, &settings)));
     all.retain(|strategy, _| strategy.merges);

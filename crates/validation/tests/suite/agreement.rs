@@ -5,6 +5,7 @@ use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
 use bilux_transport::{LightSubpaths, PixelIntegrator, Splats, Task, integrators};
 use bilux_validation::agreement::{Evidence, Stage, Technique, stages, techniques};
+use bilux_validation::effort::effort;
 use bilux_validation::statistics::{histogram, uniformity_p};
 
 /// A p-value below this means a bug, not chance.
@@ -38,6 +39,10 @@ fn all_unbiased_integrators_agree_block_by_block() {
     for (name, scene) in scenes() {
         for stage in stages(name, &scene, [32, 24]).unwrap() {
             let compared = |technique: &Technique| {
+                // Without merging, `vcm` is `bdpt` to the bit, as a test of theirs shows: it is in the long form only.
+                if effort(technique.name == "vcm", false) {
+                    return false;
+                }
                 techniques.iter().any(|b| b.name != technique.name && stage.compares(technique, b))
             };
             let found: Vec<Option<Evidence>> = (techniques.iter().enumerate())

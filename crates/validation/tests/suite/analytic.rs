@@ -7,6 +7,7 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::{cuboid, disc, icosphere, quad};
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{FILTERS, Filter, RenderSettings, Silent, integrators, render};
+use bilux_validation::effort::effort;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -106,7 +107,9 @@ fn light_in_a_furnace_sums_to_the_geometric_series() {
     let scene = built(&builder);
     for integrator in all() {
         let more = if ["light", "sppm"].contains(&integrator.kind.as_str()) { 8 } else { 1 };
-        for (depth, spp) in [(2, 16 * more), (20, 16 * more)] {
+        // In the short form, long paths from one end and from both.
+        let is_deep = effort(["path", "bdpt"].contains(&integrator.kind.as_str()), true);
+        for (depth, spp) in [(2, 16 * more), (20, 16 * more)].into_iter().take(1 + usize::from(is_deep)) {
             let settings = RenderSettings { max_depth: depth, ..RenderSettings::new(16, 16, spp) };
             let pictures = pictures(&scene, &integrator, &settings);
             for channel in 0..3 {
@@ -149,8 +152,9 @@ fn by_polygon(corners: &[[f64; 3]], [x, z]: [f64; 2]) -> f64 {
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
 }
 
-/// Compares the floor under a light, around `x`, as each integrator renders it, with its irradiance.
-fn check_direct(name: &str, x: f32, irradiance: f64, add: impl Fn(&mut SceneBuilder)) {
+/// Compares the floor under a light, around `x`, as each integrator renders it (in the short form, every other one), with its
+/// irradiance.
+fn check_direct(turn: usize, name: &str, x: f32, irradiance: f64, add: impl Fn(&mut SceneBuilder)) {
     let mut builder = SceneBuilder::default();
     let middle = Vec3::new(x, 0.0, 0.0);
     put(&mut builder, quad(middle, Vec3::X * 1.5, Vec3::Z * 1.5), diffuse(0.5f32));
@@ -158,7 +162,7 @@ fn check_direct(name: &str, x: f32, irradiance: f64, add: impl Fn(&mut SceneBuil
     // Below the light, which the film therefore does not see.
     plan(&mut builder, middle + Vec3::Y * 0.05, middle, 1.0);
     let scene = built(&builder);
-    for integrator in all() {
+    for integrator in all().into_iter().skip(effort(turn % 2, 0)).step_by(effort(2, 1)) {
         let spp = match integrator.kind.as_str() {
             "light" => 1200,
             "sppm" => 256,
@@ -182,9 +186,9 @@ fn a_disc_lights_the_floor_as_lambert_says() {
     let axis = by_polygon(&around(10_000, r, h), [0.0; 2]);
     assert!((axis / (PI * r * r / (r * r + h * h)) - 1.0).abs() < 1e-6, "{axis}");
     let corners = around(SIDES, r, h);
-    for x in [0.0, 1.5] {
+    for x in effort(vec![1.5], vec![0.0, 1.5]) {
         let irradiance = mean_over_square(x, |p| by_polygon(&corners, p));
-        check_direct("disc", x as f32, irradiance, |builder| {
+        check_direct(1, "disc", x as f32, irradiance, |builder| {
             let glowing = diffuse(0.0f32).with("emission", Rgb::WHITE);
             put(builder, disc(Vec3::Y * h as f32, r as f32, SIDES), glowing);
         });
@@ -194,12 +198,13 @@ fn a_disc_lights_the_floor_as_lambert_says() {
 #[test]
 fn a_sphere_lights_the_floor_as_if_from_its_middle() {
     // E = π (R / d)² cosθ, wherever all of it is above the horizon.
-    for (x, height, radius) in [(0.0, 0.9, 0.6), (1.5, 1.0, 0.6), (0.7, 1.5, 0.01)] {
+    let cases = [(0.0, 0.9, 0.6), (0.7, 1.5, 0.01), (1.5, 1.0, 0.6)];
+    for (turn, (x, height, radius)) in cases.into_iter().take(effort(2, 3)).enumerate() {
         let irradiance = mean_over_square(x, |[x, z]| {
             let distance2 = x * x + height * height + z * z;
             PI * radius * radius / distance2 * height / distance2.sqrt()
         });
-        check_direct(&format!("sphere of {radius} m"), x as f32, irradiance, |builder| {
+        check_direct(turn, &format!("sphere of {radius} m"), x as f32, irradiance, |builder| {
             let light_spec = Spec::new("", "sphere").with("radius", radius as f32).with("radiance", 1.0f32);
             builder.lights.push(light_spec.with("position", Vec3::Y * height as f32));
         });
@@ -221,7 +226,7 @@ fn through_slab(eta: f64, thickness: f64, sigma_a: f64, angle: f64) -> f64 {
 #[test]
 fn a_slab_of_glass_absorbs_by_beer_and_reflects_by_fresnel() {
     let (eta, thickness, absorption) = (1.5, 0.8, Rgb::new(0.0, 0.5, 1.5));
-    for degrees in [0.0f64, 40.0, 75.0] {
+    for degrees in effort(vec![40.0f64], vec![0.0, 40.0, 75.0]) {
         let angle = degrees.to_radians();
         let mut builder = SceneBuilder::default();
         let half = 60.0;
@@ -269,7 +274,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
     const COLUMNS: usize = 24;
     let (aperture, focus, fov) = (0.08f64, 2.0f64, 12.0f64);
     // A diffuse half-plane, lit along the line of sight, at several distances.
-    for distance in [1.2, 2.0, 3.5] {
+    for distance in [2.0, 3.5, 1.2].into_iter().take(effort(2, 3)) {
         let mut builder = SceneBuilder::default();
         let side = 1.0f32;
         let middle = Vec3::new(-0.5 * side, 0.0, -distance as f32);
@@ -402,7 +407,8 @@ fn a_ring_of_metal_draws_the_nephroid() {
     let brightest = |light: &[f64]| light.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
     let is_cusp = |bin: usize| (BINS * 3 / 4..BINS * 3 / 4 + 2).contains(&bin);
     assert!(is_cusp(brightest(&expected)), "{expected:.3?}");
-    for integrator in named(&["light", "bdpt", "vcm", "sppm"]) {
+    let wrong = [0.95, 1.05].map(|ring| (ring, in_ring(ring, BINS, 0.05)));
+    for integrator in named(&["light", "sppm", "bdpt", "vcm"]).into_iter().take(effort(2, 4)) {
         let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(BINS as u32, BINS as u32, 64) };
         let pictures = pictures(&scene, &integrator, &settings);
         // The two central rows.
@@ -421,9 +427,9 @@ fn a_ring_of_metal_draws_the_nephroid() {
         let (name, p) = (&integrator.kind, least(&expected));
         assert!(is_cusp(brightest(&found)), "{name}: {found:.3?}");
         assert!(p > UNLIKELY, "{name}: {found:.3?}, not {expected:.3?}: p = {p:.1e}");
-        for wrong in [0.95, 1.05] {
-            let p = least(&in_ring(wrong, BINS, 0.05));
-            assert!(p < UNLIKELY, "{name} passes for a ring of {wrong} m: p = {p:.1e}");
+        for (ring, wrong) in &wrong {
+            let p = least(wrong);
+            assert!(p < UNLIKELY, "{name} passes for a ring of {ring} m: p = {p:.1e}");
         }
     }
 }
@@ -460,7 +466,7 @@ fn a_ball_of_glass_gathers_light_at_its_focus_and_spreads_it_behind() {
     const SIDE: usize = 32;
     const GROUPS: usize = 6;
     const STEP: f64 = 0.0005;
-    for height in [0.45, 0.8] {
+    for (turn, height) in [0.45, 0.8].into_iter().enumerate() {
         let mut builder = SceneBuilder::default();
         put(&mut builder, quad(Vec3::ZERO, Vec3::X, Vec3::Z), diffuse(1.0f32));
         let ball = icosphere(Vec3::Y * height as f32, BALL as f32, 6);
@@ -482,44 +488,45 @@ fn a_ball_of_glass_gathers_light_at_its_focus_and_spreads_it_behind() {
             let middle = from_axis((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5);
             (middle / farthest * GROUPS as f64) as usize
         };
-        let sizes = (0..SIDE * SIDE).fold([0.0; GROUPS], |mut sizes, i| {
-            sizes[group(i)] += 1.0;
+        let groups: Vec<usize> = (0..SIDE * SIDE).map(group).collect();
+        let sizes = groups.iter().fold([0.0; GROUPS], |mut sizes, group| {
+            sizes[*group] += 1.0;
             sizes
         });
+        // Of each pixel, the steps from the axis of many places in it.
+        let places = (0..SIDE * SIDE).flat_map(|i| (0..256).map(move |k| (i, k))).map(|(i, k)| {
+            let within = [k % 16, k / 16].map(|k| (f64::from(k) + 0.5) / 16.0);
+            let at = from_axis((i % SIDE) as f64 + within[0], (i / SIDE) as f64 + within[1]);
+            (groups[i], (at / STEP) as usize)
+        });
+        let places: Vec<(usize, usize)> = places.collect();
         let expected = |eta: f64| {
             let light = under_ball(eta, height, STEP, (farthest / STEP) as usize + 2);
             let mut sums = [0.0; GROUPS];
-            for (i, k) in (0..SIDE * SIDE).flat_map(|i| (0..256).map(move |k| (i, k))) {
-                let within = [k % 16, k / 16].map(|k| (f64::from(k) + 0.5) / 16.0);
-                let at = from_axis((i % SIDE) as f64 + within[0], (i / SIDE) as f64 + within[1]);
-                sums[group(i)] += light[(at / STEP) as usize] / 256.0 / sizes[group(i)];
-            }
+            places.iter().for_each(|(group, step)| sums[*group] += light[*step] / 256.0 / sizes[*group]);
             sums
         };
-        for integrator in named(&["light", "bdpt", "vcm"]) {
+        let (right, wrong) = (expected(1.5), [1.47, 1.53].map(|eta| (eta, expected(eta))));
+        // In the short form, one in turn.
+        for integrator in named(&["light", "bdpt", "vcm"][effort(turn..turn + 1, 0..3)]) {
             let settings =
                 RenderSettings { max_depth: 3, ..RenderSettings::new(SIDE as u32, SIDE as u32, 64) };
             let pictures = pictures(&scene, &integrator, &settings);
             let mean_of = |g: usize, pixels: &Vec<Rgb>| {
-                let sum = pixels.iter().enumerate().filter(|(i, _)| group(*i) == g);
+                let sum = pixels.iter().enumerate().filter(|(i, _)| groups[*i] == g);
                 sum.map(|(_, pixel)| f64::from(pixel.g)).sum::<f64>() / sizes[g]
             };
             let of_group = |g: usize| pictures.iter().map(|p| mean_of(g, p)).collect::<Vec<f64>>();
-            let least = |eta: f64| {
-                let expected = expected(eta);
+            let least = |expected: &[f64; GROUPS]| {
                 (0..GROUPS).map(|g| p_value(&of_group(g), expected[g])).fold(1.0, f64::min) * GROUPS as f64
             };
-            let (name, p) = (&integrator.kind, least(1.5));
+            let (name, p) = (&integrator.kind, least(&right));
             let found: Vec<f64> =
                 (0..GROUPS).map(|g| of_group(g).iter().sum::<f64>() / SEEDS as f64).collect();
-            assert!(
-                p > UNLIKELY,
-                "{name} at {height} m: {found:.3?}, not {:.3?}: p = {p:.1e}",
-                expected(1.5)
-            );
-            for wrong in [1.47, 1.53] {
+            assert!(p > UNLIKELY, "{name} at {height} m: {found:.3?}, not {right:.3?}: p = {p:.1e}");
+            for (eta, wrong) in &wrong {
                 let p = least(wrong);
-                assert!(p < UNLIKELY, "{name} at {height} m passes for glass of {wrong}: p = {p:.1e}");
+                assert!(p < UNLIKELY, "{name} at {height} m passes for glass of {eta}: p = {p:.1e}");
             }
         }
     }

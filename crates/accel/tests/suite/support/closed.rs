@@ -7,6 +7,7 @@
 use super::Numbers;
 use bilux_accel::TriangleMesh;
 use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// A closed mesh with points inside it.
 pub struct Closed {
@@ -174,7 +175,12 @@ fn posed(p: [f64; 3], scale: [f64; 3], by: [f64; 3]) -> [f64; 3] {
 }
 
 /// Every closed mesh.
-pub fn all() -> Vec<Closed> {
+pub fn all() -> &'static [Closed] {
+    static ALL: LazyLock<Vec<Closed>> = LazyLock::new(every);
+    &ALL
+}
+
+fn every() -> Vec<Closed> {
     let make =
         |name, (positions, indices): (Vec<[f64; 3]>, Vec<[u32; 3]>)| Closed::new(name, positions, indices);
     let far = |p| posed(p, [3.0; 3], [10_000.3, -77_777.7, 12_345.6]);

@@ -1,10 +1,11 @@
 //! Whether two methods of rendering have the same mean.
 
-use super::{integrator, shoot};
+use super::{effort, integrator, shoot};
 use bilux_math::Rgb;
 use bilux_scene::Scene;
 use bilux_transport::{PixelIntegrator, RenderSettings};
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::ops::Range;
 
 /// Mean and standard error.
 pub fn estimate(values: &[f64]) -> (f64, f64) {
@@ -56,25 +57,40 @@ pub fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 /// A p-value below this means a bug, not chance.
 pub const UNLIKELY: f64 = 1e-4;
 
-/// For each integrator, the p-value that what it finds in a scene has the mean of what `path` finds in another.
-fn against_path(path: &Scene, scene: &Scene, others: &[&str]) -> Vec<f64> {
+/// For some of these integrators, the p-value that what it finds in a scene has the mean of what `path` finds in another.
+fn against_path<'a>(
+    path: &Scene,
+    scene: &Scene,
+    others: &[&'a str],
+    chosen: Range<usize>,
+) -> Vec<(&'a str, f64)> {
     let path = blocks(path, &*integrator("path"), 0);
-    let p = |(i, other): (usize, &&str)| {
-        agreement(&path, &blocks(scene, &*integrator(other), 100 * (i as u64 + 1)))
+    let p = |i: usize| {
+        (others[i], agreement(&path, &blocks(scene, &*integrator(others[i]), 100 * (i as u64 + 1))))
     };
-    others.iter().enumerate().map(p).collect()
+    chosen.map(p).collect()
 }
 
 /// Fails where other integrators find a different mean in a scene than `path` does.
 pub fn assert_like_path(name: &str, scene: &Scene, others: &[&str]) {
-    for (other, p) in others.iter().zip(against_path(scene, scene, others)) {
+    assert_these_like_path(name, scene, others, 0..others.len());
+}
+
+/// The same for one of many scenes: in the short form with only one of the integrators, in turn.
+pub fn assert_like_path_in_turn(turn: usize, name: &str, scene: &Scene, others: &[&str]) {
+    let one = turn % others.len();
+    assert_these_like_path(name, scene, others, effort(one..one + 1, 0..others.len()));
+}
+
+fn assert_these_like_path(name: &str, scene: &Scene, others: &[&str], chosen: Range<usize>) {
+    for (other, p) in against_path(scene, scene, others, chosen) {
         assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
     }
 }
 
 /// Fails where others find the same mean in a scene with a planted bug as `path` finds in the right one.
 pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
-    for (other, p) in others.iter().zip(against_path(right, wrong, others)) {
+    for (other, p) in against_path(right, wrong, others, 0..others.len()) {
         assert!(p < UNLIKELY, "{other} passes: p = {p}");
     }
 }
