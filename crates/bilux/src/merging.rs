@@ -3,7 +3,7 @@
 use crate::description::{SETTINGS, SOFTWARE, is_handed_on};
 use crate::{Display, Error};
 use bilux_pictures::Picture;
-use bilux_transport::{Coverage, Film, JoinedLayers, Window};
+use bilux_transport::{Coverage, Film, MergedLayers, Window};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
@@ -18,7 +18,7 @@ const LISTED: usize = 4;
 #[derive(Default)]
 pub struct Merging {
     joined: Option<(Film, Display)>,
-    layers: JoinedLayers,
+    layers: MergedLayers,
     described: BTreeMap<String, String>,
     /// Samples per pixel of the whole picture, as far as the parts know them.
     asked: Option<u32>,
@@ -32,16 +32,11 @@ impl Merging {
     pub fn add(&mut self, part: &Picture) -> Result<(), Error> {
         let film = Film::from_partial(part)?;
         let display = Display::recorded(part)?;
-        match &mut self.joined {
-            Some((joined, _)) => {
-                joined.merge(&film)?;
-                self.layers.add(part, &film);
-            }
-            None => {
-                self.layers.add(part, &film);
-                self.joined = Some((film, display));
-            }
+        if let Some((joined, _)) = &mut self.joined {
+            joined.merge(&film)?;
         }
+        self.layers.add(part, &film);
+        self.joined.get_or_insert((film, display));
         self.describe(part);
         Ok(())
     }
@@ -98,10 +93,8 @@ impl Merging {
         }
         picture.metadata.extend(self.described.clone());
         // Fewer samples are not what the settings would make, and neither are more.
-        if self.asked.is_none()
-            || !self.missing().is_nothing()
-            || self.missing().spp != self.asked.unwrap_or(0)
-        {
+        let missing = self.missing();
+        if !missing.is_nothing() || self.asked != Some(missing.spp) {
             picture.metadata.remove(SETTINGS);
         }
         Ok((picture, *display))

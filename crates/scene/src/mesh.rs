@@ -32,7 +32,8 @@ pub struct Mesh {
     pub emission_by_kd: bool,
     /// Factor on the material's opacity per vertex, 0 to 1.
     pub vertex_opacity: Vec<f32>,
-    /// If given, an opacity below it, after that factor, becomes 0, and any other 1.
+    /// If given, an opacity below it, after that factor, becomes 0, and any other 1. Without the factor it does nothing: the
+    /// opacity is then that of the material alone.
     pub opacity_threshold: Option<f32>,
     /// Diameter of the point at each vertex, in the mesh's own space; without them, points have the scene's point width.
     pub point_widths: Vec<f32>,

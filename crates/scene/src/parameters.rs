@@ -390,7 +390,8 @@ fn describe(value: &Value) -> String {
     match value {
         Value::Bool(b) => b.to_string(),
         Value::Integer(i) => i.to_string(),
-        Value::Number(x) => x.to_string(),
+        // A whole number with a point is told apart from one without.
+        Value::Number(x) => format!("{x:?}"),
         Value::Text(t) => format!("\"{t}\""),
         Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
         Value::Texture(_) => "a texture".to_owned(),

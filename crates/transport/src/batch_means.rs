@@ -23,7 +23,7 @@ pub struct BatchMeans {
     samples: u32,
     /// The sum of the weights of all differences.
     weights: f32,
-    /// Light that camera paths have brought, and light that light paths have left.
+    /// Light of camera paths, and of light paths.
     layers: [Layer; 2],
 }
 

@@ -7,7 +7,8 @@
 //!
 //! - at opaque surfaces, and at mirrors and glass like at any other;
 //! - at a surface with an opacity mask where its opacity is at least one half;
-//! - not at backs that the camera sees through, nor at boundaries of nested media that separate nothing.
+//! - not at backs that the camera sees through, nor at boundaries of nested media that separate nothing; of those that
+//!   coincide, at the one of the stronger medium.
 
 use crate::camera_rays::CameraRays;
 use crate::media::Media;
@@ -54,12 +55,22 @@ pub(crate) fn labels<'s>(
 fn labelled(tracer: &mut Tracer, ray: &Ray, mut hit: Hit) -> Option<Labelled> {
     let direction = Vec3::from(ray.direction);
     let mut surface = tracer.surface(ray, &hit);
-    if tracer.scene.has_nested() {
-        let mut media = Media::at_start(tracer, ray);
-        while let Err(rest) = media.end_or_rest(tracer, ray, surface) {
-            hit = tracer.hit(&rest)?;
-            surface = tracer.surface(&rest, &hit);
+    if !tracer.scene.has_nested() {
+        return Some(Labelled { hit, surface, direction });
+    }
+    let mut media = Media::at_start(tracer, ray);
+    loop {
+        match media.end_or_rest(tracer, ray, surface) {
+            Ok(end) => {
+                // Of faces that coincide it may be another than the one that was hit first.
+                let faces = tracer.all_hits(&Ray { t_min: surface.t, t_max: end.t, ..*ray });
+                let hit = faces.into_iter().find(|face| face.primitive() == end.primitive).unwrap_or(hit);
+                return Some(Labelled { hit, surface: end, direction });
+            }
+            Err(rest) => {
+                hit = tracer.hit(&rest)?;
+                surface = tracer.surface(&rest, &hit);
+            }
         }
     }
-    Some(Labelled { hit, surface, direction })
 }

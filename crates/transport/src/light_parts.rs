@@ -130,7 +130,7 @@ impl<'a> Sums<'a> {
         Ok(Sums { settings, division, scale, films: Mutex::new(films), splats: Mutex::default() })
     }
 
-    /// The photons of an iteration, if there are any. Where these are shown to the camera, their splats are kept.
+    /// The photons of an iteration, if there are any. Where their light subpaths are connected with the camera, the splats are kept.
     fn photons(
         &self,
         eye: &CameraRays,
@@ -138,12 +138,12 @@ impl<'a> Sums<'a> {
         iteration: u32,
     ) -> Result<Option<Photons>, FilmError> {
         let Some(merging) = eye.integrator.merging() else { return Ok(None) };
-        let shown = Merging::splats_photons(merging);
-        if shown {
+        let splats = Merging::splats_photons(merging);
+        if splats {
             self.make_room_for_splats()?;
         }
         let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
-        let visitor = shown.then_some(self);
+        let visitor = splats.then_some(self);
         Ok(Some(Photons::trace(eye, merging, tiles, iteration, techniques, visitor).0))
     }
 

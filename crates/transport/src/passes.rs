@@ -228,7 +228,7 @@ impl<'a> Work<'a> {
     fn add(&self, part: &Film) {
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
         film.absorb(part);
-        // An iteration that shows its photons has the film's splats.
+        // An iteration whose photons are splatted has the film's splats.
         if film.splats.len() == film.iterations.len() && self.followers.observer.wants_film() {
             self.followers.observer.show(&film);
         }

@@ -196,14 +196,14 @@ impl<'a> Run<'a> {
         let large = MANY_TILES * self.pool.current_num_threads() * (LARGE_TILE * LARGE_TILE) as usize;
         let side = if window.pixels() >= large { LARGE_TILE } else { TILE };
         let mut rest = samples.clone();
-        if let Some(Begun { side, complete, open, shown }) = begun {
+        if let Some(Begun { side, complete, open, splatted }) = begun {
             let all = open.iter().map(|pass| &pass.samples).chain(&complete);
             rest.start = all.map(|samples| samples.end).max().unwrap_or(rest.start);
             complete.into_iter().for_each(|done| rendered.film.cover(self.settings.window(), done));
             if let Some(first) = open.first() {
                 let iteration = first.samples.start;
                 let passes = Passes { side, ranges: open };
-                rendered = self.take_passes(iteration, passes, shown, rendered, place)?;
+                rendered = self.take_passes(iteration, passes, splatted, rendered, place)?;
             }
         }
         for samples in iterations(self.integrator, &rest) {
@@ -216,12 +216,12 @@ impl<'a> Run<'a> {
         Ok(rendered)
     }
 
-    /// Takes some passes: of an iteration, where there are photons. `shown` says that the film has their splats.
+    /// Takes some passes: of an iteration, where there are photons. `splatted` says that the film has their splats.
     fn take_passes(
         &self,
         iteration: u32,
         passes: Passes,
-        shown: Option<Vec<(u32, PixelFailures)>>,
+        splatted: Option<Vec<(u32, PixelFailures)>>,
         mut rendered: Rendered,
         place: &Place,
     ) -> Result<Rendered, RenderError> {
@@ -235,8 +235,8 @@ impl<'a> Run<'a> {
         let trace = |splats: Option<&IterationSplats>| {
             pool.install(|| Photons::of_iteration(&self.eye(), &whole, iteration, splats))
         };
-        let photons = trace(splats.as_ref().filter(|_| shown.is_none()));
-        if let Some(failures) = shown {
+        let photons = trace(splats.as_ref().filter(|_| splatted.is_none()));
+        if let Some(failures) = splatted {
             splats = splats.map(|splats| splats.going_on(failures));
         }
         let mut eye = self.eye();
@@ -246,7 +246,7 @@ impl<'a> Run<'a> {
         }
         let keep = |film: &mut Film, mut begun: Begun, counters| match &splats {
             Some(splats) => splats.lend(film, |film, failures| {
-                begun.shown = Some(failures.to_vec());
+                begun.splatted = Some(failures.to_vec());
                 self.keep(film, &begun, counters, place);
             }),
             None => self.keep(film, &begun, counters, place),

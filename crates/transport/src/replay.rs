@@ -47,8 +47,8 @@ pub struct Contributed {
     pub weight: f32,
     /// What it adds to the radiance of the sample, weighted.
     pub light: Rgb,
-    /// For light that belongs to other pixels (t = 1), where it falls on the film, 0..=1 on both axes: there `light` is
-    /// an integral over the whole film.
+    /// For light that belongs to other pixels (t = 1), where it falls on the film's plane (the film is 0..1 on both axes):
+    /// there `light` is an integral over the whole film.
     pub film: Option<Vec2>,
 }
 

@@ -57,6 +57,17 @@ pub enum PixelAnchor {
     Corner,
 }
 
+impl PixelAnchor {
+    /// Its distance from the pixel's left and upper edge, in pixels.
+    #[inline]
+    pub(crate) fn offset(self) -> f32 {
+        match self {
+            PixelAnchor::Centre => 0.5,
+            PixelAnchor::Corner => 0.0,
+        }
+    }
+}
+
 /// The part of the film's plane (the film is 0..1 on both axes) that its pixels' filters reach. Beyond the film's edge it is
 /// as wide as the filter is wider than a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,17 +81,6 @@ impl Reach {
     #[inline]
     pub(crate) fn contains(&self, film: Vec2) -> bool {
         film.cmpge(self.min).all() && film.cmplt(self.max).all()
-    }
-}
-
-impl PixelAnchor {
-    /// Its distance from the pixel's left and upper edge, in pixels.
-    #[inline]
-    pub(crate) fn offset(self) -> f32 {
-        match self {
-            PixelAnchor::Centre => 0.5,
-            PixelAnchor::Corner => 0.0,
-        }
     }
 }
 

@@ -58,7 +58,7 @@ struct Sums {
 }
 
 /// The alpha of each pixel: 1 where the model is visible, and on the ground the fraction of light that the model
-/// blocks. And the fraction of each pixel that shows the model, 0..=1.
+/// blocks. Then, for each pixel, the fraction of it that shows the model, 0..=1.
 ///
 /// Pixels are in rows of the film's window, the top row first. `samples` is the picture's number of samples per pixel.
 /// With a denoiser, the shadow takes fewer samples and is denoised; the model's outline stays as it is.

@@ -34,11 +34,11 @@ impl<T> ShadowRays<T> {
 
     /// Adds a ray that ends on a surface with the normal `n`. All rays come with their media, or none does.
     #[inline]
-    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, contributions: T) {
+    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, contribution: T) {
         self.rays.push(ray);
         self.normals.push(n);
         self.media.extend(media);
-        self.contributions.push(contributions);
+        self.contributions.push(contribution);
     }
 
     /// Traces the rays. `add` receives what the unoccluded ones bring and their transmittance, in the order in which
@@ -49,7 +49,7 @@ impl<T> ShadowRays<T> {
         occluded.resize(rays.len(), false);
         task.tracer.all_occluded(rays, |i| normals[i], occluded);
         let has_nested = task.scene().has_nested();
-        for (i, contributions) in contributions.iter().enumerate() {
+        for (i, contribution) in contributions.iter().enumerate() {
             let passed = match (occluded[i], media.get(i)) {
                 (false, None) => Rgb::WHITE,
                 (false, Some((media, distance))) => media.unoccluded(*distance),
@@ -64,7 +64,7 @@ impl<T> ShadowRays<T> {
                 }
                 (true, _) => continue,
             };
-            add(contributions, passed);
+            add(contribution, passed);
         }
     }
 }

@@ -58,7 +58,7 @@ impl<'a> Splats<'a> {
         self.sample = sample;
     }
 
-    /// Adds light at a point of the film (0..=1 on both axes, y downwards), as an estimate of the integral over the
+    /// Adds light at a point of the film's plane (the film is 0..1 on both axes, y downwards), as an estimate of the integral over the
     /// whole film of importance times radiance, the film's area being 1. Each pixel whose filter reaches the point gets
     /// its share.
     pub fn add(&mut self, film: Vec2, light: Rgb) {

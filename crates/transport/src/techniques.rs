@@ -79,7 +79,7 @@ pub(crate) trait Tally<const N: usize> {
 
     /// Adds to the pixel of the camera subpath.
     fn add_sample(&mut self, technique: Technique, found: &Contribution<N>);
-    /// Adds at a point of the film (0..=1 on both axes), as an integral over the whole film.
+    /// Adds at a point of the film's plane (the film is 0..1 on both axes), as an integral over the whole film.
     fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 

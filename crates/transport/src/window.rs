@@ -121,9 +121,9 @@ impl Coverage {
             return;
         }
         let mut piece = (window, samples);
-        while let Some(at) = self.pieces.iter().position(|other| joined(other, &piece).is_some()) {
+        while let Some(at) = self.pieces.iter().position(|other| united(other, &piece).is_some()) {
             let other = self.pieces.swap_remove(at);
-            if let Some(both) = joined(&other, &piece) {
+            if let Some(both) = united(&other, &piece) {
                 piece = both;
             }
         }
@@ -182,7 +182,7 @@ fn without(piece: Piece, held: &Piece) -> Vec<Piece> {
 }
 
 /// Both pieces as one, where they fit together.
-fn joined(a: &Piece, b: &Piece) -> Option<Piece> {
+fn united(a: &Piece, b: &Piece) -> Option<Piece> {
     if a.0 == b.0 && (a.1.end == b.1.start || b.1.end == a.1.start) {
         return Some((a.0, a.1.start.min(b.1.start)..a.1.end.max(b.1.end)));
     }
@@ -233,6 +233,7 @@ mod tests {
         b.insert(Window { x: 4, y: 4, width: 1, height: 3 }, 3..9);
         assert_eq!(a.overlap(&b), Some((Window { x: 4, y: 4, width: 1, height: 1 }, 3..4)));
     }
+
     /// Against a count of each sample of each pixel: what a coverage lacks and what it holds are together everything, once.
     #[test]
     fn what_is_missing_is_all_that_is_not_there() {

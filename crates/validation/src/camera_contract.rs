@@ -14,7 +14,7 @@ pub const CHECKS: [(&str, Check); 6] = [
     ("points of a plane are sampled as often as rays hit them", planes_are_sampled_as_hit),
     (
         "nothing behind the camera is visible, and what is beside the film is found beside it",
-        nothing_is_seen_elsewhere,
+        only_what_is_ahead_is_seen,
     ),
     ("the matrices put points where the middle of the lens sees them", matrices_see_alike),
 ];
@@ -182,7 +182,7 @@ pub fn planes_are_sampled_as_hit(camera: &dyn Camera, time: f32) -> Result<(), S
 
 /// `connect` returns `None` for points on the other side of the lens. Beside the film it goes on as it is on the film, since
 /// pixel filters reach beyond the edge.
-pub fn nothing_is_seen_elsewhere(camera: &dyn Camera, time: f32) -> Result<(), String> {
+pub fn only_what_is_ahead_is_seen(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (i, (inside, ray, t)) in some(camera, 50, time).enumerate() {
         let behind = at(&ray, -t);
         if let Some(seen) = camera.connect(behind, inside.lens, time) {

@@ -1,6 +1,6 @@
 //! Motions one after the other.
 
-use super::{Course, Motion, Pose, ROUNDING, SLACK, moved_by, similarity};
+use super::{Course, Motion, Pose, ROUNDING, moved_by, similarity};
 use crate::Aabb;
 use std::sync::Arc;
 
@@ -62,11 +62,16 @@ impl Motion {
         })
     }
 
-    /// [`Motion::stretch_over`] of a chain.
+    /// [`Motion::stretch_over`] of a chain: the parts' bounds multiplied.
+    ///
+    /// Rounding the product to f32 changes no length by more than a part of the largest stretch, which may be much of the
+    /// smallest.
     pub(super) fn stretch_of_all(parts: &[Motion], seconds: [f32; 2]) -> [f64; 2] {
-        parts.iter().fold([1.0; 2], |[grow, shrink], part| {
+        let [grow, shrink] = parts.iter().fold([1.0; 2], |[grow, shrink], part| {
             let [g, s] = part.stretch_over(seconds);
-            [grow * g * SLACK, shrink * s * SLACK]
-        })
+            [grow * g, shrink * s]
+        });
+        let rounding = grow * ROUNDING;
+        [grow + rounding, 1.0 / (1.0 / shrink - rounding).max(f64::MIN_POSITIVE)]
     }
 }

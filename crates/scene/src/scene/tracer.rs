@@ -7,7 +7,6 @@ use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
-use std::sync::{Mutex, PoisonError};
 
 /// The mask of rays from the camera, which pass back faces that it does not see.
 const FROM_CAMERA: u32 = u32::MAX >> 1;
@@ -221,21 +220,10 @@ impl<'s> Tracer<'s> {
         rays.iter().all(|ray| ray.mask != 0).then_some(tree)
     }
 
-    /// Visits everything that a ray hits between its ends, in no particular order; some of it perhaps more than once.
-    ///
-    /// It does not count as a ray.
-    pub fn visit_all(&mut self, ray: &Ray, visit: impl FnMut(&Hit) + Send) {
-        let (scene, shells) = (self.scene, (self.scene.sheets.as_ref(), self.end));
-        let visit = Mutex::new(visit);
-        let passes = |hit: &Hit| {
-            if scene.parts.stops(ray, hit, shells) {
-                visit.lock().unwrap_or_else(PoisonError::into_inner)(hit);
-            }
-            false
-        };
-        let rays = self.counters.rays;
-        self.any_hit(ray, &Query { filter: Some(&passes), ..scene.query });
-        self.counters.rays = rays;
+    /// All that stops a ray between its ends, nearest first, ties by lowest instance and then lowest primitive. It does not
+    /// count as a ray.
+    pub fn all_hits(&mut self, ray: &Ray) -> Vec<Hit> {
+        self.ask(ray, |tracer, ray, query| tracer.scene.accelerator.all_hits(ray, query))
     }
 
     /// The surface at a hit of a ray.

@@ -50,8 +50,8 @@ fn place(
     Place { name, scene, floor, expected, sin_cone }
 }
 
-/// Half of the irradiance of a quarter of a rectangle of radiance 1 above its corner, whose edges have these lengths over its
-/// distance. [Howell 2010, C-11]
+/// The irradiance below a corner of a rectangle of radiance 1, whose edges have these lengths over its distance.
+/// [Howell 2010, C-11]
 fn corner(x: f64, y: f64) -> f64 {
     let part = |x: f64, y: f64| {
         let far = (x * x + 1.0).sqrt();
@@ -190,7 +190,7 @@ fn integral(first: u32, from: Vec3, mut at: impl FnMut(Vec2) -> Option<Found>) -
     sum
 }
 
-/// Half of the square of a cosine over π: the density of diffuse reflection.
+/// The density of diffuse reflection.
 fn scattered(cos: f32) -> f32 {
     warp::cosine_hemisphere_pdf_solid_angle(cos)
 }
@@ -200,8 +200,9 @@ fn scattered(cos: f32) -> f32 {
 fn by_light_samples(place: &Place, light: &dyn Light, weight: impl Fn(f32, f32) -> f32) -> f64 {
     let (floor, mut tracer) = (&place.floor, Tracer::new(&place.scene, false));
     integral(16, floor.p, |u| {
-        let LightSample { wi, li, point, n_light, pdf_solid_angle, .. } = light.sample_li(floor.p, 0.0, u)?;
-        let ray = floor.spawn_to_light(&light.sample_li(floor.p, 0.0, u)?);
+        let sample = light.sample_li(floor.p, 0.0, u)?;
+        let LightSample { wi, li, point, n_light, pdf_solid_angle, .. } = sample;
+        let ray = floor.spawn_to_light(&sample);
         let cos = wi.y.max(0.0);
         let is_seen = !tracer.ending_on(&ray, n_light, |tracer| tracer.occluded(&ray));
         let pdf_scattered = if light.is_delta() { 0.0 } else { scattered(cos) };
@@ -284,15 +285,14 @@ fn a_sky_is_found_by_both_strategies() {
     }
 }
 
-/// Planted bug: a ray that ends a ten-thousandth of the radius too late is blocked by the light itself.
+/// Planted bug: a ray that ends a ten-thousandth of the distance too late is blocked by the light itself.
 #[test]
 fn a_light_that_shadows_itself_is_detected() {
-    struct Shadowed<'a>(&'a dyn Light);
     let place = places("sphere").into_iter().nth(3).unwrap();
-    let light = Shadowed(&*place.scene.lights()[0].light);
+    let light = &*place.scene.lights()[0].light;
     let (floor, mut tracer) = (&place.floor, Tracer::new(&place.scene, false));
     let found = integral(16, floor.p, |u| {
-        let sample = light.0.sample_li(floor.p, 0.0, u)?;
+        let sample = light.sample_li(floor.p, 0.0, u)?;
         let ray = floor.spawn_to_light(&LightSample { clearance: -1e-4, ..sample });
         let is_seen = !tracer.occluded(&ray);
         let value = f64::from(sample.li.g * sample.wi.y) / f64::from(sample.pdf_solid_angle);

@@ -6,7 +6,7 @@ use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use bilux_scene::cameras::{self, CameraSpec};
 use bilux_scene::generators::teapot::Teapot;
 use bilux_scene::presets::{Ground, PRESETS, Studio, apply, complete};
-use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, SceneBuilder, Spec, Value};
+use bilux_scene::{AccelChoice, Axis, CameraSample, Mesh, Object, SceneBuilder, Spec, UpHint, Value};
 use std::sync::Arc;
 
 fn scene_of(mesh: Mesh) -> SceneBuilder {
@@ -238,6 +238,25 @@ fn studio_options_are_applied() {
     let mut below = teapot();
     complete(&mut below, &Studio { orbit: Some([0.0, -40.0]), ..Studio::default() });
     assert_eq!(below.objects.len(), 1);
+}
+
+/// What surrounds a model has no place in its coordinates, which a format may turn and scale; a lamp has.
+#[test]
+fn surroundings_do_not_keep_a_model_from_standing_upright() {
+    let bare = SceneBuilder { up: UpHint::Is(Axis::Z), unit: 0.001, ..teapot() };
+    let placed = |light: Option<Spec>| {
+        let mut scene = bare.clone();
+        scene.lights.extend(light);
+        complete(&mut scene, &Studio::default());
+        format!("{:?}", scene.objects[0].motion.at(0.0).matrix())
+    };
+    let (upright, as_it_is) = (placed(None), format!("{:?}", bare.objects[0].motion.at(0.0).matrix()));
+    assert_ne!(upright, as_it_is);
+    for kind in ["environment", "sky", "ambient"] {
+        assert_eq!(placed(Some(Spec::new("around", kind))), upright, "{kind}");
+    }
+    assert_eq!(placed(Some(Spec::new("behind", "environment").with("backdrop", true))), upright);
+    assert_eq!(placed(Some(Spec::new("lamp", "point"))), as_it_is);
 }
 
 #[test]

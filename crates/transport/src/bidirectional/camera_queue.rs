@@ -112,9 +112,13 @@ impl<const N: usize> CameraQueue<N> {
                 tallies[*sample as usize].spend(step, 1);
                 let Some(connection) = connection else { return };
                 let Connection { technique, found, .. } = connection;
-                let is_join = matches!(technique, Technique::Connected { s: 2.., .. });
+                let is_between_subpaths = matches!(technique, Technique::Connected { s: 2.., .. });
                 let unoccluded = Unoccluded { sample: *sample, technique, found };
-                connection.list(&mut self.shadow_rays[usize::from(is_join)], is_clear, unoccluded);
+                connection.list(
+                    &mut self.shadow_rays[usize::from(is_between_subpaths)],
+                    is_clear,
+                    unoccluded,
+                );
             });
             *sampler = task.sampler.clone();
         }

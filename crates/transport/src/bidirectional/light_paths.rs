@@ -65,7 +65,7 @@ pub(crate) fn connect_to_camera<const N: usize>(
     techniques: &TechniqueCounts<N>,
     tally: &mut impl Tally<N>,
 ) {
-    for y in light_path.iter().filter(|y| is_shown(y, techniques)) {
+    for y in light_path.iter().filter(|y| is_connectible(y, techniques)) {
         task.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, connection)) = to_camera(task, y, techniques)
@@ -76,7 +76,7 @@ pub(crate) fn connect_to_camera<const N: usize>(
     }
 }
 
-fn is_shown<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
+fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
     y.depth > 0 || techniques.direct
 }
 
@@ -218,7 +218,7 @@ impl<const N: usize> LightPaths<N> {
         sample: usize,
         techniques: &TechniqueCounts<N>,
     ) -> impl Iterator<Item = &Vertex<N>> {
-        self.of(sample).filter(|y| is_shown(y, techniques))
+        self.of(sample).filter(|y| is_connectible(y, techniques))
     }
 
     /// Connects every vertex with the camera, as [`connect_to_camera`] does. `add` receives the index of the sample, the

@@ -122,14 +122,14 @@ mod tests {
     }
 
     /// Compares all contributions of all samples, and the steps of all together.
-    fn assert_same(name: &str, builder: &SceneBuilder, shows: bool) {
+    fn assert_same(name: &str, builder: &SceneBuilder, splats: bool) {
         let (scene, vcm) = (built(builder), integrator("vcm"));
         let settings = RenderSettings::new(64, 48, 1);
         let rays = CameraRays::new(&scene, &*scene.cameras()[0].1, &*vcm, &settings);
         let (merging, window) = (vcm.merging().unwrap(), Window::whole(64, 48));
-        let techniques = |eta, _| techniques(eta, !shows);
+        let techniques = |eta, _| techniques(eta, !splats);
         let (photons, _) = Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None);
-        let both_ends = BothEnds::merging(&photons, shows, 4);
+        let both_ends = BothEnds::merging(&photons, splats, 4);
         let places: Vec<_> = (0..window.pixels()).map(|i| window.position(i)).collect();
         let mut tracer = Tracer::new(&scene, false);
         let mut queued = Vec::new();
@@ -141,12 +141,12 @@ mod tests {
         }
         let mut together = vec![Record::default(); places.len()];
         let (_, mut task) = rays.sample(&mut tracer, 0, 0, 0);
-        let mut splats = Vec::new();
+        let mut found_splats = Vec::new();
         let add_splat = |i: usize, film: Vec2, technique: Technique, found: &Contribution<N>| {
-            splats.push((i, film, technique, *found));
+            found_splats.push((i, film, technique, *found));
         };
         BothEndsQueue::default().take(&both_ends, &queued, &mut task, &mut together, add_splat);
-        splats
+        found_splats
             .iter()
             .for_each(|(i, film, technique, found)| together[*i].add_splat(*film, *technique, found));
         let steps = |records: &[Record]| {
@@ -156,8 +156,8 @@ mod tests {
         for (one, other) in one_by_one.iter().zip(&together) {
             assert_eq!((&one.samples, &one.splats), (&other.samples, &other.splats), "{name}");
         }
-        let splats: usize = one_by_one.iter().map(|one| one.splats.len()).sum();
-        assert_eq!(shows, splats > 20, "{name}: {splats}");
+        let count: usize = one_by_one.iter().map(|one| one.splats.len()).sum();
+        assert_eq!(splats, count > 20, "{name}: {count}");
     }
 
     #[test]

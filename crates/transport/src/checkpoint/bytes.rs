@@ -89,8 +89,8 @@ impl Begun {
                 put_failures(bytes, failures);
             }
         }
-        put_counts(bytes, &[u32::from(self.shown.is_some())]);
-        self.shown.iter().for_each(|failures| put_failures(bytes, failures));
+        put_counts(bytes, &[u32::from(self.splatted.is_some())]);
+        self.splatted.iter().for_each(|failures| put_failures(bytes, failures));
     }
 
     fn read(rest: &mut Rest, pixels: usize) -> Result<Begun, FilmError> {
@@ -119,9 +119,9 @@ impl Begun {
             };
             passes.push(OpenPass { samples: range([start, end])?, done, splats });
         }
-        let [is_shown] = rest.numbers()?;
-        let shown = (is_shown == 1).then(|| read_failures(rest)).transpose()?;
-        Ok(Begun { side, complete, open: passes, shown })
+        let [is_splatted] = rest.numbers()?;
+        let splatted = (is_splatted == 1).then(|| read_failures(rest)).transpose()?;
+        Ok(Begun { side, complete, open: passes, splatted })
     }
 }
 

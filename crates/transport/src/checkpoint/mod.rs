@@ -80,7 +80,7 @@ pub(crate) struct Begun {
     /// The first passes that are not.
     pub(crate) open: Vec<OpenPass>,
     /// Whether the film has the splats of the light subpaths that left this iteration's photons; what failed of them.
-    pub(crate) shown: Option<Vec<(u32, PixelFailures)>>,
+    pub(crate) splatted: Option<Vec<(u32, PixelFailures)>>,
 }
 
 /// A pass over the film of which some tiles are done.
@@ -169,7 +169,7 @@ impl Checkpoint {
         let are_few = |mut counts: Box<dyn Iterator<Item = &u32> + '_>| counts.all(|&count| count <= next);
         let replicates = self.interval.as_ref().is_none_or(|interval| interval.samples() <= next);
         if !self.begun.open.iter().all(open_fits)
-            || !self.begun.shown.as_ref().is_none_or(|shown| are_within(shown, pixels))
+            || !self.begun.splatted.as_ref().is_none_or(|failures| are_within(failures, pixels))
             || !are_few(Box::new(counts))
             || !replicates
         {

@@ -276,10 +276,10 @@ impl Path {
         };
         chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
             Some(connection) => {
-                let light_brought = connection.trace(task);
-                connection.note(task, depth, seen * light_brought);
-                task.find(depth + 2, Some(light), seen * light_brought);
-                sum + light_brought
+                let found = connection.trace(task);
+                connection.note(task, depth, seen * found);
+                task.find(depth + 2, Some(light), seen * found);
+                sum + found
             }
             None => sum,
         })
@@ -307,8 +307,8 @@ impl Path {
         let u = task.sampler.next_2d();
         let sample = light.sample_li(surface.p, surface.time, u).filter(|sample| !sample.li.is_black())?;
         let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
-        let light_brought = scattered * sample.li;
-        if light_brought.is_black() {
+        let scattered_light = scattered * sample.li;
+        if scattered_light.is_black() {
             return None;
         }
         let light_pdf = sample.pdf_solid_angle * probability;
@@ -321,7 +321,7 @@ impl Path {
             distance: sample.point.map_or(0.0, |point| point.distance(surface.p)),
             n_light: sample.n_light,
             media: media.towards(task.scene(), surface, wo, sample.wi),
-            light: light_brought,
+            light: scattered_light,
             factor: weight / light_pdf,
         })
     }

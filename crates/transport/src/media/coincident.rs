@@ -15,7 +15,7 @@ const PARALLEL: f32 = 0.9;
 
 /// Surfaces of other media where a ray hits the surface of one.
 pub(super) struct Coincident {
-    /// One for each object.
+    /// One for each object, nearest first.
     pub(super) others: Vec<Surface>,
     /// The largest distance along the ray.
     pub(super) t: f32,
@@ -32,27 +32,24 @@ impl Coincident {
         }
         let near = PART_OF_ERROR * surface.n_geom.abs().dot(surface.p_error);
         let reach = near / surface.n_geom.dot(direction).abs();
-        let around = Ray { t_min: surface.t, t_max: (surface.t + reach).min(ray.t_max), ..*ray };
-        let mut hits = Vec::new();
-        tracer.visit_all(&around, |hit| {
-            let object = scene.geometry().object_of(hit);
-            if object != surface.object && is_nested(object) {
-                hits.push(*hit);
+        let t_max = (surface.t + reach).min(ray.t_max);
+        let around = Ray { t_min: surface.t, t_max, exclude: surface.primitive, ..*ray };
+        for hit in tracer.all_hits(&around) {
+            let object = scene.geometry().object_of(&hit);
+            let is_known =
+                object == surface.object || found.others.iter().any(|other| other.object == object);
+            if is_known || !is_nested(object) || found.others.len() == MAX_COINCIDENT {
+                continue;
             }
-        });
-        for hit in hits {
             let other = tracer.surface(ray, &hit);
-            let is_known = found.others.iter().any(|known| known.object == other.object);
             let is_parallel = other.n_geom.dot(surface.n_geom).abs() >= PARALLEL;
             // A grazing ray reaches far.
             let is_near = surface.n_geom.dot(other.p - surface.p).abs() <= near + other.p_error.max_element();
-            if is_parallel && is_near && !is_known && found.others.len() < MAX_COINCIDENT {
+            if is_parallel && is_near {
                 found.t = found.t.max(other.t);
                 found.others.push(other);
             }
         }
-        // Whatever the order in which the tree is visited.
-        found.others.sort_by_key(|other| other.object);
         found
     }
 }

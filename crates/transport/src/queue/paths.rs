@@ -21,7 +21,7 @@ pub(super) struct QueuedPath {
 }
 
 impl QueuedPath {
-    /// Starts an event: no connection has contribution anything yet.
+    /// Starts an event: no connection has contributed anything yet.
     #[inline]
     pub(super) fn begin_event(&mut self, task: &mut Task) {
         task.wavelength = self.wavelength;

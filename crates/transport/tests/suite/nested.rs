@@ -1,9 +1,11 @@
 //! Overlapping media: their priorities decide what separates them, from both ends of a path.
 
 use crate::common::statistics::{agreement, blocks};
-use crate::common::{ball, built, diffuse, floor, integrator, look, put, shoot, sky};
+use crate::common::{
+    assert_same_with_every_accelerator, ball, built, diffuse, floor, integrator, look, put, shoot, sky,
+};
 use bilux_math::transcendental::exp;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Motion, Rgb, Transform, Vec3};
 use bilux_scene::{Mesh, SceneBuilder, Spec};
 use bilux_transport::RenderSettings;
 use std::sync::Arc;
@@ -92,35 +94,44 @@ fn stacked(order: [usize; 3], priorities: [f32; 2]) -> SceneBuilder {
     builder
 }
 
+/// Adds a camera at this height that looks straight down.
+fn look_down(builder: &mut SceneBuilder, height: f32) {
+    let eye = Spec::new("eye", "perspective").with("position", Vec3::new(0.01, height, 0.02));
+    let eye = eye.with("look_at", Vec3::new(0.01, 0.0, 0.02)).with("up", Vec3::X).with("fov", 1.0f32);
+    builder.cameras.push(bilux_scene::cameras::CameraSpec { spec: eye, keyframes: Vec::new() });
+}
+
+/// The mean of a picture by an integrator.
+fn mean(builder: &SceneBuilder, name: &str) -> f32 {
+    let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(32, 32, 32) };
+    let film = shoot(&built(builder), &*integrator(name), &settings).film;
+    film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0
+}
+
+/// The same seen from high above.
+fn seen_from_above(mut builder: SceneBuilder, name: &str) -> f32 {
+    look_down(&mut builder, 6.0);
+    mean(&builder, name)
+}
+
 /// The same as [`light_through_overlapping_slabs_is_what_fresnel_and_beer_say`] for faces that coincide, whatever the order and the
 /// priorities are, and also for a camera in the water.
 #[test]
 fn coincident_faces_are_one_surface() {
     let (glass, water) = ((GLASS.0, GLASS.1, 0.6), (WATER.0, WATER.1, 0.6));
     let from_air = through(&[glass, water, glass]);
-    let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(32, 32, 32) };
-    let look_down = |builder: &mut SceneBuilder, height: f32| {
-        let eye = Spec::new("eye", "perspective").with("position", Vec3::new(0.01, height, 0.02));
-        let eye = eye.with("look_at", Vec3::new(0.01, 0.0, 0.02)).with("up", Vec3::X).with("fov", 1.0f32);
-        builder.cameras.push(bilux_scene::cameras::CameraSpec { spec: eye, keyframes: Vec::new() });
-    };
     for (order, priorities) in
         [([0, 1, 2], [2.0, 1.0]), ([1, 2, 0], [2.0, 1.0]), ([2, 0, 1], [1.0, 2.0]), ([1, 0, 2], [1.0, 1.0])]
     {
-        let mut builder = stacked(order, priorities);
-        look_down(&mut builder, 6.0);
-        let scene = built(&builder);
         for name in ["path", "bdpt"] {
-            let film = shoot(&scene, &*integrator(name), &settings).film;
-            let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
+            let found = seen_from_above(stacked(order, priorities), name);
             assert!((found / from_air - 1.0).abs() < 4e-3, "{name}, {order:?}: {found}, not {from_air}");
         }
         // From within the water the floor is there at all: no face of it lets a path out into air by mistake. Light that
         // is reflected up and comes back is little.
         let mut builder = stacked(order, priorities);
         look_down(&mut builder, 1.0);
-        let film = shoot(&built(&builder), &*integrator("path"), &settings).film;
-        let found = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 1024.0;
+        let found = mean(&builder, "path");
         let fresnel = |a: f32, b: f32| ((a - b) / (a + b)) * ((a - b) / (a + b));
         let (at_glass, at_air) = (fresnel(WATER.0, GLASS.0), fresnel(GLASS.0, 1.0));
         // Radiance in water is n² times that in air.
@@ -131,6 +142,65 @@ fn coincident_faces_are_one_surface() {
     // Without the water between them, which is what a lost face makes of it.
     let lost = through(&[glass, (1.0, 0.0, 0.6), glass]);
     assert!((lost / from_air - 1.0).abs() > 0.02);
+}
+
+/// The layers of [`stacked`], each a copy of one cube that a transform of its own scales, turns and places: the faces
+/// coincide only as far as that is rounded.
+#[test]
+fn coincident_faces_of_instances_are_one_surface() {
+    let cube = slab(-0.5, 0.5);
+    let (glass, water) = ((GLASS.0, GLASS.1, 0.6), (WATER.0, WATER.1, 0.6));
+    let expected = through(&[glass, water, glass]);
+    for priorities in [[2.0, 1.0], [1.0, 2.0]] {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "floor", floor(-1.0, 3.0), diffuse(0.0f32).with("emission", 1.0f32));
+        for (i, (eta, absorption, _)) in [glass, water, glass].into_iter().enumerate() {
+            let scaled = Transform::scale(Vec3::new(1.0, 0.6, 0.9 + 0.03 * i as f32)).unwrap();
+            let turned = Transform::rotate(Vec3::Y, 0.7 * i as f32).unwrap();
+            let placed = Transform::translate(Vec3::Y * (0.4 + 0.6 * i as f32)).unwrap();
+            put(&mut builder, "", cube.clone(), medium(eta, absorption, priorities[i % 2]));
+            let object = builder.objects.last_mut().unwrap();
+            object.motion = Motion::still(scaled.then(&turned).then(&placed));
+            object.instanced = true;
+        }
+        let found = seen_from_above(builder, "path");
+        assert!((found / expected - 1.0).abs() < 4e-3, "{priorities:?}: {found}, not {expected}");
+    }
+}
+
+/// Three faces at one height: glass ends where water begins, and oil that goes on above the water; at the water's top it has
+/// no rival any more.
+#[test]
+fn three_coincident_faces_are_one_surface() {
+    let (glass, water, oil) = ((GLASS.0, GLASS.1, 0.6), (WATER.0, WATER.1, 0.6), (1.47, 0.8, 0.6));
+    let expected = through(&[oil, water, glass]);
+    for order in [[0, 1, 2], [1, 2, 0], [2, 1, 0]] {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "floor", floor(-1.0, 3.0), diffuse(0.0f32).with("emission", 1.0f32));
+        let layers = [(0.1, 0.7, glass, 3.0), (0.7, 1.3, water, 2.0), (0.7, 1.9, oil, 1.0)];
+        for i in order {
+            let (low, high, (eta, absorption, _), priority) = layers[i];
+            let mut mesh = (*slab(low, high)).clone();
+            mesh.positions.iter_mut().for_each(|p| (p.x, p.z) = (p.x * (1.0 + 0.13 * i as f32), p.z * 0.9));
+            put(&mut builder, "", Arc::new(mesh), medium(eta, absorption, priority));
+        }
+        let found = seen_from_above(builder, "path");
+        assert!((found / expected - 1.0).abs() < 4e-3, "{order:?}: {found}, not {expected}");
+    }
+}
+
+/// More faces at one height than count: which do depends on the ray alone.
+#[test]
+fn many_coincident_faces_are_the_same_with_every_accelerator() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(-1.0, 3.0), diffuse(0.0f32).with("emission", 1.0f32));
+    for i in 0..7u32 {
+        let mut mesh = (*slab(0.7 - 0.1 * i as f32, 0.7)).clone();
+        mesh.positions.iter_mut().for_each(|p| p.x *= 1.0 + 0.13 * i as f32);
+        put(&mut builder, "", Arc::new(mesh), medium(1.2 + 0.1 * i as f32, 0.1, i as f32 + 1.0));
+    }
+    look(&mut builder, Vec3::new(0.5, 3.0, 2.0), Vec3::new(0.0, 0.6, 0.0), 36.0);
+    assert_same_with_every_accelerator(&builder);
 }
 
 #[test]

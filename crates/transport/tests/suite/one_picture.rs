@@ -1,13 +1,14 @@
 //! A picture is a function of scene, settings and seed: threads, crops, parts and cancellation make no difference.
 
-use crate::common::{built, integrator, shoot, still_life};
+use crate::common::{built, diffuse, floor, integrator, put, shoot, still_life};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{AccelChoice, Ray, Scene, Spec};
+use bilux_scene::{AccelChoice, Ray, Scene, SceneBuilder, Spec};
 use bilux_transport::{
     Film, INTEGRATORS, PixelAnchor, PixelIntegrator, Progress, RenderError, RenderSettings, SamplePlace,
     Silent, Task, Window, integrators, render, replay,
 };
+use std::f32::consts::PI;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 fn settings() -> RenderSettings {
@@ -253,6 +254,44 @@ fn replays_of_bidirectional_integrators_name_each_contribution() {
         let wanted = [(0, 2, false), (1, 2, false), (2, 2, false), (2, 2, name == "vcm")];
         assert!(wanted.iter().all(|kind| kinds.contains(kind)), "{name}: {kinds:?}");
     }
+}
+
+/// A floor under a sun, seen straight from above: a camera subpath reaches a point with the density of one over the film's area
+/// there, a light subpath with that of one over the disc of the scene's bounding sphere. The weights are these densities over
+/// their sum. [Veach 1997, eq. 9.8]
+#[test]
+fn replayed_weights_are_those_of_the_balance_heuristic() {
+    const HALF: f32 = 1.5;
+    const HEIGHT: f32 = 2.0;
+    const IRRADIANCE: f32 = 2.0;
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, HALF), diffuse(0.5f32));
+    let sun = Spec::new("", "directional").with("direction", -Vec3::Y);
+    builder.lights.push(sun.with("irradiance", IRRADIANCE));
+    let camera = Spec::new("", "orthographic").with("position", Vec3::Y * 3.0).with("look_at", Vec3::ZERO);
+    builder.cameras.push(CameraSpec::new(camera.with("up", -Vec3::Z).with("height", HEIGHT)));
+    let scene = built(&builder);
+    let densities = [1.0 / (HEIGHT * HEIGHT), 1.0 / (PI * 2.0 * HALF * HALF)];
+    let [by_camera, by_sun] = densities.map(|density| density / (densities[0] + densities[1]));
+    let settings = RenderSettings { max_depth: 1, ..settings() };
+    let mut counts = [0; 2];
+    for place in (0..40).map(|i| SamplePlace { x: i % 37, y: i % 21, sample: i % 5 }) {
+        let story = replay(&scene, &*scene.cameras()[0].1, &*integrator("bdpt"), &settings, place).unwrap();
+        for found in &story.contributions {
+            let (which, weight) = match (found.s, found.t) {
+                (1, 2) => (0, by_camera),
+                (2, 1) => (1, by_sun),
+                other => panic!("{other:?} finds nothing here"),
+            };
+            counts[which] += 1;
+            assert!((found.weight / weight - 1.0).abs() < 1e-5, "{found}, not {weight}");
+            if which == 0 {
+                let light = weight * 0.5 * IRRADIANCE / PI;
+                assert!((found.light.g / light - 1.0).abs() < 1e-5, "{found}, not {light}");
+            }
+        }
+    }
+    assert!(counts[0] == 40 && counts[1] > 10, "{counts:?}");
 }
 
 #[test]

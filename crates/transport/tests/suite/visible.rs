@@ -157,6 +157,37 @@ fn all_labels_of_a_pixel_are_of_one_surface() {
     assert!(counts[1] > 100 && counts[3] > 100 && counts[4] > 100, "{counts:?}");
 }
 
+/// Where the faces of two media coincide, the label is that of the medium that light meets there, whichever face rounding puts
+/// first, also among faces of the same distance.
+#[test]
+fn labels_of_coincident_faces_are_of_the_stronger_medium() {
+    let mut builder = SceneBuilder::default();
+    let medium = |priority: i64| {
+        bilux_scene::Spec::new("", "dielectric").with("priority", bilux_scene::Value::Integer(priority))
+    };
+    put(&mut builder, "weaker", quad(Vec3::new(-9.0, -7.0, 0.1), Vec3::X * 17.0, Vec3::Y * 19.0), medium(1));
+    put(
+        &mut builder,
+        "stronger",
+        quad(Vec3::new(-8.0, -8.0, 0.1), Vec3::X * 16.0, Vec3::Y * 16.0),
+        medium(2),
+    );
+    look(&mut builder, Vec3::new(0.4, 0.7, 3.0), Vec3::new(0.0, 0.0, 0.1), 40.0);
+    let scene = built(&builder);
+    let settings = RenderSettings { ids: true, ..RenderSettings::new(40, 40, 1) };
+    let camera = &*scene.cameras()[0].1;
+    let features = features(&scene, camera, &*integrator("path"), &settings, None, &Silent).unwrap().unwrap();
+    assert!(features.object.iter().all(|object| *object == 2), "{:?}", features.object);
+    assert!(features.material.iter().all(|material| *material == 2));
+    // Motion is of the same surface.
+    let mut moved = builder.clone();
+    moved.objects[1].motion = Motion::still(bilux_math::Transform::translate(Vec3::X * 0.5).unwrap());
+    let moved = built(&moved);
+    let moment = Moment { scene: &moved, camera, time: 0.0 };
+    let found = seen(&scene, &settings, &Wanted { motion: Some(moment), ..Wanted::default() });
+    assert!(found.motion.iter().all(|motion| motion.x > 2.0), "{:?}", found.motion);
+}
+
 /// A fraction of each pixel of a column lies beyond the edge of a wall, where there is nothing.
 #[test]
 fn coverage_beside_nothing_is_the_area_of_the_pixel() {

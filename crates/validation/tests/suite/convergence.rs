@@ -22,7 +22,6 @@ use bilux_scene::{AccelChoice, Object, Scene, SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, Silent, integrators, render};
 use bilux_validation::effort::effort;
 use bilux_validation::statistics::estimate;
-use rayon::ThreadPoolBuilder;
 use std::sync::Arc;
 use std::thread;
 
@@ -80,7 +79,8 @@ struct Measured {
 
 fn measured(scene: &Scene, integrator: &Spec, truth: f64, iterations: u32, seeds: u64) -> Measured {
     let of_seed = |seed| {
-        let settings = RenderSettings { seed, max_depth: 3, ..RenderSettings::new(SIDE, SIDE, iterations) };
+        let new = RenderSettings::new(SIDE, SIDE, iterations);
+        let settings = RenderSettings { seed, max_depth: 3, threads: 1, ..new };
         picture(scene, integrator, &settings)
     };
     let pictures = on_all_cores(seeds, of_seed);
@@ -102,10 +102,7 @@ fn measured(scene: &Scene, integrator: &Spec, truth: f64, iterations: u32, seeds
 /// Many pictures at a time, each on one core: within so small a one, threads would mostly wait for each other.
 fn on_all_cores(count: u64, picture: impl Fn(u64) -> Vec<f64> + Sync) -> Vec<Vec<f64>> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
-    let share = |core| {
-        let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        pool.install(|| (core..count).step_by(cores).map(&picture).collect::<Vec<_>>())
-    };
+    let share = |core| (core..count).step_by(cores).map(&picture).collect::<Vec<_>>();
     thread::scope(|scope| {
         let share = &share;
         let shares: Vec<_> = (0..cores as u64).map(|core| scope.spawn(move || share(core))).collect();

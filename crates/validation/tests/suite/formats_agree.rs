@@ -168,7 +168,7 @@ fn coloured_meshes_look_the_same_in_every_format() {
                 bilux::math::Rgb::new(0.2 + more, 0.4 + more, 0.6 + more)
             };
             mesh.vertex_kd = mesh.positions.iter().map(colour).collect();
-            (object.material, object.mesh) = (plain, object.mesh.clone());
+            object.material = plain;
         }
         scene
     };

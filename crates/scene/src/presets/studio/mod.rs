@@ -214,8 +214,12 @@ pub fn shadow_catcher(scene: &SceneBuilder, studio: &Studio) -> Option<usize> {
 
 /// True when a light illuminates the scene from all around.
 fn has_surroundings(scene: &SceneBuilder) -> bool {
-    let is_around = |light: &Spec| matches!(light.kind.as_str(), "environment" | "sky" | "ambient");
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
+}
+
+/// True for a light that comes from all around, and for a backdrop.
+fn is_around(light: &Spec) -> bool {
+    matches!(light.kind.as_str(), "environment" | "sky" | "ambient")
 }
 
 /// The emission of an object's material, if the scene states it.

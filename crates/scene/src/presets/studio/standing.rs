@@ -1,7 +1,7 @@
 //! Prepares a model for the camera: rotated upright, its front to +z, in metres, and near the origin.
 
 use super::super::{affine, move_all};
-use super::Studio;
+use super::{Studio, is_around};
 use crate::builder::SceneBuilder;
 use crate::orientation::{Orientation, UpHint};
 use bilux_math::{DMat3, DVec3};
@@ -12,10 +12,11 @@ const FAR: f64 = 32.0;
 
 /// Rotates a scene as the user asks, or otherwise by its format or its shape; `None` if it stays as it is.
 ///
-/// A scene with its own camera is only rotated if the user asks; one with a camera or a light is not translated.
+/// A scene with its own camera, or with a light that has a place in it, is only rotated if the user asks, and is not
+/// translated.
 pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
     let is_asked = studio.up.is_some() || studio.front.is_some();
-    let is_bare = scene.cameras.is_empty() && scene.lights.is_empty();
+    let is_bare = scene.cameras.is_empty() && scene.lights.iter().all(is_around);
     if scene.objects.is_empty() || !(is_asked || is_bare) {
         return None;
     }

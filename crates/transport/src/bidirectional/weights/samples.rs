@@ -118,10 +118,10 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Sub
         if light_end.depth == 0 && !techniques.direct {
             continue;
         }
-        let (spot, photon) = light_end.photon();
-        let spot = PhotonPosition { p: camera_end.surface.p, ..spot };
+        let (position, photon) = light_end.photon();
+        let position = PhotonPosition { p: camera_end.surface.p, ..position };
         let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
-        let photons = Photons::new(vec![(spot, photon)], 1.0, *techniques);
+        let photons = Photons::new(vec![(position, photon)], 1.0, *techniques);
         // One vertex replaces both: it scatters as it does at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();

@@ -35,9 +35,9 @@ const SET_COUNT: usize = 3;
 
 /// All sets, given η of the round's photons and of the film's, and the number of light subpaths that are connected
 /// with the camera for each sample of the round.
-fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<SET_COUNT> {
+fn techniques(own: f32, film: f32, splats: f32, direct: bool) -> TechniqueCounts<SET_COUNT> {
     TechniqueCounts {
-        splats: PerSet([shown, 1.0, 1.0]),
+        splats: PerSet([splats, 1.0, 1.0]),
         connections: PerSet::ZERO,
         eta: PerSet([own, film, 0.0]),
         direct,
@@ -57,8 +57,8 @@ pub(super) fn learn(
     let grid = Grid::of(round.eye.settings);
     let tiles = grid.tiles();
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
-    let shown = round.light.settings.width as f32 / pixels;
-    let all_sets = |own| techniques(own, eta, shown, merging.techniques.direct);
+    let splats = round.light.settings.width as f32 / pixels;
+    let all_sets = |own| techniques(own, eta, splats, merging.techniques.direct);
     let mut lessons = GuideStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
     let mut halves = Vec::new();
     for iteration in 0..SAMPLES {

@@ -1,9 +1,9 @@
-//! Contributions by brightness: a histogram per block and lane.
+//! Contributions by brightness: a histogram per block and set of techniques.
 
 /// Number of bins, of two octaves each, around 1.
 pub(super) const BINS: usize = 32;
 
-/// The contributions that a lane would find in a block, binned by the brightness of a single one.
+/// The contributions that the techniques of a set would find in a block, binned by the brightness of a single one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contributions(pub(super) [Bin; BINS]);
 

@@ -22,7 +22,7 @@ const LIGHT: f64 = 500.0;
 const CAMERA: f64 = 330.0;
 const SEEN: f64 = 290.0;
 const PICKED: f64 = 210.0;
-const JOINED: f64 = 140.0;
+const CONNECTED: f64 = 140.0;
 const LOOKUP: f64 = 250.0;
 const MERGED: f64 = 80.0;
 /// A step of a photon's subpath, which is traced among many others, with the cost of storing it and sorting it into a
@@ -51,23 +51,23 @@ impl Steps {
     /// Nanoseconds of a sample with the techniques of a set, which merges with η.
     pub(super) fn nanoseconds(&self, set: &Set, eta: f32) -> f64 {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
-        let Set { sees, connections, photons, .. } = *set;
+        let Set { splats, connections, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
-        if !sees && !connections && !merges {
+        if !splats && !connections && !merges {
             let mean = |[any, columns]: [f64; 2]| any + (columns - any) * self.in_columns;
             return of(Step::Camera, mean(CAMERA_IN_QUEUE)) + of(Step::Picked, mean(PICKED_IN_QUEUE));
         }
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
         // Photons serve as splats without further work; connections cannot use them, so light subpaths are traced
         // again.
-        if connections || (sees && !merges) {
+        if connections || (splats && !merges) {
             sum += of(Step::Light, LIGHT);
         }
-        if sees {
+        if splats {
             sum += of(Step::Seen, SEEN) * if connections || !merges { 1.0 } else { photons };
         }
         if connections {
-            sum += of(Step::Connected, JOINED);
+            sum += of(Step::Connected, CONNECTED);
         }
         if merges {
             sum += of(Step::Light, PHOTON) * photons + of(Step::Lookup, LOOKUP);

@@ -190,16 +190,16 @@ impl Auto {
     }
 
     fn made_of(&self, set: &Set, merging: Merging, guide: Option<Arc<Guide>>) -> Box<dyn PixelIntegrator> {
-        if !set.sees && !set.connections && !set.merges() {
+        if !set.splats && !set.connections && !set.merges() {
             return Box::new(Path::new(self.merging.roulette_depth));
         }
         Box::new(Vcm { merging: set.merging(merging), guide })
     }
 }
 
-/// The fraction of the light that the techniques of a lane cannot find.
-fn lost(blocks: &[Block], lane: usize) -> f64 {
-    let sum = |of: fn(&Block, usize) -> f64| blocks.iter().map(|block| of(block, lane)).sum::<f64>();
+/// The fraction of the light that the techniques of a set cannot find.
+fn lost(blocks: &[Block], set: usize) -> f64 {
+    let sum = |of: fn(&Block, usize) -> f64| blocks.iter().map(|block| of(block, set)).sum::<f64>();
     let light = sum(|block, _| block.mean);
-    if light > 0.0 { sum(|block, lane| block.lost[lane]) / light } else { 0.0 }
+    if light > 0.0 { sum(|block, set| block.lost[set]) / light } else { 0.0 }
 }

@@ -26,14 +26,14 @@ struct Dots {
     pixels: f64,
 }
 
-/// Relative variance of one sample with the techniques of a lane, as a mean over blocks, without outliers.
-pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
+/// Relative variance of one sample with the techniques of a set, as a mean over blocks, without outliers.
+pub(super) fn error(blocks: &[Block], set: usize) -> f64 {
     let count = blocks.len().max(1) as f64;
     let dark = DARK * blocks.iter().map(|block| block.mean).sum::<f64>() / count;
     let around = |block: &Block| (block.mean * block.mean + dark * dark).max(f64::MIN_POSITIVE);
     let mut dots = Vec::new();
     for (index, block) in blocks.iter().enumerate() {
-        for &bin in block.finds[lane].0.iter().filter(|bin| bin.light > 0.0 && bin.square > 0.0) {
+        for &bin in block.finds[set].0.iter().filter(|bin| bin.light > 0.0 && bin.square > 0.0) {
             let found = bin.square / bin.light;
             let pixels = (SAMPLES * bin.light / found).min(1.0) / count;
             dots.push(Dots { block: index, bin, error: found * found / around(block), pixels });
@@ -52,7 +52,7 @@ pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
         }
     }
     let of = |(block, trimmed): (&Block, &Bin)| {
-        let variance = block.variance[lane] + block.finds[lane].square() - trimmed.square;
+        let variance = block.variance[set] + block.finds[set].square() - trimmed.square;
         (variance.max(0.0) + SAMPLES * trimmed.light * trimmed.light) / around(block)
     };
     blocks.iter().zip(&trimmed).map(of).sum::<f64>() / count

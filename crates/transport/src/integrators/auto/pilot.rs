@@ -11,8 +11,9 @@ use super::sets::SET_COUNT;
 use crate::bidirectional::{BothEnds, BothEndsQueue, QueuedSample};
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
+use crate::filters::Filter;
 use crate::photons::{Merging, Photons};
-use crate::settings::RenderSettings;
+use crate::settings::{PixelAnchor, RenderSettings};
 use crate::splats::IterationSplats;
 use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, TechniqueCounts};
 use crate::window::Window;
@@ -24,7 +25,7 @@ use std::sync::Arc;
 
 /// The pilot takes two rounds, to separate what changes between them from what does not; and one before these, to learn
 /// where light subpaths should be aimed.
-pub(super) const TURNS: u64 = 2;
+pub(super) const ROUNDS: u64 = 2;
 
 /// Samples per pixel in a round: enough to show the gain of their even distribution, which differs between techniques.
 pub(super) const SAMPLES: u32 = 8;
@@ -69,7 +70,7 @@ pub(super) struct Pilot {
 
 /// The settings of a film's pilot rounds. They depend neither on the number of samples nor on the crop, so that all
 /// parts of a picture are rendered in the same way.
-pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + TURNS as usize] {
+pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + ROUNDS as usize] {
     [0, 1, 2].map(|round| RenderSettings {
         spp: SAMPLES,
         samples: 0..SAMPLES,
@@ -111,7 +112,7 @@ impl Grid {
         (along(x, 0), along(y, 1))
     }
 
-    /// The tile at a point of the film (0..1); `None` beyond its edge, from where little light comes into the picture.
+    /// The tile at a point of the film's plane; `None` beyond the film's edge, from where little light comes into the picture.
     pub(super) fn tile_at(&self, film: Vec2) -> Option<usize> {
         let [width, height] = self.size;
         let is_on_film = film.cmpge(Vec2::ZERO).all() && film.cmplt(Vec2::ONE).all();
@@ -142,7 +143,9 @@ pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
 pub(super) fn photon_settings(film: &RenderSettings, round: &RenderSettings, least: u64) -> RenderSettings {
     let pixels = u64::from(film.width) * u64::from(film.height);
     let wanted = (pixels / LIGHT_PART).clamp(least, MAX_LIGHT_PATHS.max(least));
-    RenderSettings { width: wanted as u32, height: 1, ..round.clone() }
+    // They may be connected with the camera, for which this is no film: none reaches beyond the edge of the true one.
+    let (filter, pixel_anchor) = (Filter::default(), PixelAnchor::Centre);
+    RenderSettings { width: wanted as u32, height: 1, filter, pixel_anchor, ..round.clone() }
 }
 
 /// The radius of a disc as large as a pixel's footprint on the first surface there, in metres: the median over the
@@ -259,8 +262,8 @@ where
     let sources = Window::whole(light.settings.width, 1).tiles(256);
     let (photons, mut counted) =
         Photons::trace(light, merging, &sources, iteration, |eta, _| techniques(eta), visitor);
-    let shows = visitor.is_none();
-    let both_ends = BothEnds::merging(&photons, shows, merging.roulette_depth);
+    let splats = visitor.is_none();
+    let both_ends = BothEnds::merging(&photons, splats, merging.roulette_depth);
     let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
         let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
         let places = tiles.iter().flat_map(|tile| (0..tile.pixels()).map(|i| grid.pixel(tile.position(i))));
@@ -290,7 +293,7 @@ where
 }
 
 /// Samples per pixel in both rounds.
-const SAMPLES_IN_ALL: f64 = (TURNS * SAMPLES as u64) as f64;
+const SAMPLES_IN_ALL: f64 = (ROUNDS * SAMPLES as u64) as f64;
 
 /// The weight of one sample in the mean of a block.
 fn share(tile: &Window) -> f64 {
@@ -311,7 +314,7 @@ struct PilotSample {
 struct Sample {
     /// As weighted by the pilot's techniques.
     light: f64,
-    /// Sum of what the single techniques of each lane find, and sum of its squares.
+    /// Sum of what the single techniques of each set find, and sum of its squares.
     sums: [f64; SET_COUNT],
     squares: [f64; SET_COUNT],
     /// That sum of squares as predicted by all techniques.
@@ -337,7 +340,7 @@ impl Sample {
         }
         self.light += weighted * power_factor;
         for k in 0..SET_COUNT {
-            // How often the lane finds this path, for each time that the pilot does.
+            // How often the set finds this path, for each time that the pilot does.
             let ratio = f64::from(all.0[k]) / f64::from(all.0[0]);
             if ratio <= 0.0 {
                 self.lost[k] += weighted * power_factor;

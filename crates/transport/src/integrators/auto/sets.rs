@@ -8,7 +8,7 @@ pub(super) struct Set {
     pub(super) name: &'static str,
     /// Its name as a parameter value.
     pub(super) techniques: &'static str,
-    pub(super) sees: bool,
+    pub(super) splats: bool,
     pub(super) connections: bool,
     /// Light subpaths per pixel whose photons are merged with; 0 without merging.
     pub(super) photons: f32,
@@ -16,38 +16,38 @@ pub(super) struct Set {
 
 /// The sets to choose from, the simplest first.
 pub(super) const SETS: [Set; 8] = [
-    Set { name: "path", techniques: "path", sees: false, connections: false, photons: 0.0 },
-    Set { name: "path and light", techniques: "path-light", sees: true, connections: false, photons: 0.0 },
-    Set { name: "bdpt", techniques: "bdpt", sees: true, connections: true, photons: 0.0 },
+    Set { name: "path", techniques: "path", splats: false, connections: false, photons: 0.0 },
+    Set { name: "path and light", techniques: "path-light", splats: true, connections: false, photons: 0.0 },
+    Set { name: "bdpt", techniques: "bdpt", splats: true, connections: true, photons: 0.0 },
     Set {
         name: "path and few photons",
         techniques: "path-few",
-        sees: false,
+        splats: false,
         connections: false,
         photons: FEW,
     },
     Set {
         name: "path and photons",
         techniques: "path-photons",
-        sees: false,
+        splats: false,
         connections: false,
         photons: 1.0,
     },
     Set {
         name: "path, light and few photons",
         techniques: "path-light-few",
-        sees: true,
+        splats: true,
         connections: false,
         photons: FEW,
     },
     Set {
         name: "path, light and photons",
         techniques: "path-light-photons",
-        sees: true,
+        splats: true,
         connections: false,
         photons: 1.0,
     },
-    Set { name: "vcm", techniques: "vcm", sees: true, connections: true, photons: 1.0 },
+    Set { name: "vcm", techniques: "vcm", splats: true, connections: true, photons: 1.0 },
 ];
 
 /// Light subpaths per pixel of the sets with few photons: enough where they go where they are useful.
@@ -65,7 +65,7 @@ impl Set {
             part: merging.part * self.photons,
             techniques: TechniqueCounts {
                 direct: merging.techniques.direct,
-                ..TechniqueCounts::with_splats_and_connections(self.sees, self.connections)
+                ..TechniqueCounts::with_splats_and_connections(self.splats, self.connections)
             },
             ..merging
         }
@@ -83,7 +83,7 @@ pub(super) const TECHNIQUES: [&str; 1 + SETS.len()] = {
     techniques
 };
 
-/// One lane for the techniques of the pilot itself, and one for each set that is compared.
+/// One set for the techniques of the pilot itself, and one for each set that is compared.
 pub(super) const SET_COUNT: usize = 1 + SETS.len();
 
 /// The fraction of the mean below which noise is not visible.

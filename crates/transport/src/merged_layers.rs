@@ -1,31 +1,14 @@
 //! Merges the layers of a picture's parts, as their films are merged.
 
+use crate::aovs::Aov;
 use crate::error::FilmError;
 use crate::film::Film;
 use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
-/// Layers whose values are the same in every part that has the pixel.
-const EVEN: [&str; 15] = [
-    COVERAGE,
-    "albedo.",
-    "normal.",
-    "depth.",
-    "position.",
-    "uv.",
-    "motion.",
-    "Crypto",
-    "direct.",
-    "indirect.",
-    "group_",
-    "rays.",
-    "path_length.",
-    "nodes.",
-    "tests.",
-];
 /// How much of a pixel is not background.
 const COVERAGE: &str = "A";
-/// The same for integer layers.
+/// Layers of integers.
 const IDS: &str = "id.";
 /// The number of samples of each pixel, which are added.
 const SAMPLES: &str = "samples.count";
@@ -34,7 +17,7 @@ const VARIANCE: &str = "variance.";
 
 /// The merged layers of all parts, by name.
 #[derive(Default)]
-pub struct JoinedLayers {
+pub struct MergedLayers {
     /// Values for each pixel of the whole film.
     floats: BTreeMap<String, Vec<f32>>,
     integers: BTreeMap<String, Vec<u32>>,
@@ -44,7 +27,7 @@ pub struct JoinedLayers {
     left_out: bool,
 }
 
-impl JoinedLayers {
+impl MergedLayers {
     /// Adds the layers of a part; `film` holds its light.
     pub fn add(&mut self, part: &Picture, film: &Film) {
         let (window, size) = (film.window(), film.width() as usize * film.height() as usize);
@@ -113,7 +96,7 @@ impl JoinedLayers {
     /// Adds only the coverage, if the parts have one: all that a format for a display can hold.
     ///
     /// # Errors
-    /// As for [`JoinedLayers::push`], of a picture of the whole film.
+    /// As for [`MergedLayers::push`], of a picture of the whole film.
     pub fn push_coverage(&self, picture: &mut Picture) -> Result<(), FilmError> {
         if let Some(kept) = self.floats.get(COVERAGE) {
             picture.push_channel(COVERAGE, kept.clone())?;
@@ -122,8 +105,16 @@ impl JoinedLayers {
     }
 }
 
+/// True for a channel whose values are the same in every part that has the pixel: the coverage, and those of all AOVs but the
+/// few that are merged in a way of their own.
 fn is_even(name: &str) -> bool {
-    EVEN.iter().any(|layer| if *layer == COVERAGE { name == *layer } else { name.starts_with(layer) })
+    let is_of = |aov: &Aov| {
+        let rest = aov.layer().and_then(|layer| name.strip_prefix(layer));
+        // As in "depth.Z", "group_lamp.R" and "CryptoObject00.red".
+        rest.is_some_and(|rest| rest.starts_with(|c: char| c == '.' || c == '_' || c.is_ascii_digit()))
+    };
+    let is_even = |aov: &&Aov| !matches!(aov, Aov::Ids | Aov::Samples | Aov::Variance);
+    name == COVERAGE || Aov::ALL_LAYERS.iter().filter(is_even).any(is_of)
 }
 
 /// Where the pixels of a film's window lie in the rows of the whole film.
