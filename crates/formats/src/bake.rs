@@ -98,7 +98,7 @@ pub(crate) fn flat_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
 }
 
 /// Warns about what vertices add to a material beyond reflectance, which no format stores.
-pub(crate) fn warn_of_vertices(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
+pub(crate) fn warn_of_vertices(scene: &SceneBuilder, writing: &mut Writing) {
     let any = |has: fn(&Mesh) -> bool| scene.objects.iter().any(|object| has(&object.mesh));
     let parts = [
         ("colours that vertices emit", any(|mesh| mesh.emission_by_kd)),
@@ -106,7 +106,7 @@ pub(crate) fn warn_of_vertices(scene: &SceneBuilder, format: &str, writing: &mut
         ("widths of single points", any(|mesh| !mesh.point_widths.is_empty())),
     ];
     for (what, _) in parts.into_iter().filter(|(_, is_there)| *is_there) {
-        writing.warn(format!("{format} files cannot store {what}: left out"));
+        writing.warn(format!("no format of scene files stores {what}: left out"));
     }
 }
 

@@ -41,6 +41,11 @@ impl Budget {
         }
     }
 
+    /// Takes bytes that had been taken before, within the same limit.
+    pub(crate) fn take_again(&mut self, bytes: u64) {
+        self.spent = self.spent.saturating_add(bytes).min(self.limit);
+    }
+
     /// The bytes taken so far.
     pub(crate) fn spent(&self) -> u64 {
         self.spent

@@ -65,7 +65,6 @@ impl Greatest {
 /// The reflectance of a stored colour.
 #[inline]
 pub(crate) fn decoded(stored: Rgb, white: f32) -> Rgb {
-    // `max` turns what is not a number into 0.
     stored.map(|c| srgb_decode(within_unit(c / white)))
 }
 
@@ -93,11 +92,6 @@ pub(crate) fn encoded(colour: Rgb) -> [f32; 3] {
 pub(crate) fn as_bytes(colour: Rgb) -> Option<[u8; 3]> {
     let bytes = encoded(colour).map(|c| (c * 255.0).round() as u8);
     (decoded(Rgb::from_array(bytes.map(f32::from)), 255.0) == colour).then_some(bytes)
-}
-
-/// The numbers of 0 to 31 that 16 bits hold for three channels, the first one in the lowest bits.
-pub(crate) fn five_bits(packed: u16) -> [f32; 3] {
-    [0, 5, 10].map(|shift| f32::from(packed >> shift & 31))
 }
 
 /// From 0 to 1; 0 for NaN.
@@ -145,6 +139,5 @@ mod tests {
         assert_eq!(all, wanted);
         assert_eq!(decoded(Rgb::new(f32::NAN, -1.0, 7.0), 1.0), Rgb::new(0.0, 0.0, 1.0));
         assert_eq!(as_bytes(Rgb::grey(0.4321)), None);
-        assert_eq!(five_bits(0b0_00011_00010_00001), [1.0, 2.0, 3.0]);
     }
 }

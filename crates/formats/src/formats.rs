@@ -115,11 +115,10 @@ fn keeping_digits(
     reading: &mut Reading,
     mut read: impl FnMut(&mut Reading) -> Result<(&'static SceneFormatEntry, SceneBuilder), FormatError>,
 ) -> Result<SceneBuilder, FormatError> {
-    let before = reading.budget.clone();
+    let before = reading.memory_held();
     let (row, scene) = read(reading)?;
     let Some(origin) = far_origin(row, &scene) else { return Ok(scene) };
-    drop(scene);
-    reading.budget = before;
+    reading.go_back_to(before, scene);
     reading.origin = origin;
     let again = read(reading);
     reading.origin = DVec3::ZERO;
@@ -218,7 +217,7 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
                 "positions are written relative to {x}, {y}, {z}, the centre of the file's points"
             ));
         }
-        warn_of_vertices(scene, row.entry.name, &mut writing);
+        warn_of_vertices(scene, &mut writing);
         let scene = with_pictures(scene, row.capabilities, &mut writing);
         let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;
@@ -280,7 +279,6 @@ fn flow(
         scene.up = row.up;
     }
     reading.settle(spent, textures, &scene);
-    scene.warnings.append(&mut reading.picture_faults);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),

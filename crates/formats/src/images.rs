@@ -73,7 +73,7 @@ struct Fault {
     instead: f32,
 }
 
-/// All that is wrong with numbers; the first two are wrong with colours and with data, the others with colours alone.
+/// All that is wrong with numbers: the first with alpha too, the first three with data, all with colours.
 const FAULTS: [Fault; 5] = [
     Fault { words: "NaN", is: f32::is_nan, instead: 0.0 },
     Fault { words: "infinite", is: |x| x == f32::INFINITY, instead: BRIGHTEST_HALF },
@@ -84,16 +84,19 @@ const FAULTS: [Fault; 5] = [
 
 /// Replaces numbers that no texel can have; returns what was wrong, where first, and what is used instead.
 pub(crate) fn mend(image: &mut Image, is_data: bool) -> Option<String> {
-    let Texels::Floats { colours, .. } = &mut image.texels else { return None };
+    let Texels::Floats { colours, alpha } = &mut image.texels else { return None };
     let faults = &FAULTS[..if is_data { 3 } else { 5 }];
+    let fault_of = |c: f32| faults.iter().position(|fault| (fault.is)(c));
     let mut found = [(0usize, 0usize); FAULTS.len()];
     for (i, colour) in colours.iter_mut().enumerate() {
-        let fault_of = |c: f32| faults.iter().position(|fault| (fault.is)(c));
-        let wrong = colour.to_array().map(fault_of);
-        if wrong == [None; 3] {
+        let hole = alpha.get_mut(i).filter(|opacity| opacity.is_nan());
+        let [r, g, b] = colour.to_array().map(fault_of);
+        let wrong = [r, g, b, hole.as_ref().map(|_| 0)];
+        if wrong == [None; 4] {
             continue;
         }
         *colour = colour.map(|c| fault_of(c).map_or(c, |k| faults[k].instead));
+        hole.into_iter().for_each(|opacity| *opacity = FAULTS[0].instead);
         for (_, (count, first)) in found.iter_mut().enumerate().filter(|(k, _)| wrong.contains(&Some(*k))) {
             *first = if *count == 0 { i } else { *first };
             *count += 1;
@@ -193,6 +196,12 @@ mod tests {
             let mut data = image(fault);
             assert_eq!(mend(&mut data, true).is_some(), !fault.is_finite(), "{fault} as a number");
         }
+        let alpha = [&[1.0, 0.25, f32::NAN][..], &[1.0; 9]].concat();
+        let colours = vec![Rgb::WHITE; 12];
+        let mut holes = Image { width: 4, height: 3, texels: Texels::Floats { colours, alpha } };
+        let said = mend(&mut holes, true).unwrap();
+        assert!(said.contains("1 texel is NaN, at (2, 0), and taken as 0"), "{said}");
+        assert!(matches!(holes.texels, Texels::Floats { alpha, .. } if alpha[..4] == [1.0, 0.25, 0.0, 1.0]));
         assert_eq!(mend(&mut image(1e12), false), None);
     }
 

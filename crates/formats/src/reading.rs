@@ -57,8 +57,10 @@ pub(crate) struct Reading<'o> {
     /// By file, layer and meaning.
     textures: HashMap<(PathBuf, Option<String>, Texels), Arc<Texture>>,
     texture_bytes: u64,
-    /// What was wrong with the texels of pictures, until the scene that uses them is read.
-    pub(crate) picture_faults: Vec<Warning>,
+    /// The part of these bytes that is in [`Reading::textures`].
+    kept_bytes: u64,
+    /// What was wrong with the texels of pictures.
+    picture_faults: Vec<Warning>,
     /// Scenes inserted into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
     /// Meshes that already count against the budget for good.
@@ -69,6 +71,15 @@ pub(crate) struct Reading<'o> {
     pub(crate) files: BTreeSet<PathBuf>,
     /// What was found under other names.
     pub(crate) names: Names,
+}
+
+/// The memory that counts as held at some moment.
+pub(crate) struct MemoryHeld {
+    budget: Budget,
+    /// The size of all textures read.
+    textures: u64,
+    /// That of the textures that are found again by their names.
+    kept: u64,
 }
 
 /// Longer chains of nested scenes are refused, since each level uses some of the stack.
@@ -86,6 +97,7 @@ impl<'o> Reading<'o> {
             working_folder: None,
             textures: HashMap::new(),
             texture_bytes: 0,
+            kept_bytes: 0,
             picture_faults: Vec::new(),
             models: HashMap::new(),
             counted: HashSet::new(),
@@ -109,9 +121,26 @@ impl<'o> Reading<'o> {
         self.budget.release(self.budget.spent().saturating_sub(now));
     }
 
+    /// What counts as held.
+    pub(crate) fn memory_held(&self) -> MemoryHeld {
+        MemoryHeld { budget: self.budget.clone(), textures: self.texture_bytes, kept: self.kept_bytes }
+    }
+
+    /// Releases a scene that has been read since then, except for textures that the next read finds again.
+    pub(crate) fn go_back_to(&mut self, before: MemoryHeld, scene: SceneBuilder) {
+        for object in scene.objects {
+            self.counted.remove(&Arc::as_ptr(&object.mesh));
+        }
+        let kept = self.kept_bytes - before.kept;
+        self.budget = before.budget;
+        self.budget.take_again(kept);
+        self.texture_bytes = before.textures + kept;
+    }
+
     /// Adds to the scene what is known of all files that it refers to.
     pub(crate) fn complete(self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
         scene.files = self.files;
+        scene.warnings.extend(self.picture_faults);
         self.names.into_notes(&mut scene);
         match scene.warnings.first() {
             Some(first) if self.options.strict => Err(FormatError::Strict(first.clone())),
@@ -155,7 +184,11 @@ impl<'o> Reading<'o> {
     pub(crate) fn note_picture_faults(&mut self, name: &str, warnings: &[String], at: &Span) {
         for what in warnings {
             let message = format!("the texture '{name}': {what}");
-            self.picture_faults.push(Warning { message, at: at.clone() });
+            let fault = Warning { message, at: at.clone() };
+            // A file that is read twice, for its digits, may have its pictures decoded twice.
+            if !self.picture_faults.contains(&fault) {
+                self.picture_faults.push(fault);
+            }
         }
     }
 
@@ -252,6 +285,7 @@ impl<'o> Reading<'o> {
         let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::Colours };
         let image = self.decode(&bytes, (hint, layer), means, (name, at))?;
         self.release(bytes);
+        self.kept_bytes += image.size();
         let channel = if let Texels::Numbers(channel) = holds { channel } else { None };
         let texture = Arc::new(Texture { channel, ..Texture::of(name, Arc::new(image), is_data) });
         self.textures.insert(key, texture.clone());

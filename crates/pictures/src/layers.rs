@@ -48,19 +48,22 @@ impl Picture {
     /// # Errors
     /// [`PictureError::NoLayer`], with the layers that there are.
     pub fn with_main(self, name: Option<&str>) -> Result<Picture, PictureError> {
-        let has_colours = |layer: &str| self.layer(layer).is_some_and(|l| l.rgb_planes().is_some());
-        let coloured: Vec<&str> = self.layers().into_iter().filter(|layer| has_colours(layer)).collect();
+        if name.is_none() && self.rgb_planes().is_some() {
+            return Ok(self);
+        }
+        let coloured: Vec<&str> =
+            self.layers().into_iter().filter(|layer| self.layer_has_colours(layer)).collect();
         let chosen = match (name, &coloured[..]) {
-            (None, _) if self.rgb_planes().is_some() => return Ok(self),
             (None, [only]) => Some((*only).to_owned()),
             (None, _) => None,
             (Some(name), layers) => fitting(name, layers).map(str::to_owned),
         };
         let layer = chosen.as_deref().and_then(|chosen| self.layer(chosen));
-        let (Some(layer), Some(chosen)) = (layer, chosen) else {
+        let (Some(mut layer), Some(chosen)) = (layer, chosen) else {
             let known: Vec<String> = coloured.iter().map(|&layer| layer.to_owned()).collect();
             return Err(PictureError::NoLayer { name: name.map(str::to_owned), known });
         };
+        layer.channels.iter_mut().for_each(|channel| channel.name = short(&channel.name).to_owned());
         let mut picture = self;
         picture.channels.retain(|channel| !MAIN.contains(&&*channel.name));
         picture.channels.splice(..0, layer.channels);
@@ -70,6 +73,26 @@ impl Picture {
                 .push(format!("it has no main picture: its only layer with colours, '{chosen}', is used"));
         }
         Ok(picture)
+    }
+
+    /// True if a layer has red, green and blue, or luminance, which Y is unless it is a coordinate.
+    fn layer_has_colours(&self, layer: &str) -> bool {
+        let prefix = qualified(layer, "");
+        let components: Vec<&str> =
+            self.channels.iter().filter_map(|c| c.name.strip_prefix(&prefix)).map(short).collect();
+        let has = |component: &str| components.contains(&component);
+        ["R", "G", "B"].into_iter().all(has) || (has("Y") && !["R", "G", "B", "X", "Z"].into_iter().any(has))
+    }
+}
+
+/// The usual name of a component of a colour, which some programs spell out.
+fn short(component: &str) -> &str {
+    match component {
+        "red" => "R",
+        "green" => "G",
+        "blue" => "B",
+        "alpha" => "A",
+        other => other,
     }
 }
 
@@ -116,13 +139,26 @@ mod tests {
         }
     }
 
+    /// Normals, motion and depth, as renderers write them beside a picture, are no colours.
     #[test]
     fn the_only_layer_with_colours_stands_in_for_the_main_picture() {
         let mut picture = of(&["glow"]);
-        picture.push_channel("depth.Z", vec![7.0]).unwrap();
+        for channel in ["depth.Z", "Normal.X", "Normal.Y", "Normal.Z", "Motion.X", "Motion.Y"] {
+            picture.push_channel(channel, vec![7.0]).unwrap();
+        }
         let main = picture.with_main(None).unwrap();
         assert_eq!(main.rgb(0, 0), Rgb::BLACK);
         assert!(main.warnings[0].contains("'glow'"), "{:?}", main.warnings);
+        let mut spelt_out = Picture::new(1, 1).unwrap();
+        for (channel, sample) in [("sky.blue", 3.0), ("sky.green", 2.0), ("sky.red", 1.0), ("sky.alpha", 0.5)]
+        {
+            spelt_out.push_channel(channel, vec![sample]).unwrap();
+        }
+        let main = spelt_out.with_main(Some("sky")).unwrap();
+        assert_eq!((main.rgb(0, 0), main.alpha_at(0, 0)), (Rgb::new(1.0, 2.0, 3.0), 0.5));
+        let mut luminance = Picture::new(1, 1).unwrap();
+        luminance.push_channel("mask.Y", vec![0.5]).unwrap();
+        assert_eq!(luminance.with_main(None).unwrap().rgb(0, 0), Rgb::grey(0.5));
         let error = of(&["a", "b"]).with_main(None).unwrap_err().to_string();
         assert!(error.contains("a, b"), "{error}");
     }

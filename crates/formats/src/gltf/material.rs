@@ -28,7 +28,7 @@ pub(super) struct UsedMaterial {
 }
 
 /// A material by its index in the file (`None` for the default one), by whether glass is solid, and by whether it is
-/// for vertices with alpha.
+/// a mask for vertices with alpha.
 pub(super) type MaterialKey = (Option<usize>, bool, bool);
 
 /// The texture coordinate sets of the file that become the mesh's first and second set.
@@ -65,19 +65,19 @@ impl<'d> Gltf<'d, '_, '_> {
         index: Option<JsonNode<'d>>,
         (is_solid, has_vertex_alpha): (bool, bool),
     ) -> Result<UsedMaterial, FormatError> {
+        let node = index.map(|index| self.document.named("materials", index)).transpose()?;
+        // Only a mask has to know: its threshold is compared after the vertices' factor.
+        let is_mask = node.is_some_and(|node| matches!(node.text("alphaMode"), Ok(Some("MASK"))));
+        let has_vertex_alpha = has_vertex_alpha && is_mask;
         let key = (index.map(|index| index.as_count()).transpose()?, is_solid, has_vertex_alpha);
         if let Some(material) = self.materials.get(&key) {
             return Ok(*material);
         }
         let (spec, alpha) = (Spec::new("default", "principled"), Alpha::Opaque);
         let mut draft = Draft { spec, uv_sets: [None; 2], is_solid, has_vertex_alpha, alpha };
-        let mut is_unlit = false;
-        match index {
-            Some(index) => {
-                let node = self.document.named("materials", index)?;
-                is_unlit = node.extension("KHR_materials_unlit").is_some();
-                self.draft(node, &mut draft)?;
-            }
+        let is_unlit = node.is_some_and(|node| node.extension("KHR_materials_unlit").is_some());
+        match node {
+            Some(node) => self.draft(node, &mut draft)?,
             None => {
                 draft.set("base_color", Rgb::WHITE, Span::default());
                 draft.set("base_metalness", 1.0, Span::default());

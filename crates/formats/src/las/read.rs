@@ -4,7 +4,9 @@ use super::header::{Header, read_header, u16_at, u32_at};
 use crate::FormatError;
 use crate::cloud::{Cloud, SAMPLES};
 use crate::colours::{Greatest, Stored, decoded};
+use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
+use crate::text::whole_file;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::SceneBuilder;
@@ -29,7 +31,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cloud.push(position(record));
         cloud.colours.extend(colour_of.as_ref().map(|of| of(record)));
     }
-    Ok(cloud.into_scene(source.stem()))
+    let mut scene = cloud.into_scene(source.stem());
+    let mut oddities = Oddities::default();
+    let unused = "classes, returns, angles and times of points, and intensities beside colours";
+    oddities.not_used(unused, || whole_file(source.name));
+    oddities.into_warnings(&mut scene);
+    Ok(scene)
 }
 
 /// Computes the colour of a record.

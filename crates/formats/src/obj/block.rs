@@ -373,27 +373,23 @@ impl<'a> Reader<'a> {
     }
 
     fn other_statement(&mut self, word: &[u8], start: TextPosition) -> Result<(), FormatError> {
-        let what = match word {
+        let (oddities, at) = (&mut self.block.oddities, || start.in_file(self.file));
+        match word {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
-                "free-form curves and surfaces are not supported".to_owned()
+                oddities.not_shown("free-form curves and surfaces", at);
             }
-            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
-            | b"stech" | b"mg" | b"maplib" | b"usemap" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is ignored", quoted(word))
+            b"maplib" | b"usemap" | b"call" | b"shadow_obj" | b"trace_obj" => {
+                oddities.not_shown(&quoted(word), at);
             }
-            // Weights of a skin that no OBJ file can move.
-            b"vw" => return Ok(()),
-            _ => {
-                let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
-                if !readable {
-                    let message = format!("{} is not a statement of an OBJ file", quoted(word));
-                    return Err(FormatError::malformed(message, start.in_file(self.file)));
-                }
-                format!("the unknown statement {} is ignored", quoted(word))
+            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"ctech" | b"stech" | b"mg" | b"t" | b"csh"
+            | b"vw" => oddities.not_used(&quoted(word), at),
+            _ if word.len() > 20 || !word.iter().all(u8::is_ascii_graphic) => {
+                let message = format!("{} is not a statement of an OBJ file", quoted(word));
+                return Err(FormatError::malformed(message, at()));
             }
-        };
-        self.note(&what, start);
+            _ => oddities.note(&format!("the unknown statement {} is ignored", quoted(word)), at),
+        }
         self.pass_line();
         Ok(())
     }

@@ -108,9 +108,7 @@ impl Library<'_, '_, '_> {
                 (b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-colorspace" | b"-texres", _) => {}
                 (option, _) => {
                     let (places, name) = (&self.places, String::from_utf8_lossy(option));
-                    self.oddities.note(&format!("the option {name} of a texture is not supported"), || {
-                        places.at(start)
-                    });
+                    self.oddities.not_shown(&format!("'{name}' of textures"), || places.at(start));
                 }
             }
         }
@@ -125,7 +123,7 @@ impl Library<'_, '_, '_> {
     ) -> Result<(), FormatError> {
         let known = |key: &str| spec.parameters.find(key).is_some();
         let diffuse = ["kd", "reflectance", "base_color"].into_iter().find(|key| known(key));
-        let specular = Some("ks").filter(|key| known(key));
+        let specular = Some("ks").filter(|key| known(key) && !draft.lacks_highlight());
         for (word, tint, key) in [("map_Kd", "Kd", diffuse), ("map_Ks", "Ks", specular)] {
             if let (Some(map), Some(key)) = (draft.maps.get(word), key) {
                 // Black counts as white: many exporters write it next to every texture.

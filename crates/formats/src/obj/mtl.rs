@@ -53,6 +53,7 @@ pub(super) fn read_library(
     library.decide_transparency(&mut drafts);
     for draft in drafts {
         let mut spec = material(&draft);
+        library.remark_highlight(&draft);
         library.put_maps(&draft, &mut spec, scene)?;
         let index = scene.add_material(spec);
         by_name.entry(draft.name).or_insert(index);
@@ -105,6 +106,17 @@ impl Draft {
         self.number("illum").map_or(2, |n| n as i32)
     }
 
+    /// True if nothing is specular: by the illumination model, or by an exponent of 0. By Phong's formula that would be a
+    /// highlight as wide as the whole surface, which nobody means, unless the surface mirrors, or says how much.
+    pub(super) fn lacks_highlight(&self) -> bool {
+        let mirrors = matches!(self.illum(), 3 | 5 | 8) || self.colour("Kr").is_some();
+        self.illum() < 2 || (self.has_exponent_of_zero() && !mirrors)
+    }
+
+    fn has_exponent_of_zero(&self) -> bool {
+        self.number("Ns").is_some_and(|exponent| exponent <= 0.0)
+    }
+
     /// The index of refraction, if a valid one is given.
     pub(super) fn eta(&self) -> Option<f32> {
         self.number("Ni").filter(|&n| n > 0.0).map(|n| n.clamp(0.1, 10.0))
@@ -129,6 +141,8 @@ const ALIASES: [(&str, &str); 4] =
     [("bump", "map_bump"), ("map_opacity", "map_d"), ("map_Kn", "norm"), ("map_norm", "norm")];
 /// Ambient light follows kd in Bilux, and sharpness applies to reflection maps.
 const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
+/// What one would see if Bilux had it.
+const NOT_SHOWN: [&str; 6] = ["refl", "map_refl", "disp", "decal", "map_Ns", "map_Tr"];
 
 pub(super) struct Library<'a, 'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
@@ -167,8 +181,10 @@ impl Library<'_, '_, '_> {
             self.reading.budget.take::<u8>(2 * map.file.len(), self.source.name)?;
             draft.maps.insert(name, map);
         } else {
-            if known(&WITHOUT_USE).is_none() {
-                let places = &self.places;
+            let places = &self.places;
+            if let Some(name) = known(&NOT_SHOWN) {
+                self.oddities.not_shown(&format!("'{name}' of materials"), || places.at(start));
+            } else if known(&WITHOUT_USE).is_none() {
                 let what = format!("{} of a material is ignored", quoted(key));
                 self.oddities.note(&what, || places.at(start));
             }
@@ -177,11 +193,20 @@ impl Library<'_, '_, '_> {
         Ok(())
     }
 
+    fn remark_highlight(&mut self, draft: &Draft) {
+        let is_stated = draft.illum() >= 2 && draft.colour("Ks").is_some_and(|ks| !ks.is_black());
+        if is_stated && draft.has_exponent_of_zero() && draft.lacks_highlight() {
+            let what = "'Ns 0' is read as no highlight, as MeshLab, Asset Forge and others mean it";
+            let (places, offset) = (&self.places, draft.offset("Ns"));
+            self.oddities.remark(what, || places.at(offset));
+        }
+    }
+
     /// Three numbers, or one for all channels; `None`, with a warning, for anything else.
     fn colour(&mut self) -> Option<Rgb> {
         if [&b"spectral"[..], b"xyz"].contains(&self.cursor.peek_word()) {
             let (places, at) = (&self.places, self.cursor.offset());
-            self.oddities.note("spectral and xyz colours are not used", || places.at(at));
+            self.oddities.not_shown("spectral and xyz colours of materials", || places.at(at));
             self.cursor.rest_of_line();
             return None;
         }

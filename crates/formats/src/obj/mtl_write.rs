@@ -221,7 +221,8 @@ fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
         push_number(out, "Ni", eta);
     }
     let reflectivity = number(spec, "reflectivity").unwrap_or(1.0);
-    if reflectivity > 0.0 {
+    // An exponent of 0 alone would mean no highlight.
+    if reflectivity > 0.0 || number(spec, "exponent") == Some(0.0) {
         // Not in the format, but other programs write it too, and the rest ignore it.
         push_number(out, "Kr", reflectivity);
     }

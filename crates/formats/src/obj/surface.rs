@@ -70,7 +70,7 @@ fn phong(draft: &Draft, ks: Rgb) -> Spec {
     if let Some(kd) = draft.diffuse() {
         set("kd", kd.into());
     }
-    set("ks", if draft.illum() < 2 { Rgb::BLACK } else { ks }.into());
+    set("ks", if draft.lacks_highlight() { Rgb::BLACK } else { ks }.into());
     if let Some(exponent) = draft.number("Ns") {
         set("exponent", exponent.clamp(0.0, 1e5).into());
     }

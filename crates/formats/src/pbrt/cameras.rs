@@ -47,8 +47,7 @@ impl Pbrt<'_, '_> {
         let to_world = matrices.map(|m| m.inverse());
         let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
         if !to_world.iter().all(sound) {
-            let message = "this camera has a scale of zero: correct the transforms before it";
-            return Err(FormatError::malformed(message, entity.at.clone()));
+            return Err(is_flat(&entity));
         }
         let place = |m: &DMat4| place(m, &entity);
         let mut spec = Spec { span: entity.at.clone(), ..Spec::new("", kind) };
@@ -147,7 +146,6 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// The placement of a camera.
 /// The largest angle, in degrees, between two keyframes of a camera that turns. Cameras interpolate the point that they look
 /// at, which differs from a rotation by less than 10⁻⁶ radians over such an angle.
 const MAX_STEP: f64 = 2.0;
@@ -186,20 +184,20 @@ fn axes(to_world: &DMat4, entity: &Entity) -> Result<DMat3, FormatError> {
     let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
     let forward = axis(DVec3::Z);
     let right = forward.and_then(|forward| axis(DVec3::Y)?.cross(forward).try_normalize());
-    let Some((right, forward)) = right.zip(forward) else {
-        let message = "this camera has a scale of zero: correct the transforms before it";
-        return Err(FormatError::malformed(message, entity.at.clone()));
-    };
+    let Some((right, forward)) = right.zip(forward) else { return Err(is_flat(entity)) };
     Ok(DMat3::from_cols(right, forward.cross(right), forward))
 }
 
+fn is_flat(entity: &Entity) -> FormatError {
+    let message = "this camera has a scale of zero: correct the transforms before it";
+    FormatError::malformed(message, entity.at.clone())
+}
+
+/// The placement of a camera.
 fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
     let position = to_world.w_axis.truncate();
     let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
-    let (Some(forward), Some(up)) = (axis(DVec3::Z), axis(DVec3::Y)) else {
-        let message = "this camera has a scale of zero: correct the transforms before it";
-        return Err(FormatError::malformed(message, entity.at.clone()));
-    };
+    let (Some(forward), Some(up)) = (axis(DVec3::Z), axis(DVec3::Y)) else { return Err(is_flat(entity)) };
     // Far from the origin, 32-bit floats may not resolve one metre.
     let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
     let mut parameters = Parameters::default();

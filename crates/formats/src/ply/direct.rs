@@ -4,6 +4,7 @@
 use super::body::Body;
 use super::header::{Element, Scalar};
 use super::read::Ply;
+use super::slots::lists_vertices;
 use crate::FormatError;
 use crate::indexed_faces::NONE;
 use crate::polygon::Triangulator;
@@ -14,8 +15,7 @@ use std::sync::Arc;
 
 /// True for faces with a single property, the list of vertices.
 pub(super) fn can_be(element: &Element) -> bool {
-    let [only] = element.properties.as_slice() else { return false };
-    only.count.is_some() && matches!(only.name.as_str(), "vertex_indices" | "vertex_index")
+    matches!(&element.properties[..], [only] if lists_vertices(only))
 }
 
 impl Ply<'_, '_, '_> {

@@ -2,15 +2,14 @@
 
 use super::header::{Element, Property, Scalar};
 use super::read::Ply;
-use super::slots::FaceSlots;
+use super::slots::{FaceSlots, lists_uvs, lists_vertices};
 use crate::FormatError;
 use crate::indexed_faces::{Corner, FaceColour, NONE};
 use bilux_math::{Rgb, Vec2};
 
 impl Ply<'_, '_, '_> {
     pub(super) fn faces(&mut self, element: &Element, strips: bool) -> Result<(), FormatError> {
-        let is = |p: &Property, names: &[&str]| p.count.is_some() && names.contains(&p.name.as_str());
-        if !element.properties.iter().any(|p| is(p, &["vertex_indices", "vertex_index"])) {
+        if !element.properties.iter().any(lists_vertices) {
             let message = format!("the element '{}' has no list 'vertex_indices'", element.name);
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
@@ -21,9 +20,9 @@ impl Ply<'_, '_, '_> {
             let start = self.body.offset();
             let (mut wedges, mut colour, mut texture) = (None, [0.0; 3], None);
             for (p, property) in element.properties.iter().enumerate() {
-                if is(property, &["vertex_indices", "vertex_index"]) {
+                if lists_vertices(property) {
                     self.indices(property, strips, start, &mut corners)?;
-                } else if is(property, &["texcoord"]) && !strips {
+                } else if lists_uvs(property) && !strips {
                     wedges = Some(self.wedges(property)?);
                 } else if let Some(channel) = look.channel(p) {
                     colour[channel] = self.body.number(property.scalar)?;

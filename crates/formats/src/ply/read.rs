@@ -231,15 +231,16 @@ impl Ply<'_, '_, '_> {
         textures: &[(String, usize)],
         mut scene: SceneBuilder,
     ) -> Result<SceneBuilder, FormatError> {
-        if let Some(triangles) = self.triangles.take().filter(|triangles| !triangles.is_empty()) {
-            return self.finish_triangles(textures, scene, triangles);
-        }
-        if self.indexed.faces.is_empty() {
+        let triangles = self.triangles.take().unwrap_or_default();
+        if triangles.is_empty() && self.indexed.faces.is_empty() {
             return self.finish_strokes(scene);
         }
         if !self.edges.is_empty() {
             let places = self.places;
-            self.oddities.note("edges are not rendered if there are faces", || places.whole());
+            self.oddities.not_shown("edges, since there are faces", || places.whole());
+        }
+        if !triangles.is_empty() {
+            return self.finish_triangles(textures, scene, triangles);
         }
         let (normals, uvs) = (self.has_normals, self.has_uvs);
         let wedges = std::mem::take(&mut self.wedge_uvs);

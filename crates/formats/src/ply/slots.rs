@@ -75,8 +75,15 @@ pub(super) struct FaceSlots {
     strips: bool,
 }
 
-/// The lists that faces have, and for plain faces the texture coordinates of their corners.
-const INDICES: [&str; 2] = ["vertex_indices", "vertex_index"];
+/// True for the list of a face's vertices, by its two names.
+pub(super) fn lists_vertices(property: &Property) -> bool {
+    property.count.is_some() && matches!(&*property.name, "vertex_indices" | "vertex_index")
+}
+
+/// True for the list of the texture coordinates of a face's corners.
+pub(super) fn lists_uvs(property: &Property) -> bool {
+    property.count.is_some() && property.name == "texcoord"
+}
 
 impl FaceSlots {
     pub(super) fn of(element: &Element, strips: bool) -> FaceSlots {
@@ -101,10 +108,9 @@ impl FaceSlots {
 
     /// True if the property shows.
     pub(super) fn uses(&self, index: usize, property: &Property) -> bool {
-        let is_list = property.count.is_some();
-        let name = &*property.name;
         self.channel(index).is_some()
             || self.texture == Some(index)
-            || (is_list && (INDICES.contains(&name) || (name == "texcoord" && !self.strips)))
+            || lists_vertices(property)
+            || (lists_uvs(property) && !self.strips)
     }
 }

@@ -17,6 +17,8 @@ pub(super) struct Splats {
     pub(super) widths: Vec<f32>,
     /// Whether they have plain colours, which are kept as stored until all are known.
     are_plain: bool,
+    /// The number of scales: flat splats have two.
+    scales: usize,
 }
 
 /// The properties that are used, in this order.
@@ -58,9 +60,17 @@ impl Ply<'_, '_, '_> {
              size and opacity",
             at,
         );
+        // The count has been checked against the remaining bytes, so the memory is reserved at once.
         self.reading.budget.take_bytes(element.count * 32, self.source.name)?;
-        let mut splats =
-            Splats { are_plain: !has(element, PROPERTIES[HARMONICS.start]), ..Splats::default() };
+        let count = element.count as usize;
+        self.indexed.positions.reserve_exact(count);
+        self.indexed.colours.reserve_exact(count);
+        let mut splats = Splats {
+            opacities: Vec::with_capacity(count),
+            widths: Vec::with_capacity(count),
+            are_plain: !has(element, PROPERTIES[HARMONICS.start]),
+            scales: SCALES.filter(|slot| has(element, PROPERTIES[*slot])).count(),
+        };
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut values = [0f64; PROPERTIES.len()];
@@ -71,13 +81,18 @@ impl Ply<'_, '_, '_> {
                 }
             }
             self.end_row(start);
+            if values.iter().any(|x| !x.is_finite()) {
+                let (places, what) =
+                    (self.places, "a splat has numbers that are infinite or not numbers (NaN)");
+                self.oddities.note(what, || places.at(start));
+            }
             let position = DVec3::from_slice(&values) - self.reading.origin;
             self.push_splat(&mut splats, position.as_vec3(), values.map(|value| value as f32));
         }
         if !has(element, "opacity") {
             splats.opacities.clear();
         }
-        if !has(element, "scale_0") {
+        if splats.scales == 0 {
             splats.widths.clear();
         }
         let red = element.properties.iter().find(|p| p.name == "red").filter(|_| splats.are_plain);
@@ -93,9 +108,10 @@ impl Ply<'_, '_, '_> {
         self.indexed.positions.push(position);
         let harmonics = || decoded(Rgb::new(r, g, b).map(|c| 0.5 + CONSTANT * c), 1.0);
         self.indexed.colours.push(if splats.are_plain { Rgb::from_array(colour) } else { harmonics() });
-        splats.opacities.push(1.0 / (1.0 + exp(-opacity)));
+        // `max` turns what is not a number into 0.
+        splats.opacities.push((1.0 / (1.0 + exp(-opacity))).max(0.0));
         // The geometric mean of the standard deviations along the axes.
-        let radius = exp((x + y + z) / 3.0);
+        let radius = exp((x + y + z) / splats.scales as f32);
         splats.widths.push(if radius.is_finite() { 2.0 * radius } else { 0.0 });
     }
 }

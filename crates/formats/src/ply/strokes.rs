@@ -18,6 +18,7 @@ pub(super) fn has_both_ends(element: &Element) -> bool {
 impl Ply<'_, '_, '_> {
     /// Reads pairs of vertices, `vertex1` and `vertex2`.
     pub(super) fn edges(&mut self, element: &Element) -> Result<(), FormatError> {
+        self.report_unused(element, |p| ENDS.contains(&&*element.properties[p].name));
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut ends = [NONE; 2];

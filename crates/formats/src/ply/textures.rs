@@ -18,16 +18,16 @@ impl Ply<'_, '_, '_> {
     ) -> Result<HashMap<String, usize>, FormatError> {
         let mut materials = HashMap::new();
         let name = self.source.stem();
-        let numbers = std::mem::take(&mut self.face_textures);
+        let mut numbers = std::mem::take(&mut self.face_textures);
         let groups = if textures.len() < 2 || numbers.is_empty() {
             self.only_texture(textures, scene, &mut materials)?;
             vec![(0, NONE)]
         } else {
+            self.check_numbers(&mut numbers, textures.len());
             self.indexed.sort_by(&numbers)
         };
         for (first_face, number) in groups {
-            let texture = textures.get(number as usize).filter(|_| textures.len() > 1);
-            let material = match texture {
+            let material = match textures.get(number as usize) {
                 Some((file, offset)) => {
                     let key = format!("{number} {file}");
                     self.texture((file, *offset), &key, scene, &mut materials)?;
@@ -40,6 +40,18 @@ impl Ply<'_, '_, '_> {
         Ok(materials)
     }
 
+    /// Takes away numbers of textures that there are not.
+    fn check_numbers(&mut self, numbers: &mut [u32], count: usize) {
+        let wrong = |(_, number): &(usize, &mut u32)| **number != NONE && **number as usize >= count;
+        for (face, number) in numbers.iter_mut().enumerate().filter(wrong) {
+            let (places, at) = (self.places, self.indexed.places.at(face) as usize);
+            let first =
+                || format!("a face has the texture {number}, but there are only {count}, counted from 0");
+            self.oddities.note_first(": such faces have none", first, || places.at(at));
+            *number = NONE;
+        }
+    }
+
     /// Adds the texture of the whole mesh, if there is one, as the material without a name.
     pub(super) fn only_texture(
         &mut self,
@@ -49,9 +61,9 @@ impl Ply<'_, '_, '_> {
     ) -> Result<(), FormatError> {
         let [(file, offset), others @ ..] = textures else { return Ok(()) };
         if let Some((_, other)) = others.first() {
-            let (places, count) = (self.places, others.len());
-            let what = format!("{count} textures more, since faces do not say which they have");
-            self.oddities.not_shown(&what, || places.at(*other));
+            let places = self.places;
+            let what = "textures after the first, since faces do not say which they have";
+            self.oddities.not_shown(what, || places.at(*other));
         }
         self.texture((file, *offset), "", scene, materials)
     }

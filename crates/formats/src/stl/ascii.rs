@@ -1,7 +1,7 @@
 //! Reads text STL.
 
 use crate::FormatError;
-use crate::colours::{Stored, UNCOLOURED, decode};
+use crate::colours::{Greatest, Stored, UNCOLOURED, decoded};
 use crate::float::{parse_f32, parse_relative};
 use crate::oddities::Oddities;
 use crate::polygon::Triangulator;
@@ -181,19 +181,11 @@ impl Ascii<'_, '_, '_> {
 
 /// Replaces the stored colours of all solids by reflectances.
 fn decode_all(scene: &mut SceneBuilder) {
-    let mut all: Vec<Rgb> =
-        scene.objects.iter().flat_map(|object| object.mesh.vertex_kd.iter().copied()).collect();
-    if all.is_empty() {
-        return;
-    }
-    decode(&mut all, Stored::Numbers);
-    let mut rest = all.into_iter();
-    for object in &mut scene.objects {
-        let mesh = Arc::make_mut(&mut object.mesh);
-        // One material is for all: what has no colour is white among what has.
-        match mesh.vertex_kd.len() {
-            0 => mesh.vertex_kd = vec![Rgb::WHITE; mesh.positions.len()],
-            count => mesh.vertex_kd = rest.by_ref().take(count).collect(),
-        }
+    let mut greatest = Greatest::default();
+    scene.objects.iter().flat_map(|object| &object.mesh.vertex_kd).for_each(|colour| greatest.see(*colour));
+    let white = greatest.white(Stored::Numbers);
+    for object in scene.objects.iter_mut().filter(|object| !object.mesh.vertex_kd.is_empty()) {
+        let colours = &mut Arc::make_mut(&mut object.mesh).vertex_kd;
+        colours.iter_mut().for_each(|colour| *colour = decoded(*colour, white));
     }
 }

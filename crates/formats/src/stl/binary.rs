@@ -33,13 +33,6 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
             add_solid(reading, source, (header, triangles), &mut scene, &mut oddities)?;
         }
     }
-    // One material is for all: what has no colour is white among what has.
-    if scene.objects.iter().any(|object| !object.mesh.vertex_kd.is_empty()) {
-        for object in &mut scene.objects {
-            let mesh = Arc::make_mut(&mut object.mesh);
-            mesh.vertex_kd.resize(mesh.positions.len(), Rgb::WHITE);
-        }
-    }
     oddities.into_warnings(&mut scene);
     Ok(scene)
 }
@@ -117,6 +110,7 @@ fn add_solid(
     let colour_size = if colours.are_there() { size_of::<[Rgb; 3]>() } else { 0 };
     let size = size_of::<([Vec3; 3], [u32; 3])>() + colour_size;
     reading.budget.take_bytes((count * size) as u64, source.name)?;
+    reading.budget.take::<(Object, Mesh)>(1, source.name)?;
     if 3 * count as u64 >= u64::from(u32::MAX) {
         let message = "there are more than 4 billion corners: split the file";
         return Err(FormatError::malformed(message, whole()));

@@ -1,7 +1,7 @@
 //! Colours in the two bytes after each triangle of a binary STL, by the two conventions that there are: that of VisCAM
 //! and SolidView, and that of Materialise Magics.
 
-use crate::colours::{decoded, five_bits};
+use crate::colours::decoded;
 use crate::oddities::Oddities;
 use bilux_math::Rgb;
 use bilux_scene::Span;
@@ -10,8 +10,14 @@ use bilux_scene::Span;
 const FLAG: u16 = 1 << 15;
 
 /// The colours of a solid's triangles.
-pub(super) enum FacetColours {
-    /// None.
+pub(super) struct FacetColours {
+    convention: Convention,
+    /// The reflectance that each of 32 levels means.
+    levels: [f32; 32],
+}
+
+enum Convention {
+    /// There are no colours.
     None {
         /// Whether the two bytes hold something else.
         has_data: bool,
@@ -29,7 +35,42 @@ pub(super) enum FacetColours {
 }
 
 impl FacetColours {
-    pub(super) fn of(header: &[u8], mut attributes: impl Iterator<Item = u16> + Clone) -> FacetColours {
+    pub(super) fn of(header: &[u8], attributes: impl Iterator<Item = u16>) -> FacetColours {
+        let levels = std::array::from_fn(|level| decoded(Rgb::grey(level as f32), 31.0).r);
+        FacetColours { convention: Convention::of(header, attributes), levels }
+    }
+
+    pub(super) fn are_there(&self) -> bool {
+        !matches!(self.convention, Convention::None { .. })
+    }
+
+    /// The reflectance of a triangle with these two bytes.
+    pub(super) fn at(&self, attribute: u16) -> Rgb {
+        let level = |shift: u16| self.levels[usize::from(attribute >> shift & 31)];
+        match self.convention {
+            Convention::VisCam if attribute & FLAG != 0 => Rgb::new(level(10), level(5), level(0)),
+            Convention::Magics { has_own: true, .. } if attribute & FLAG == 0 => {
+                Rgb::new(level(0), level(5), level(10))
+            }
+            Convention::Magics { whole, .. } => whole,
+            _ => Rgb::WHITE,
+        }
+    }
+
+    /// Names what is not shown.
+    pub(super) fn report(&self, oddities: &mut Oddities, at: impl FnOnce() -> Span) {
+        match self.convention {
+            Convention::None { has_data: true } => oddities.not_used("two bytes after each triangle", at),
+            Convention::Magics { has_more: true, .. } => {
+                oddities.not_shown("the opacity and the material of the header's COLOR= and MATERIAL=", at);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Convention {
+    fn of(header: &[u8], mut attributes: impl Iterator<Item = u16>) -> Convention {
         let after = |key: &[u8]| {
             let at = header.windows(key.len()).position(|word| word == key)?;
             header.get(at + key.len()..)?.first_chunk::<4>().copied()
@@ -38,37 +79,10 @@ impl FacetColours {
         if let Some([r, g, b, alpha]) = colour.or(material) {
             let whole = decoded(Rgb::from_array([r, g, b].map(f32::from)), 255.0);
             let has_own = attributes.any(|attribute| attribute != 0);
-            return FacetColours::Magics { whole, has_own, has_more: material.is_some() || alpha != 255 };
+            return Convention::Magics { whole, has_own, has_more: material.is_some() || alpha != 255 };
         }
         let (is_coloured, has_data) =
             attributes.fold((false, false), |(flag, any), a| (flag || a & FLAG != 0, any || a != 0));
-        if is_coloured { FacetColours::VisCam } else { FacetColours::None { has_data } }
-    }
-
-    pub(super) fn are_there(&self) -> bool {
-        !matches!(self, FacetColours::None { .. })
-    }
-
-    /// The reflectance of a triangle with these two bytes.
-    pub(super) fn at(&self, attribute: u16) -> Rgb {
-        let [low, middle, high] = five_bits(attribute);
-        let own = |red, blue| decoded(Rgb::new(red, middle, blue), 31.0);
-        match self {
-            FacetColours::VisCam if attribute & FLAG != 0 => own(high, low),
-            FacetColours::Magics { has_own: true, .. } if attribute & FLAG == 0 => own(low, high),
-            FacetColours::Magics { whole, .. } => *whole,
-            _ => Rgb::WHITE,
-        }
-    }
-
-    /// Names what is not shown.
-    pub(super) fn report(&self, oddities: &mut Oddities, at: impl FnOnce() -> Span) {
-        match self {
-            FacetColours::None { has_data: true } => oddities.not_used("two bytes after each triangle", at),
-            FacetColours::Magics { has_more: true, .. } => {
-                oddities.not_shown("the opacity and the material of the header's COLOR= and MATERIAL=", at);
-            }
-            _ => {}
-        }
+        if is_coloured { Convention::VisCam } else { Convention::None { has_data } }
     }
 }

@@ -9,8 +9,10 @@ use crate::FormatError;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::reading::{Reading, Source, plain_material};
 use crate::text::{is_comment, plain, plain_size, whole_file};
+use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
+use std::sync::Arc;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -21,30 +23,34 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["stl"],
     capabilities: &["triangles", "objects (text only)"],
-    sniff: |bytes| binary::fits(bytes) || is_text(&plain(&bytes[..bytes.len().min(HEAD)])),
+    sniff: |bytes| binary::fits(bytes) || is_text(bytes),
     up: UpHint::Usually(Axis::Z),
     read: Some(ReadFormat::Binary(read)),
     write: Some(write::write),
 };
 
-/// Many binary files begin with `solid` too, so the size decides first.
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
-    reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
-    let text = plain(source.bytes);
-    let (mut scene, head) = if !binary::fits(source.bytes) && is_text(&text) {
-        let source = Source { bytes: &text, ..*source };
-        (ascii::read(reading, &source)?, first_statement(&text).unwrap_or_default())
+    let (mut scene, unit) = if is_text(source.bytes) {
+        reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
+        let text = plain(source.bytes);
+        let scene = ascii::read(reading, &Source { bytes: &text, ..*source })?;
+        (scene, unit(first_statement(&text).unwrap_or_default()))
     } else {
-        (binary::read(reading, source)?, &source.bytes[..source.bytes.len().min(binary::HEADER - 4)])
+        let scene = binary::read(reading, source)?;
+        (scene, unit(&source.bytes[..binary::HEADER - 4]))
     };
     if scene.objects.is_empty() {
         return Err(FormatError::malformed("it contains no triangles", whole_file(source.name)));
     }
-    scene.unit = unit(head);
-    if scene.materials.is_empty() {
-        let is_coloured = scene.objects.iter().any(|object| !object.mesh.vertex_kd.is_empty());
-        scene.add_material(plain_material(is_coloured, false));
+    scene.unit = unit;
+    let is_coloured = scene.objects.iter().any(|object| !object.mesh.vertex_kd.is_empty());
+    // One material is for all: what has no colour is white among what has.
+    for object in scene.objects.iter_mut().filter(|object| is_coloured && object.mesh.vertex_kd.is_empty()) {
+        let mesh = Arc::make_mut(&mut object.mesh);
+        reading.budget.take_bytes(size_of_val(&mesh.positions[..]) as u64, source.name)?;
+        mesh.vertex_kd = vec![Rgb::WHITE; mesh.positions.len()];
     }
+    scene.add_material(plain_material(is_coloured, false));
     Ok(scene)
 }
 
@@ -68,21 +74,22 @@ fn unit(head: &[u8]) -> f64 {
 const MILLIMETRE: f64 = 0.001;
 
 /// The bytes that tell text from binary.
-const HEAD: usize = 1024;
+const HEAD: usize = 1 << 16;
 
 /// The first line that is neither empty nor a comment.
 fn first_statement(text: &[u8]) -> Option<&[u8]> {
-    let lines = text.split(|b| matches!(b, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
-    lines.take(HEAD).find(|line| !line.is_empty() && !is_comment(line))
+    let mut lines = text.split(|b| matches!(b, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    lines.find(|line| !line.is_empty() && !is_comment(line))
 }
 
-/// True for a text: one that begins with `solid`, though not if binary data follow, or with a facet.
+/// True for a text: one that begins with `solid`, though not if binary data follow, or with a facet. Many binary files
+/// begin with `solid` too, so their size decides first.
 fn is_text(bytes: &[u8]) -> bool {
-    let begins = |line: &[u8], word: &[u8]| {
-        line.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
-    };
-    let head = bytes[..bytes.len().min(HEAD)].to_ascii_lowercase();
+    if binary::fits(bytes) {
+        return false;
+    }
+    let head = plain(&bytes[..bytes.len().min(HEAD)]).to_ascii_lowercase();
+    let Some(line) = first_statement(&head) else { return false };
     let has_facet = head.windows(6).any(|word| word == b"facet ");
-    let Some(line) = first_statement(bytes) else { return false };
-    begins(line, b"facet ") || (begins(line, b"solid") && (has_facet || !head.contains(&0)))
+    line.starts_with(b"facet ") || (line.starts_with(b"solid") && (has_facet || !head.contains(&0)))
 }

@@ -61,6 +61,12 @@ impl Columns {
             _ => colour_at(3),
         }
     }
+
+    /// True if the picture shows the numbers in this column: intensities only where there are no colours.
+    pub(super) fn shows(&self, column: usize) -> bool {
+        let beside = self.colour.map_or(self.intensity == Some(column), |colour| colour.contains(&column));
+        self.position.contains(&column) || beside
+    }
 }
 
 /// True if the first lines are numbers, at least three on each except for a leading count.
@@ -114,6 +120,9 @@ impl Comma {
 
     /// That of the first line that has any.
     pub(super) fn of_text(text: &[u8]) -> Comma {
+        if !text.contains(&b',') {
+            return Comma::Separates;
+        }
         let lines = text.split(|b| matches!(b, b'\n' | b'\r')).filter(|line| is_data(line));
         let lines = lines.filter_map(|line| line.split(|&b| b == b'#').next());
         lines.filter_map(Comma::of).next().unwrap_or(Comma::Separates)

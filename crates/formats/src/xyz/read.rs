@@ -3,7 +3,7 @@
 use super::columns::{Columns, Comma, MAX, words_of};
 use crate::FormatError;
 use crate::cloud::{Cloud, SAMPLES};
-use crate::colours::{Stored, decode};
+use crate::colours::{Stored, UNCOLOURED, decode};
 use crate::float::parse_f64;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
@@ -61,7 +61,7 @@ const FIRST: usize = 32;
 
 impl Xyz<'_, '_, '_> {
     fn lines(&mut self) -> Result<(), FormatError> {
-        let mut columns = None;
+        let mut columns: Option<Columns> = None;
         let mut lines = 0;
         while !self.cursor.is_done() {
             let start = self.cursor.offset();
@@ -73,19 +73,16 @@ impl Xyz<'_, '_, '_> {
                 // Some scanners write the size of their grid before the points.
                 Line::Numbers(row) if row.count < 3 && columns.is_none() => {}
                 Line::Numbers(row) => {
-                    if columns.is_none() {
-                        columns = Some(Columns::guessed(row.count, &self.rows_from(start, FIRST)?));
+                    let columns = match columns {
+                        Some(known) => known,
+                        None => *columns.insert(self.guessed_columns(row.count, start)?),
+                    };
+                    if self.cloud.positions.is_empty() {
+                        self.cloud = self.cloud_around(&columns, start)?;
                     }
-                    if let Some(columns) = &columns
-                        && self.cloud.positions.is_empty()
-                    {
-                        self.cloud = self.cloud_around(columns, start)?;
-                    }
-                    if let Some(columns) = &columns {
-                        self.point(&row, columns)?;
-                    }
+                    self.point(&row, &columns)?;
                 }
-                Line::Words(names) if lines == 0 => columns = Columns::from_header(&names),
+                Line::Words(names) if lines == 0 => columns = self.named_columns(&names, start),
                 Line::Words(_) => {
                     let words = "a line has words instead of numbers and is left out";
                     let places = self.places;
@@ -99,6 +96,25 @@ impl Xyz<'_, '_, '_> {
             lines += 1;
         }
         Ok(())
+    }
+
+    /// The columns by their numbers, from this offset on.
+    fn guessed_columns(&mut self, count: usize, start: usize) -> Result<Columns, FormatError> {
+        let columns = Columns::guessed(count, &self.rows_from(start, FIRST)?);
+        if (0..count).any(|column| !columns.shows(column)) {
+            let places = self.places;
+            self.oddities.not_used("further numbers of each point", || places.at(start));
+        }
+        Ok(columns)
+    }
+
+    /// The columns by their names, if these are there; names those that are not shown.
+    fn named_columns(&mut self, names: &[String], start: usize) -> Option<Columns> {
+        let (columns, places) = (Columns::from_header(names)?, self.places);
+        for (_, name) in names.iter().enumerate().filter(|(column, _)| !columns.shows(*column)) {
+            self.oddities.not_used(&quoted(name.as_bytes()), || places.at(start));
+        }
+        Some(columns)
     }
 
     /// Parses the current line.
@@ -204,7 +220,9 @@ impl Xyz<'_, '_, '_> {
         self.cloud.push(p);
         if let Some(colour) = columns.colour {
             self.reading.budget.take::<Rgb>(1, self.source.name)?;
-            self.colours.push(Rgb::from_array(colour.map(|column| row.numbers[column] as f32)));
+            let stored = || Rgb::from_array(colour.map(|column| row.numbers[column] as f32));
+            let is_there = colour.iter().all(|&column| column < row.count);
+            self.colours.push(if is_there { stored() } else { UNCOLOURED });
         } else if let Some(column) = columns.intensity {
             self.reading.budget.take::<f32>(1, self.source.name)?;
             self.intensities.push(row.numbers[column] as f32);

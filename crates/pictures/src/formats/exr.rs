@@ -2,7 +2,7 @@
 
 use super::faults::exr::explain;
 use super::guard::guarded;
-use super::primaries::to_rec709;
+use super::primaries::{REC709, luminance, to_rec709};
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
 use crate::{Channel, Crop, Limits, Picture, PictureError, component_rank};
@@ -209,12 +209,11 @@ impl Frame {
                 Samples::Integers(samples) => picture.push_integer_plane(plane.name, samples)?,
             }
         }
-        from_chroma(&mut picture);
         let colours = meta.headers.iter().find_map(|header| header.shared_attributes.chromaticities);
-        if let Some(c) = colours {
-            let primaries = [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y].map(f64::from));
-            to_rec709(&mut picture, primaries);
-        }
+        let primaries = colours
+            .map_or(REC709, |c| [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y].map(f64::from)));
+        from_chroma(&mut picture, luminance(primaries));
+        to_rec709(&mut picture, primaries);
         for header in &meta.headers {
             for (name, value) in header.all_named_attributes() {
                 let value = match value {
@@ -232,13 +231,13 @@ impl Frame {
     }
 }
 
-/// Converts luminance and chroma to colours: RY is (R − Y) / Y and BY is (B − Y) / Y. [OpenEXR, luminance/chroma images]
-fn from_chroma(picture: &mut Picture) {
+/// Converts luminance and chroma to colours: RY is (R − Y) / Y and BY is (B − Y) / Y, where the luminance weights red, green
+/// and blue by these numbers. [OpenEXR, luminance/chroma images]
+fn from_chroma(picture: &mut Picture, [red, green, blue]: [f32; 3]) {
     let [Some(y), Some(ry), Some(by)] = ["Y", "RY", "BY"].map(|name| picture.channel(name)) else { return };
     let colour = |i: usize| {
         let (r, b) = ((ry[i] + 1.0) * y[i], (by[i] + 1.0) * y[i]);
-        let [wr, wg, wb] = LUMINANCE;
-        [r, (y[i] - wr * r - wb * b) / wg, b]
+        [r, (y[i] - red * r - blue * b) / green, b]
     };
     let colours: Vec<[f32; 3]> = (0..picture.pixel_count()).map(colour).collect();
     picture.channels.retain(|channel| !["Y", "RY", "BY"].contains(&&*channel.name));
@@ -248,9 +247,6 @@ fn from_chroma(picture: &mut Picture) {
     });
     picture.channels.splice(..0, planes);
 }
-
-/// The weights of red, green and blue in the luminance of Rec. 709, the default primaries of the format.
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// The window that becomes the picture, and its place in the display window if it is smaller than that.
 fn window(meta: &MetaData, wanted: Wanted) -> (IntegerBounds, Option<Crop>) {

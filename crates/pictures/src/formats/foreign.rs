@@ -52,6 +52,10 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     picture("a GIMP document (XCF)", |b| b.starts_with(b"gimp xcf")),
     picture("a QOI picture", |b| b.starts_with(b"qoif")),
     picture("an icon (ICO)", |b| b.starts_with(b"\0\0\x01\0") && b.get(5) == Some(&0) && b.len() > 22),
+    // A page may have drawings in it.
+    other("a web page (HTML)", "download the file itself", |b| {
+        has_root(b, b"<!DOCTYPE html") || has_root(b, b"<html")
+    }),
     picture("an SVG drawing", |b| has_root(b, b"<svg")),
     picture("a PDF document", |b| b.starts_with(b"%PDF-")),
     picture("a Radiance XYZE picture", |b| b.starts_with(b"#?XYZE")),
@@ -91,9 +95,6 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     other("a pointer of Git LFS", "fetch the file with `git lfs pull`", |b| {
         b.starts_with(b"version https://git-lfs.github.com/spec/")
     }),
-    other("a web page (HTML)", "download the file itself", |b| {
-        has_root(b, b"<!DOCTYPE html") || has_root(b, b"<html")
-    }),
     other("a compressed archive (zip)", "unpack it, and name the file in it", |b| {
         b.starts_with(b"PK\x03\x04")
     }),
@@ -124,7 +125,7 @@ fn has_brand(bytes: &[u8], brands: &[&[u8; 4]]) -> bool {
         && bytes.get(8..12).is_some_and(|brand| brands.iter().any(|b| *b == brand))
 }
 
-/// True for XML or HTML with this first element, after whatever precedes it.
+/// True for XML or HTML with this element near its beginning.
 fn has_root(bytes: &[u8], root: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(2048)];
     let begins = head.trim_ascii_start().starts_with(b"<");

@@ -1,6 +1,6 @@
 //! JPEG: a format for textures, and for pictures on the web. [JPEG]
 
-use super::faults::jpeg::{explain, is_one_scan, is_progressive};
+use super::faults::jpeg::{explain, is_one_scan, is_progressive, is_whole};
 use super::guard::guarded;
 use super::orientation::Orientation;
 use super::rgba8::Interleaved;
@@ -93,7 +93,7 @@ fn loss(bytes: &[u8], space: ColorSpace, height: usize) -> Result<String, Pictur
     if first == one.len() && is_complete && is_one_scan(bytes) {
         return Ok("JPEG: the file has no end marker, but all of its pixels are there".to_owned());
     }
-    if first == one.len() || is_progressive(bytes) {
+    if first == one.len() {
         return Ok("JPEG: the file has no end marker: if it was cut short, rows or details are missing: copy it or save it \
                    again"
             .to_owned());
@@ -110,23 +110,6 @@ fn loss(bytes: &[u8], space: ColorSpace, height: usize) -> Result<String, Pictur
 
 /// How many bytes are tried in place of missing ones: enough for a difference in the first block.
 const CONTINUED: usize = 64;
-
-/// True when an end marker follows the first scan. Segments before it are skipped, since the thumbnail in one of them
-/// may contain an end marker of its own.
-fn is_whole(bytes: &[u8]) -> bool {
-    let mut at = 2;
-    while let Some([0xff, marker, high, low]) = bytes.get(at..at + 4) {
-        at += match marker {
-            0xff => 1,
-            0x01 | 0xd0..=0xd9 => 2,
-            _ => 2 + (usize::from(*high) << 8 | usize::from(*low)),
-        };
-        if *marker == 0xda {
-            break;
-        }
-    }
-    bytes.get(at..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
-}
 
 /// Baseline JPEG, which every program reads. Chroma has full resolution from a quality of 90 on, and half below.
 fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {

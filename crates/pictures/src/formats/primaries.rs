@@ -34,6 +34,13 @@ pub(super) fn to_rec709(picture: &mut Picture, from: Primaries) {
     }
 }
 
+/// The weights of red, green and blue in the luminance; those of Rec. 709 if the primaries are collinear.
+pub(super) fn luminance(primaries: Primaries) -> [f32; 3] {
+    let weights = |primaries| xyz_from_rgb(primaries).map(|[_, y, _]| y.map(|weight| weight as f32));
+    let are_weights = |weights: &[f32; 3]| weights.iter().all(|weight| weight.is_normal());
+    weights(primaries).filter(are_weights).or_else(|| weights(REC709)).unwrap_or([0.0, 1.0, 0.0])
+}
+
 fn planes(picture: &Picture, names: &[String; 3]) -> Option<[Vec<f32>; 3]> {
     let [r, g, b] = names.each_ref().map(|name| picture.channel(name).map(<[f32]>::to_vec));
     Some([r?, g?, b?])
@@ -103,6 +110,20 @@ mod tests {
         let matrix = matrix_to_rec709(ACES_CG).unwrap();
         for (ours, theirs) in matrix.as_flattened().iter().zip(published.as_flattened()) {
             assert!((ours - theirs).abs() < 2e-5, "{matrix:?}");
+        }
+    }
+
+    /// Rec. 709's own weights (ITU-R BT.709, 3.2), and the middle row of the ACES documents' matrix for ACEScg.
+    #[test]
+    fn luminance_has_the_published_weights() {
+        for (primaries, published) in [
+            (REC709, [0.2126, 0.7152, 0.0722]),
+            (ACES_CG, [0.27223, 0.67408, 0.05369]),
+            ([[0.0; 2]; 4], [0.2126, 0.7152, 0.0722]),
+        ] {
+            for (ours, theirs) in luminance(primaries).iter().zip(published) {
+                assert!((ours - theirs).abs() < 5e-5, "{:?}", luminance(primaries));
+            }
         }
     }
 

@@ -45,7 +45,7 @@ fn every_picture_is_read() {
 }
 
 #[test]
-fn files_of_each_format_cut_short_are_refused() {
+fn files_of_each_format_cut_short_are_refused_or_say_so() {
     let Some(scenes) = scenes() else { return };
     for row in PICTURE_FORMATS {
         let all = pictures_below(&scenes);
@@ -57,8 +57,10 @@ fn files_of_each_format_cut_short_are_refused() {
             let bytes = std::fs::read(path).unwrap();
             for sixteenth in 0..15 {
                 let cut = &bytes[..bytes.len() * sixteenth / 16];
-                let outcome = (row.read)(cut, &Limits::default());
-                assert!(outcome.is_err(), "{} cut to {} of {}", path.display(), cut.len(), bytes.len());
+                if let Ok(picture) = (row.read)(cut, &Limits::default()) {
+                    let says_so = picture.warnings.iter().any(|warning| warning.contains("cut short"));
+                    assert!(says_so, "{} cut to {} of {}", path.display(), cut.len(), bytes.len());
+                }
             }
         }
     }

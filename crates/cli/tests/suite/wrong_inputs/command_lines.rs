@@ -5,6 +5,9 @@ use super::Case;
 /// A scene that can be rendered.
 const BALL: &[u8] = b"[[model]]\nshape = \"sphere\"\n";
 
+/// A picture of one pixel.
+const PPM: &[(&str, &[u8])] = &[("a.ppm", b"P6 1 1 255\n\0\0\0")];
+
 /// Each runs in a folder that contains `triangle.obj`.
 pub(crate) const CASES: &[Case] = &[
     // Names.
@@ -51,12 +54,7 @@ pub(crate) const CASES: &[Case] = &[
     Case::file("a Blender file", 1, &[("a.blend", b"BLENDER-v300")], "render a.blend -o out.png"),
     Case::file("an FBX file", 1, &[("a.fbx", b"Kaydara FBX Binary")], "render a.fbx -o out.png"),
     Case::file("a USD file", 1, &[("a.usd", b"PXR-USDC")], "info a.usd"),
-    Case::file(
-        "a picture in place of a scene",
-        1,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "render a.ppm -o out.png",
-    ),
+    Case::file("a picture in place of a scene", 1, PPM, "render a.ppm -o out.png"),
     Case::command("a picture without -o", 2, "render triangle.obj out.png"),
     Case::command("a converted file without -o", 2, "convert triangle.obj out.glb"),
     Case::command("an option of one letter that there is not", 2, "render triangle.obj -o out.png -s 64x64"),
@@ -163,29 +161,14 @@ pub(crate) const CASES: &[Case] = &[
     Case::command("a preview that there is not", 2, "render triangle.obj -o out.png --preview=ascii"),
     Case::command("a turntable in the browser", 2, "serve triangle.obj --turntable 4"),
     Case::command("a folder in place of a sky", 1, "render triangle.obj -o out.png --env ."),
-    Case::file(
-        "a bound that is a word",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "compare a.ppm a.ppm --max-flip low",
-    ),
+    Case::file("a bound that is a word", 2, PPM, "compare a.ppm a.ppm --max-flip low"),
     Case::command("numbers of teapots that are words", 2, "bench build --counts many"),
-    Case::file(
-        "threads of a denoiser below 0",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "denoise a.ppm -o out.png --threads -1",
-    ),
-    Case::file(
-        "a denoiser of a picture that is misspelt",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "denoise a.ppm -o out.png --by odn",
-    ),
+    Case::file("threads of a denoiser below 0", 2, PPM, "denoise a.ppm -o out.png --threads -1"),
+    Case::file("a denoiser of a picture that is misspelt", 2, PPM, "denoise a.ppm -o out.png --by odn"),
     Case::file(
         "a tone curve of a picture that there is not",
         2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
+        PPM,
         "denoise a.ppm -o out.png --tonemap filmic",
     ),
     Case::command(
@@ -242,23 +225,13 @@ pub(crate) const CASES: &[Case] = &[
         2,
         "render triangle.obj -o out.png --stats none/s.json",
     ),
-    Case::file(
-        "a heat map without an extension",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "compare a.ppm a.ppm --heat-map out",
-    ),
+    Case::file("a heat map without an extension", 2, PPM, "compare a.ppm a.ppm --heat-map out"),
     Case::command("a generated scene that is to be a picture", 2, "generate trio -o out.png"),
     Case::command("a generated scene without an extension", 2, "generate trio -o out"),
     // Other commands.
     Case::command("a scene converted onto itself", 2, "convert triangle.obj -o triangle.obj"),
     Case::command("a scene converted to an unknown format", 2, "convert triangle.obj -o triangle.fbx"),
-    Case::file(
-        "a picture to become a scene",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "convert a.ppm -o a.glb",
-    ),
+    Case::file("a picture to become a scene", 2, PPM, "convert a.ppm -o a.glb"),
     Case::command(
         "frames of a scene that stands still",
         1,
@@ -266,24 +239,9 @@ pub(crate) const CASES: &[Case] = &[
     ),
     Case::command("a scene that is to become a picture", 2, "convert triangle.obj -o out.png"),
     Case::command("a picture to compare that is not there", 2, "compare none.png other.png"),
-    Case::file(
-        "a picture to merge that is no partial render",
-        1,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "merge a.ppm -o out.png",
-    ),
-    Case::file(
-        "partial renders merged into an unknown format",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "merge a.ppm -o out.xyz",
-    ),
-    Case::file(
-        "a picture converted to an unknown format",
-        2,
-        &[("a.ppm", b"P6 1 1 255\n\0\0\0")],
-        "convert a.ppm -o out.pgn",
-    ),
+    Case::file("a picture to merge that is no partial render", 1, PPM, "merge a.ppm -o out.png"),
+    Case::file("partial renders merged into an unknown format", 2, PPM, "merge a.ppm -o out.xyz"),
+    Case::file("a picture converted to an unknown format", 2, PPM, "convert a.ppm -o out.pgn"),
     Case::file(
         "pictures of different sizes",
         2,

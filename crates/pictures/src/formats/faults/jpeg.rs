@@ -32,51 +32,69 @@ pub(in super::super) fn explain(error: &DecodeErrors, bytes: &[u8]) -> PictureEr
     if let Some(part) = cut_segment(bytes) {
         return PictureError::truncated(FORMAT, part);
     }
-    match error {
-        DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_) => {
+    match (error, bits_per_sample(bytes)) {
+        (DecodeErrors::ExhaustedData | DecodeErrors::IoErrors(_), _) => {
             PictureError::truncated(FORMAT, "the pixels")
         }
-        _ if bits_per_sample(bytes).is_some_and(|bits| bits != 8) => PictureError::Unsupported {
+        (_, Some(bits)) if bits != 8 => PictureError::Unsupported {
             format: FORMAT,
-            what: format!("a picture of {} bits per sample", bits_per_sample(bytes).unwrap_or_default()),
+            what: format!("a picture of {bits} bits per sample"),
             advice: "convert it to PNG or TIFF of 16 bits, for instance with djpeg of libjpeg-turbo 3 (djpeg -pnm in.jpg > \
                      out.ppm, which Bilux reads)",
         },
-        DecodeErrors::Unsupported(_) => PictureError::Unsupported {
+        (DecodeErrors::Unsupported(_), _) => PictureError::Unsupported {
             format: FORMAT,
             what: "arithmetic coding or lossless compression".to_owned(),
             advice: "save it as an ordinary JPEG, baseline or progressive",
         },
-        other => PictureError::invalid(FORMAT, meaning(&other.to_string(), PHRASES)),
+        (other, _) => PictureError::invalid(FORMAT, meaning(&other.to_string(), PHRASES)),
     }
 }
 
 /// The number of bits of a sample, as the frame header gives it.
 fn bits_per_sample(bytes: &[u8]) -> Option<u8> {
-    let (_, frame) = segments(bytes).find(|(marker, _)| is_frame(*marker))?;
-    frame.first().copied()
+    segments(bytes).find(|segment| is_frame(segment.marker))?.body.first().copied()
 }
 
 /// True for a file whose scans add detail to the same pixels.
 pub(in super::super) fn is_progressive(bytes: &[u8]) -> bool {
-    segments(bytes).any(|(marker, _)| matches!(marker, 0xc2 | 0xc6 | 0xca | 0xce))
+    segments(bytes).any(|segment| matches!(segment.marker, 0xc2 | 0xc6 | 0xca | 0xce))
 }
 
 /// True for a file of a single scan that nothing interrupts, so that one block follows the other.
 pub(in super::super) fn is_one_scan(bytes: &[u8]) -> bool {
-    let restarts = segments(bytes).any(|(marker, _)| marker == 0xdd);
-    let components = segments(bytes).find_map(|(marker, frame)| frame.get(5).filter(|_| is_frame(marker)));
-    let scanned = segments(bytes).find_map(|(marker, scan)| scan.first().filter(|_| marker == 0xda));
-    !restarts && !is_progressive(bytes) && components.is_some() && components == scanned
+    let restarts = segments(bytes).any(|segment| segment.marker == 0xdd);
+    let frame = segments(bytes).find(|segment| is_frame(segment.marker));
+    let scan = segments(bytes).find(|segment| segment.marker == SCAN);
+    let components = frame.and_then(|frame| frame.body.get(5).copied());
+    !restarts && components.is_some() && components == scan.and_then(|scan| scan.body.first().copied())
 }
+
+/// True when an end marker follows the first scan. Segments before it are skipped, since the thumbnail in one of them
+/// may contain an end marker of its own.
+pub(in super::super) fn is_whole(bytes: &[u8]) -> bool {
+    let pixels = segments(bytes).last().map_or(2, |segment| segment.end);
+    bytes.get(pixels..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
+}
+
+/// The marker of a scan's header.
+const SCAN: u8 = 0xda;
 
 /// True for the markers of frame headers.
 fn is_frame(marker: u8) -> bool {
     matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc)
 }
 
-/// The segments up to the first scan: their markers and what follows their lengths.
-fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
+struct Segment<'b> {
+    marker: u8,
+    /// What follows its length.
+    body: &'b [u8],
+    /// The offset of what follows it.
+    end: usize,
+}
+
+/// The segments up to the first scan.
+fn segments(bytes: &[u8]) -> impl Iterator<Item = Segment<'_>> {
     let (mut at, mut is_done) = (2, false);
     std::iter::from_fn(move || {
         while let Some(&[0xff, marker]) = bytes.get(at..at + 2).filter(|_| !is_done) {
@@ -86,8 +104,8 @@ fn segments(bytes: &[u8]) -> impl Iterator<Item = (u8, &[u8])> {
             }
             let length = usize::from(*bytes.get(at + 2)?) << 8 | usize::from(*bytes.get(at + 3)?);
             let body = bytes.get(at + 4..at + 2 + length)?;
-            (at, is_done) = (at + 2 + length, marker == 0xda);
-            return Some((marker, body));
+            (at, is_done) = (at + 2 + length, marker == SCAN);
+            return Some(Segment { marker, body, end: at });
         }
         None
     })
