@@ -1,9 +1,19 @@
 //! How much memory the system lets this process use: less than the machine has, where a control group (of a container, a
 //! service or a job) or `ulimit` says so. Whoever takes more is killed without a word, or gets none.
 
+use bilux_scene::{Parameters, Value};
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Bytes per thread: 16 MB of stack, and the paths that it traces.
+const THREAD: u64 = 24 << 20;
+/// Threads take at most one part in this many.
+const THREADS_PART: u64 = 4;
+/// Bytes for everything that no estimate counts.
+const RESERVE: u64 = 12 << 20;
+/// Not even a small scene can be read with less; whether there is so much, allocations show.
+const LEAST: u64 = 1 << 20;
 
 /// What limits the memory of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +67,30 @@ impl MemoryLimit {
     pub fn is_imposed(&self) -> bool {
         self.source != LimitSource::Machine
     }
+
+    /// The number of threads for which there is memory, if it is lower than the number of cores.
+    pub fn threads(&self) -> Option<usize> {
+        let fits = usize::try_from(self.left / THREADS_PART / THREAD).unwrap_or(usize::MAX).max(1);
+        (self.is_imposed() && fits < cores()).then_some(fits)
+    }
+
+    /// Sets the number of threads to what there is memory for, unless somebody has.
+    pub fn set_threads(&self, settings: &mut Parameters) {
+        if let (Some(threads), None) = (self.threads(), settings.find("threads")) {
+            settings.set("threads", Value::Integer(threads as i64));
+        }
+    }
+
+    /// The bytes that are left for a scene and its picture beside the threads.
+    pub fn for_pictures(&self) -> u64 {
+        let threads = self.threads().unwrap_or_else(cores) as u64 * THREAD;
+        let reserve = if self.is_imposed() { threads + RESERVE.min(self.left / THREADS_PART) } else { 0 };
+        self.left.saturating_sub(reserve).max(LEAST)
+    }
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Where control groups are, by the form of their files: their limit, what is in use, and the names under which they count
@@ -225,6 +259,24 @@ mod tests {
             ("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n"),
         ]);
         assert_eq!(all.source, LimitSource::Machine);
+    }
+
+    #[test]
+    fn threads_and_pictures_share_what_is_left() {
+        let of = |source, left| MemoryLimit { source, limit: left, left };
+        let machine = of(LimitSource::Machine, 4 << 30);
+        assert_eq!((machine.threads(), machine.for_pictures()), (None, 4 << 30));
+        let tight = of(LimitSource::Group, 200 << 20);
+        assert_eq!(tight.threads(), (cores() > 2).then_some(2));
+        assert_eq!(tight.for_pictures(), (200 << 20) - cores().min(2) as u64 * THREAD - RESERVE);
+        assert_eq!(of(LimitSource::AddressSpace, 0).for_pictures(), LEAST);
+        let (mut asked, mut open) = (Parameters::default(), Parameters::default());
+        asked.set("threads", Value::Integer(7));
+        let one = of(LimitSource::Group, 1);
+        [&mut asked, &mut open].into_iter().for_each(|settings| one.set_threads(settings));
+        assert_eq!(asked.find("threads").map(|(value, _)| value.clone()), Some(Value::Integer(7)));
+        let few = (cores() > 1).then_some(Value::Integer(1));
+        assert_eq!(open.find("threads").map(|(value, _)| value.clone()), few);
     }
 
     #[test]

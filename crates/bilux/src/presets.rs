@@ -33,16 +33,56 @@ pub(crate) fn replace_backdrop(scene: &mut SceneBuilder, environment: Spec) {
     scene.lights.push(environment.with("backdrop", true));
 }
 
-/// Lights a scene with an environment map in longitude and latitude, replacing the one that it may have. Other lights
-/// stay.
+/// Surroundings that need no file.
+pub struct Surroundings {
+    /// The word that names them in place of a file.
+    pub name: &'static str,
+    /// Changes a scene.
+    apply: fn(&mut SceneBuilder),
+}
+
+/// All surroundings that need no file.
+pub const SURROUNDINGS: &[Surroundings] = &[
+    // The studio adds nothing to lights of the scene's own.
+    Surroundings { name: "none", apply: |scene| scene.environment_unspecified = false },
+    Surroundings {
+        name: "sky",
+        apply: |scene| replace_surroundings(scene, Spec::new("surroundings", "sky")),
+    },
+    // The studio lights what has no lights.
+    Surroundings {
+        name: "studio",
+        apply: |scene| {
+            scene.lights.retain(Spec::is_backdrop);
+            (scene.environment_unspecified, scene.describes_all_light) = (true, false);
+        },
+    },
+];
+
+/// The surroundings of this name; `None` if it is that of a file.
+pub fn surroundings_named(name: &Path) -> Option<&'static Surroundings> {
+    SURROUNDINGS.iter().find(|row| name == Path::new(row.name))
+}
+
+/// Surrounds a scene with one of [`SURROUNDINGS`], by its name, or with an environment map in longitude and latitude, in
+/// place of what it may have around it. Other lights stay, except in the studio.
 ///
 /// # Errors
 /// If the image cannot be read, or has no colours.
-pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
-    let light = picture_light(scene, picture, options)?;
-    scene.lights.retain(|light| light.kind != "environment" || light.is_backdrop());
-    scene.lights.push(light);
+pub fn surround(scene: &mut SceneBuilder, around: &Path, options: &ReadOptions) -> Result<(), Error> {
+    match surroundings_named(around) {
+        Some(row) => (row.apply)(scene),
+        None => {
+            let light = picture_light(scene, around, options)?;
+            replace_surroundings(scene, light);
+        }
+    }
     Ok(())
+}
+
+fn replace_surroundings(scene: &mut SceneBuilder, light: Spec) {
+    scene.lights.retain(|old| !matches!(&*old.kind, "environment" | "sky") || old.is_backdrop());
+    scene.lights.push(light);
 }
 
 /// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.
@@ -87,4 +127,34 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
         }
     }
     Ok(light)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surroundings_that_need_no_file_take_the_place_of_those_there_are() {
+        let surrounded = |around: &str| {
+            let mut scene = SceneBuilder::default();
+            scene.describes_all_light = true;
+            for (name, kind) in [("lamp", "point"), ("map", "environment"), ("day", "sky")] {
+                scene.lights.push(Spec::new(name, kind));
+            }
+            scene.lights.push(Spec::new("behind", "environment").with("backdrop", true));
+            let read = surround(&mut scene, Path::new(around), &ReadOptions::default());
+            let names: Vec<String> = scene.lights.iter().map(|light| light.name.clone()).collect();
+            (read.map(|()| (names, scene.environment_unspecified, scene.describes_all_light)), scene)
+        };
+        let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+        let (sky, scene) = surrounded("sky");
+        assert_eq!(sky.unwrap(), (names(&["lamp", "behind", "surroundings"]), false, true));
+        assert_eq!(scene.lights[2].kind, "sky");
+        // The studio lights what has no light, and says nothing of it.
+        let (studio, scene) = surrounded("studio");
+        assert_eq!(studio.unwrap(), (names(&["behind"]), true, false));
+        assert!(!bilux_scene::presets::seems_lit(&scene));
+        assert_eq!(surrounded("none").0.unwrap(), (names(&["lamp", "map", "day", "behind"]), false, true));
+        assert!(surrounded("./sky").0.unwrap_err().to_string().contains("cannot open"), "that is a file");
+    }
 }

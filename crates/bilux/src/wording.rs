@@ -1,5 +1,6 @@
 //! Messages in the words of Python. The library calls options as the command line does; here they are keywords.
 
+use crate::presets::SURROUNDINGS;
 use crate::settings::RENDER;
 use bilux_math::registry::ParameterKind;
 use bilux_pictures::TONEMAPS;
@@ -64,7 +65,8 @@ fn keyword(name: &str, after: &str) -> (String, usize) {
     }
     let text = match name {
         "set" => value.to_owned(),
-        "scene.surround" => format!("scene.surround({value})"),
+        "scene.surround" if is_placeholder(value) => format!("scene.surround({value})"),
+        "scene.surround" => format!("scene.surround({value:?})"),
         "aov" => format!("aov=[{value:?}]"),
         _ if value.contains(',') => format!("{name}=({})", value.replace(',', ", ")),
         _ if value.parse::<f64>().is_ok() || is_placeholder(value) => format!("{name}={value}"),
@@ -85,6 +87,7 @@ fn is_value(name: &str, word: &str) -> bool {
         "aov" => AOVS.iter().any(|row| row.entry.name == word),
         "tonemap" => TONEMAPS.iter().any(|row| row.entry.name == word),
         "set" => word.contains('='),
+        "scene.surround" => SURROUNDINGS.iter().any(|row| row.name == word),
         _ => false,
     };
     is_number || is_choice || is_row || is_placeholder(word)
@@ -111,6 +114,8 @@ mod tests {
             ("depends on --accel", "depends on accel"),
             ("its surroundings (--env) or", "its surroundings (scene.surround(…)) or"),
             ("--env FILE lights it", "scene.surround(FILE) lights it"),
+            ("(--env none leaves them out)", "(scene.surround(\"none\") leaves them out)"),
+            ("choose one (--layer NAME, or", "choose one (layer=NAME, or"),
             ("--time-limit 5, or --noise 0.02.", "time_limit=5, or noise=0.02."),
             ("it is empty; `bilux info` shows more", "it is empty"),
             ("write white; for a picture, use --background FILE on the command line", "write white"),

@@ -26,9 +26,10 @@ pub struct StudioArguments {
     /// Magnify the picture by this factor [default: 1]
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = parse_zoom, help_heading = help::STUDIO)]
     pub zoom: Option<f32>,
-    /// Light the scene with a longitude-latitude environment map (.hdr, .exr or any other picture); none turns the
-    /// studio's lights off for a glTF file with lights of its own
-    #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
+    /// Light the scene with a longitude-latitude environment map (.hdr, .exr or any other picture), with a daylight sky,
+    /// or with the studio in place of its own lights; none turns the studio's lights off for a glTF file with lights of
+    /// its own
+    #[arg(long, value_name = "FILE|sky|studio|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
     /// The layer of the pictures of --env and --background, of an EXR that has several [default: its main picture]
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
@@ -85,6 +86,11 @@ impl StudioArguments {
         StudioArguments { env: env.or(self.env.clone()), ..self.clone() }
     }
 
+    /// The surroundings if they are a picture.
+    pub fn picture_around(&self) -> Option<&Path> {
+        self.env.as_deref().filter(|env| bilux::presets::surroundings_named(env).is_none())
+    }
+
     /// The background if it is a picture instead of a colour.
     pub fn picture_behind(&self) -> Option<&Path> {
         let is_setting = |text: &str| Background::parse(text).is_some() || text.starts_with('#');
@@ -101,7 +107,7 @@ impl StudioArguments {
                 text.display()
             );
         }
-        if self.layer.is_some() && self.picture_behind().is_none() && self.env.is_none() {
+        if self.layer.is_some() && self.picture_behind().is_none() && self.picture_around().is_none() {
             bail!("--layer is of the picture of --env or --background: name one, or leave it out");
         }
         self.change.iter().try_for_each(|change| change_of(change).map(drop))
@@ -109,8 +115,7 @@ impl StudioArguments {
 
     /// Checks, before any work, that the pictures that options name can be opened.
     pub fn check_files(&self) -> anyhow::Result<()> {
-        let env = self.env.as_deref().filter(|path| *path != Path::new("none"));
-        for (flag, path) in [("--env", env), ("--background", self.picture_behind())] {
+        for (flag, path) in [("--env", self.picture_around()), ("--background", self.picture_behind())] {
             if let Some(path) = path {
                 if path.is_dir() {
                     bail!("{flag}: {}: this is a folder: name a picture in it", path.display());
@@ -130,12 +135,7 @@ impl StudioArguments {
 
 /// Lights a scene with what `--env` says.
 pub fn surround(env: Option<&Path>, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
-    match env {
-        None => {}
-        Some(env) if env == Path::new("none") => scene.environment_unspecified = false,
-        Some(picture) => bilux::presets::surround(scene, picture, options).context("--env")?,
-    }
-    Ok(())
+    env.map_or(Ok(()), |env| bilux::presets::surround(scene, env, options).context("--env"))
 }
 
 fn extension(path: &Path) -> &str {

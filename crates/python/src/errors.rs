@@ -1,14 +1,14 @@
 //! Errors as Python exceptions. The classes are in `bilux/_errors.py`; the texts are those of the Rust errors.
 
 use bilux::formats::FormatError;
+use bilux::memory_limit::MemoryLimit;
 use bilux::pictures::PictureError;
 use bilux::scene::{SceneError, Warning};
 use bilux::wording::in_python;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
 use std::ffi::CString;
-use std::io::ErrorKind;
-use std::path::Path;
+use std::io::{self, ErrorKind};
 
 /// The exception classes.
 mod classes {
@@ -31,10 +31,12 @@ pub(crate) fn exception(error: impl Into<bilux::Error>) -> PyErr {
 /// The exception of an error's kind, with this text and the keyword that allows what was refused.
 pub(crate) fn of_text(error: &bilux::Error, text: String) -> PyErr {
     let text = in_python(&text) + &allowing(error);
+    match (unopened(error), error) {
+        (Some(cause), _) if cause.kind() == ErrorKind::NotFound => return PyFileNotFoundError::new_err(text),
+        (Some(_), bilux::Error::Picture(_)) => return PyOSError::new_err(text),
+        _ => {}
+    }
     match error {
-        bilux::Error::Format(FormatError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => {
-            PyFileNotFoundError::new_err(text)
-        }
         bilux::Error::Format(FormatError::Scene(_))
         | bilux::Error::Scene(_)
         | bilux::Error::Settings(_)
@@ -48,22 +50,34 @@ pub(crate) fn of_text(error: &bilux::Error, text: String) -> PyErr {
     }
 }
 
-/// The keyword that allows what the library refused.
+/// Why a file cannot be opened, if that is what is wrong.
+fn unopened(error: &bilux::Error) -> Option<&io::Error> {
+    fn of_picture(error: &PictureError) -> Option<&io::Error> {
+        match error {
+            PictureError::InFile { source, .. } => of_picture(source),
+            PictureError::Io { action: "open it", source } => Some(source),
+            _ => None,
+        }
+    }
+    match error {
+        bilux::Error::Format(FormatError::Io { source, .. }) => Some(source),
+        bilux::Error::Picture(error) => of_picture(error),
+        _ => None,
+    }
+}
+
+/// The keyword that allows what the library refused, unless the system does.
 fn allowing(error: &bilux::Error) -> String {
+    if let (Some(bytes), Some(limit)) = (error.memory_to_allow(), MemoryLimit::of_process())
+        && bytes > limit.for_pictures()
+    {
+        return format!(" ({} is the limit)", limit.source);
+    }
     match (error.memory_to_allow(), error) {
         (Some(bytes), _) if bytes.is_multiple_of(1 << 30) => format!(" (max_memory={} << 30)", bytes >> 30),
         (Some(bytes), _) => format!(" (max_memory={} << 20)", bytes.div_ceil(1 << 20)),
         (None, bilux::Error::Format(FormatError::Outside { .. })) => " (allow_outside=True)".to_owned(),
         _ => String::new(),
-    }
-}
-
-/// The exception for a file that cannot be opened.
-pub(crate) fn unopened(path: &Path, error: &std::io::Error) -> PyErr {
-    let text = format!("{}: cannot open it: {}", path.display(), bilux::pictures::reason(error));
-    match error.kind() {
-        ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
-        _ => PyOSError::new_err(text),
     }
 }
 
@@ -82,9 +96,21 @@ pub(crate) fn of_scene(error: SceneError) -> PyErr {
 /// # Errors
 /// If the user's filters turn warnings into errors.
 pub(crate) fn warn(py: Python<'_>, warnings: &[Warning]) -> PyResult<()> {
+    warn_of_all(py, warnings.iter().map(ToString::to_string))
+}
+
+/// The same for what is odd about the file of a picture.
+///
+/// # Errors
+/// As [`warn`].
+pub(crate) fn warn_of_picture(py: Python<'_>, name: &str, warnings: &[String]) -> PyResult<()> {
+    warn_of_all(py, warnings.iter().map(|warning| format!("{name}: {warning}")))
+}
+
+fn warn_of_all(py: Python<'_>, all: impl Iterator<Item = String>) -> PyResult<()> {
     let category = py.import("bilux._errors")?.getattr("SceneWarning")?;
-    for warning in warnings {
-        let text = in_python(&warning.to_string()).replace('\0', " ");
+    for warning in all {
+        let text = in_python(&warning).replace('\0', " ");
         let text = CString::new(text).unwrap_or_default();
         PyErr::warn(py, &category, &text, 2)?;
     }

@@ -16,6 +16,7 @@ mod keyframes;
 mod layer;
 mod layer_names;
 mod loading;
+mod memory;
 mod output;
 mod parts;
 mod pickling;

@@ -2,13 +2,12 @@
 
 use crate::ending::without_gil;
 use crate::errors::{of_text, warn};
-use crate::source::Source;
+use crate::source::{Source, bytes_at};
 use bilux::formats::{FormatError, Glass, ReadOptions};
 use bilux::scene::SceneBuilder;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Where a scene came from, and how it was read.
 #[derive(Clone)]
@@ -44,7 +43,8 @@ impl Origin {
         let bytes = match source {
             Source::Path(path) if format.is_none() && folder.is_none() => return bilux::load(path, options),
             Source::Path(path) => {
-                opened = bytes_at(path, options.max_memory)?;
+                let fault = |source| FormatError::Io { path: path.clone(), action: "open it", source };
+                opened = bytes_at(path, options.max_memory).map_err(fault)?;
                 &opened[..]
             }
             Source::Bytes { bytes, .. } => bytes,
@@ -56,15 +56,6 @@ impl Origin {
         let read = bilux::formats::read_bytes(bytes, &format, folder.as_deref(), &source.name(), options);
         Ok(read?)
     }
-}
-
-/// The bytes of a file, but not many more than `most`.
-fn bytes_at(path: &Path, most: u64) -> Result<Vec<u8>, FormatError> {
-    let fault = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(fault)?;
-    file.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(fault)?;
-    Ok(bytes)
 }
 
 /// Reads a scene, and shows what is odd about it.

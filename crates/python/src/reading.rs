@@ -1,7 +1,8 @@
 //! Pictures from files, and how much pictures differ.
 
 use crate::ending::without_gil;
-use crate::errors::{of_picture, unopened};
+use crate::errors::{of_picture, warn_of_picture};
+use crate::memory;
 use crate::picture::Picture;
 use crate::source::Source;
 use bilux::Display;
@@ -16,7 +17,7 @@ use pyo3::types::PyDict;
 ///     format: the format (`bilux.picture_formats`), where neither its bytes nor its name says it.
 ///
 /// Returns:
-///     the picture in linear light, with all layers of an EXR.
+///     the picture in linear light, with all layers of an EXR. What is odd about the file is a `SceneWarning`.
 ///
 /// Raises:
 ///     FileNotFoundError: if there is no such file.
@@ -33,14 +34,10 @@ pub(crate) fn read_picture(
     file: &Bound<'_, PyAny>,
     format: Option<&str>,
 ) -> PyResult<Picture> {
-    let limits = bilux::pictures::Limits::default();
+    let limits = memory::for_picture_files();
     let mut source = Source::of("file", file, limits.max_bytes)?;
-    if let (Source::Path(path), Some(_)) = (&source, format) {
-        source = Source::opened(py, path)?;
-    }
-    if let Source::Path(path) = &source {
-        let opened = without_gil(py, || std::fs::File::open(path).map(drop));
-        opened.map_err(|error| unopened(path, &error))?;
+    if format.is_some() {
+        source = source.opened(py, limits.max_bytes)?;
     }
     let extension = format.map(str::to_owned).or_else(|| source.extension());
     let picture = without_gil(py, || match &source {
@@ -50,6 +47,7 @@ pub(crate) fn read_picture(
         }
     });
     let picture = picture.map(bilux::pictures::Picture::into_linear).map_err(of_picture)?;
+    warn_of_picture(py, &source.name(), &picture.warnings)?;
     Picture::of(py, &picture, Display::default(), None)
 }
 

@@ -3,6 +3,7 @@
 use crate::errors::{Error, exception, of_scene, warn};
 use crate::inspect::check_strategies;
 use crate::loading::Origin;
+use crate::memory;
 use crate::picture::Picture;
 use crate::values;
 use crate::watch::{Stopped, Watch, follow};
@@ -55,6 +56,7 @@ impl Request {
         let (begun, series) = (Instant::now(), Series::default());
         let user = values::keywords(settings)?;
         let aovs = aovs(layers).map_err(of_scene)?;
+        let max_memory = memory::within_limits(max_memory);
         Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series, origin: None })
     }
 }
@@ -326,7 +328,7 @@ pub(crate) fn build(
     user: &Parameters,
     max_memory: u64,
 ) -> Result<(Job, u64), bilux::Error> {
-    build_of((scene, built), user, max_memory, &Series::default())
+    build_of((scene, built), user, memory::within_limits(max_memory), &Series::default())
 }
 
 /// As [`build`], for a picture of a series.

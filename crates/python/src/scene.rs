@@ -4,8 +4,9 @@ use crate::adding::{self, Adding, mesh, of_table};
 use crate::arrays;
 use crate::encoded::{Encoded, decoded};
 use crate::ending::without_gil;
-use crate::errors::exception;
+use crate::errors::{exception, warn};
 use crate::loading::{Origin, glass_named, loaded};
+use crate::memory::within_limits;
 use crate::picture::Picture;
 use crate::progressive::Progressive;
 use crate::render::{Request, render};
@@ -61,6 +62,7 @@ impl Scene {
         allow_outside: bool,
         strict: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let max_memory = within_limits(max_memory);
         let options = ReadOptions {
             max_memory,
             allow_outside,
@@ -285,12 +287,18 @@ impl Scene {
         self.builder(py).notes.iter().map(|note| in_python(&note.to_string())).collect()
     }
 
-    /// Lights the scene with a picture, or a layer of one, in longitude and latitude, replacing the one that it may have.
+    /// Lights the scene with a picture in longitude and latitude, or a layer of one, in place of what it may have around it;
+    /// also with "sky", daylight, or with "studio", the studio in place of all of its lights. "none" turns the studio's lights
+    /// off for a glTF file with lights of its own.
     #[pyo3(signature = (path, layer = None))]
     fn surround(&self, py: Python<'_>, path: PathBuf, layer: Option<String>) -> PyResult<()> {
         let options = ReadOptions { allow_outside: true, picture_layer: layer, ..ReadOptions::default() };
         let mut builder = self.builder(py);
-        bilux::presets::surround(&mut builder, &path, &options).map_err(exception)
+        let before = builder.warnings.len();
+        bilux::presets::surround(&mut builder, &path, &options).map_err(exception)?;
+        let new = builder.warnings[before..].to_vec();
+        drop(builder);
+        warn(py, &new)
     }
 
     /// Writes the scene to a file; the extension says in which format. Returns what the format cannot hold.

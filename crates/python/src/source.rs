@@ -1,12 +1,15 @@
 //! Where the bytes of a file come from: a path, the bytes themselves, or an open file.
 
 use crate::ending::without_gil;
-use crate::errors::{of_picture, unopened};
+use crate::errors::of_picture;
+use bilux::pictures::PictureError;
 use bilux::pictures::formats::format_of_path;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PyMemoryView, PyString};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -58,12 +61,14 @@ impl Source {
         Ok(Source::Bytes { bytes: read_all(argument, given, most)?, name })
     }
 
-    /// The bytes of the file at a path.
+    /// The same with the bytes of a picture's file in place of its path, but not many more than `most`.
     ///
     /// # Errors
     /// If it cannot be read.
-    pub(crate) fn opened(py: Python<'_>, path: &Path) -> PyResult<Source> {
-        let bytes = without_gil(py, || std::fs::read(path)).map_err(|error| unopened(path, &error))?;
+    pub(crate) fn opened(self, py: Python<'_>, most: u64) -> PyResult<Source> {
+        let Source::Path(path) = &self else { return Ok(self) };
+        let fault = |source| of_picture(PictureError::Io { action: "open it", source }.in_file(path));
+        let bytes = without_gil(py, || bytes_at(path, most)).map_err(fault)?;
         Ok(Source::Bytes { bytes: bytes.into(), name: Some(path.display().to_string()) })
     }
 
@@ -109,6 +114,13 @@ impl Source {
         };
         path.is_file().then(|| path.parent().map(Path::to_owned)).flatten()
     }
+}
+
+/// The bytes of a file, but not many more than `most`: whoever reads them says that they are too many.
+pub(crate) fn bytes_at(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The bytes in a Python object that holds some; `None` if it holds none.

@@ -3,7 +3,8 @@
 use crate::arrays;
 use crate::encoded::{Encoded, decoded as decoded_scene};
 use crate::ending::without_gil;
-use crate::errors::of_picture;
+use crate::errors::{of_picture, warn_of_picture};
+use crate::memory;
 use crate::source::Source;
 use bilux::math::Rgb;
 use bilux::pictures::{Limits, PictureError, Rgba8, read_rgba8};
@@ -56,6 +57,7 @@ impl Texture {
     ///     layer: a layer of an EXR, in place of its main picture.
     ///
     /// Raises:
+    ///     FileNotFoundError: if there is no such file.
     ///     PictureError: if the file is no picture, or has no such layer.
     #[staticmethod]
     #[pyo3(signature = (file, *, data = false, wrap = "repeat", filter = "linear", format = None, layer = None))]
@@ -68,13 +70,13 @@ impl Texture {
         layer: Option<&str>,
     ) -> PyResult<Texture> {
         let py = file.py();
-        let mut source = Source::of("file", file, Limits::default().max_bytes)?;
-        if let Source::Path(path) = &source {
-            source = Source::opened(py, path)?;
-        }
+        let limits = memory::for_picture_files();
+        let source = Source::of("file", file, limits.max_bytes)?.opened(py, limits.max_bytes)?;
         let (name, format) = (source.file_name(), format.or_else(|| source.extension()));
         let bytes = source.bytes();
-        let image = without_gil(py, || decoded(bytes, format.as_deref(), data, layer)).map_err(of_picture)?;
+        let read = without_gil(py, || decoded(bytes, (format.as_deref(), data, layer), &limits));
+        let (image, warnings) = read.map_err(of_picture)?;
+        warn_of_picture(py, &source.name(), &warnings)?;
         let image = image.ok_or_else(|| {
             PyValueError::new_err(format!("{}: this picture has no colours", source.name()))
         })?;
@@ -146,25 +148,23 @@ fn unknown(argument: &str, word: &str, known: &str) -> PyErr {
     PyValueError::new_err(format!("{argument}: there is no '{word}': write {known}"))
 }
 
-/// The image in a file; `None` if it has no colours.
+/// The image in a file, and what is odd about that; `None` if it has no colours.
 fn decoded(
     bytes: &[u8],
-    extension: Option<&str>,
-    data: bool,
-    layer: Option<&str>,
-) -> Result<Option<Image>, PictureError> {
-    let limits = Limits::default();
+    (extension, data, layer): (Option<&str>, bool, Option<&str>),
+    limits: &Limits,
+) -> Result<(Option<Image>, Vec<String>), PictureError> {
     if layer.is_none()
-        && let Some(Rgba8 { width, height, texels, .. }) = read_rgba8(bytes, extension, &limits)?
+        && let Some(Rgba8 { width, height, texels, warnings }) = read_rgba8(bytes, extension, limits)?
     {
-        return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
+        return Ok((Some(Image { width, height, texels: Texels::Bytes(texels) }), warnings));
     }
-    let picture = bilux::pictures::read_bytes(bytes, extension, &limits)?.with_main(layer)?;
-    let (width, height) = (picture.width(), picture.height());
+    let picture = bilux::pictures::read_bytes(bytes, extension, limits)?.with_main(layer)?;
+    let (width, height, warnings) = (picture.width(), picture.height(), picture.warnings.clone());
     let picture = if data { picture } else { picture.into_linear() };
     let alpha = picture.channel("A").map_or_else(Vec::new, <[f32]>::to_vec);
     let image = |colours| Image { width, height, texels: Texels::Floats { colours, alpha } };
-    Ok(picture.to_rgb().map(image))
+    Ok((picture.to_rgb().map(image), warnings))
 }
 
 /// Colours of bytes, if that is what the array holds.

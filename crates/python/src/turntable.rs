@@ -43,7 +43,8 @@ impl Turntable {
         crate::forks::check()?;
         let mut request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         let builder = scene.get().builder(py).clone();
-        let series = without_gil(py, || Series::turntable(&builder, &request.user, max_memory, count));
+        let (user, most) = (&request.user, request.max_memory);
+        let series = without_gil(py, || Series::turntable(&builder, user, most, count));
         request.series = series.map_err(exception)?;
         request.origin = scene.get().origin(py).clone();
         Ok(Turntable { scene, builder, request, callback, count, next: AtomicU32::new(0) })

@@ -39,12 +39,13 @@ pub(crate) fn parameters(keywords: &Bound<'_, PyDict>, resolve: &mut dyn Resolve
     Ok(parameters)
 }
 
-/// Keyword arguments as settings. Each is its own place, which messages name.
+/// Keyword arguments as settings of a render. Each is its own place, which messages name.
 pub(crate) fn keywords(settings: &Bound<'_, PyDict>) -> PyResult<Parameters> {
     let mut parameters = parameters(settings, &mut Unresolved)?;
     for (key, _, at) in &mut parameters.0 {
         at.file = key.as_str().into();
     }
+    crate::memory::set_threads(&mut parameters);
     Ok(parameters)
 }
 

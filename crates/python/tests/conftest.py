@@ -37,6 +37,29 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.fixture(scope="session")
+def wall():
+    """The beginning of a scene file: a camera, and a wall of clay that fills its picture."""
+    return """
+[camera]
+position = [0, 0, 6]
+look_at = [0, 0, 0]
+fov = 30
+
+[[material]]
+name = "clay"
+kind = "diffuse"
+reflectance = [0.6, 0.4, 0.2]
+
+[[model]]
+shape = "quad"
+name = "wall"
+material = "clay"
+scale = 20
+translate = [0, 0, -2]
+"""
+
+
 @pytest.fixture
 def square():
     """Vertices and triangles of the unit square at z = 0, which faces up."""

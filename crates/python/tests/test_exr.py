@@ -14,26 +14,10 @@ WIDTH, HEIGHT = 64, 48
 
 # A ball in front of a wall, which fills the picture; a second ball of the same name aside; two lights in one group.
 SCENE = """
-[camera]
-position = [0, 0, 6]
-look_at = [0, 0, 0]
-fov = 30
-
-[[material]]
-name = "clay"
-kind = "diffuse"
-
 [[material]]
 name = 'Glas "klar" \\ ✓'
 kind = "diffuse"
 reflectance = [0.2, 0.5, 0.7]
-
-[[model]]
-shape = "quad"
-name = "wall"
-material = "clay"
-scale = 20
-translate = [0, 0, -2]
 
 [[model]]
 shape = "sphere"
@@ -76,11 +60,11 @@ BALL = 'Teekanne "groß" \\ 🫖'
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory, command_line):
+def files(tmp_path_factory, command_line, wall):
     """A picture with all layers, and one of its pixels by other means."""
     folder = tmp_path_factory.mktemp("exr")
     scene = folder / "scene.toml"
-    scene.write_text(SCENE, encoding="utf-8")
+    scene.write_text(wall + SCENE, encoding="utf-8")
     picture = folder / "all.exr"
     size = ["--size", f"{WIDTH}x{HEIGHT}", "--spp", "16", "-i", "path", "-q"]
     command_line("render", scene, "-o", picture, *size, "--aov", LAYERS)

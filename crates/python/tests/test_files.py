@@ -3,6 +3,8 @@
 import io
 import pickle
 import re
+import subprocess
+import sys
 import zipfile
 
 import numpy as np
@@ -113,6 +115,19 @@ def test_pictures_from_and_to_open_files(tmp_path):
         bilux.read_picture(b"no picture")
 
 
+def test_what_is_odd_about_a_picture_is_a_warning(tmp_path):
+    whole = io.BytesIO()
+    bilux.Picture(np.random.default_rng(1).random((64, 64, 3))).save(whole, format="jpg")
+    cut = tmp_path / "cut.jpg"
+    cut.write_bytes(whole.getvalue()[: len(whole.getvalue()) // 2])
+    scene = bilux.Scene()
+    for read in (bilux.read_picture, bilux.Texture.read, scene.surround):
+        with pytest.warns(bilux.SceneWarning, match="cut.jpg.*rows"):
+            read(cut)
+    with pytest.warns(bilux.SceneWarning, match=r"\(bytes\).*rows"):
+        bilux.read_picture(cut.read_bytes())
+
+
 def test_textures_from_open_files_and_as_pickles(tmp_path):
     texels = np.arange(4 * 5 * 4, dtype=np.uint8).reshape(4, 5, 4)
     light = np.linspace(0, 9, 4 * 5 * 3).reshape(4, 5, 3)
@@ -164,8 +179,45 @@ def test_the_advised_memory_suffices(folder):
     assert 512 * 512 * 200 <= most <= 512 * 512 * 200 + (30 << 20)
     assert scene.render(size=512, spp=1, max_memory=most).width == 512
     with pytest.raises(bilux.RenderError) as error:
-        scene.render(size=8192, spp=1, max_memory=1 << 30)
-    assert advised(error) >= 8192 * 8192 * 200 and advised(error) % (1 << 30) == 0
+        scene.render(size=4096, spp=1, max_memory=1 << 30)
+    assert advised(error) >= 4096 * 4096 * 200 and advised(error) % (1 << 30) == 0
+    with pytest.raises(bilux.RenderError, match="would take about.*is the limit"):
+        scene.render(size=100_000, spp=1)
+
+
+LITTLE_MEMORY = """
+import resource, sys
+import numpy as np, bilux
+own = next(int(line.split()[1]) << 10 for line in open("/proc/self/status") if line.startswith("VmSize"))
+limit = own + (int(sys.argv[1]) << 20)
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+try:
+    picture = bilux.generate("cornell").render(size=int(sys.argv[2]), spp=1, integrator="path")
+except (bilux.RenderError, MemoryError) as error:
+    print(error)
+else:
+    print("done", picture.width)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are read as Linux says them")
+def test_too_little_memory_is_an_exception():
+    """Rust aborts where memory runs out: the interpreter would be gone, with all that it holds."""
+
+    def answer(megabytes, size):
+        command = [sys.executable, "-c", LITTLE_MEMORY, str(megabytes), str(size)]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, (megabytes, size, done.returncode, done.stderr)
+        return done.stdout
+
+    for megabytes in (150, 250, 400):
+        assert "ulimit -v is the limit" in answer(megabytes, 3000), "a picture of 1.8 GB"
+    assert answer(1500, 64) == "done 64\n"
+
+
+def test_a_number_with_a_point_is_no_whole_number():
+    with pytest.raises(bilux.SceneError, match="spp is 2.0, but must be a whole number"):
+        bilux.generate("cornell").render(size=16, spp=2.0)
 
 
 def test_messages_speak_of_arguments(folder):

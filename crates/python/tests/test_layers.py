@@ -7,25 +7,8 @@ import bilux
 
 SIZE = (24, 16)
 
-# Two lamps and a mirror ball, so that no layer is empty; it moves.
+# Two lamps and a ball before a wall, so that no layer is empty; it moves.
 SCENE = """
-[camera]
-position = [0, 0, 6]
-look_at = [0, 0, 0]
-fov = 30
-
-[[material]]
-name = "clay"
-kind = "diffuse"
-reflectance = [0.6, 0.4, 0.2]
-
-[[model]]
-shape = "quad"
-name = "wall"
-material = "clay"
-scale = 20
-translate = [0, 0, -2]
-
 [[model]]
 shape = "sphere"
 name = "ball"
@@ -56,9 +39,9 @@ SHAPES = {
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory):
+def scene(tmp_path_factory, wall):
     path = tmp_path_factory.mktemp("layers") / "scene.toml"
-    path.write_text(SCENE)
+    path.write_text(wall + SCENE)
     return bilux.load(path)
 
 

@@ -229,8 +229,36 @@ def test_a_picture_surrounds_a_scene(folder):
     assert np.allclose(render(scene), [0.25, 0.5, 1.0], rtol=0.01)
     scene.lights = [bilux.lights.environment(radiance=bilux.Texture(sky.pixels * 2))]
     assert np.allclose(render(scene), [0.5, 1.0, 2.0], rtol=0.01)
-    with pytest.raises(bilux.Error, match="none.hdr"):
+    with pytest.raises(FileNotFoundError, match="none.hdr: cannot open it"):
         scene.surround("none.hdr")
+    with pytest.raises(bilux.PictureError, match="model.glb"):
+        scene.surround("model.glb")
+
+
+def test_a_layer_of_a_picture_surrounds_a_scene_or_is_a_texture(folder):
+    glow = np.full((8, 16, 3), [0.75, 0.5, 0.25], np.float32)
+    bilux.Picture(np.zeros((8, 16, 3)), layers={"glow": glow, "dim": glow / 4}).save("layers.exr")
+    scene = bilux.Scene()
+    scene.add_mesh([[0, 0, -9], [1, 0, -9], [0, 1, -9]], [[0, 1, 2]])
+    scene.add_camera(bilux.cameras.perspective(position=(0, 0, 0), look_at=(0, 0, 1)))
+    for layer, wanted in [("glow", glow), ("dim", glow / 4), (None, glow * 0)]:
+        scene.surround("layers.exr", layer)
+        np.testing.assert_allclose(render(scene), np.broadcast_to(wanted[0, 0], render(scene).shape), rtol=0.01)
+        # A texture of the same layer, seen by light of the surroundings.
+        scene.lights = [bilux.lights.environment(radiance=bilux.Texture.read("layers.exr", layer=layer))]
+        np.testing.assert_allclose(render(scene), np.broadcast_to(wanted[0, 0], render(scene).shape), rtol=0.01)
+    for wrong in (lambda: scene.surround("layers.exr", "glwo"), lambda: bilux.Texture.read("layers.exr", layer="glwo")):
+        with pytest.raises(bilux.PictureError, match="no layer 'glwo'.*glow"):
+            wrong()
+
+
+def test_surroundings_that_need_no_file(folder):
+    scene = bilux.load("model.glb")
+    lamps = [light.kind for light in scene.lights]
+    scene.surround("sky")
+    assert [light.kind for light in scene.lights] == [*(kind for kind in lamps if kind != "environment"), "sky"]
+    scene.surround("studio")
+    assert scene.lights == []
 
 
 def test_what_is_no_material_light_or_camera_is_refused_by_name(square):

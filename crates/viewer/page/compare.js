@@ -26,6 +26,7 @@ export class Compare {
     connection.addEventListener("frame", ({ detail }) => this.#take("own", detail));
     connection.addEventListener("progress", ({ detail }) => this.#work(detail));
     connection.addEventListener("other", ({ detail }) => this.#takeOther(detail));
+    connection.addEventListener("visitor", () => (this.#frames = { own: null, other: null }));
     picture.addEventListener("arranged", () => this.#arrange());
     divider.addEventListener("pointerdown", (event) => this.#grab(event));
     divider.addEventListener("keydown", (event) => this.#key(event));

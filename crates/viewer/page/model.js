@@ -45,7 +45,7 @@ export class Model {
     const plays = animations.filter((it) => it.plays).map((it) => it.name).join(", ");
     clips.show(animations.map(({ word, name, seconds: long }) => [word, `${name} (${Number(long.toFixed(2))} s)`]), animation, title, plays);
     looks.show(variants.map((name) => [name, name]), variant, title);
-    lights.show(environments.map((path) => [path, path === "none" ? "none" : path.split(/[\\/]/).pop()]), environment, title);
+    lights.show(environments.map((path) => [path, path.split(/[\\/]/).pop()]), environment, title);
     this.row.hidden = this.play.hidden = !seconds;
     section.hidden = !seconds && this.offers.every((it) => it.row.hidden);
     if (!seconds) this.#stop();

@@ -17,6 +17,8 @@ export class PictureView extends EventTarget {
     super();
     this.connection = connection;
     connection.addEventListener("frame", ({ detail }) => this.#show(detail));
+    // Another view counts its frames anew.
+    connection.addEventListener("visitor", () => ([this.#frame, this.picture] = [0, 0]));
     new ResizeObserver(() => this.#follow()).observe(view);
   }
 

@@ -26,6 +26,8 @@ pub(crate) struct Common {
     pub(crate) open: Arc<OpenScene>,
     pub(crate) turns: Turns,
     pub(crate) room: Room,
+    /// Accelerators are measured for one view at a time: each is built, and may take all the memory that there is.
+    pub(crate) measuring: Mutex<()>,
 }
 
 impl Common {
@@ -41,6 +43,7 @@ impl Common {
             open,
             turns: Turns::default(),
             room: Room::default(),
+            measuring: Mutex::default(),
         }
     }
 }
@@ -59,16 +62,23 @@ impl Room {
         self.views.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Gives a view room for a picture of a scene, if `most` bytes are there for all of them together. Returns the number
-    /// of pixels that it may have, at most as many as it asks for.
-    pub(crate) fn take(&self, view: u64, pixels: u64, scene: &SceneBuilder, most: u64) -> u64 {
+    /// Gives a view room for so many pictures of a scene, if `most` bytes are there for all views together. Returns the
+    /// number of pixels that each picture may have, at most as many as it asks for.
+    pub(crate) fn take(
+        &self,
+        view: u64,
+        [pictures, pixels]: [u64; 2],
+        scene: &SceneBuilder,
+        most: u64,
+    ) -> u64 {
         let (scene_itself, of_view) = sizes(scene);
         let mut taken = self.lock();
         taken.retain(|(other, _)| *other != view);
         let others: u64 = taken.iter().map(|(_, bytes)| bytes).sum();
-        let left = most.saturating_sub(scene_itself).saturating_sub(others).saturating_sub(of_view);
-        let granted = pixels.min(left / PIXEL);
-        taken.push((view, of_view.saturating_add(granted.saturating_mul(PIXEL))));
+        let left = most.saturating_sub(scene_itself).saturating_sub(others) / pictures;
+        let granted = pixels.min(left.saturating_sub(of_view) / PIXEL);
+        let each = of_view.saturating_add(granted.saturating_mul(PIXEL));
+        taken.push((view, each.saturating_mul(pictures)));
         granted
     }
 
@@ -105,13 +115,17 @@ mod tests {
         let (room, scene) = (Room::default(), SceneBuilder::default());
         let own = sizes(&scene).0;
         let most = own + 1000 * PIXEL;
-        assert_eq!(room.take(0, 600, &scene, most), 600);
-        assert_eq!(room.take(1, 600, &scene, most), 400);
+        assert_eq!(room.take(0, [1, 600], &scene, most), 600);
+        assert_eq!(room.take(1, [1, 600], &scene, most), 400);
         assert!(!room.is_left(1, &scene, most));
         // A view that changes its size gives its own room back first.
-        assert_eq!(room.take(0, 500, &scene, most), 500);
+        assert_eq!(room.take(0, [1, 500], &scene, most), 500);
         assert!(room.is_left(100, &scene, most) && !room.is_left(101, &scene, most));
         room.leave(1);
-        assert_eq!(room.take(2, 600, &scene, most), 500);
+        assert_eq!(room.take(2, [1, 600], &scene, most), 500);
+        // Two pictures that are compared take twice as much.
+        room.leave(2);
+        assert_eq!(room.take(3, [2, 600], &scene, most), 250);
+        assert!(!room.is_left(1, &scene, most));
     }
 }

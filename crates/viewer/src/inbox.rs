@@ -74,6 +74,9 @@ impl Inbox {
     pub(crate) fn post(&self, request: Request) -> Result<(), String> {
         let full = || Err("too much is asked for at once: wait a moment".to_owned());
         let mut waiting = self.lock();
+        if self.has_ended() {
+            return Err("this view has ended: open the page again".to_owned());
+        }
         match request {
             Request::Move(next) => match waiting.moves.last_mut().map(|last| last.add(&next)) {
                 Some(true) => {}
@@ -133,10 +136,13 @@ impl Inbox {
         self.bell.notify_all();
     }
 
-    /// Ends the render.
+    /// Ends the render. Nothing more is asked for, and what waits gets no answer.
     pub(crate) fn end(&self) {
+        let mut waiting = self.lock();
         self.has_ended.store(true, Ordering::Relaxed);
         self.interrupts.store(true, Ordering::Relaxed);
+        waiting.questions.clear();
+        drop(waiting);
         self.ring();
     }
 
@@ -212,6 +218,24 @@ mod tests {
             inbox.post(Request::Answered(problem)).unwrap();
         }
         assert_eq!(inbox.take(None).answered, Some(Some("first".to_owned())), "a problem is not lost");
+    }
+
+    #[test]
+    fn whoever_asks_when_the_view_has_ended_waits_for_nothing() {
+        let inbox = Inbox::default();
+        let ask = |inbox: &Inbox| {
+            let (to, mut answer) = tokio::sync::oneshot::channel();
+            let posted = inbox.post(Request::Ask(Question::Save { format: "png", to }));
+            (posted.is_ok(), move || {
+                answer.try_recv() == Err(tokio::sync::oneshot::error::TryRecvError::Closed)
+            })
+        };
+        let (is_taken, mut is_lost) = ask(&inbox);
+        assert!(is_taken && !is_lost());
+        inbox.end();
+        assert!(is_lost());
+        let (is_taken, mut is_lost) = ask(&inbox);
+        assert!(!is_taken && is_lost());
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod inbox;
 mod message;
 mod open_scene;
 mod options;
+mod secret;
 mod server;
 mod settings;
 mod stage;

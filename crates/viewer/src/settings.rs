@@ -40,6 +40,14 @@ pub(crate) fn with_defaults(user: &Parameters) -> Parameters {
     all
 }
 
+/// Settings of the camera, which are about the scene that they were made for.
+const OF_THE_CAMERA: [&str; 8] = ["camera", "eye", "look_at", "zoom", "orbit", "focal", "up", "front"];
+
+/// Leaves out what was said of the camera of another scene.
+pub(crate) fn forget_camera(user: &mut Parameters) {
+    user.0.retain(|(key, ..)| !OF_THE_CAMERA.contains(&key.as_str()));
+}
+
 /// Settings at the time that a version of the scene shows.
 pub(crate) fn at_time(user: &Parameters, version: &Version) -> Parameters {
     let mut all = user.clone();

@@ -3,6 +3,7 @@
 use crate::ViewerError;
 use crate::common::Common;
 use crate::inbox::Inbox;
+use crate::secret::secret;
 use crate::stage::{Outlets, Stage};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -13,9 +14,6 @@ const KEPT: Duration = Duration::from_secs(60);
 
 /// A view must have room for at least so many pixels.
 const LEAST_PIXELS: u64 = 320 * 240;
-
-/// The number of random bytes in a visitor's key.
-const KEY: usize = 16;
 
 /// A view, and what its connections need of it.
 pub(crate) struct View {
@@ -79,12 +77,14 @@ impl Visitors {
         places.forget_those_who_left(KEPT);
         let connections: usize = places.all.iter().map(|place| place.connections).sum();
         if connections >= self.most {
+            let most = self.most;
             return Err(format!(
-                "{} watch already, and this viewer takes no more: try again when somebody has left",
-                people(self.most)
+                "every place of this viewer is taken ({most}): try again when somebody has left"
             ));
         }
-        let is_known = |place: &&mut Place| self.shared || key == Some(&*place.view.key);
+        let is_known = |place: &&mut Place| {
+            (self.shared || key == Some(&*place.view.key)) && !place.view.inbox.has_ended()
+        };
         let view = match places.all.iter_mut().find(is_known) {
             Some(place) => {
                 place.connections += 1;
@@ -111,6 +111,11 @@ impl Visitors {
         }
     }
 
+    /// Ends the views of those who have been away for too long.
+    pub(crate) fn forget(&self) {
+        self.lock().forget_those_who_left(KEPT);
+    }
+
     /// Opens another view.
     fn open(&self, places: &mut Places) -> Result<Arc<View>, String> {
         // Those who have left make room for those who come.
@@ -125,7 +130,7 @@ impl Visitors {
             );
         }
         let failed = |error: ViewerError| error.to_string();
-        let key = random_key().map_err(failed)?;
+        let key = secret().map_err(failed)?;
         let view = View { key, inbox: Arc::default(), outlets: Arc::default() };
         places.threads.push(begin(&self.common, &view).map_err(failed)?);
         let view = Arc::new(view);
@@ -167,24 +172,14 @@ impl Places {
 /// Begins the render of a view. Not everything that renders can pass from one thread to another.
 fn begin(common: &Arc<Common>, view: &View) -> Result<JoinHandle<()>, ViewerError> {
     let (common, inbox, outlets) = (common.clone(), view.inbox.clone(), view.outlets.clone());
+    let ended = inbox.clone();
     let render = move || match Stage::new(common, inbox, outlets.clone()) {
         Ok(stage) => stage.run(),
         Err(error) => {
+            ended.end();
             let problem = serde_json::json!({ "say": "error", "message": error.to_string() });
             outlets.progress.send_replace(problem.to_string().into());
         }
     };
     crate::server::start("view", render)
-}
-
-fn random_key() -> Result<String, ViewerError> {
-    let mut bytes = [0u8; KEY];
-    let failed =
-        |error: getrandom::Error| ViewerError::Start(format!("there are no random numbers: {error}"));
-    getrandom::fill(&mut bytes).map_err(failed)?;
-    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-fn people(count: usize) -> String {
-    if count == 1 { "one person".to_owned() } else { format!("{count} people") }
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import socket
 import struct
 import subprocess
 import sys
@@ -99,7 +100,7 @@ def visitors(browser: Browser, scene: Path) -> None:
         expect(two.locator("#command")).not_to_contain_text("--eye")
         three = browser.new_context(viewport={"width": 700, "height": 500}).new_page()
         three.goto(viewer.address)
-        expect(three.locator("#problem")).to_contain_text("2 people watch already", timeout=20_000)
+        expect(three.locator("#problem")).to_contain_text("every place of this viewer is taken (2)", timeout=20_000)
         shot(three, "full")
         one.context.close()
         three.wait_for_selector("#waiting", state="hidden", timeout=30_000)
@@ -107,6 +108,27 @@ def visitors(browser: Browser, scene: Path) -> None:
         assert two.wrongs == [], two.wrongs
         three.context.close()
         two.context.close()
+
+
+def restarts(browser: Browser, scene: Path) -> None:
+    """A page finds a viewer that was started again, and shows its picture, however many frames it has seen before."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = str(free.getsockname()[1])
+    with Viewer(scene, "--port", port) as viewer:
+        page = opened(browser, viewer, 400, 300, "light")
+        page.focus("#view")
+        for _ in range(12):
+            page.keyboard.press("ArrowLeft")
+            page.wait_for_timeout(250)
+        at_least(page, 2)
+        before = pixels(page)
+    expect(page.locator("#problem")).to_contain_text("does not answer", timeout=20_000)
+    with Viewer(scene, "--port", port):
+        expect(page.locator("#problem")).to_be_hidden(timeout=20_000)
+        expect(page.locator("#command")).not_to_contain_text("--eye")
+        page.wait_for_function("before => document.getElementById('picture').toDataURL() !== before", arg=before, timeout=10_000)
+    page.context.close()
 
 
 def desktop(browser: Browser, viewer: Viewer) -> None:
@@ -424,6 +446,10 @@ def clips(browser: Browser) -> None:
         expect(page.locator("#problem")).to_be_hidden()
         at_least(page, 2)
         shot(page, "clips")
+        page.get_by_label("Light around", exact=True).select_option("sky")
+        expect(page.locator("#command")).to_contain_text("--env sky")
+        at_least(page, 2)
+        shot(page, "sky")
         page.get_by_label("Animation", exact=True).select_option("")
         expect(page.locator("#command")).not_to_contain_text("--animation")
         accessible(page)
@@ -519,6 +545,7 @@ def main() -> None:
             compares(browser, viewer)
         plays(browser)
         visitors(browser, scene)
+        restarts(browser, scene)
         drags(browser)
         margins(browser, scene)
         clips(browser)

@@ -29,7 +29,7 @@ pub(crate) struct Keeper {
     pub(super) edits: Edits,
     /// The settings that the viewer was started with, with the time that is shown.
     pub(super) user: Parameters,
-    time: Option<Value>,
+    pub(super) time: Option<Value>,
     /// Why the edits do not fit a scene that was opened again.
     pub(super) misfit: Option<String>,
     /// Counts the files that were opened.

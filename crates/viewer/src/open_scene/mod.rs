@@ -69,7 +69,9 @@ impl OpenScene {
 
     /// Tells an inbox of new versions from now on.
     pub(crate) fn attach(&self, inbox: &Arc<Inbox>) {
-        self.audience.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(inbox));
+        let mut audience = self.audience.lock().unwrap_or_else(PoisonError::into_inner);
+        audience.retain(|other| other.strong_count() > 0);
+        audience.push(Arc::downgrade(inbox));
     }
 
     /// Nothing changes any more.

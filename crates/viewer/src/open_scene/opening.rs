@@ -51,10 +51,7 @@ impl Keeper {
     /// Opens a file that was dropped in, in the place of the scene; if that fails, everything stays as it is.
     pub(super) fn open(&mut self, dropped: Dropped) -> Result<(), String> {
         let Dropped { file, to } = dropped;
-        let opened = match self.options.may_edit && self.options.may_drop {
-            true => self.open_file(file),
-            false => Err("this viewer opens no other files: start it with --edit".to_owned()),
-        };
+        let opened = self.open_file(file);
         // Whoever has dropped it may have gone.
         let _ = to.send(opened.clone());
         opened
@@ -63,7 +60,14 @@ impl Keeper {
     fn open_file(&mut self, file: Kept) -> Result<(), String> {
         let opening = Opening { file: Some(file.path()), ..Opening::default() };
         let scene = (self.options.open)(&opening).map_err(|error| shown_as(&error, &file))?;
-        self.take(scene).map_err(|error| shown_as(&error, &file))?;
+        let before = (self.user.clone(), self.time.take());
+        // Camera and time were asked for in another scene.
+        self.user.clone_from(&self.options.settings);
+        settings::forget_camera(&mut self.user);
+        self.take(scene).map_err(|error| {
+            (self.user, self.time) = before;
+            shown_as(&error, &file)
+        })?;
         (self.opening, self.edits) = (opening, Default::default());
         self.kept = Some(Arc::new(file));
         self.files += 1;

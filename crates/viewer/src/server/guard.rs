@@ -6,15 +6,13 @@
 //! Anywhere else the address has a random token in it, without which there is nothing to see.
 
 use crate::ViewerError;
+use crate::secret::secret;
 use axum::Router;
 use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::IntoResponse;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
-
-/// The number of random bytes in a token.
-const TOKEN: usize = 16;
 
 /// What every answer says: nothing from elsewhere, nobody's frame, nothing kept, no address given away.
 const HEADERS: &[(&str, &str)] = &[
@@ -45,15 +43,8 @@ impl Guard {
     /// # Errors
     /// If a token is needed, and the system has no random numbers.
     pub(super) fn of(address: SocketAddr) -> Result<Guard, ViewerError> {
-        if address.ip().is_loopback() {
-            return Ok(Guard { address, token: None });
-        }
-        let mut bytes = [0u8; TOKEN];
-        let failed =
-            |error: getrandom::Error| ViewerError::Start(format!("there are no random numbers: {error}"));
-        getrandom::fill(&mut bytes).map_err(failed)?;
-        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        Ok(Guard { address, token: Some(token) })
+        let token = if address.ip().is_loopback() { None } else { Some(secret()?) };
+        Ok(Guard { address, token })
     }
 
     /// The address of the page. A server that listens on all addresses says the one by which other machines reach this one.
@@ -183,7 +174,7 @@ mod tests {
             let (host, token) = address.strip_prefix("http://").unwrap().split_once('/').unwrap();
             let host: SocketAddr = host.parse().unwrap();
             assert!(!host.ip().is_unspecified() && host.port() == 8000, "{address}");
-            assert_eq!(token.len(), 2 * TOKEN + 1, "{address}");
+            assert_eq!(token.len(), 32 + 1, "{address}");
         }
     }
 
@@ -235,7 +226,7 @@ mod tests {
         let tokens: Vec<String> =
             (0..2).map(|_| Guard::of("0.0.0.0:80".parse().unwrap()).unwrap().token.unwrap()).collect();
         assert_ne!(tokens[0], tokens[1]);
-        assert_eq!(tokens[0].len(), 2 * TOKEN);
+        assert_eq!(tokens[0].len(), 32);
         assert!(is_same(&tokens[0], &tokens[0]) && !is_same(&tokens[0], &tokens[1]));
         assert!(!is_same("", &tokens[0]) && !is_same(&tokens[0][1..], &tokens[0]));
     }

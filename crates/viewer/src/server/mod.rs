@@ -50,6 +50,8 @@ struct Shared {
     catalogue: String,
     /// Whether files may be dropped in.
     may_drop: bool,
+    /// Files that are dropped in come one at a time: each may be large.
+    opening: tokio::sync::Mutex<()>,
 }
 
 impl Server {
@@ -64,7 +66,8 @@ impl Server {
         let common = Arc::new(Common::new(&options, open.clone()));
         let may_drop = common.may_drop;
         let visitors = Arc::new(Visitors::new(common, options.shared, options.visitors));
-        let shared = Shared { open: open.clone(), visitors, catalogue: catalogue().to_string(), may_drop };
+        let (catalogue, opening) = (catalogue().to_string(), tokio::sync::Mutex::default());
+        let shared = Shared { open: open.clone(), visitors, catalogue, may_drop, opening };
         let (opened, is_open) = std::sync::mpsc::channel();
         let (kept, files) = (open.clone(), watched.clone());
         // Not everything that renders can pass from one thread to another.
@@ -104,6 +107,7 @@ impl Server {
             });
             let over = async {
                 while !is_over() {
+                    visitors.forget();
                     tokio::time::sleep(LOOKS).await;
                 }
             };
@@ -189,17 +193,23 @@ fn visitor(uri: &Uri) -> Option<&str> {
     uri.query()?.split('&').find_map(|part| part.strip_prefix("visitor="))
 }
 
+fn unavailable(message: String) -> Response {
+    (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response()
+}
+
+fn closing() -> Response {
+    unavailable("the viewer is closing".to_owned())
+}
+
 /// Asks the view of a visitor something.
 fn ask(shared: &Shared, uri: &Uri, question: Question) -> Result<(), Response> {
-    let failed = |message: String| (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response();
-    let view = shared.visitors.view(visitor(uri)).map_err(failed)?;
-    view.inbox.post(Request::Ask(question)).map_err(failed)
+    let view = shared.visitors.view(visitor(uri)).map_err(unavailable)?;
+    view.inbox.post(Request::Ask(question)).map_err(unavailable)
 }
 
 /// The scene with its edits as a file to keep.
 async fn overlay(State(shared): State<Arc<Shared>>, uri: Uri) -> Response {
     let (to, saved) = oneshot::channel();
-    let failed = |message: String| (StatusCode::SERVICE_UNAVAILABLE, message + "\n").into_response();
     if let Err(refused) = ask(&shared, &uri, Question::Overlay { to }) {
         return refused;
     }
@@ -207,16 +217,12 @@ async fn overlay(State(shared): State<Arc<Shared>>, uri: Uri) -> Response {
         (header::CONTENT_TYPE, "application/toml"),
         (header::CONTENT_DISPOSITION, "attachment; filename=\"edited.toml\""),
     ];
-    match saved.await {
-        Ok(text) => (headers, text).into_response(),
-        Err(_) => failed("the viewer is closing".to_owned()),
-    }
+    saved.await.map_or_else(|_| closing(), |text| (headers, text).into_response())
 }
 
 /// The picture as a file to keep.
 async fn save(State(shared): State<Arc<Shared>>, uri: Uri, format: &'static str) -> Response {
     let (to, saved) = oneshot::channel();
-    let failed = |status: StatusCode, message: String| (status, message + "\n").into_response();
     if let Err(refused) = ask(&shared, &uri, Question::Save { format, to }) {
         return refused;
     }
@@ -227,7 +233,7 @@ async fn save(State(shared): State<Arc<Shared>>, uri: Uri, format: &'static str)
             ([(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, name)], bytes)
                 .into_response()
         }
-        Ok(Err(message)) => failed(StatusCode::INTERNAL_SERVER_ERROR, message),
-        Err(_) => failed(StatusCode::SERVICE_UNAVAILABLE, "the viewer is closing".to_owned()),
+        Ok(Err(message)) => (StatusCode::INTERNAL_SERVER_ERROR, message + "\n").into_response(),
+        Err(_) => closing(),
     }
 }

@@ -47,6 +47,10 @@ async fn take(
         let message = format!("files of more than {} MiB are not taken", LARGEST >> 20);
         return Err((StatusCode::PAYLOAD_TOO_LARGE, message));
     }
+    let Ok(_alone) = shared.opening.try_lock() else {
+        let message = "another file is being opened: try again in a moment";
+        return Err((StatusCode::SERVICE_UNAVAILABLE, message.to_owned()));
+    };
     let mut incoming = Incoming::named(name).map_err(refused(StatusCode::UNSUPPORTED_MEDIA_TYPE))?;
     let mut pieces = body.into_data_stream();
     let lost = || (StatusCode::BAD_REQUEST, "the file has not come as a whole: drop it in again".to_owned());
@@ -59,6 +63,6 @@ async fn take(
     shared.open.post(request, None).map_err(refused(StatusCode::SERVICE_UNAVAILABLE))?;
     match opened.await {
         Ok(opened) => opened.map_err(refused(StatusCode::UNPROCESSABLE_ENTITY)),
-        Err(_) => Err((StatusCode::SERVICE_UNAVAILABLE, "another file was opened".to_owned())),
+        Err(_) => Err((StatusCode::SERVICE_UNAVAILABLE, "the viewer is closing".to_owned())),
     }
 }

@@ -35,8 +35,8 @@ impl Stage {
                     let _ = to.send(self.overlay());
                 }
                 Question::Measure { answers } => {
-                    let inbox = self.inbox.clone();
-                    self.measurement = Some(Measurement::begin(self.session.job(), answers, inbox));
+                    let common = self.common.clone();
+                    self.measurement = Some(Measurement::begin(self.session.job(), answers, common));
                 }
                 early => self.questions.push(early),
             }

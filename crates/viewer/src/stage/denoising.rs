@@ -70,14 +70,12 @@ impl Denoising {
 }
 
 impl Stage {
-    /// True while a picture is being denoised that is still wanted.
-    pub(super) fn is_denoising(&self) -> bool {
-        self.denoising.as_ref().is_some_and(|it| it.changes == self.changes)
-    }
-
-    /// Begins to denoise the picture as it is, unless an earlier one still is; it is shown when that is done.
+    /// Begins to denoise the picture as it is, unless an earlier one still is; it is shown when that is done. One is denoised
+    /// at a time, even if it is not wanted any more: where denoising takes long, many together would take longer.
     pub(super) fn begin_denoising(&mut self, facts: Facts) -> Result<(), Error> {
-        let Some(outcome) = self.session.outcome().filter(|_| !self.is_denoising()) else { return Ok(()) };
+        let Some(outcome) = self.session.outcome().filter(|_| self.denoising.is_none()) else {
+            return Ok(());
+        };
         let by = self.denoiser.as_ref().map_or(self.for_previews.name, |chosen| chosen.name);
         let (inbox, about) = (self.inbox.clone(), (facts, self.changes));
         self.denoising = Some(Denoising::begin(outcome, (by, self.task()), about, inbox)?);
@@ -99,16 +97,20 @@ impl Stage {
         let Some(it) = self.denoising.take() else { return Ok(()) };
         let failed = |_| Err(Error::Settings("the denoiser has failed: please report this".to_owned()));
         let result = received.unwrap_or_else(failed)?;
-        if it.changes != self.changes || !self.denoises() {
+        if !self.denoises() {
             return Ok(());
         }
         let (picture, samples) = (it.facts.picture, it.facts.samples);
-        let time = it.begun.elapsed();
-        self.cleaned = Some(Cleaned { picture, samples, by: it.by, result, time });
-        self.show_cleaned(&it.facts)?;
-        // The last samples may have been taken meanwhile, or another denoiser chosen.
+        let is_wanted = it.changes == self.changes;
+        if is_wanted {
+            let time = it.begun.elapsed();
+            self.cleaned = Some(Cleaned { picture, samples, by: it.by, result, time });
+            self.show_cleaned(&it.facts)?;
+        }
+        // The last samples may have been taken meanwhile, or another denoiser chosen, or another picture begun.
         let by = self.denoiser.as_ref().map(|chosen| chosen.name);
-        let is_last = (picture, samples, Some(it.by)) == (self.facts.picture, self.session.samples(), by);
+        let now = (self.facts.picture, self.session.samples(), by);
+        let is_last = is_wanted && (picture, samples, Some(it.by)) == now;
         if self.rests && self.level == Level::Full && !is_last { self.publish() } else { Ok(()) }
     }
 

@@ -1,15 +1,15 @@
 //! How fast each accelerator is in the scene: its rays a second, and its work for a ray, beside those of the others.
 
 use super::visits::ray;
-use crate::inbox::Inbox;
+use crate::common::Common;
 use crate::message::Answers;
 use bilux::Job;
 use bilux::accel::ACCELERATORS;
 use bilux::math::Vec2;
 use bilux::scene::{AccelChoice, Ray, Scene, SceneBuilder, Tracer};
 use serde_json::{Value, json};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, TryLockError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -33,9 +33,8 @@ pub(super) struct Measurement {
 }
 
 impl Measurement {
-    /// Measures all accelerators with rays of a job's camera. The answers go to whoever has asked; in the end the inbox
-    /// rings.
-    pub(super) fn begin(job: &Job, answers: Answers, inbox: Arc<Inbox>) -> Measurement {
+    /// Measures all accelerators with rays of a job's camera. The answers go to whoever has asked.
+    pub(super) fn begin(job: &Job, answers: Answers, common: Arc<Common>) -> Measurement {
         let stops = Arc::new(AtomicBool::new(false));
         let (scene, settings) = (job.completed_scene().clone(), job.settings());
         let choice = settings.accel.clone();
@@ -47,6 +46,18 @@ impl Measurement {
         let rays: Vec<Ray> = (0..ACROSS * DOWN).map(|i| ray(job, place(i))).collect();
         let is_over = stops.clone();
         let measure = move || {
+            // One that was stopped may still build a tree.
+            let _alone = match common.measuring.try_lock() {
+                Ok(alone) => alone,
+                Err(TryLockError::Poisoned(failed)) => failed.into_inner(),
+                Err(TryLockError::WouldBlock) => {
+                    let why = "another measurement is running: try again in a moment";
+                    let answer =
+                        json!({ "say": "accelerator", "name": "all", "why_not": why, "is_last": true });
+                    // A browser that does not take its answers loses them.
+                    return drop(answers.try_send(answer.to_string()));
+                }
+            };
             for (i, row) in ACCELERATORS.iter().enumerate() {
                 let name = row.entry.name.to_owned();
                 let choice = AccelChoice { name, ..choice.clone() };
@@ -60,7 +71,6 @@ impl Measurement {
                 // A browser that does not take its answers loses them.
                 let _ = answers.try_send(answer.to_string());
             }
-            inbox.ring();
         };
         let thread = std::thread::Builder::new().name("measure".to_owned()).spawn(measure).ok();
         Measurement { stops, thread }

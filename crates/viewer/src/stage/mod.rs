@@ -308,6 +308,8 @@ impl Stage {
 
 impl Drop for Stage {
     fn drop(&mut self) {
+        // Whatever has ended it: nobody may wait for it.
+        self.inbox.end();
         self.common.turns.leave(&self.inbox);
         self.common.room.leave(self.number);
     }

@@ -156,7 +156,7 @@ impl Stage {
     /// True if it is time to show the picture in full size again; with a denoiser, which takes long, less often.
     fn is_due(&self) -> bool {
         let samples = self.session.samples();
-        if self.denoises() && self.is_denoising() {
+        if self.denoises() && self.denoising.is_some() {
             return false;
         }
         if self.session.is_done() || !self.is_full_shown {
@@ -199,7 +199,13 @@ impl Stage {
         }
         let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
         let facts = self.facts_of(outcome);
-        if self.denoises() && !matches!(self.level, Level::Preview(_)) {
+        // A clean picture does not wait until one that is not wanted any more is denoised.
+        let is_soon = match self.level {
+            Level::Preview(_) => true,
+            Level::Clean(_) => self.denoising.is_some(),
+            Level::Full => false,
+        };
+        if self.denoises() && !is_soon {
             self.facts = facts.clone();
             return match self.cleaned_of(&facts).is_some_and(|it| it.samples == samples) {
                 true => self.show_cleaned(&facts),

@@ -19,9 +19,11 @@ impl Stage {
         }
         if changes_picture {
             self.measurement = None;
-            if waiting.scene_changed {
-                let taken = self.take_newest();
-                self.note(taken);
+            let taken = self.take_newest();
+            self.note(taken);
+            if let Some(other) = waiting.compared {
+                let compared = self.compare(other);
+                self.note(compared);
             }
             self.resize(size.unwrap_or(self.wanted_size));
             moves.iter().for_each(|it| self.make_move(it));
@@ -29,10 +31,6 @@ impl Stage {
             self.note(set);
             let showed = self.show(shown);
             self.note(showed);
-            if let Some(other) = waiting.compared {
-                let compared = self.compare(other);
-                self.note(compared);
-            }
             self.other_is_out_of_date(waiting.scene_changed);
             if let Some(are_shown) = waiting.differences {
                 self.show_differences(are_shown);

@@ -3,18 +3,20 @@
 use super::Stage;
 use crate::eye::Eye;
 use crate::settings::{self, Level};
-use std::sync::Arc;
 
 impl Stage {
-    /// Takes the newest version of the scene; if that fails, everything stays as it is.
+    /// Takes the newest version of the scene; if that fails, everything stays as it is, and it is tried again with the next
+    /// request: the settings that it does not fit, such as a camera that is gone, may have changed.
     pub(super) fn take_newest(&mut self) -> Result<(), String> {
         let Some(newest) = self.common.open.newest().filter(|it| it.number != self.version.number) else {
             return Ok(());
         };
         let before = std::mem::replace(&mut self.version, newest);
+        let camera = (self.user.clone(), self.eye, self.is_moved);
         let (is_other_file, is_posed) =
             (before.file != self.version.file, before.opening.time != self.version.opening.time);
         if is_other_file {
+            settings::forget_camera(&mut self.user);
             (self.is_moved, self.eye) = (false, None);
         }
         // The studio frames the model as it is; it would follow each movement.
@@ -23,7 +25,8 @@ impl Stage {
         settings::set_level(&mut asked, &self.version.scene.settings, self.size, self.level);
         let (scene, built) = (self.version.scene.clone(), self.version.built.clone());
         if let Err(error) = self.session.replace(scene, &asked, built) {
-            self.version = Arc::clone(&before);
+            self.version = before;
+            (self.user, self.eye, self.is_moved) = camera;
             return Err(error.to_string());
         }
         if let Some(it) = &mut self.comparison {
@@ -41,8 +44,9 @@ impl Stage {
     /// that was moved does the same.
     pub(super) fn resize(&mut self, wanted: [u32; 2]) {
         let pixels = u64::from(wanted[0]) * u64::from(wanted[1]);
-        let room = &self.common.room;
-        let granted = room.take(self.number, pixels, &self.version.scene, self.common.max_memory);
+        let pictures = 1 + u64::from(self.comparison.is_some());
+        let (room, most) = (&self.common.room, self.common.max_memory);
+        let granted = room.take(self.number, [pictures, pixels], &self.version.scene, most);
         let factor = (granted as f64 / pixels.max(1) as f64).sqrt().min(1.0);
         let size = wanted.map(|side| ((f64::from(side) * factor) as u32).max(1));
         self.wanted_size = wanted;

@@ -158,6 +158,55 @@ fn a_file_that_is_dropped_in_is_opened_and_a_broken_one_leaves_the_picture() {
     });
 }
 
+/// What was said of the camera is about the scene that it was said of: another one may have no such camera.
+#[test]
+fn another_file_is_seen_by_its_own_camera() {
+    let folder = tempfile::tempdir().unwrap();
+    let viewer = viewer_of(folder.path());
+    run(async {
+        let (mut client, mut other) = (Client::connect(&viewer).await, Client::connect(&viewer).await);
+        client.send(json!({ "do": "set", "key": "camera", "value": "front" })).await;
+        client.send(json!({ "do": "set", "key": "exposure", "value": 0.5 })).await;
+        client.text("state", |state| state["settings"]["exposure"] == 0.5).await;
+        let answer = post(viewer.host(), "/open/triangle.obj", "", TRIANGLE).await;
+        assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+        for client in [&mut client, &mut other] {
+            let state = client.text("state", |state| state["title"] == "triangle.obj").await;
+            assert!(state["problem"].is_null() && state["cameras"] == json!(["studio"]), "{state}");
+        }
+        // What is not about the camera stays.
+        client.send(json!({ "do": "set", "key": "seed", "value": 1 })).await;
+        client
+            .text("state", |state| state["settings"]["exposure"] == 0.5 && state["settings"]["seed"] == 1)
+            .await;
+    });
+}
+
+#[test]
+fn files_come_one_at_a_time() {
+    use tokio::io::AsyncWriteExt;
+    let folder = tempfile::tempdir().unwrap();
+    let viewer = viewer_of(folder.path());
+    run(async {
+        let host = viewer.host();
+        let mut slow = tokio::net::TcpStream::connect(host).await.unwrap();
+        let head =
+            format!("POST /open/a.obj HTTP/1.1\r\nHost: {host}\r\nContent-Length: 99\r\n\r\nv 0 0 0\n");
+        slow.write_all(head.as_bytes()).await.unwrap();
+        let mut answer = post(host, "/open/b.obj", "", TRIANGLE).await;
+        // The server may take the second one first.
+        while answer.starts_with("HTTP/1.1 204") {
+            answer = post(host, "/open/b.obj", "", TRIANGLE).await;
+        }
+        assert!(answer.starts_with("HTTP/1.1 503") && answer.contains("try again"), "{answer}");
+        drop(slow);
+        while !answer.starts_with("HTTP/1.1 204") {
+            tokio::time::sleep(std::time::Duration::from_millis(20)).await;
+            answer = post(host, "/open/b.obj", "", TRIANGLE).await;
+        }
+    });
+}
+
 #[test]
 fn without_edit_nothing_is_opened_and_no_file_is_too_large() {
     let viewer = Viewer::with(Options { may_drop: true, ..options(cornell) });

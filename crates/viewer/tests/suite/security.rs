@@ -337,7 +337,7 @@ fn browsers_that_are_too_many_are_refused_until_one_leaves() {
             clients.push(Client::connect(&viewer).await);
         }
         let refused = Client::connect(&viewer).await.refused;
-        assert!(refused.is_some_and(|why| why.contains("64 people") && why.contains("try again")));
+        assert!(refused.is_some_and(|why| why.contains("is taken (64)") && why.contains("try again")));
         clients.truncate(10);
         let mut tries = 0;
         while Client::connect(&viewer).await.refused.is_some() {

@@ -101,7 +101,7 @@ fn whoever_comes_when_all_places_are_taken_hears_why_and_gets_the_next_one() {
         let mut two = Client::connect(&viewer).await;
         let three = Client::connect(&viewer).await;
         let why = three.refused.expect("there is no third place");
-        assert!(why.contains("2 people watch already") && why.contains("try again"), "{why}");
+        assert!(why.contains("is taken (2)") && why.contains("try again"), "{why}");
         drop(one);
         // A visitor who has left makes room, even if their view is still kept.
         let begun = Instant::now();
@@ -130,6 +130,14 @@ fn views_without_memory_for_them_are_not_opened() {
         let second = Client::connect(&viewer).await;
         let why = second.refused.expect("there is no memory for it");
         assert!(why.contains("memory") && why.contains("--shared"), "{why}");
+        // Two pictures that are compared take twice as much.
+        let compare = |with: &str| json!({ "do": "compare", "with": with, "key": "seed", "value": 1 });
+        first.send(compare("setting")).await;
+        let frame = first.frame(|frame| frame.header["full"] != json!([700, 500])).await;
+        let pixels = [0, 1].map(|side| frame.header["full"][side].as_f64().unwrap()).iter().product::<f64>();
+        assert!(pixels > 160_000.0 && pixels < 210_000.0, "{pixels}");
+        first.send(compare("nothing")).await;
+        first.frame(|frame| frame.header["full"] == json!([700, 500])).await;
         // A window that is too large for what is left gets a smaller picture of its shape.
         first.send(json!({ "do": "size", "to": [2800, 2000] })).await;
         let frame = first.frame(|frame| frame.header["full"] != json!([700, 500])).await;
