@@ -19,15 +19,16 @@ const SOME: f32 = 0.05;
 const SURFACE: [f32; 2] = [0.5, 1.5];
 /// The same for what emits light, where nothing else is visible.
 const EMITTER: [f32; 2] = [1.0, 3.0];
-/// Exposures are multiples of this many stops.
+/// Exposures are multiples of this many stops, and within what `--exposure` takes.
 const STEP: f32 = 0.25;
+const MOST: f32 = 64.0;
 
 /// What was found of a scene's own light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Judged {
     /// Whether it lights what is visible; `None` if the file describes its surroundings, so that nothing is to be decided.
     pub(crate) is_enough: Option<bool>,
-    /// Whether the user is told.
+    /// Whether the user may wonder, and is told.
     is_said: bool,
     measured: Illumination,
 }
@@ -71,8 +72,10 @@ pub(crate) fn measure(
     let others = others.map(|camera| illumination(&built, &**camera, gets_surroundings));
     let measured = others.fold(illumination(&built, &*camera, gets_surroundings), worst);
     let is_enough = decides.then(|| reached(&measured) >= ENOUGH);
-    let is_said = is_enough == Some(true) || decides && seems_lit(scene);
-    let judged = Judged { is_enough, is_said, measured };
+    let mut judged = Judged { is_enough, is_said: false, measured };
+    // Nobody wonders about the studio where signs and screens glow that hardly light anything.
+    judged.is_said = is_enough == Some(true)
+        || decides && (seems_lit(scene) || measured.surfaces == 0.0 || judged.exposure() != 0.0);
     Ok(Some(OwnLight { judged, alone: (framed, built) }))
 }
 
@@ -106,7 +109,7 @@ impl Judged {
         let stops = if level > 0.0 { log2(wanted / level) } else { 0.0 };
         // Where its own light is dim, the studio's is not.
         let is_usual = stops.abs() <= tolerance || stops > 0.0 && self.is_enough == Some(false);
-        if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
+        if is_usual { 0.0 } else { ((stops / STEP).round() * STEP).clamp(-MOST, MOST) }
     }
 
     /// How many times brighter than usual the scene is.
@@ -117,7 +120,7 @@ impl Judged {
     fn decision(&self, added: Option<&str>) -> Option<String> {
         let percent = (self.measured.lit * 100.0).round();
         let added = added.unwrap_or("nothing");
-        Some(match self.is_enough.filter(|_| self.is_said)? {
+        Some(match self.is_enough? {
             true if added != "nothing" => format!(
                 "its own lights light it: they reach {percent}% of the visible surfaces; the studio adds {added} \
                  (--env none leaves them out)"
@@ -138,10 +141,10 @@ impl Judged {
     }
 }
 
-/// What the studio has added to light a scene, where nothing was decided about the scene's own light.
+/// What the studio has added to light a scene, where nothing else is to be told about its light.
 pub(crate) fn studio_light(settings: &Settings, completed: &SceneBuilder, count: usize) -> Option<String> {
-    let is_decided = settings.own_light.is_some_and(|judged| judged.is_said);
-    added_lights(completed, count).filter(|_| !is_decided)
+    let is_said = settings.own_light.is_some_and(|judged| judged.is_said);
+    added_lights(completed, count).filter(|_| !is_said)
 }
 
 /// What is worth telling about the light of a completed scene, in one line: what the studio has added, and how the picture is

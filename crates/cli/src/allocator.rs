@@ -84,14 +84,16 @@ fn end_without(size: usize) -> ! {
 pub fn report_failures() {
     #[cfg(unix)]
     {
+        use signal_hook::consts::SIGABRT;
+        use signal_hook::low_level::{emulate_default_handler, register};
         let report = || match REFUSED.load(Ordering::SeqCst) {
-            // Something else is wrong, and its message is there.
-            0 => {}
+            // Something else is wrong, and its message is there, or somebody else has sent the signal: as without this.
+            0 => drop(emulate_default_handler(SIGABRT)),
             size => end_without(size),
         };
-        // SAFETY: the signal comes from the thread that has just aborted, within no function of the allocator, and what
-        // runs here takes no lock that it waits for and no memory.
-        let registered = unsafe { signal_hook::low_level::register(signal_hook::consts::SIGABRT, report) };
+        // SAFETY: after a refusal the signal comes from the thread that has just aborted, within no function of the allocator, and
+        // what runs here takes no lock that it waits for and no memory.
+        let registered = unsafe { register(SIGABRT, report) };
         // Without it the process aborts as every program does.
         drop(registered);
     }

@@ -61,16 +61,21 @@ pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Starts loading the denoisers' libraries while the scene is being read, if one is likely to be used. In a sandbox the
-/// libraries are loaded before the first byte of a file is read, and none is loaded afterwards.
-pub fn begin_loading(arguments: &Render, common: &Common) {
+/// True if a render is likely to use a denoiser.
+pub fn may_denoise(arguments: &Render) -> bool {
     let may_use = match arguments.denoise.as_deref() {
         Some("auto" | "oidn") => true,
         Some(_) => false,
         // A fixed number of samples is not denoised, so its bytes never depend on a denoiser.
         None => arguments.spp.is_none() || arguments.noise.is_some() || arguments.time_limit.is_some(),
     };
-    if may_use && arguments.samples.is_none() && arguments.crop.is_none() {
+    may_use && arguments.samples.is_none() && arguments.crop.is_none()
+}
+
+/// Starts loading the denoisers' libraries while the scene is being read, if one is likely to be used. In a sandbox the
+/// libraries are loaded before the first byte of a file is read, and none is loaded afterwards.
+pub fn begin_loading(arguments: &Render, common: &Common) {
+    if may_denoise(arguments) {
         load(arguments.threads.unwrap_or(0) as usize, common);
     }
 }

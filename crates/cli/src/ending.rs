@@ -1,8 +1,8 @@
 //! How the process ends in the midst of its work: after a signal, a timeout, or where memory runs out. It says why, on
 //! standard error and, if `--json` promises a line for each scene, there; and it leaves no half-written file.
 //!
-//! Nothing here allocates memory or waits for another thread, since there may be no memory, and the other thread may be the
-//! one that ends.
+//! Nothing here allocates memory or waits for another thread or process, since there may be no memory, the other thread may be
+//! the one that ends, and whoever should read the message may not.
 
 use crate::interrupt::interrupt;
 use serde_json::json;
@@ -42,6 +42,11 @@ pub fn under_way(scene: &Path, picture: &Path, wants_json: bool) {
     });
     let before = format!("error: {scene}: ");
     *UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(UnderWay { before, json });
+}
+
+/// The picture is made, and whoever wants to know has been told.
+pub fn finished() {
+    *UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner) = None;
 }
 
 /// Says which file goes when a server or the timeout ends the process.
@@ -99,17 +104,24 @@ enum Stream {
     Error,
 }
 
-/// Writes past the buffers and locks of the standard library.
+/// Writes past the buffers and locks of the standard library, and into no pipe that is full.
 #[cfg(unix)]
 fn write(stream: Stream, texts: &[&str]) {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    /// A pipe that takes anything takes so much at once (`PIPE_BUF` of Linux).
+    const PIECE: usize = 4096;
+    let file = match stream {
+        Stream::Output => rustix::stdio::stdout(),
+        Stream::Error => rustix::stdio::stderr(),
+    };
+    let now = Timespec { tv_sec: 0, tv_nsec: 0 };
     for text in texts {
         let mut rest = text.as_bytes();
         while !rest.is_empty() {
-            let written = match stream {
-                Stream::Output => rustix::io::write(rustix::stdio::stdout(), rest),
-                Stream::Error => rustix::io::write(rustix::stdio::stderr(), rest),
-            };
-            match written {
+            if poll(&mut [PollFd::new(&file, PollFlags::OUT)], Some(&now)) == Ok(0) {
+                return;
+            }
+            match rustix::io::write(file, &rest[..rest.len().min(PIECE)]) {
                 Ok(count @ 1..) => rest = &rest[count..],
                 Err(rustix::io::Errno::INTR) => {}
                 // There is nowhere to report it.

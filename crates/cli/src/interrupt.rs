@@ -1,10 +1,13 @@
-//! Ctrl-C, SIGTERM and `--timeout`: the first asks the work to stop and save what there is, and the process ends within
-//! [`GRACE`] whatever it does; a second signal ends it at once. Where there is nothing to save, the first does.
+//! Ctrl-C, SIGTERM, the end of the terminal and `--timeout`: the first asks the work to stop and save what there is, and the
+//! process ends within [`GRACE`] whatever it does; a second signal ends it at once. Where there is nothing to save, the first
+//! does.
 //!
 //! A thread waits for signals, so that none of the work has to look for them: not reading, building trees or decoding,
 //! nor a library in the midst of any of it.
 
 use crate::ending::end;
+#[cfg(target_os = "linux")]
+use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -21,6 +24,8 @@ pub struct Interrupt {
     ends_itself: Arc<AtomicBool>,
     /// Whether what is being rendered has changed in the meantime.
     superseded: Arc<AtomicBool>,
+    /// Whether more signals change nothing.
+    ignores_more: Arc<AtomicBool>,
 }
 
 /// Takes the place of a signal's number when the time is up.
@@ -30,7 +35,7 @@ const TIMEOUT: usize = usize::MAX;
 const TIMED_OUT: u8 = 124;
 
 /// How long saving may take after a signal or a timeout; the process is gone within 2 seconds.
-const GRACE: Duration = Duration::from_millis(1800);
+pub const GRACE: Duration = Duration::from_millis(1800);
 
 /// The one of this process.
 static INTERRUPT: OnceLock<Interrupt> = OnceLock::new();
@@ -40,12 +45,31 @@ pub fn interrupt() -> &'static Interrupt {
     INTERRUPT.get_or_init(Interrupt::default)
 }
 
-/// From now on, waits for signals in a thread. This comes after `--sandbox` is in force, which the thread inherits.
-pub fn listen() -> anyhow::Result<()> {
+/// The signals that end the work. `nohup` has that of a closed terminal ignored, which holds. A sandbox hides what says so.
+pub fn signals() -> Vec<i32> {
+    let mut all = vec![SIGINT, SIGTERM];
+    #[cfg(target_os = "linux")]
+    if !is_ignored(SIGHUP) {
+        all.push(SIGHUP);
+    }
+    all
+}
+
+/// Whether the process was started with a signal ignored: in `/proc/self/status`, each has a bit of a hexadecimal number.
+#[cfg(target_os = "linux")]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let bits = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let bits = bits.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
+    bits.is_none_or(|bits| bits >> (signal - 1) & 1 == 1)
+}
+
+/// From now on, waits for these signals in a thread. This comes after `--sandbox` is in force, which the thread inherits.
+pub fn listen(wanted: &[i32]) -> anyhow::Result<()> {
     // Files that grow beyond `ulimit -f` then give an error, and what is half written is removed.
     #[cfg(unix)]
     signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
-    let mut signals = Signals::new([SIGINT, SIGTERM])?;
+    let mut signals = Signals::new(wanted)?;
     thread("signals").spawn(move || {
         for signal in signals.forever() {
             interrupt().signalled(signal);
@@ -64,6 +88,9 @@ impl Interrupt {
     /// What a signal does.
     fn signalled(&self, signal: i32) {
         let first = self.signal.compare_exchange(0, signal as usize, Ordering::SeqCst, Ordering::SeqCst);
+        if first.is_err() && self.ignores_more.load(Ordering::SeqCst) {
+            return;
+        }
         if first.is_err() {
             end(status(signal as usize), "a second signal ended it at once, and nothing more was saved");
         }
@@ -104,6 +131,11 @@ impl Interrupt {
         self.ends_itself.store(yes, Ordering::SeqCst);
     }
 
+    /// From now on, a second signal changes nothing: several who stop the work mean the same.
+    pub fn ignore_more(&self) {
+        self.ignores_more.store(true, Ordering::SeqCst);
+    }
+
     /// True if the timeout stopped the work.
     pub fn timed_out(&self) -> bool {
         self.signal.load(Ordering::Relaxed) == TIMEOUT
@@ -134,7 +166,7 @@ impl Interrupt {
         self.is_signalled() || self.superseded.load(Ordering::Relaxed)
     }
 
-    /// Returns 130 or 143 after a signal, 124 after a timeout, and 0 otherwise.
+    /// Returns 129, 130 or 143 after a signal, 124 after a timeout, and 0 otherwise.
     pub fn exit_status(&self) -> u8 {
         match self.signal.load(Ordering::Relaxed) {
             0 => 0,

@@ -49,7 +49,10 @@ fn main() -> ExitCode {
     memory::begin();
     let result = match Arguments::try_parse() {
         Ok(mut arguments) => {
-            memory::bound(&mut arguments.common);
+            // A worker's jobs are bounded in the process that renders them.
+            if !matches!(arguments.command, Command::Worker(_)) {
+                memory::bound(&mut arguments.common);
+            }
             run(arguments)
         }
         Err(answer) => print_answer(&advice::added(answer)),

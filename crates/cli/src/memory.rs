@@ -9,13 +9,6 @@ use bilux::scene::Parameters;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Bytes per thread: 16 MB of stack, and the paths that it traces.
-const THREAD: u64 = 24 << 20;
-/// Threads take at most one part in this many.
-const THREADS_PART: u64 = 4;
-/// Bytes for everything that no estimate counts.
-const RESERVE: u64 = 12 << 20;
-
 static LIMIT: OnceLock<Option<MemoryLimit>> = OnceLock::new();
 
 /// Whether the limit is what bounds `--max-memory`.
@@ -28,7 +21,6 @@ pub fn begin() {
     allocator::report_failures();
     if let Some(limit) = limit {
         allocator::share(limit.left);
-        refuse_before_kill(limit);
     }
 }
 
@@ -60,17 +52,10 @@ fn refuse_before_kill(_: &MemoryLimit) {}
 
 /// Lowers `--max-memory` to what the system and the threads leave.
 pub fn bound(common: &mut Common) {
-    /// Not even a small scene can be read with less; whether there is so much, allocations show.
-    const LEAST: u64 = 1 << 20;
     let Some(limit) = LIMIT.get_or_init(MemoryLimit::of_process) else { return };
-    let count = threads().unwrap_or_else(cores) as u64;
-    let reserve =
-        if limit.is_imposed() { count * THREAD + RESERVE.min(limit.left / THREADS_PART) } else { 0 };
-    let left = limit.left.saturating_sub(reserve).max(LEAST);
-    if left < common.max_memory {
-        common.max_memory = left;
-        IS_TIGHTER.store(true, Ordering::Relaxed);
-    }
+    let left = limit.for_pictures();
+    IS_TIGHTER.store(left < common.max_memory, Ordering::Relaxed);
+    common.max_memory = left.min(common.max_memory);
 }
 
 /// What sets the limit, if the system imposes one.
@@ -84,26 +69,20 @@ pub fn tighter() -> Option<LimitSource> {
     IS_TIGHTER.load(Ordering::Relaxed).then_some(limit.source)
 }
 
-/// The number of threads for which there is memory, if it is lower than the number of cores.
-fn threads() -> Option<usize> {
-    let fits = usize::try_from(imposed()?.left / THREADS_PART / THREAD).unwrap_or(usize::MAX).max(1);
-    (fits < cores()).then_some(fits)
-}
-
-fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
 /// Sets the number of threads, unless somebody has.
 pub fn set_threads(parameters: &mut Parameters) {
-    if let (Some(threads), None) = (threads(), parameters.find("threads")) {
-        parameters.set("threads", bilux::scene::Value::Integer(threads as i64));
+    if let Some(limit) = imposed() {
+        limit.set_threads(parameters);
     }
 }
 
-/// Starts the threads that readers share, if there are to be fewer than cores.
-pub fn begin_threads() -> anyhow::Result<()> {
-    let Some(threads) = threads() else { return Ok(()) };
+/// Prepares for the work: it gets no more memory than there is, and readers share fewer threads than cores if there is to be
+/// no more. A process that only starts others does not come here, since they inherit limits.
+pub fn begin_work() -> anyhow::Result<()> {
+    if let Some(limit) = imposed() {
+        refuse_before_kill(limit);
+    }
+    let Some(threads) = imposed().and_then(MemoryLimit::threads) else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.context("there is not enough memory to start a thread")
 }

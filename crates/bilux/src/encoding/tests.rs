@@ -102,6 +102,7 @@ fn rich() -> SceneBuilder {
     let camera = Spec::new("main", "perspective").with("position", Vec3::Z * 4.0);
     scene.cameras.push(CameraSpec { spec: camera, keyframes: vec![(1.5, moves)] });
     scene.environment_unspecified = true;
+    scene.exposure_unspecified = true;
     scene.describes_all_light = true;
     scene.up = UpHint::Usually(Axis::NegZ);
     scene.unit = 0.01;

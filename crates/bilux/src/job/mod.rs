@@ -106,7 +106,8 @@ impl Job {
         known.keep_alone(own.is_some());
         let judged = settings.own_light.or(own.as_ref().map(|own| own.judged));
         studio.lit = judged.and_then(|judged| judged.is_enough);
-        studio.brightness = judged.map(|judged| judged.brightness());
+        // The classic shading knows no units: its lights are as bright as ever.
+        studio.brightness = judged.filter(|_| !settings.integrator.classic).map(|judged| judged.brightness());
         crate::presets::add_missing(&mut completed, &studio);
         settings.view.place(&mut completed, &settings.camera);
         let objects = completed.objects.len() as u32;
@@ -182,7 +183,7 @@ impl Job {
         &self.notes
     }
 
-    /// What the studio lights the scene with, as a list in words, if nothing else in the scene may be meant to.
+    /// What the studio lights the scene with, as a list in words, if nothing else is to be told about its light.
     pub fn studio_light(&self) -> Option<&str> {
         self.studio_light.as_deref()
     }

@@ -14,14 +14,9 @@ use bilux::transport::integrators::INTEGRATORS;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A triangle with everything that a mesh can have, a light, two cameras of which one moves, and an image texture.
-fn scene() -> SceneBuilder {
-    let mut scene = SceneBuilder::default();
-    let texels = (0..16).map(|i| Rgb::grey(i as f32 / 15.0)).collect();
-    scene.textures.push(Arc::new(Texture::new("", 4, 4, texels, false)));
-    scene.add_material(Spec::new("paint", "diffuse").with("reflectance", Value::Texture(0)));
-    scene.add_material(Spec::new("tin", "mirror").with("reflectance", 0.5f32));
-    let mesh = Mesh {
+/// A triangle, a point and a line with everything that a mesh can have.
+pub(crate) fn full_mesh() -> Mesh {
+    Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
         normals: vec![Vec3::Z; 3],
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
@@ -29,13 +24,24 @@ fn scene() -> SceneBuilder {
         tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 3],
         vertex_kd: vec![Rgb::WHITE; 3],
         vertex_ks: vec![Rgb::BLACK; 3],
-        vertex_opacity: vec![1.0; 3],
-        opacity_threshold: Some(0.5),
-        point_widths: vec![1.0; 3],
+        vertex_opacity: vec![0.75; 3],
+        opacity_threshold: Some(0.25),
+        point_widths: vec![0.75; 3],
         triangles: vec![[0, 1, 2]],
+        points: vec![1],
+        lines: vec![[0, 1]],
         ..Mesh::default()
-    };
-    scene.objects.push(Object::new("sail", Arc::new(mesh), 0));
+    }
+}
+
+/// A triangle with everything that a mesh can have, a light, two cameras of which one moves, and an image texture.
+fn scene() -> SceneBuilder {
+    let mut scene = SceneBuilder::default();
+    let texels = (0..16).map(|i| Rgb::grey(i as f32 / 15.0)).collect();
+    scene.textures.push(Arc::new(Texture::new("", 4, 4, texels, false)));
+    scene.add_material(Spec::new("paint", "diffuse").with("reflectance", Value::Texture(0)));
+    scene.add_material(Spec::new("tin", "mirror").with("reflectance", 0.5f32));
+    scene.objects.push(Object::new("sail", Arc::new(full_mesh()), 0));
     scene.lights.push(Spec::new("lamp", "point").with("position", Vec3::Z).with("intensity", 2.0f32));
     let camera = |name: &str| Spec::new(name, "perspective").with("position", Vec3::Z * 3.0);
     let mut moves = Parameters::default();

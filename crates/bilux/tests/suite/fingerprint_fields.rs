@@ -1,11 +1,11 @@
 //! Every field of a scene and of its settings, each changed alone: the fingerprint changes with all that a sample depends
 //! on. The structures are taken apart without `..`, so that a new field does not compile before it has its place here.
 
+use crate::fingerprint::full_mesh;
 use bilux::fingerprint::fingerprint;
-use bilux::math::glam::Vec4;
 use bilux::math::motion::{Motion, MotionKey};
 use bilux::math::registry::{Parameter, ParameterKind};
-use bilux::math::{Quat, Rgb, Vec2, Vec3};
+use bilux::math::{Quat, Rgb, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::{CAMERAS, CameraSpec};
 use bilux::scene::lights::LIGHTS;
@@ -33,23 +33,7 @@ fn scene() -> SceneBuilder {
         }));
     }
     scene.add_material(Spec::new("", "diffuse").with("reflectance", Value::Texture(0)));
-    let mesh = Mesh {
-        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
-        normals: vec![Vec3::Z; 3],
-        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
-        uvs2: vec![Vec2::ONE; 3],
-        tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 3],
-        vertex_kd: vec![Rgb::WHITE; 3],
-        vertex_ks: vec![Rgb::BLACK; 3],
-        triangles: vec![[0, 1, 2]],
-        points: vec![1],
-        lines: vec![[0, 1]],
-        vertex_opacity: vec![0.5; 3],
-        opacity_threshold: Some(0.25),
-        point_widths: vec![0.5; 3],
-        ..Mesh::default()
-    };
-    scene.objects.push(Object::new("", Arc::new(mesh), 0));
+    scene.objects.push(Object::new("", Arc::new(full_mesh()), 0));
     scene.stroke_widths.points = 0.5;
     scene.stroke_widths.lines = 0.25;
     scene

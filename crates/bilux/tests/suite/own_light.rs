@@ -5,6 +5,7 @@ use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;
 use bilux::scene::cameras::CameraSpec;
 use bilux::scene::generators::shapes;
+use bilux::scene::texture::Texture;
 use std::sync::Arc;
 
 /// A scene in a format that cannot describe its surroundings, such as glTF.
@@ -358,6 +359,25 @@ fn what_the_studio_adds_is_said() {
     assert!(notes.len() == 1 && notes[0].contains("the studio adds surroundings"), "{notes:?}");
 }
 
+/// Beside a cube, a screen whose light is a texture: the studio lights what it does not reach, and one line tells all of it.
+#[test]
+fn a_bright_texture_that_lights_a_part_is_told_with_the_exposure() {
+    let mut scene = file();
+    put(&mut scene, cuboid(Vec3::NEG_ONE, Vec3::ONE), clay(0.5));
+    scene.textures.push(Arc::new(Texture::new("", 1, 1, vec![Rgb::WHITE], false)));
+    let screen = glowing(0.0).with("emission", Value::Texture(0)).with("emission_scale", 1000.0f32);
+    // It faces the side that the camera sees a fifth of the picture of.
+    put(&mut scene, panel(Vec3::X * 1.5, Vec3::Z * 0.3, Vec3::Y * 0.3), screen);
+    let job = job(&scene);
+    let notes = job.notes();
+    assert!(job.studio_light().is_none() && notes.len() == 1, "{:?}: {notes:?}", job.studio_light());
+    assert!(notes[0].contains("its own lights reach only") && notes[0].contains(" EV"), "{notes:?}");
+    // A sign is none of what anybody wonders about, and is told with `-v` as what it is.
+    let sign = car(0.5);
+    let job = self::job(&sign);
+    assert!(job.studio_light().is_some() && job.notes()[0].contains("reach only 0%"), "{:?}", job.notes());
+}
+
 /// A model below a sun of so many lux.
 fn sunlit(lux: f32) -> SceneBuilder {
     let mut scene = file();
@@ -429,6 +449,22 @@ fn the_exposure_is_the_users_or_the_files_where_they_state_it() {
     assert_eq!(of(&[("threads", Value::Integer(2))]).1, whole.1);
     let job = Job::new(&sunlit(10_000.0), &settings()).unwrap();
     assert!(bright(&job) > 100.0, "{}", bright(&job));
+}
+
+/// The exposure is one that `--exposure` takes, and what is not exposed gets no brighter surroundings.
+#[test]
+fn exposures_are_bounded_and_leave_the_classic_shading_alone() {
+    assert_eq!(shown(&sunlit(1e38), &[]).1, -64.0);
+    let room = |lux: f32, integrator: &str| {
+        let mut settings = settings();
+        settings.set("integrator", integrator);
+        let job = Job::new(&sunlit(lux), &settings).unwrap();
+        let lights = &job.completed_scene().lights;
+        let room = lights.iter().find(|light| light.name == "room").unwrap();
+        (room.parameters.clone(), job.write_options().unwrap().exposure)
+    };
+    assert_eq!(room(10_000.0, "whitted"), room(3.0, "whitted"));
+    assert_ne!(room(10_000.0, "path").0, room(3.0, "path").0);
 }
 
 #[test]

@@ -14,7 +14,7 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
     let mut confines = SandboxPaths::default().reading_scene(&arguments.scene);
-    for file in arguments.studio.env.as_deref().into_iter().chain(arguments.studio.picture_behind()) {
+    for file in arguments.studio.picture_around().into_iter().chain(arguments.studio.picture_behind()) {
         confines = confines.reading(file);
     }
     confines.enter(common)?;

@@ -5,7 +5,7 @@ use super::keeping::Keeping;
 use super::targets::{Target, is_stdout};
 use super::written::{self, Denoising, is_part};
 use super::{DONE, aov, log, stats, time_limit};
-use crate::ending::{end, under_way};
+use crate::ending::{end, finished, under_way};
 use crate::preview::{Observers, Preview};
 use crate::progress::Report;
 use crate::{output, usage};
@@ -54,7 +54,6 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
     let denoising = written::write(input, job, &outcome, (denoiser.as_ref(), &layers), output)?;
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
-    interrupt.ends_itself(false);
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, (output, &layers), common, interrupt)?;
@@ -76,6 +75,8 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
     if arguments.json {
         output::print(rendered.json())?;
     }
+    finished();
+    interrupt.ends_itself(false);
     if !common.quiet {
         rendered.print(common.verbose);
     }

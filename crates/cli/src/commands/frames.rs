@@ -6,6 +6,7 @@ use crate::choices::GlassArgument;
 use crate::ending;
 use crate::lasting::Checkpoints;
 use crate::output;
+use crate::studio::StudioArguments;
 use anyhow::{Context, bail};
 use bilux::checkpoint::{CheckpointError, Identity, checkpoint_path};
 use bilux::encoding::ContentHash;
@@ -136,11 +137,28 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         GlassArgument::Thin => "thin",
         GlassArgument::Solid => "solid",
     };
+    let StudioArguments {
+        preset,
+        env,
+        layer,
+        background,
+        change,
+        // These are settings, which are there already.
+        orbit: _,
+        eye: _,
+        look_at: _,
+        zoom: _,
+        up: _,
+        front: _,
+        focal: _,
+        ground: _,
+    } = &a.studio;
     let options = [
-        ("--preset", said(a.studio.preset.as_ref())),
-        ("--env", file(&a.studio.env)),
-        ("--background", said(a.studio.background.as_ref())),
-        ("--change", a.studio.change.join(" ")),
+        ("--preset", said(preset.as_ref())),
+        ("--env", file(env)),
+        ("--layer", said(layer.as_ref())),
+        ("--background", said(background.as_ref())),
+        ("--change", change.join(" ")),
         ("--turntable", said(a.turntable)),
         ("--animation", said(a.choices.animation.as_ref())),
         ("--variant", said(a.choices.variant.as_ref())),

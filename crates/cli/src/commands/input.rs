@@ -4,7 +4,7 @@ use super::targets::{Target, is_stdout};
 use super::{aov, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
-use crate::{settings_from, usage};
+use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::checkpoint::checkpoint_path;
 use bilux::formats::ReadOptions;
@@ -33,6 +33,8 @@ pub struct Input<'a> {
     built: RefCell<Built>,
     /// Every warning so far, for `--json`.
     pub warnings: RefCell<Vec<String>>,
+    /// Every note that was printed.
+    notes: RefCell<BTreeSet<String>>,
     /// Every file that was read.
     pub files: RefCell<BTreeSet<PathBuf>>,
     /// Where they are watched, if they are.
@@ -59,14 +61,23 @@ impl Input<'_> {
             piped = Some(bytes);
         }
         let begun = Cell::new(Instant::now());
-        let (built, warnings, files) = (RefCell::default(), RefCell::default(), RefCell::default());
-        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, files, watched })
+        let (built, warnings) = (RefCell::default(), RefCell::default());
+        let (notes, files) = (RefCell::default(), RefCell::default());
+        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, notes, files, watched })
     }
 
     /// Prints warnings, and keeps them for `--json`.
     pub fn warn(&self, warnings: &[bilux::scene::Warning]) -> anyhow::Result<()> {
         self.warnings.borrow_mut().extend(warnings.iter().map(ToString::to_string));
         report_warnings(warnings, self.common)
+    }
+
+    /// Prints notes about a picture, each once however many pictures there are.
+    pub fn note(&self, output: &Path, notes: &[String]) {
+        let mut known = self.notes.borrow_mut();
+        for note in notes.iter().filter(|note| known.insert((*note).clone())) {
+            output::eprint(format_args!("{}: {note}", output.display()));
+        }
     }
 
     /// Reads the scene as it is at a time in seconds; for frames, with its whole movement.

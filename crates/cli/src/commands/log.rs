@@ -55,7 +55,7 @@ impl Rendered<'_> {
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
-        let lit = self.job.studio_light().map(|with| format!(", lit by the studio with {with}"));
+        let lit = self.job.studio_light().map(|with| format!(", lit by the studio ({with})"));
         let cut = match self.is_whole {
             false if self.timed_out => "; ended by --timeout: this is the picture so far",
             false => "; interrupted: this is the picture so far",
@@ -133,7 +133,7 @@ impl Rendered<'_> {
             "width": s.width, "height": s.height, "spp": spp, "spp_asked": asked, "noise": self.noise(),
             "seconds": self.total_seconds, "integrator": s.integrator.entry.name,
             "denoiser": self.denoiser.map(|chosen| chosen.denoiser.describe()), "seed": s.seed,
-        "complete": self.is_whole, "warnings": self.warnings, "notes": self.job.notes(),
+            "complete": self.is_whole, "warnings": self.warnings, "notes": self.job.notes(),
         })
     }
 }

@@ -8,7 +8,7 @@ use super::written::is_part;
 use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
-use crate::ending::under_way;
+use crate::ending::{finished, under_way};
 use crate::interrupt::{Interrupt, interrupt};
 use crate::sandbox::{SandboxPaths, check_read, folder_of, leads_out};
 use crate::{output, settings_from, usage};
@@ -57,6 +57,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
                 if arguments.json && !output::is_closed_pipe(&error) {
                     log::print_failure(&target.scene, &target.output, &error)?;
                 }
+                finished();
                 // One broken scene does not stop the others; an error that concerns all of them does.
                 if targets.len() == 1 || usage::is_command_line(&error) || output::is_closed_pipe(&error) {
                     return Err(error);
@@ -72,9 +73,22 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Under `--sandbox`: allows reading the scenes, their folders and the files that options name, and writing to the
-/// picture's folder.
+/// Under `--sandbox`: refuses to write elsewhere than to the picture's folder, and confines the process.
 fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::Result<()> {
+    let confines = confines(targets, arguments);
+    for target in targets {
+        let beside = if is_stdout(&target.output) { Vec::new() } else { beside(target, arguments) };
+        let files = [&target.output].into_iter().chain(&target.stats).chain(&beside);
+        for file in files.filter(|file| !is_stdout(file)) {
+            confines.check_written(file, common).map_err(usage::wrong)?;
+        }
+    }
+    confines.enter(common)
+}
+
+/// What a render has under `--sandbox`: it reads the scenes, their folders and the files that options name, and writes to the
+/// picture's folder.
+pub fn confines(targets: &[Target], arguments: &Render) -> SandboxPaths {
     let studio = &arguments.studio;
     let mut confines = SandboxPaths::default();
     for scene in targets.iter().map(|target| &target.scene) {
@@ -85,7 +99,7 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
             confines = confines.reading_scene(scene);
         }
     }
-    for file in studio.env.as_deref().into_iter().chain(studio.picture_behind()) {
+    for file in studio.picture_around().into_iter().chain(studio.picture_behind()) {
         confines = confines.reading(file);
     }
     if let Some(output) = arguments.output.as_deref().filter(|output| !is_stdout(output)) {
@@ -99,14 +113,7 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
             confines = confines.reading(&file.path());
         }
     }
-    for target in targets {
-        let beside = if is_stdout(&target.output) { Vec::new() } else { beside(target, arguments) };
-        let files = [&target.output].into_iter().chain(&target.stats).chain(&beside);
-        for file in files.filter(|file| !is_stdout(file)) {
-            confines.check_written(file, common).map_err(usage::wrong)?;
-        }
-    }
-    confines.enter(common)
+    confines
 }
 
 /// What is written beside a picture.
@@ -124,6 +131,7 @@ fn render_one(
     (interrupt, watched): (&Interrupt, Option<&Watched>),
 ) -> anyhow::Result<u8> {
     under_way(&target.scene, &target.output, arguments.json);
+    interrupt.ends_itself(false);
     check_read(&target.scene, common)?;
     let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
     let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
@@ -187,9 +195,7 @@ fn render_scene(
     input.warn(job.warnings())?;
     // That the studio lights a model without light is part of the line about its picture.
     if common.verbose > 0 || !common.quiet && job.studio_light().is_none() {
-        job.notes()
-            .iter()
-            .for_each(|note| output::eprint(format_args!("{}: {note}", target.output.display())));
+        input.note(&target.output, job.notes());
     }
     if arguments.replay.is_some() {
         return replaying::run(input, &mut job, &target.output);

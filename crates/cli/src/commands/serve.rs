@@ -53,13 +53,14 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
         }),
     };
     let server = Server::start(options)?;
-    output::print(server.address())?;
+    // Before anybody who reads the address can end it.
     interrupt().ends_itself(true);
+    output::print(server.address())?;
     server.run(|| interrupt().is_requested())?;
     Ok(DONE)
 }
 
-/// What may light the scene, as `--env` names it: the pictures of light that lie next to it, and no studio.
+/// What may light the scene, as `--env` names it: what needs no file, and the pictures of light that lie next to it.
 fn environments(arguments: &Serve) -> Vec<String> {
     let is_light = |path: &PathBuf| {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -67,11 +68,12 @@ fn environments(arguments: &Serve) -> Vec<String> {
     };
     let files = std::fs::read_dir(folder_of(&arguments.scene)).into_iter().flatten().flatten();
     let mut found: Vec<PathBuf> = files.map(|file| file.path()).filter(is_light).collect();
-    found.extend(arguments.studio.env.clone().filter(|path| path != Path::new("none")));
+    found.extend(arguments.studio.picture_around().map(Path::to_owned));
     found.sort();
     found.dedup();
     found.truncate(ENVIRONMENTS);
-    ["none".to_owned()].into_iter().chain(found.iter().map(|path| path.display().to_string())).collect()
+    let named = bilux::presets::SURROUNDINGS.iter().map(|row| row.name.to_owned());
+    named.chain(found.iter().map(|path| path.display().to_string())).collect()
 }
 
 fn open(arguments: &Serve, read: &ReadOptions) -> anyhow::Result<SceneBuilder> {
@@ -108,7 +110,7 @@ fn open_again(arguments: &Serve, read: &ReadOptions, opening: &Opening) -> anyho
 /// Under `--sandbox`: allows reading the scene, its folder and the files that options name. Nothing is written.
 fn confine(arguments: &Serve, common: &Common) -> anyhow::Result<()> {
     let mut confines = SandboxPaths::default().reading_scene(&arguments.scene);
-    for file in arguments.studio.env.as_deref().into_iter().chain(arguments.studio.picture_behind()) {
+    for file in arguments.studio.picture_around().into_iter().chain(arguments.studio.picture_behind()) {
         confines = confines.reading(file);
     }
     confines.enter(common)

@@ -100,16 +100,22 @@ impl SandboxPaths {
         Ok(())
     }
 
+    /// The files that may be read, the folders with everything in them, and the folder that may be written to.
+    pub fn places(&self) -> (impl Iterator<Item = &Path>, Option<&Path>) {
+        (self.read.iter().map(PathBuf::as_path), self.write.as_deref())
+    }
+
     /// Restricts the process to these files if `--sandbox` asks for it, and then starts the first threads: those that are
     /// already running would stay unrestricted.
     pub fn enter(&self, common: &Common) -> anyhow::Result<()> {
+        let signals = interrupt::signals();
         if common.sandbox {
             self.restrict(common)?;
         }
         // A process that takes one job after the other comes here for each.
         static BEGUN: Once = Once::new();
         let mut begun = Ok(());
-        BEGUN.call_once(|| begun = interrupt::listen().and_then(|()| memory::begin_threads()));
+        BEGUN.call_once(|| begun = interrupt::listen(&signals).and_then(|()| memory::begin_work()));
         begun
     }
 

@@ -2,7 +2,9 @@
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use bilux::pictures::{Picture, read};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
@@ -230,7 +232,7 @@ fn the_log_of_a_picture_is_one_line() {
     let model = "render bare.obj --size 16x16 --progress none --noise 20% -o b.png";
     let said = assert_done(path, model);
     assert!(said.lines().count() == 1 && said.contains(", denoised by "), "{said}");
-    assert!(said.contains(", lit by the studio with a key light, a rim light and surroundings"), "{said}");
+    assert!(said.contains(", lit by the studio (a key light, a rim light and surroundings)"), "{said}");
     let more = assert_done(path, &format!("{model} -v"));
     assert!(more.contains("up is y, front is z"), "{more}");
     // A guess may be wrong, so it is reported: a plate lies flat.
@@ -240,6 +242,80 @@ fn the_log_of_a_picture_is_one_line() {
     let said = assert_done(path, &model.replace("bare", "plate"));
     let guess = "plate.obj: up is z, front is -y, guessed from its shape (change it with --up and --front)";
     assert!(said.lines().count() == 2 && said.lines().any(|line| line == guess), "{said}");
+}
+
+/// A model below a sun of 10,000 lux, in a format that states no exposure.
+fn sunlit(path: &Path) {
+    let sun = "kind = \"directional\"\ndirection = [-0.5, -1, -0.8]\nirradiance = 10000\n";
+    let scene = format!("[[model]]\nshape = \"sphere\"\n\n[[light]]\n{sun}");
+    fs::write(path.join("sun.toml"), scene).unwrap();
+    assert_done(path, "convert sun.toml -o sun.glb -q");
+}
+
+#[test]
+fn what_is_decided_for_all_frames_is_told_once() {
+    let folder = folder();
+    let path = folder.path();
+    sunlit(path);
+    let said = assert_done(path, &format!("render sun.glb {SMALL} --turntable 3 --progress none -o a.png"));
+    assert_eq!((said.matches("its own lights light it").count(), said.lines().count()), (1, 4), "{said}");
+}
+
+/// The exposure is that of the whole picture, however it is divided.
+#[test]
+fn parts_are_exposed_as_the_whole() {
+    let folder = folder();
+    let path = folder.path();
+    sunlit(path);
+    let render = "render sun.glb -i path --size 24x18 --spp 4 -q";
+    let picture = |name: &str| fs::read(path.join(name)).unwrap();
+    assert_done(path, &format!("{render} -o whole.ppm"));
+    assert_done(path, &format!("{render} -o threads.ppm --threads 3"));
+    assert!(picture("threads.ppm") == picture("whole.ppm"));
+    for parts in [["--samples 0..1", "--samples 1..4"], ["--crop 0,0,24,5", "--crop 0,5,24,13"]] {
+        for (part, name) in parts.iter().zip(["a.exr", "b.exr"]) {
+            assert_done(path, &format!("{render} {part} -o {name}"));
+        }
+        assert_done(path, "merge b.exr a.exr -o merged.ppm -q");
+        assert!(picture("merged.ppm") == picture("whole.ppm"), "{parts:?}");
+    }
+    assert_done(path, &format!("{render} -o bright.ppm --exposure 0"));
+    assert!(picture("bright.ppm") != picture("whole.ppm"));
+}
+
+/// The lines of JSON on the pages for programs have the keys of the real ones.
+#[test]
+fn the_pages_show_json_as_it_is() {
+    let folder = folder();
+    let path = folder.path();
+    // Those of the picture within the result of a job, too.
+    let keys = |text: &str| {
+        let value: serde_json::Value = serde_json::from_str(text).unwrap();
+        let objects = [Some(&value), value["pictures"].get(0)];
+        let keys = objects.into_iter().flatten().flat_map(|object| object.as_object().unwrap().keys());
+        keys.cloned().collect::<BTreeSet<_>>()
+    };
+    let printed = |command: &str| String::from_utf8(run(path, command).stdout).unwrap();
+    let picture = printed(&format!("render ball.toml {SMALL} -o a.png --json -q"));
+    let failure = printed("render none.obj -o a.png --json -q");
+    let mut worker = bilux(path, "worker");
+    let mut worker = worker.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let job = "{\"scene\": \"ball.toml\", \"output\": \"a.png\", \"spp\": 1}";
+    worker.stdin.take().unwrap().write_all(job.as_bytes()).unwrap();
+    let result = String::from_utf8(worker.wait_with_output().unwrap().stdout).unwrap();
+    let mut found = [0; 3];
+    for page in ["command-line.md", "tutorials/server.md"] {
+        let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(page));
+        let starts = ["{\"scene\":\"", "{\"id\":\""];
+        let is_shown = |line: &&str| starts.iter().any(|start| line.starts_with(start));
+        for line in text.unwrap().lines().filter(is_shown) {
+            let is_job = line.starts_with(starts[1]);
+            let real = if is_job { 2 } else { usize::from(line.contains("\"error\"")) };
+            found[real] += 1;
+            assert_eq!(keys(line), keys([&picture, &failure, &result][real]), "{page}: {line}");
+        }
+    }
+    assert!(found.iter().all(|count| *count > 0), "{found:?}");
 }
 
 /// A scene in a folder of its own, next to a file that must be neither read nor written.

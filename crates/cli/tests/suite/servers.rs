@@ -148,6 +148,85 @@ fn an_interrupted_render_says_what_was_taken_and_leaves_nothing_else() {
     assert!(json["spp_asked"].is_null() && json["spp"].as_u64().is_some(), "{out}");
 }
 
+/// Starts a command, and sends it a signal when this file is there.
+fn signalled_when(folder: &Path, line: &str, file: &str, name: &str) -> (i32, String, String) {
+    let child = bilux(folder, line).spawn().unwrap();
+    let begun = Instant::now();
+    while !folder.join(file).exists() {
+        assert!(begun.elapsed() < Duration::from_secs(30), "{line}: there is no {file}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    signal(&child, name);
+    of(child.wait_with_output().unwrap())
+}
+
+/// What comes after a picture is stopped, but the picture is there, and the line says so.
+#[test]
+fn a_picture_that_is_written_is_no_failure_whatever_ends_the_rest() {
+    let folder = folder();
+    let path = folder.path();
+    let line = "render box.toml --size 120x90 -i bdpt --spp 48 --aov strategies -o a.png --json -q";
+    let (status, out, said) = signalled_when(path, line, "a.png", "-TERM");
+    assert_eq!(status, 143, "{said}");
+    let json: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{out}"));
+    assert!(json["error"].is_null() && json["complete"] == true, "{out}");
+    assert!(!path.join("a.strategies").exists(), "it was too late");
+}
+
+#[test]
+fn a_terminal_that_closes_ends_it_as_ctrl_c_does_but_not_under_nohup() {
+    let folder = folder();
+    let path = folder.path();
+    let line = "render box.toml --size 48x48 -i path --spp 100000 --checkpoint 0.05 -o a.png";
+    let (status, _, said) = signalled_when(path, line, "a.png.checkpoint", "-HUP");
+    assert!(status == 129 && said.contains("add --resume to continue"), "{status}: {said}");
+    assert!(bilux::pictures::read(path.join("a.png")).is_ok());
+    let binary = env!("CARGO_BIN_EXE_bilux");
+    let script = format!("trap '' HUP; exec {binary} render - -o b.png");
+    let mut shell = Command::new("sh");
+    shell.current_dir(path).args(["-c", &script]).stdin(Stdio::piped()).stderr(Stdio::null());
+    let mut child = shell.spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-HUP");
+    std::thread::sleep(Duration::from_millis(200));
+    assert!(child.try_wait().unwrap().is_none(), "it goes on");
+    signal(&child, "-TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+/// What ends it when memory runs out is no shield against others who end it.
+#[test]
+fn sigabrt_ends_it_as_it_does_every_program() {
+    let folder = folder();
+    let child = bilux(folder.path(), "render - -o a.png").stdin(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-ABRT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.signal(), Some(6), "{output:?}");
+}
+
+#[test]
+fn a_pipe_that_nobody_reads_does_not_keep_it() {
+    let folder = folder();
+    let (_reader, writer) = std::io::pipe().unwrap();
+    let mut filling =
+        Command::new("cat").arg("/dev/zero").stdout(writer.try_clone().unwrap()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    for is_output in [true, false] {
+        let mut command = bilux(folder.path(), "render - -o a.png --json");
+        command.stdin(Stdio::piped());
+        match is_output {
+            true => command.stdout(writer.try_clone().unwrap()),
+            false => command.stderr(writer.try_clone().unwrap()),
+        };
+        let child = command.spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        ends_in_time(child, "-TERM", "a full pipe");
+    }
+    filling.kill().unwrap();
+    filling.wait().unwrap();
+}
+
 #[test]
 fn sigterm_leaves_the_picture_and_no_checkpoint() {
     let folder = folder();
@@ -168,24 +247,23 @@ fn sigterm_leaves_the_picture_and_no_checkpoint() {
 fn sigterm_between_frames_leaves_no_list_of_them_unless_it_is_asked_for() {
     let folder = folder();
     let path = folder.path();
-    let line = "render box.toml --size 24x24 -i path --spp 20 --turntable 2000 -q -o f.png";
+    let line = "render box.toml --size 24x24 -i path --spp 20 --turntable 2000 -q -o f.png --json";
     for (more, signal_name, is_kept) in [
         ("", "-TERM", false),
         ("", "-INT", true),
         ("--checkpoint 60", "-TERM", true),
         ("--timeout 4", "", false),
     ] {
-        let child = bilux(path, &format!("{line} {more}")).spawn().unwrap();
-        let begun = Instant::now();
-        while !path.join("f-frames.png.checkpoint").exists() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "no frame is finished");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        if !signal_name.is_empty() {
-            signal(&child, signal_name);
-        }
-        let (status, _, said) = of(child.wait_with_output().unwrap());
+        let line = format!("{line} {more}");
+        let (status, out, said) = match signal_name {
+            "" => answer(path, &line),
+            name => signalled_when(path, &line, "f-frames.png.checkpoint", name),
+        };
         assert!([124, 130, 143].contains(&status), "{status}: {said}");
+        let pictures: Vec<Value> =
+            out.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["picture"].clone()).collect();
+        let once: std::collections::HashSet<&Value> = pictures.iter().collect();
+        assert_eq!(once.len(), pictures.len(), "a picture is told of twice: {out}");
         assert_eq!(
             path.join("f-frames.png.checkpoint").exists(),
             is_kept,

@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -25,15 +25,11 @@ fn bilux(folder: &Path) -> Command {
     bilux
 }
 
-fn started(folder: &Path, options: &[&str]) -> Child {
+/// The results of jobs, each a line.
+fn results(folder: &Path, options: &[&str], lines: &[String]) -> Vec<Value> {
     let mut worker = bilux(folder);
     worker.arg("worker").args(options).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    worker.spawn().unwrap()
-}
-
-/// The results of jobs, each a line, and what came on standard error.
-fn results(folder: &Path, options: &[&str], lines: &[String]) -> Vec<Value> {
-    let mut worker = started(folder, options);
+    let mut worker = worker.spawn().unwrap();
     let mut input = worker.stdin.take().unwrap();
     for line in lines {
         writeln!(input, "{line}").unwrap();
@@ -79,7 +75,9 @@ fn every_line_gets_its_result_and_pictures_are_those_of_render() {
     let wanted = [(1, 0), (0, 2), (2, 1), (3, 1), (4, 2), (5, 2), (6, 2), (7, 0), (8, 0), (9, 0)];
     let wanted = wanted.map(|(id, status)| (if id == 0 { Value::Null } else { json!(id) }, status));
     assert_eq!(statuses, wanted, "{results:#?}");
-    assert_eq!(results[1]["line"], 2);
+    assert_eq!((&results[1]["line"], &results[3]["line"]), (&json!(2), &json!(5)), "empty lines count");
+    let keys = |result: &Value| result.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert!(results.iter().all(|result| keys(result) == keys(&results[0])), "{results:#?}");
     let error = |index: usize| results[index]["error"].as_str().unwrap().to_owned();
     assert!(error(1).contains("no JSON object"), "{}", error(1));
     assert!(error(2).contains("missing.obj"), "{}", error(2));
@@ -163,59 +161,168 @@ fn a_sandbox_holds_for_each_job() {
     assert!(results.len() == 30 && results.iter().all(|result| result["status"] == 0), "{results:#?}");
 }
 
+/// A worker that gets one job after the other.
+struct Talk {
+    worker: Child,
+    jobs: ChildStdin,
+    results: BufReader<ChildStdout>,
+}
+
+impl Talk {
+    fn with(worker: &mut Command) -> Talk {
+        let mut worker = worker.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (jobs, results) = (worker.stdin.take().unwrap(), BufReader::new(worker.stdout.take().unwrap()));
+        Talk { worker, jobs, results }
+    }
+
+    fn begun(folder: &Path, options: &[&str]) -> Talk {
+        Talk::with(bilux(folder).arg("worker").args(options))
+    }
+
+    fn send(&mut self, job: &str) {
+        writeln!(self.jobs, "{job}").unwrap();
+    }
+
+    fn result(&mut self) -> Value {
+        let mut line = String::new();
+        self.results.read_line(&mut line).unwrap();
+        serde_json::from_str(&line).unwrap_or(Value::Null)
+    }
+
+    fn done(&mut self, job: &str) -> Value {
+        self.send(job);
+        self.result()
+    }
+
+    /// Begins a job that lasts, and waits until there is something to save.
+    fn begin_long(&mut self, id: u32) {
+        self.send(&job(id, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100" })));
+        std::thread::sleep(Duration::from_millis(700));
+    }
+
+    /// The process that renders.
+    fn child(&self) -> String {
+        let children = Command::new("pgrep").arg("-P").arg(self.worker.id().to_string()).output().unwrap();
+        String::from_utf8(children.stdout).unwrap().trim().to_owned()
+    }
+
+    /// No more jobs: the status with which it ends.
+    fn end(self) -> Option<i32> {
+        let Talk { mut worker, jobs, .. } = self;
+        drop(jobs);
+        worker.wait().unwrap().code()
+    }
+}
+
+fn kill(signal: &str, processes: &[String]) {
+    assert!(Command::new("kill").arg(signal).args(processes).status().unwrap().success());
+}
+
+/// Ctrl-C of a terminal and SIGTERM of systemd come to both processes, others only to the worker.
 #[test]
 fn a_signal_ends_the_stream_with_a_result_for_the_job_under_way() {
-    let folder = folder();
-    let mut worker = started(folder.path(), &[]);
-    let mut input = worker.stdin.take().unwrap();
-    let mut output = BufReader::new(worker.stdout.take().unwrap());
-    let mut result = || {
-        let mut line = String::new();
-        output.read_line(&mut line).unwrap();
-        serde_json::from_str::<Value>(&line).unwrap_or(Value::Null)
-    };
-    writeln!(input, "{}", job(1, "a/card.obj", json!({}))).unwrap();
-    assert_eq!(result()["status"], 0);
-    writeln!(input, "{}", job(2, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100" }))).unwrap();
-    std::thread::sleep(Duration::from_millis(700));
-    let begun = Instant::now();
-    assert!(Command::new("kill").arg(worker.id().to_string()).status().unwrap().success());
-    let last = result();
-    assert_eq!((&last["id"], &last["status"]), (&json!(2), &json!(143)), "{last:#}");
-    assert_eq!(worker.wait().unwrap().code(), Some(143));
-    assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
-    assert!(folder.path().join("2.png").is_file());
+    for (signal, to_both, status) in [
+        ("-TERM", false, 143),
+        ("-TERM", true, 143),
+        ("-INT", false, 130),
+        ("-INT", true, 130),
+        ("-HUP", true, 129),
+    ] {
+        let folder = folder();
+        let mut talk = Talk::begun(folder.path(), &[]);
+        assert_eq!(talk.done(&job(1, "a/card.obj", json!({})))["status"], 0);
+        talk.begin_long(2);
+        let worker = talk.worker.id().to_string();
+        let begun = Instant::now();
+        kill(signal, &if to_both { vec![talk.child(), worker] } else { vec![worker] });
+        let last = talk.result();
+        assert_eq!(
+            (&last["id"], &last["status"]),
+            (&json!(2), &json!(status)),
+            "{signal} {to_both}: {last:#}"
+        );
+        assert_eq!(last["error"], "the worker was ended by a signal");
+        assert_eq!(talk.worker.wait().unwrap().code(), Some(status));
+        assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+        assert!(folder.path().join("2.png").is_file(), "{signal} {to_both}: what is rendered is saved");
+    }
     // And one that waits for jobs ends at once.
-    let mut idle = started(folder.path(), &[]);
-    let _open = idle.stdin.take();
+    let folder = folder();
+    let mut idle = Talk::begun(folder.path(), &[]);
     std::thread::sleep(Duration::from_millis(300));
     let begun = Instant::now();
-    assert!(Command::new("kill").arg(idle.id().to_string()).status().unwrap().success());
-    assert_eq!(idle.wait().unwrap().code(), Some(143));
+    kill("-TERM", &[idle.worker.id().to_string()]);
+    assert_eq!(idle.worker.wait().unwrap().code(), Some(143));
     assert!(begun.elapsed() < Duration::from_secs(2));
 }
 
 #[test]
 fn a_process_that_dies_takes_one_job_with_it() {
     let folder = folder();
-    let mut worker = started(folder.path(), &[]);
-    let mut input = worker.stdin.take().unwrap();
-    let mut output = BufReader::new(worker.stdout.take().unwrap());
-    let mut result = || {
-        let mut line = String::new();
-        output.read_line(&mut line).unwrap();
-        serde_json::from_str::<Value>(&line).unwrap_or(Value::Null)
-    };
-    writeln!(input, "{}", job(1, "a/card.obj", json!({ "spp": 4_000_000, "size": "100x100" }))).unwrap();
-    std::thread::sleep(Duration::from_millis(700));
-    let children = Command::new("pgrep").arg("-P").arg(worker.id().to_string()).output().unwrap();
-    let child = String::from_utf8(children.stdout).unwrap();
-    assert!(Command::new("kill").arg("-KILL").arg(child.trim()).status().unwrap().success());
-    let dead = result();
+    let mut talk = Talk::begun(folder.path(), &[]);
+    talk.begin_long(1);
+    kill("-KILL", &[talk.child()]);
+    let dead = talk.result();
     assert_eq!((&dead["id"], &dead["status"]), (&json!(1), &json!(1)), "{dead:#}");
     assert!(dead["error"].as_str().unwrap().contains("has ended (signal: 9"), "{dead:#}");
-    writeln!(input, "{}", job(2, "a/card.obj", json!({}))).unwrap();
-    assert_eq!(result()["status"], 0);
-    drop(input);
-    assert_eq!(worker.wait().unwrap().code(), Some(0));
+    assert_eq!(talk.done(&job(2, "a/card.obj", json!({})))["status"], 0);
+    assert_eq!(talk.end(), Some(0));
+}
+
+/// Reading never ends: there is nothing to save, and the result says what stopped it.
+#[test]
+fn a_job_that_is_stopped_while_it_reads_says_so() {
+    let folder = folder();
+    let path = folder.path();
+    assert!(Command::new("mkfifo").arg(path.join("pipe.obj")).status().unwrap().success());
+    let lines = [job(1, "pipe.obj", json!({ "timeout": 0.3 })), job(2, "a/card.obj", json!({}))];
+    let results = results(path, &[], &lines);
+    let error = "timeout: the time of 0.3 s was up before there was a picture to save";
+    assert_eq!((&results[0]["status"], &results[0]["error"]), (&json!(124), &json!(error)), "{results:#?}");
+    assert!(results[0]["pictures"] == json!([]) && results[1]["status"] == 0, "{results:#?}");
+}
+
+/// A sandbox has what its jobs needed when it was entered: files by their own numbers, not by their folders or names.
+#[test]
+fn jobs_in_a_sandbox_get_all_that_they_need() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::create_dir(path.join("skies")).unwrap();
+    for name in ["one", "two"] {
+        std::fs::write(path.join(format!("skies/{name}.ppm")), "P3 1 1 255 128 128 128\n").unwrap();
+    }
+    let mut talk = Talk::begun(path, &["--sandbox"]);
+    let mut done = |id: u32, scene: &str, more: Value| {
+        let result = talk.done(&job(id, scene, more));
+        assert_eq!(result["status"], 0, "{result:#}");
+    };
+    let lit =
+        |sky: &str, id: u32| json!({ "env": format!("skies/{sky}.ppm"), "output": format!("b/{id}.png") });
+    done(1, "a/card.obj", lit("one", 1));
+    done(2, "a/card.obj", lit("two", 2));
+    done(3, "a/card.obj", lit("one", 3));
+    // A checkpoint that a process left which was killed.
+    std::fs::write(path.join("b/4.png.checkpoint"), "half of one").unwrap();
+    done(4, "a/card.obj", lit("one", 4));
+    // Another folder of the same name.
+    std::fs::remove_dir_all(path.join("a")).unwrap();
+    std::fs::create_dir(path.join("a")).unwrap();
+    std::fs::write(path.join("a/card.obj"), CARD).unwrap();
+    done(5, "a/card.obj", lit("one", 5));
+    assert_eq!(talk.end(), Some(0));
+}
+
+/// A new version takes the place of the program while the worker runs.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_worker_outlives_its_file() {
+    let folder = folder();
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bilux-{}", std::process::id()));
+    std::fs::hard_link(env!("CARGO_BIN_EXE_bilux"), &program).unwrap();
+    let mut talk = Talk::with(Command::new(&program).current_dir(folder.path()).arg("worker"));
+    assert_eq!(talk.done(&job(1, "a/card.obj", json!({})))["status"], 0);
+    std::fs::remove_file(&program).unwrap();
+    let result = talk.done(&job(2, "a/card.obj", json!({ "sandbox": true })));
+    assert_eq!(result["status"], 0, "{result:#}");
+    assert_eq!(talk.end(), Some(0));
 }

@@ -92,7 +92,7 @@ fn job_of(
 ) -> anyhow::Result<(FarmJob, Files)> {
     let mut user = settings_from::render(render).map_err(usage::wrong)?;
     let studio = &render.studio;
-    let given = [studio.env.as_deref().filter(|path| *path != Path::new("none")), studio.picture_behind()];
+    let given = [studio.picture_around(), studio.picture_behind()];
     let given: Vec<&Path> = given.into_iter().flatten().collect();
     confine(arguments, &given, common)?;
     let read = ReadOptions { whole_movement: true, ..read_options_with(common, &render.choices, 0.0) };

@@ -1,12 +1,16 @@
 //! A job: a line of JSON as the command line of `bilux render`.
 
+use super::confines::Confines;
 use super::lines::{LONGEST, Line};
-use crate::arguments::{Arguments, Common, Worker};
+use crate::arguments::{Arguments, Command, Common, Worker};
+use crate::commands::render::confines;
+use crate::commands::targets::targets;
+use crate::denoising::may_denoise;
+use crate::output;
 use crate::values::{parse_bytes, parse_duration};
 use bilux::scene::error::nearest_name;
-use clap::CommandFactory;
+use clap::{CommandFactory, Parser};
 use serde_json::{Map, Value};
-use std::path::PathBuf;
 use std::time::Duration;
 
 /// Options of `bilux render` that make no sense for a job: they print, or concern a terminal, or are the worker's to say.
@@ -53,8 +57,8 @@ pub struct Job {
     pub timeout: Option<Duration>,
     /// The command line.
     pub command: Vec<String>,
-    /// In a sandbox, the files whose folders it may use.
-    pub confined_to: Option<Vec<PathBuf>>,
+    /// What it needs in its sandbox, if it is to be in one.
+    pub confines: Option<Confines>,
 }
 
 /// Why a line is no job, with its `id` as far as it has one.
@@ -79,6 +83,8 @@ impl Job {
                 format!("this line is no JSON object: {error}; a job is {{\"scene\": …, \"output\": …}}"),
             )
         })?;
+        // As in the names of options.
+        fields = fields.into_iter().map(|(key, value)| (key.replace('-', "_"), value)).collect();
         let id = fields.remove("id").unwrap_or(Value::Null);
         Job::of(&id, fields, limits).map_err(|error| (id, error))
     }
@@ -91,7 +97,6 @@ impl Job {
         let memory = limited(&mut fields, "max_memory", parse_bytes)?;
         let wants_sandbox = fields.remove("sandbox").unwrap_or(Value::Bool(false));
         let wants_sandbox = wants_sandbox.as_bool().ok_or("sandbox: write true or false")?;
-        let is_confined = limits.sandbox || wants_sandbox;
         let mut command = vec!["bilux".to_owned(), "render".to_owned(), "--json".to_owned()];
         command.push(format!(
             "--max-memory={}",
@@ -101,20 +106,36 @@ impl Job {
         let switches = [
             ("--strict", limits.strict),
             ("--allow-outside", limits.allow_outside),
-            ("--sandbox", is_confined),
+            ("--sandbox", limits.sandbox || wants_sandbox),
         ];
         command.extend(switches.iter().filter(|(_, is_on)| *is_on).map(|(flag, _)| (*flag).to_owned()));
-        let mut files = vec![PathBuf::from(&scene), PathBuf::from(&output)];
         for (key, value) in fields {
-            if ["env", "background", "stats"].contains(&&*key) {
-                files.extend(value.as_str().map(PathBuf::from));
-            }
             command.extend(option(&key, &value)?);
         }
         command.extend([format!("--output={output}"), "--".to_owned(), scene]);
+        let confines = needed(&command)?;
         let timeout = [timeout, limits.timeout].into_iter().flatten().min();
-        Ok(Job { id: id.clone(), output, timeout, command, confined_to: is_confined.then_some(files) })
+        Ok(Job { id: id.clone(), output, timeout, command, confines })
     }
+}
+
+/// What the sandbox of a render has to contain, if it is to be in one.
+fn needed(command: &[String]) -> Result<Option<Confines>, String> {
+    let Arguments { common, command, .. } =
+        Arguments::try_parse_from(command).map_err(|error| first_line(&error))?;
+    let Command::Render(render) = command else { return Err("this is no render".to_owned()) };
+    if !common.sandbox {
+        return Ok(None);
+    }
+    let targets = targets(&render).map_err(|error| output::message(&error))?;
+    Ok(Some(Confines::of(&confines(&targets, &render), may_denoise(&render))))
+}
+
+/// The first line of what is wrong with a command line.
+fn first_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let line = text.lines().next().unwrap_or_default();
+    line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }
 
 /// The name of a file.
@@ -202,7 +223,7 @@ fn known() -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
+    use std::path::PathBuf;
 
     const FREE: Limits = Limits {
         timeout: Some(Duration::from_secs(9)),
@@ -228,7 +249,7 @@ mod tests {
         assert_eq!(job.id["a"][0], 1);
         assert_eq!(job.timeout, Some(Duration::from_secs(9)), "the worker's limit holds");
         let parsed = Arguments::try_parse_from(&job.command).unwrap();
-        let crate::arguments::Command::Render(render) = parsed.command else { panic!("{:?}", job.command) };
+        let Command::Render(render) = parsed.command else { panic!("{:?}", job.command) };
         assert_eq!(render.scenes, [PathBuf::from("--help")], "a name is no option");
         assert_eq!(render.output, Some(PathBuf::from("-x.png")));
         assert_eq!((render.size.as_deref(), render.spp, render.fast), (Some("64x48"), Some(4), false));
@@ -248,12 +269,14 @@ mod tests {
         let strict = Limits { sandbox: true, strict: true, ..FREE };
         let line =
             r#"{"scene": "a.glb", "output": "a.png", "max_memory": "64G", "sandbox": false, "timeout": 2}"#;
-        let job = Job::read(Line::Text(line.to_owned()), &strict).unwrap();
-        let parsed = Arguments::try_parse_from(&job.command).unwrap();
-        assert!(parsed.common.sandbox && parsed.common.strict);
-        assert_eq!(parsed.common.max_memory, 1 << 30);
-        assert_eq!(job.timeout, Some(Duration::from_secs(2)));
-        assert_eq!(job.confined_to, Some(vec![PathBuf::from("a.glb"), PathBuf::from("a.png")]));
+        for line in [line.to_owned(), line.replace("max_memory", "max-memory")] {
+            let job = Job::read(Line::Text(line), &strict).unwrap();
+            let parsed = Arguments::try_parse_from(&job.command).unwrap();
+            assert!(parsed.common.sandbox && parsed.common.strict);
+            assert_eq!(parsed.common.max_memory, 1 << 30);
+            assert_eq!(job.timeout, Some(Duration::from_secs(2)));
+            assert!(job.confines.is_some());
+        }
     }
 
     #[test]
@@ -269,6 +292,7 @@ mod tests {
             (r#"{"scene": "a.glb", "output": "a.png", "allow_outside": true}"#, "cannot set this"),
             (r#"{"scene": "a.glb", "output": "a.png", "json": true}"#, "cannot set this"),
             (r#"{"scene": "a.glb", "output": "a.png", "spp": {"a": 1}}"#, "spp: "),
+            (r#"{"scene": "a.glb", "output": "a.png", "spp": "many"}"#, "--spp"),
             (r#"{"scene": "a.glb", "output": "a.png", "timeout": "soon"}"#, "timeout: "),
         ] {
             let (id, error) = read(line).unwrap_err();

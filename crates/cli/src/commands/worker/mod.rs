@@ -4,6 +4,7 @@
 //! replaced if it dies, if it does not stop in time, or if its sandbox does not fit the next job: so no job can harm
 //! those after it.
 
+mod confines;
 mod job;
 mod lines;
 mod process;
@@ -29,11 +30,18 @@ pub fn run(arguments: &Worker, common: &Common) -> anyhow::Result<u8> {
     let limits = Limits::of(arguments, common);
     let (lines, mut process) = (Lines::of_stdin(), None);
     while let Some((number, line)) = lines.next(&signals) {
-        let result = match Job::read(line, &limits) {
-            Ok(job) => rendered(&job, &mut process, &signals),
-            Err((id, error)) => json!({ "id": id, "line": number, "status": 2, "error": error }),
+        let begun = Instant::now();
+        let (id, output, ended) = match Job::read(line, &limits) {
+            Ok(job) => (job.id.clone(), json!(job.output), rendered(&job, &mut process, &signals)),
+            Err((id, error)) => (id, Value::Null, Ending::failed(2, error)),
         };
-        output::print(result)?;
+        let warnings: Vec<&Value> =
+            ended.pictures.iter().filter_map(|picture| picture["warnings"].as_array()).flatten().collect();
+        output::print(json!({
+            "id": id, "line": number, "status": ended.status, "output": output,
+            "seconds": begun.elapsed().as_secs_f64(), "error": ended.error, "warnings": warnings,
+            "pictures": ended.pictures,
+        }))?;
         if signals.status().is_some() {
             break;
         }
@@ -43,12 +51,11 @@ pub fn run(arguments: &Worker, common: &Common) -> anyhow::Result<u8> {
 }
 
 /// Renders a job, and says how that went. The process is the one of the jobs before it, if there is one.
-fn rendered(job: &Job, process: &mut Option<Process>, signals: &Signals) -> Value {
-    let begun = Instant::now();
+fn rendered(job: &Job, process: &mut Option<Process>, signals: &Signals) -> Ending {
     if process.as_ref().is_some_and(|process| !process.may_take(job)) {
         *process = None;
     }
-    let ended = match process.take().map_or_else(Process::start, Ok) {
+    match process.take().map_or_else(Process::start, Ok) {
         Ok(mut started) => {
             let ended = started.render(job, signals);
             if ended.is_alive {
@@ -56,12 +63,6 @@ fn rendered(job: &Job, process: &mut Option<Process>, signals: &Signals) -> Valu
             }
             ended
         }
-        Err(error) => Ending::failed(format!("cannot start a process: {error}")),
-    };
-    let warnings: Vec<&Value> =
-        ended.pictures.iter().filter_map(|picture| picture["warnings"].as_array()).flatten().collect();
-    json!({
-        "id": job.id, "status": ended.status, "output": job.output, "seconds": begun.elapsed().as_secs_f64(),
-        "error": ended.error, "warnings": warnings, "pictures": ended.pictures,
-    })
+        Err(error) => Ending::failed(1, format!("cannot start a process: {error}")),
+    }
 }

@@ -1,11 +1,12 @@
 //! The process that renders.
 
+use super::confines::Confines;
 use super::job::Job;
 use super::signals::Signals;
-use crate::sandbox::folder_of;
+use crate::interrupt;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
@@ -13,8 +14,8 @@ use std::time::{Duration, Instant};
 /// How often the time and signals are looked at while a job is rendered.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// How long saving may take once a job is stopped.
-const GRACE: Duration = Duration::from_millis(1500);
+/// How long a process may take to end once it is asked to, which is a little longer than it gives itself.
+const GRACE: Duration = interrupt::GRACE.saturating_add(Duration::from_millis(100));
 
 /// How many jobs one process takes in a sandbox: the kernel allows no more than 16 of them on top of each other.
 const JOBS_IN_SANDBOX: u32 = 12;
@@ -22,16 +23,13 @@ const JOBS_IN_SANDBOX: u32 = 12;
 /// Why a job was stopped, as the status of a command that is.
 const TIMED_OUT: u8 = 124;
 
-/// The status after Ctrl-C.
-const INTERRUPTED: u8 = 130;
-
 /// A process, and what it is allowed to do.
 pub struct Process {
     child: Child,
     jobs: Option<ChildStdin>,
     answers: Receiver<String>,
-    /// The folders to which its sandbox confines it, if it is in one.
-    confined_to: Option<Vec<PathBuf>>,
+    /// What its sandbox leaves it, if it is in one.
+    confines: Option<Confines>,
     done: u32,
 }
 
@@ -49,15 +47,18 @@ pub struct Ending {
 
 impl Ending {
     /// One of a job that was not begun.
-    pub fn failed(error: String) -> Ending {
-        Ending { status: 1, error: Some(error), pictures: Vec::new(), is_alive: false }
+    pub fn failed(status: u8, error: String) -> Ending {
+        Ending { status, error: Some(error), pictures: Vec::new(), is_alive: false }
     }
 }
 
 impl Process {
     /// Starts one.
     pub fn start() -> std::io::Result<Process> {
-        let mut command = Command::new(std::env::current_exe()?);
+        // This program itself: by now, its name may be that of a newer version.
+        let itself = PathBuf::from("/proc/self/exe");
+        let program = if cfg!(target_os = "linux") { itself } else { std::env::current_exe()? };
+        let mut command = Command::new(program);
         command.args(["worker", "--warm"]).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.spawn()?;
         let (jobs, output) = (child.stdin.take(), child.stdout.take());
@@ -71,19 +72,23 @@ impl Process {
                 }
             }
         });
-        Ok(Process { child, jobs, answers, confined_to: None, done: 0 })
+        Ok(Process { child, jobs, answers, confines: None, done: 0 })
     }
 
     /// True if its sandbox, if it is in one, fits the job.
     pub fn may_take(&self, job: &Job) -> bool {
-        let is_fresh = self.done == 0;
-        let fits = self.confined_to == job.confined_to.as_deref().map(folders);
-        is_fresh || fits && (self.confined_to.is_none() || self.done < JOBS_IN_SANDBOX)
+        match (&self.confines, &job.confines) {
+            (None, None) => true,
+            (Some(own), Some(needed)) => own.covers(needed) && self.done < JOBS_IN_SANDBOX,
+            _ => self.done == 0,
+        }
     }
 
     /// Renders a job within its time.
     pub fn render(&mut self, job: &Job, signals: &Signals) -> Ending {
-        self.confined_to = job.confined_to.as_deref().map(folders);
+        let before = self.confines.take();
+        let entered = |job: &Confines| before.map_or_else(|| job.clone(), |own| own.then(job));
+        self.confines = job.confines.as_ref().map(entered);
         self.done += 1;
         let line = format!("{}\n", json!(job.command));
         let sent = self.jobs.as_mut().map(|jobs| jobs.write_all(line.as_bytes()).and_then(|()| jobs.flush()));
@@ -94,7 +99,10 @@ impl Process {
                 Ok(line) => {
                     let Ok(answer) = serde_json::from_str::<Value>(&line) else { continue };
                     match answer.get("done").and_then(Value::as_u64) {
-                        Some(status) => return stop.ending(status, answer["error"].as_str(), said),
+                        Some(status) => {
+                            let status = u8::try_from(status).unwrap_or(1);
+                            return stop.ending(Ok((status, answer["error"].as_str())), said);
+                        }
                         None => said.push(answer),
                     }
                 }
@@ -104,7 +112,7 @@ impl Process {
         }
         // It is dying, or dead.
         self.jobs = None;
-        stop.death(self.child.wait().ok(), said)
+        stop.ending(Err(self.child.wait().ok()), said)
     }
 }
 
@@ -140,10 +148,7 @@ impl Stop<'_> {
             None if signals.status().is_some() || is_late => {
                 let status = signals.status().unwrap_or(TIMED_OUT);
                 self.asked = Some((Instant::now(), status));
-                // A terminal sends Ctrl-C to both processes, and a second signal would end the work at once.
-                if status != INTERRUPTED {
-                    ask_to_stop(process);
-                }
+                ask_to_stop(process);
             }
             Some((when, _)) if when.elapsed() > GRACE => {
                 let _ = process.kill();
@@ -152,66 +157,42 @@ impl Stop<'_> {
         }
     }
 
-    /// The ending of a job that the process itself has ended with this status.
-    fn ending(&self, status: u64, error: Option<&str>, said: Vec<Value>) -> Ending {
-        let own = u8::try_from(status).unwrap_or(1);
-        // A process that was told to stop does not take another job.
-        let is_alive = self.asked.is_none() && own <= 2;
-        let status = match self.asked {
-            Some((_, status)) if own > 2 => status,
-            _ => own,
-        };
+    /// How a job ended: with the status and the error that the process says, or with the process itself.
+    fn ending(&self, how: Result<(u8, Option<&str>), Option<ExitStatus>>, said: Vec<Value>) -> Ending {
         let (failures, pictures): (Vec<Value>, Vec<Value>) =
-            said.into_iter().partition(|picture| picture.get("error").is_some());
-        let error = error.map(str::to_owned).or_else(|| failure(&failures));
-        let error = error.or_else(|| self.reason().filter(|_| status > 2));
-        Ending { status, error, pictures, is_alive }
-    }
-
-    /// The ending of a job with which the process ended.
-    fn death(&self, status: Option<ExitStatus>, said: Vec<Value>) -> Ending {
-        let code = status.and_then(|status| status.code()).and_then(|code| u8::try_from(code).ok());
-        let how = status.map_or_else(|| "for a reason unknown".to_owned(), |status| status.to_string());
-        let (failures, pictures): (Vec<Value>, Vec<Value>) =
-            said.into_iter().partition(|picture| picture.get("error").is_some());
-        let died = || {
-            format!(
-                "the process that rendered it has ended ({how}): it may have needed more memory than there is; the next job \
-                 gets another"
-            )
-        };
-        let (status, error) = match self.asked {
-            Some((_, status)) => (status, failure(&failures).or_else(|| self.reason())),
-            None => {
-                (code.filter(|&code| code == 2).unwrap_or(1), failure(&failures).or_else(|| Some(died())))
+            said.into_iter().partition(|line| line.get("error").is_some());
+        let failure = failures.first().and_then(|failure| failure["error"].as_str()).map(str::to_owned);
+        let is_cut = !matches!(how, Ok((0..=2, _)));
+        let (status, error) = match (self.asked.filter(|_| is_cut), how) {
+            (Some((_, status)), _) => (status, Some(self.reason(status, pictures.is_empty()))),
+            (None, Ok((status, error))) => {
+                let ended = || is_cut.then(|| self.reason(status, pictures.is_empty()));
+                (status, error.map(str::to_owned).or(failure).or_else(ended))
             }
+            (None, Err(status)) => (1, failure.or_else(|| Some(died(status)))),
         };
-        Ending { status, error, pictures, is_alive: false }
+        // A process that was told to stop does not take another job.
+        Ending { status, error, pictures, is_alive: self.asked.is_none() && !is_cut }
     }
 
-    /// Why it was stopped.
-    fn reason(&self) -> Option<String> {
-        let (_, status) = self.asked?;
+    /// Why a job was stopped.
+    fn reason(&self, status: u8, is_lost: bool) -> String {
         let seconds = self.job.timeout.unwrap_or_default().as_secs_f64();
-        Some(match status {
+        let why = match status {
             TIMED_OUT => format!("timeout: the time of {seconds} s was up"),
             _ => "the worker was ended by a signal".to_owned(),
-        })
+        };
+        why + if is_lost { " before there was a picture to save" } else { "" }
     }
 }
 
-/// The message of the first failure.
-fn failure(failures: &[Value]) -> Option<String> {
-    failures.first().and_then(|failure| failure["error"].as_str()).map(str::to_owned)
-}
-
-/// The folders of these files.
-fn folders(files: &[PathBuf]) -> Vec<PathBuf> {
-    let folder = |file: &PathBuf| -> PathBuf {
-        let folder: &Path = folder_of(file);
-        folder.canonicalize().unwrap_or_else(|_| folder.to_owned())
-    };
-    files.iter().map(folder).collect()
+/// What is known of the end of a process.
+fn died(status: Option<ExitStatus>) -> String {
+    let how = status.map_or_else(|| "for a reason unknown".to_owned(), |status| status.to_string());
+    format!(
+        "the process that rendered it has ended ({how}): it may have needed more memory than there is; the next job \
+         gets another"
+    )
 }
 
 /// Asks a process to stop, and to save what it has.

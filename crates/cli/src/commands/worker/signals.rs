@@ -1,6 +1,6 @@
-//! Ctrl-C and SIGTERM for the process that reads the jobs: it goes on until the job under way has its result.
+//! Ctrl-C, SIGTERM and the end of the terminal for the process that reads the jobs: it goes on until the job under way has its result.
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use crate::interrupt::signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,7 +11,7 @@ impl Signals {
     /// Starts listening.
     pub fn listen() -> std::io::Result<Signals> {
         let signal = Arc::default();
-        for wanted in [SIGINT, SIGTERM] {
+        for wanted in signals() {
             signal_hook::flag::register_usize(wanted, Arc::clone(&signal), wanted as usize)?;
         }
         Ok(Signals(signal))

@@ -2,7 +2,9 @@
 //! own, and answers each with what `--json` prints and a last line, `{"done": STATUS, "error": …}`.
 
 use crate::arguments::{Arguments, Command};
+use crate::interrupt::interrupt;
 use crate::{commands, memory, output, usage};
+use anyhow::bail;
 use clap::Parser;
 use serde_json::json;
 use std::io::BufRead;
@@ -12,6 +14,8 @@ use std::sync::mpsc::channel;
 
 /// Takes jobs until there are no more, or one was stopped by a signal.
 pub fn run() -> anyhow::Result<u8> {
+    // A terminal and systemd send theirs to both processes, and the other one sends its own.
+    interrupt().ignore_more();
     let (send, jobs) = channel::<String>();
     let renders = Arc::new(AtomicBool::new(false));
     let is_rendering = renders.clone();
@@ -29,7 +33,10 @@ pub fn run() -> anyhow::Result<u8> {
     while let Ok(line) = jobs.recv() {
         let words: Vec<String> = serde_json::from_str(&line)?;
         renders.store(true, Ordering::SeqCst);
-        let (status, error) = render(&words);
+        let (status, error) = match render(&words) {
+            Ok(status) => (status, None),
+            Err(error) => (if usage::is_command_line(&error) { 2 } else { 1 }, Some(output::message(&error))),
+        };
         renders.store(false, Ordering::SeqCst);
         output::print(json!({ "done": status, "error": error }))?;
         if status > 2 {
@@ -39,25 +46,12 @@ pub fn run() -> anyhow::Result<u8> {
     Ok(commands::DONE)
 }
 
-/// Renders what a command line says: the status, and what is wrong.
-fn render(words: &[String]) -> (u8, Option<String>) {
-    let mut arguments = match Arguments::try_parse_from(words) {
-        Ok(arguments) => arguments,
-        Err(error) => return (2, Some(first_line(&error))),
-    };
-    memory::bound(&mut arguments.common);
-    let Command::Render(render) = &arguments.command else {
-        return (2, Some("this is no render".to_owned()));
-    };
-    match commands::render::run(render, &arguments.common) {
-        Ok(status) => (status, None),
-        Err(error) => (if usage::is_command_line(&error) { 2 } else { 1 }, Some(output::message(&error))),
+/// Renders what a command line says.
+fn render(words: &[String]) -> anyhow::Result<u8> {
+    let Arguments { mut common, command, .. } = Arguments::try_parse_from(words)?;
+    memory::bound(&mut common);
+    match &command {
+        Command::Render(render) => commands::render::run(render, &common),
+        _ => bail!("this is no render"),
     }
-}
-
-/// The first line of what is wrong with a command line.
-fn first_line(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let line = text.lines().next().unwrap_or_default();
-    line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }
