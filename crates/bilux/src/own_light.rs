@@ -19,9 +19,8 @@ const SOME: f32 = 0.05;
 const SURFACE: [f32; 2] = [0.5, 1.5];
 /// The same for what emits light, where nothing else is visible.
 const EMITTER: [f32; 2] = [1.0, 3.0];
-/// Exposures are multiples of this many stops, and within what `--exposure` takes.
+/// Exposures are multiples of this many stops.
 const STEP: f32 = 0.25;
-const MOST: f32 = 64.0;
 
 /// What was found of a scene's own light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +108,7 @@ impl Judged {
         let stops = if level > 0.0 { log2(wanted / level) } else { 0.0 };
         // Where its own light is dim, the studio's is not.
         let is_usual = stops.abs() <= tolerance || stops > 0.0 && self.is_enough == Some(false);
-        if is_usual { 0.0 } else { ((stops / STEP).round() * STEP).clamp(-MOST, MOST) }
+        if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
     }
 
     /// How many times brighter than usual the scene is.

@@ -136,8 +136,7 @@ mod tests {
     #[test]
     fn surroundings_that_need_no_file_take_the_place_of_those_there_are() {
         let surrounded = |around: &str| {
-            let mut scene = SceneBuilder::default();
-            scene.describes_all_light = true;
+            let mut scene = SceneBuilder { describes_all_light: true, ..SceneBuilder::default() };
             for (name, kind) in [("lamp", "point"), ("map", "environment"), ("day", "sky")] {
                 scene.lights.push(Spec::new(name, kind));
             }

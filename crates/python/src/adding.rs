@@ -4,8 +4,8 @@ use crate::arrays;
 use crate::spec::Spec;
 use crate::texture::Texture;
 use crate::values::Resolve;
-use bilux::scene::{Mesh, SceneBuilder};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use bilux::scene::{Mesh, Object, SceneBuilder};
+use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -81,4 +81,12 @@ pub(crate) fn resolved(
     builder: &mut SceneBuilder,
 ) -> PyResult<Vec<bilux::scene::Spec>> {
     specs.iter().map(|spec| of_table(spec, table)?.resolved(spec.py(), &mut Adding(builder))).collect()
+}
+
+/// An object of a scene, by its index.
+pub(crate) fn object(builder: &SceneBuilder, index: usize) -> PyResult<&Object> {
+    builder.objects.get(index).ok_or_else(|| {
+        let count = builder.objects.len();
+        PyIndexError::new_err(format!("there is no object {index}: the scene has {count}, counted from 0"))
+    })
 }

@@ -30,6 +30,7 @@ mod scene;
 mod shown;
 mod source;
 mod spec;
+mod surroundings;
 mod texture;
 mod turntable;
 mod values;

@@ -1,6 +1,6 @@
 //! Scenes: read from files, generated, or built from arrays.
 
-use crate::adding::{self, Adding, mesh, of_table};
+use crate::adding::{self, Adding, mesh, object, of_table};
 use crate::arrays;
 use crate::encoded::{Encoded, decoded};
 use crate::ending::without_gil;
@@ -12,6 +12,7 @@ use crate::progressive::Progressive;
 use crate::render::{Request, render};
 use crate::source::Source;
 use crate::spec::Spec;
+use crate::surroundings::surround;
 use crate::values::{self, Resolve, Unresolved};
 use bilux::Built;
 use bilux::formats::ReadOptions;
@@ -20,7 +21,7 @@ use bilux::scene::cameras::CameraSpec;
 use bilux::scene::{Object, SceneBuilder};
 use bilux::wording::in_python;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyDict, PyString, PyType};
@@ -292,12 +293,7 @@ impl Scene {
     /// off for a glTF file with lights of its own.
     #[pyo3(signature = (path, layer = None))]
     fn surround(&self, py: Python<'_>, path: PathBuf, layer: Option<String>) -> PyResult<()> {
-        let options = ReadOptions { allow_outside: true, picture_layer: layer, ..ReadOptions::default() };
-        let mut builder = self.builder(py);
-        let before = builder.warnings.len();
-        bilux::presets::surround(&mut builder, &path, &options).map_err(exception)?;
-        let new = builder.warnings[before..].to_vec();
-        drop(builder);
+        let new = surround(&mut self.builder(py), &path, layer)?;
         warn(py, &new)
     }
 
@@ -398,11 +394,4 @@ fn with_builder<'py>(class: &Bound<'py, PyType>, scene: SceneBuilder) -> PyResul
     let instance = class.call0()?;
     *instance.cast::<Scene>()?.get().builder(class.py()) = scene;
     Ok(instance)
-}
-
-fn object(builder: &SceneBuilder, index: usize) -> PyResult<&Object> {
-    builder.objects.get(index).ok_or_else(|| {
-        let count = builder.objects.len();
-        PyIndexError::new_err(format!("there is no object {index}: the scene has {count}, counted from 0"))
-    })
 }

@@ -361,7 +361,7 @@ fn what_the_studio_adds_is_said() {
 
 /// Beside a cube, a screen whose light is a texture: the studio lights what it does not reach, and one line tells all of it.
 #[test]
-fn a_bright_texture_that_lights_a_part_is_told_with_the_exposure() {
+fn a_bright_texture_that_lights_a_part_is_said_with_the_exposure() {
     let mut scene = file();
     put(&mut scene, cuboid(Vec3::NEG_ONE, Vec3::ONE), clay(0.5));
     scene.textures.push(Arc::new(Texture::new("", 1, 1, vec![Rgb::WHITE], false)));
@@ -451,10 +451,9 @@ fn the_exposure_is_the_users_or_the_files_where_they_state_it() {
     assert!(bright(&job) > 100.0, "{}", bright(&job));
 }
 
-/// The exposure is one that `--exposure` takes, and what is not exposed gets no brighter surroundings.
+/// What is not exposed gets no brighter surroundings.
 #[test]
-fn exposures_are_bounded_and_leave_the_classic_shading_alone() {
-    assert_eq!(shown(&sunlit(1e38), &[]).1, -64.0);
+fn exposures_leave_the_classic_shading_alone() {
     let room = |lux: f32, integrator: &str| {
         let mut settings = settings();
         settings.set("integrator", integrator);

@@ -186,12 +186,15 @@ fn a_terminal_that_closes_ends_it_as_ctrl_c_does_but_not_under_nohup() {
     let mut shell = Command::new("sh");
     shell.current_dir(path).args(["-c", &script]).stdin(Stdio::piped()).stderr(Stdio::null());
     let mut child = shell.spawn().unwrap();
+    // Its scene does not end before it does.
+    let scene = child.stdin.take();
     std::thread::sleep(Duration::from_millis(300));
     signal(&child, "-HUP");
     std::thread::sleep(Duration::from_millis(200));
     assert!(child.try_wait().unwrap().is_none(), "it goes on");
     signal(&child, "-TERM");
     assert_eq!(child.wait().unwrap().code(), Some(143));
+    drop(scene);
 }
 
 /// What ends it when memory runs out is no shield against others who end it.

@@ -67,7 +67,7 @@ const HARMLESS: [&str; 4] = [
     "BUFFER_VIEW_INVALID_BYTE_STRIDE",
 ];
 
-/// A byte order mark before the JSON, which readers may ignore. [RFC 8259, section 8.1]
+/// A byte order mark before the JSON, which readers may ignore. [Bray 2017, section 8.1]
 const MARKED: &str = "bom.glb";
 
 /// The error codes of a report.

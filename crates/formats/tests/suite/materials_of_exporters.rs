@@ -150,7 +150,7 @@ fn a_bad_line_costs_only_itself() {
         ("map_Kd \"\"", "l.mtl:4:1: 'map_Kd' has no file name"),
         ("map_Bump -bm", "has no file name"),
         ("norm", "'norm' has no file name"),
-        ("refl", "is ignored"),
+        ("refl", "'refl' of materials"),
         ("what is this", "'what' of a material is ignored"),
     ] {
         let scene = of(&format!("newmtl m\n{good}{line}\nnewmtl n\nKd 0 1 0\n"));

@@ -18,6 +18,7 @@ use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use framing::Framing;
 use options::GROUND;
 pub use options::{Ground, Studio};
+use standing::is_around;
 pub use standing::set_upright;
 use std::sync::Arc;
 
@@ -215,11 +216,6 @@ pub fn shadow_catcher(scene: &SceneBuilder, studio: &Studio) -> Option<usize> {
 /// True when a light illuminates the scene from all around.
 fn has_surroundings(scene: &SceneBuilder) -> bool {
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
-}
-
-/// True for a light that comes from all around, and for a backdrop.
-fn is_around(light: &Spec) -> bool {
-    matches!(light.kind.as_str(), "environment" | "sky" | "ambient")
 }
 
 /// The emission of an object's material, if the scene states it.

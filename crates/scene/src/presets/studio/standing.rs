@@ -1,9 +1,10 @@
 //! Prepares a model for the camera: rotated upright, its front to +z, in metres, and near the origin.
 
 use super::super::{affine, move_all};
-use super::{Studio, is_around};
+use super::Studio;
 use crate::builder::SceneBuilder;
 use crate::orientation::{Orientation, UpHint};
+use crate::parameters::Spec;
 use bilux_math::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -46,4 +47,9 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
     // Nothing may rotate it a second time.
     (scene.up, scene.unit) = (UpHint::default(), 0.0);
     Some(orientation)
+}
+
+/// True for a light that comes from all around, and for a backdrop.
+pub(super) fn is_around(light: &Spec) -> bool {
+    matches!(light.kind.as_str(), "environment" | "sky" | "ambient")
 }

@@ -5,6 +5,7 @@
 //! samples, or time. None of the pilot's samples is in the picture.
 
 mod aim;
+mod columns;
 mod contributions;
 mod cost;
 mod outliers;
@@ -156,7 +157,7 @@ impl Chooser for Auto {
         };
         let rounds: Vec<PilotRound> = (1..settings.len()).map(|i| round(i).guided(&guide)).collect();
         let mut seen = pilot::look(&rounds, &merging, all_sets);
-        seen.steps.in_columns = pilot::share_in_columns(&rounds[0].eye, film);
+        seen.steps.in_columns = columns::share_in_columns(&rounds[0].eye, film);
         counters += seen.counters;
         let candidates: Vec<Candidate> = SETS
             .iter()

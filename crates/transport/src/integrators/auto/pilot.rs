@@ -19,7 +19,7 @@ use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, 
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;
-use bilux_scene::{Counters, Shading, Tracer};
+use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + ROUNDS as 
 pub(super) struct Grid {
     film: [u32; 2],
     /// Columns and rows.
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
 }
 
 impl Grid {
@@ -104,7 +104,7 @@ impl Grid {
     }
 
     /// The film's pixel at a position in the grid.
-    fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
+    pub(super) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
         let along = |at: u32, axis: usize| {
             let middle = (2 * u64::from(at) + 1) * u64::from(self.film[axis]);
             (middle / (2 * u64::from(self.size[axis]))) as u32
@@ -120,23 +120,6 @@ impl Grid {
         let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
         is_on_film.then_some((place[1] * width.div_ceil(BLOCK) + place[0]) as usize)
     }
-}
-
-/// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none.
-pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
-    let (scene, mut tracer) = (eye.scene, Tracer::new(eye.scene, false));
-    let grid = Grid::of(film);
-    let whole = Window::whole(grid.size[0], grid.size[1]);
-    let (mut hits, mut in_columns) = (0u32, 0u32);
-    for (x, y) in (0..whole.pixels()).map(|i| grid.pixel(whole.position(i))) {
-        let (ray, task) = eye.sample(&mut tracer, x, y, 0);
-        let Some(hit) = task.tracer.hit(&ray) else { continue };
-        let shading = scene.shading(scene.geometry().object_of(&hit));
-        let is_any = shading == Shading::General || (shading == Shading::Smooth && !scene.has_clear_media());
-        hits += 1;
-        in_columns += u32::from(!is_any);
-    }
-    if hits == 0 { 1.0 } else { f64::from(in_columns) / f64::from(hits) }
 }
 
 /// The settings of the pilot's photons: the light subpaths of a film of its own, `least` or more.
