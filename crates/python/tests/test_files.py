@@ -182,7 +182,7 @@ def test_the_advised_memory_suffices(folder):
         scene.render(size=4096, spp=1, max_memory=1 << 30)
     assert advised(error) >= 4096 * 4096 * 200 and advised(error) % (1 << 30) == 0
     with pytest.raises(bilux.RenderError, match="would take about.*is the limit"):
-        scene.render(size=100_000, spp=1)
+        scene.render(size=65_000, spp=1)
 
 
 LITTLE_MEMORY = """
