@@ -1,158 +1,135 @@
-//! From the index of a sample to its camera ray, and to the task of its integrator.
+//! From the index of a sample to its camera ray, and to its random numbers.
 
-use crate::bidirectional::SampleQueue;
 use crate::emission::{Emission, Guide};
+use crate::failures::SamplePlace;
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
-use crate::photons::Photons;
-use crate::pixel_integrator::{CameraSpread, PixelIntegrator};
 use crate::sampler::{PixelSampler, regular_pattern};
-use crate::settings::{Reach, RenderSettings};
-use crate::task::Task;
+use crate::settings::RenderSettings;
+use crate::task::{Context, SampleState};
 use bilux_math::{Vec2, warp};
 use bilux_scene::cameras::Pinhole;
-use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer, Wavelength};
+use bilux_scene::{Camera, CameraSample, Ray, Scene, Wavelength};
 use std::sync::Arc;
 
-/// Turns the index of a sample into a camera ray and the task for it.
-pub(crate) struct CameraRays<'a> {
-    pub(crate) scene: &'a Scene,
-    camera: &'a dyn Camera,
-    pub(crate) integrator: &'a dyn PixelIntegrator,
+/// Turns the index of a sample into a camera ray and the state of the sample.
+pub struct CameraRays<'a> {
+    pub(crate) context: Context<'a>,
     pub(crate) settings: &'a RenderSettings,
-    lights: LightChoice,
-    pub(crate) emission: Emission,
+    spread: CameraSpread,
     has_lens: bool,
-    reach: Reach,
     /// Camera subpaths are merged with light subpaths of the same iteration.
     merges: bool,
-    pub(crate) photons: Option<&'a Photons>,
+}
+
+/// How far samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
+/// regular pattern that begins at the centre, and lens and shutter in their middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSpread {
+    /// Over the pixel's filter.
+    pub pixel: f32,
+    /// Over the lens.
+    pub lens: f32,
+    /// Over the time that the shutter is open.
+    pub shutter: f32,
+}
+
+impl CameraSpread {
+    /// Full spread.
+    pub const FULL: CameraSpread = CameraSpread { pixel: 1.0, lens: 1.0, shutter: 1.0 };
+    /// No spread.
+    pub const NONE: CameraSpread = CameraSpread { pixel: 0.0, lens: 0.0, shutter: 0.0 };
 }
 
 impl<'a> CameraRays<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
         camera: &'a dyn Camera,
-        integrator: &'a dyn PixelIntegrator,
         settings: &'a RenderSettings,
+        spread: CameraSpread,
     ) -> CameraRays<'a> {
-        let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
-        let guide = integrator.light_subpaths().and_then(|subpaths| subpaths.guide());
-        let emission = Emission::new(scene, guide);
-        let merges = integrator.merging().is_some();
-        let reach = settings.reach();
-        CameraRays {
+        let context = Context {
             scene,
             camera,
-            integrator,
-            settings,
-            lights,
-            emission,
-            has_lens,
-            reach,
-            merges,
+            reach: settings.reach(),
+            lights: LightChoice::new(scene),
+            emission: Emission::new(scene, None),
             photons: None,
-        }
+            max_depth: settings.max_depth,
+        };
+        CameraRays { context, settings, spread, has_lens: camera.has_lens(), merges: false }
     }
 
-    /// The same for subpaths that are merged, whatever the integrator does.
+    /// The same for subpaths that are merged.
     pub(crate) fn merging(self) -> CameraRays<'a> {
         CameraRays { merges: true, ..self }
     }
 
     /// The same with light subpaths that are aimed by a guide.
-    pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
-        CameraRays { emission: Emission::new(self.scene, guide), ..self }
+    pub(crate) fn guided(mut self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
+        self.context.emission = Emission::new(self.context.scene, guide);
+        self
     }
 
     /// The same where [`crate::techniques::Contribution::origin`] is the index of a light. It changes no sample.
     pub(crate) fn by_light(mut self) -> CameraRays<'a> {
-        self.emission.names_lights = true;
+        self.context.emission.names_lights = true;
         self
     }
 
-    /// Takes many of the integrator's samples at a time, if it can.
-    pub(crate) fn queue(&self) -> Option<Box<dyn SampleQueue + 'a>> {
-        self.integrator.queue(self.photons)
-    }
-
-    /// The camera ray of a sample, and the task for its integrator.
+    /// The camera ray of a sample, and its state.
     #[inline]
-    pub(crate) fn sample<'t>(
-        &'t self,
-        tracer: &'t mut Tracer<'a>,
-        x: u32,
-        y: u32,
-        index: u32,
-    ) -> (Ray, Task<'t, 'a>) {
-        let mut task = self.task(tracer, x, y, index);
-        let camera_sample = self.camera_sample(&mut task.sampler, x, y, index);
-        (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
+    pub(crate) fn sample(&self, place: SamplePlace) -> (Ray, SampleState) {
+        let mut state = self.state(place);
+        let camera_sample = self.camera_sample(&mut state.sampler, place);
+        let Context { scene, camera, .. } = self.context;
+        (scene.from_camera(camera.ray(&camera_sample)), state)
     }
 
     /// The ray of a pixel's [labels](crate::labels): through the centre of the pixel and of the lens, when the shutter opens.
     pub(crate) fn of_labels(&self, x: u32, y: u32) -> Ray {
         let place = Vec2::splat(self.settings.pixel_anchor.offset());
-        let [opens, _] = self.scene.shutter();
+        let [opens, _] = self.context.scene.shutter();
         let sample =
             CameraSample { film: on_film(self.settings, x, y, place), lens: Vec2::ZERO, time: opens };
-        self.scene.for_labels(self.camera.ray(&sample))
+        self.context.scene.for_labels(self.context.camera.ray(&sample))
     }
 
-    /// The time of a sample, and the task for its light subpath alone: streams of random numbers do not depend on what was drawn
-    /// before them.
+    /// The time of a sample, and the state for its light subpath alone: streams of random numbers do not depend on what was
+    /// drawn before them.
     #[inline]
-    pub(crate) fn light_sample<'t>(
-        &'t self,
-        tracer: &'t mut Tracer<'a>,
-        x: u32,
-        y: u32,
-        index: u32,
-    ) -> (f32, Task<'t, 'a>) {
-        let mut task = self.task(tracer, x, y, index);
-        let [opens, closes] = self.scene.shutter();
+    pub(crate) fn light_sample(&self, place: SamplePlace) -> (f32, SampleState) {
+        let mut state = self.state(place);
+        let [opens, closes] = self.context.scene.shutter();
         let time = match opens == closes {
             true => opens,
-            false => self.camera_sample(&mut task.sampler, x, y, index).time,
+            false => self.camera_sample(&mut state.sampler, place).time,
         };
-        (time, task)
+        (time, state)
     }
 
-    /// The task of a sample that has drawn nothing yet.
+    /// The state of a sample that has drawn nothing yet.
     #[inline]
-    fn task<'t>(&'t self, tracer: &'t mut Tracer<'a>, x: u32, y: u32, index: u32) -> Task<'t, 'a> {
+    fn state(&self, SamplePlace { x, y, sample }: SamplePlace) -> SampleState {
         let (seed, number) = match self.settings.interval {
-            true => replicate(self.settings.seed, index),
-            false => (self.settings.seed, index),
+            true => replicate(self.settings.seed, sample),
+            false => (self.settings.seed, sample),
         };
         let sampler = PixelSampler::new(seed, x, y, number);
-        let wavelength =
-            if self.scene.disperses() { self.wavelength(seed, &sampler, number) } else { Wavelength::D };
-        Task {
-            tracer,
-            sampler,
-            wavelength,
-            max_depth: self.settings.max_depth,
-            camera: self.camera,
-            reach: self.reach,
-            lights: &self.lights,
-            emission: &self.emission,
-            photons: self.photons,
-            vertices: 0,
-            events: None,
-            found: None,
-        }
+        let disperses = self.context.scene.disperses();
+        let wavelength = if disperses { self.wavelength(seed, &sampler, number) } else { Wavelength::D };
+        SampleState::new(sampler, wavelength)
     }
 
     /// The rays as those of a pinhole, if there is nothing else to them: neither a lens, nor motion, nor wavelengths, nor a
     /// regular pattern.
     pub(crate) fn of_pinhole(&self) -> Option<PinholeRays<'a>> {
-        let [opens, closes] = self.scene.shutter();
-        let is_plain = self.integrator.camera_spread() == CameraSpread::FULL
+        let [opens, closes] = self.context.scene.shutter();
+        let is_plain = self.spread == CameraSpread::FULL
             && opens == closes
-            && !self.scene.disperses()
+            && !self.context.scene.disperses()
             && !self.settings.interval;
-        let pinhole = self.camera.pinhole().filter(|_| is_plain)?;
+        let pinhole = self.context.camera.pinhole().filter(|_| is_plain)?;
         Some(PinholeRays { pinhole, settings: self.settings, time: opens })
     }
 
@@ -170,11 +147,12 @@ impl<'a> CameraRays<'a> {
 
     /// The position on film and lens, and the time. Where the integrator gives an extent of zero, the sample takes the
     /// pixel's regular pattern, the centre of the lens, and the middle of the shutter interval.
-    fn camera_sample(&self, sampler: &mut PixelSampler, x: u32, y: u32, index: u32) -> CameraSample {
-        let (spread, settings) = (self.integrator.camera_spread(), self.settings);
+    fn camera_sample(&self, sampler: &mut PixelSampler, place: SamplePlace) -> CameraSample {
+        let SamplePlace { x, y, sample } = place;
+        let CameraRays { spread, settings, .. } = *self;
         let u_pixel = sampler.next_2d();
         let offset = match spread.pixel {
-            0.0 => settings.filter.sample(regular_pattern(index)),
+            0.0 => settings.filter.sample(regular_pattern(sample)),
             extent => settings.filter.sample(u_pixel) * extent,
         };
         let anchor = settings.pixel_anchor.offset();
@@ -186,7 +164,7 @@ impl<'a> CameraRays<'a> {
             }
             extent => warp::sample_disc(sampler.next_2d()) * extent,
         };
-        let [opens, closes] = self.scene.shutter();
+        let [opens, closes] = self.context.scene.shutter();
         let middle = opens + (closes - opens) * 0.5;
         let time = match spread.shutter {
             0.0 => middle,
@@ -218,8 +196,8 @@ impl PinholeRays<'_> {
 
     /// The random numbers of a sample.
     #[inline]
-    pub(crate) fn sampler(&self, x: u32, y: u32, index: u32) -> PixelSampler {
-        PixelSampler::new(self.settings.seed, x, y, index)
+    pub(crate) fn sampler(&self, SamplePlace { x, y, sample }: SamplePlace) -> PixelSampler {
+        PixelSampler::new(self.settings.seed, x, y, sample)
     }
 
     /// The point of the film that random numbers choose in a pixel.

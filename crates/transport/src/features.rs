@@ -10,6 +10,7 @@
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::zeroed;
 use crate::labels::{Labelled, labels, visible_normal};
 use crate::media::Media;
@@ -104,7 +105,7 @@ pub fn features(
 ) -> Result<Option<Features>, RenderError> {
     settings.check()?;
     let (window, begun) = (settings.window(), Instant::now());
-    let eye = CameraRays::new(scene, camera, integrator, settings);
+    let eye = integrator.camera_rays(scene, camera, settings);
     let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
     let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
     let pool = threads(settings)?;
@@ -143,14 +144,14 @@ pub fn coverage(
 ) -> Result<Vec<f32>, RenderError> {
     settings.check()?;
     let window = settings.window();
-    let eye = CameraRays::new(scene, camera, integrator, settings);
+    let eye = integrator.camera_rays(scene, camera, settings);
     let mut coverage = zeroed::<f32>(window.pixels())?;
     let of_row = |(row, coverage): (usize, &mut [f32])| {
-        let mut tracer = Tracer::new(eye.scene, false);
+        let mut tracer = Tracer::new(eye.context.scene, false);
         for (column, coverage) in coverage.iter_mut().enumerate() {
             let (x, y) = (window.x + column as u32, window.y + row as u32);
             let hits = (0..samples).filter(|&sample| {
-                let (ray, _) = eye.sample(&mut tracer, x, y, sample);
+                let (ray, _) = eye.sample(SamplePlace { x, y, sample });
                 tracer.closest(&ray).is_some()
             });
             *coverage = hits.count() as f32 / samples.max(1) as f32;
@@ -163,15 +164,16 @@ pub fn coverage(
 
 /// Adds one sample to each pixel of a tile; with the first, its labels.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
-    let mut tracer = Tracer::new(eye.scene, false);
+    let mut tracer = Tracer::new(eye.context.scene, false);
     if sample == 0 {
         let labels = labels(eye, tile, &mut tracer);
         for (sum, labelled) in sums.iter_mut().zip(labels) {
-            sum.label = labelled.map_or_else(Label::default, |labelled| Label::of(eye.scene, &labelled));
+            sum.label =
+                labelled.map_or_else(Label::default, |labelled| Label::of(eye.context.scene, &labelled));
         }
     }
     let places = (0..sums.len()).map(|i| tile.position(i));
-    let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(&mut tracer, x, y, sample).0).collect();
+    let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(SamplePlace { x, y, sample }).0).collect();
     let mut hits = vec![None; rays.len()];
     tracer.hits(&rays, &mut hits);
     for ((sum, ray), hit) in sums.iter_mut().zip(&rays).zip(hits) {

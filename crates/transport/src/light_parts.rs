@@ -6,6 +6,7 @@
 use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::{Film, scale_exponent};
 use crate::layers::Strategy;
 use crate::photon_tracing::iterations;
@@ -14,7 +15,7 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::{Iterations, Splats};
-use crate::task::FoundLight;
+use crate::task::{FoundLight, Record, Task};
 use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::window::{TILE, Window};
 use bilux_math::{Rgb, Vec2};
@@ -81,11 +82,11 @@ pub fn light_parts(
     let sums = Sums::new(scene, settings, division)?;
     for samples in iterations(integrator, &settings.samples) {
         pool.install(|| {
-            let rays = || CameraRays::new(scene, camera, integrator, settings).by_light();
-            let photons = sums.photons(&rays(), &whole.tiles(TILE), samples.start)?;
+            let rays = || integrator.camera_rays(scene, camera, settings).by_light();
+            let photons = sums.photons(integrator, &rays(), &whole.tiles(TILE), samples.start)?;
             let mut eye = rays();
-            eye.photons = photons.as_ref();
-            tiles.par_iter().try_for_each(|tile| sums.add_tile(&eye, *tile, &samples, progress))
+            eye.context.photons = photons.as_ref();
+            tiles.par_iter().try_for_each(|tile| sums.add_tile((integrator, &eye), *tile, &samples, progress))
         })?;
     }
     if progress.is_cancelled() { Ok(None) } else { Ok(Some(sums.parts(integrator)?)) }
@@ -133,11 +134,12 @@ impl<'a> Sums<'a> {
     /// The photons of an iteration, if there are any. Where their light subpaths are connected with the camera, the splats are kept.
     fn photons(
         &self,
+        integrator: &dyn PixelIntegrator,
         eye: &CameraRays,
         tiles: &[Window],
         iteration: u32,
     ) -> Result<Option<Photons>, FilmError> {
-        let Some(merging) = eye.integrator.merging() else { return Ok(None) };
+        let Some(merging) = integrator.merging() else { return Ok(None) };
         let splats = Merging::splats_photons(merging);
         if splats {
             self.make_room_for_splats()?;
@@ -157,16 +159,17 @@ impl<'a> Sums<'a> {
 
     fn add_tile(
         &self,
-        eye: &CameraRays,
+        (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
         tile: Window,
         samples: &Range<u32>,
         progress: &dyn Progress,
     ) -> Result<(), FilmError> {
-        let mut tracer = Tracer::new(eye.scene, false);
+        let mut tracer = Tracer::new(eye.context.scene, false);
         let wanted = tile.intersection(&self.settings.window());
         let mut films = vec![Film::part(self.scale); self.division.count()];
         films.iter_mut().for_each(|film| film.restart(wanted));
-        let both_ends = eye.integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(eye.photons));
+        let photons = eye.context.photons;
+        let both_ends = integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(photons));
         let mut tally = self.tally();
         for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
             if progress.is_cancelled() {
@@ -175,7 +178,7 @@ impl<'a> Sums<'a> {
             let is_wanted = wanted.index(x, y).is_some();
             for sample in samples.clone() {
                 tally.begin(x, y, sample);
-                tally.take(eye, both_ends.as_ref(), &mut tracer, is_wanted);
+                tally.take((integrator, eye), both_ends.as_ref(), &mut tracer, is_wanted);
                 if is_wanted {
                     tally.add_to(&mut films);
                 }
@@ -185,7 +188,7 @@ impl<'a> Sums<'a> {
         let mut all = self.films.lock().unwrap_or_else(PoisonError::into_inner);
         all.iter_mut().zip(&films).for_each(|(film, part)| film.absorb(part));
         drop(all);
-        if eye.integrator.splats() {
+        if integrator.splats() {
             self.make_room_for_splats()?;
             self.take(0, tally);
         }
@@ -252,20 +255,23 @@ impl PartTally<'_> {
     /// Takes the sample.
     fn take<'s>(
         &mut self,
-        eye: &CameraRays<'s>,
+        (integrator, eye): (&dyn PixelIntegrator, &CameraRays<'s>),
         both_ends: Option<&BothEnds>,
         tracer: &mut Tracer<'s>,
         is_wanted: bool,
     ) {
         let [x, y, sample] = self.place;
-        let (ray, mut task) = eye.sample(tracer, x, y, sample);
+        let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
         if let Some(both_ends) = both_ends {
+            let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             both_ends.sample(&ray, is_wanted, &mut task, self);
         } else if is_wanted {
             self.found.clear();
-            task.found = Some(std::mem::take(&mut self.found));
-            self.sum = eye.integrator.radiance(&ray, &mut task);
-            self.found = task.found.take().unwrap_or_default();
+            let found = Some(std::mem::take(&mut self.found));
+            state.record = Some(Box::new(Record { found, events: None }));
+            let mut task = Task { context: &eye.context, tracer, sample: &mut state };
+            self.sum = integrator.radiance(&ray, &mut task);
+            self.found = state.record.and_then(|record| record.found).unwrap_or_default();
             for FoundLight { edges, light, radiance } in &self.found {
                 self.division.parts(*edges, *light).for_each(|part| self.here[part] += *radiance);
             }

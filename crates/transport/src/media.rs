@@ -136,21 +136,27 @@ impl Media {
     /// The transmittance of a ray that begins in these media and is `distance` metres long; `None` where something
     /// blocks it.
     ///
-    /// For light from infinity `distance` is 0: beyond the last surface nothing absorbs. `n` is the
+    /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the
     /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none.
     #[inline]
-    pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, distance: f32, n: Vec3) -> Option<Rgb> {
+    pub(crate) fn visible(
+        &self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        distance: Option<f32>,
+        n: Vec3,
+    ) -> Option<Rgb> {
         tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance))
     }
 
     /// The transmittance of a ray of this length that nothing blocks, where media have no priorities.
     #[inline]
-    pub(crate) fn unoccluded(&self, distance: f32) -> Rgb {
-        transmittance(self.sigma_a, distance)
+    pub(crate) fn unoccluded(&self, distance: Option<f32>) -> Rgb {
+        distance.map_or(Rgb::WHITE, |distance| transmittance(self.sigma_a, distance))
     }
 
     #[inline]
-    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: f32) -> Option<Rgb> {
+    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>) -> Option<Rgb> {
         if !tracer.scene.has_nested() {
             return (!tracer.occluded(ray)).then(|| self.unoccluded(distance));
         }
@@ -166,7 +172,8 @@ impl Media {
             media.cross(scene, &surface, direction);
             (begin, rest) = (surface.t, behind(&rest, &surface));
         }
-        Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
+        let rest = distance.map(|distance| (distance - begin * length).max(0.0));
+        Some(passed * media.unoccluded(rest))
     }
 
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.

@@ -1,15 +1,16 @@
 //! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
-use crate::bidirectional::{PATHS, QueuedSample, SampleQueue};
 use crate::camera_rays::CameraRays;
 use crate::checkpoint::{Begun, Observer, OpenPass};
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::{Film, scale_exponent};
-use crate::integrators::path::Path;
+use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
-use crate::queue::PathQueue;
 use crate::rendered::Rendered;
+use crate::sample_queue::{SampleQueue, SampleSink};
 use crate::splats::{Iterations, Splats};
+use crate::task::Task;
 use crate::window::{Coverage, Window};
 use bilux_accel::Counters;
 use bilux_scene::Tracer;
@@ -49,6 +50,7 @@ impl Passes {
 /// Runs some passes over all tiles of the `sampled` window, on all threads.
 pub(crate) fn all_passes(
     pool: &rayon::ThreadPool,
+    integrator: &dyn PixelIntegrator,
     eye: CameraRays,
     sampled: Window,
     passes: Passes,
@@ -56,7 +58,7 @@ pub(crate) fn all_passes(
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
     let Rendered { film, mut counters, choice, reached, interval, batch_means, .. } = before;
-    let mut work = Work::new(eye, sampled, passes, followers, film);
+    let mut work = Work::new((integrator, eye), sampled, passes, followers, film);
     loop {
         pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
         if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
@@ -88,6 +90,7 @@ fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
 
 /// One render, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
 struct Work<'a> {
+    integrator: &'a dyn PixelIntegrator,
     eye: CameraRays<'a>,
     followers: Followers<'a>,
     side: u32,
@@ -107,29 +110,47 @@ struct Work<'a> {
     failed: Mutex<Option<FilmError>>,
 }
 
-/// The samples of a job: some of each pixel of a tile.
-struct JobSamples {
-    tile: Window,
-    samples: Range<u32>,
+/// Some samples of each pixel of a tile.
+fn places(tile: Window, samples: &Range<u32>) -> Vec<SamplePlace> {
+    let mut all = Vec::with_capacity(tile.width as usize * tile.height as usize * samples.len());
+    for y in tile.y..tile.y + tile.height {
+        for x in tile.x..tile.x + tile.width {
+            all.extend(samples.clone().map(|sample| SamplePlace { x, y, sample }));
+        }
+    }
+    all
 }
 
-impl JobSamples {
-    /// Column, row and index of each.
-    fn all(&self) -> Vec<(u32, u32, u32)> {
-        let JobSamples { tile, samples } = self;
-        let mut all = Vec::with_capacity(tile.width as usize * tile.height as usize * samples.len());
-        for y in tile.y..tile.y + tile.height {
-            for x in tile.x..tile.x + tile.width {
-                all.extend(samples.clone().map(|i| (x, y, i)));
+/// One sample after the other.
+struct OneByOne<'i>(&'i dyn PixelIntegrator);
+
+impl SampleQueue for OneByOne<'_> {
+    fn take<'a>(
+        &mut self,
+        rays: &CameraRays<'a>,
+        tracer: &mut Tracer<'a>,
+        places: &[SamplePlace],
+        sink: &mut SampleSink,
+    ) -> bool {
+        for row in places.chunk_by(|a, b| a.y == b.y) {
+            if sink.is_cancelled() {
+                return false;
+            }
+            for &place in row {
+                let (ray, mut state) = rays.sample(place);
+                let mut task = Task { context: &rays.context, tracer: &mut *tracer, sample: &mut state };
+                let is_wanted = sink.is_wanted(place);
+                let light = self.0.sample(&ray, is_wanted, &mut task, sink.splats(place));
+                sink.add(place, light);
             }
         }
-        all
+        true
     }
 }
 
 impl<'a> Work<'a> {
     fn new(
-        eye: CameraRays<'a>,
+        (integrator, eye): (&'a dyn PixelIntegrator, CameraRays<'a>),
         sampled: Window,
         Passes { side, ranges }: Passes,
         followers: Followers<'a>,
@@ -145,6 +166,7 @@ impl<'a> Work<'a> {
             passes.push(open.samples);
         }
         Work {
+            integrator,
             eye,
             followers,
             side,
@@ -186,33 +208,25 @@ impl<'a> Work<'a> {
 
     /// Runs one thread's share of the jobs.
     fn run(&self) -> Counters {
-        let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
-        let scale = scale_exponent(self.eye.scene);
+        let mut tracer = Tracer::new(self.eye.context.scene, self.eye.settings.count_work);
+        let scale = scale_exponent(self.eye.context.scene);
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
-        let (mut path_queue, mut sample_queue) = (PathQueue::default(), self.eye.queue());
+        let one_by_one = || Box::new(OneByOne(self.integrator)) as Box<dyn SampleQueue>;
+        let mut queue = self.integrator.queue(self.eye.context.photons).unwrap_or_else(one_by_one);
         while let Some(job) = self.next_job() {
             let tile = self.tiles[job as usize % self.tiles.len()];
             let pass = job as usize / self.tiles.len();
             let samples = self.passes[pass].clone();
             part.restart(tile.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
-            let job_samples = JobSamples { tile, samples: samples.clone() };
-            let finished = match (PathQueue::integrator(&self.eye), &mut sample_queue) {
-                (Some(path), _) => {
-                    self.queue_paths(path, job_samples, &mut tracer, (&mut part, &mut path_queue))
-                }
-                (None, Some(queue)) => {
-                    self.queue_samples(&mut **queue, job_samples, &mut tracer, (&mut part, &mut splats))
-                }
-                (None, None) => self.one_by_one(job_samples, &mut tracer, (&mut part, &mut splats)),
-            };
-            if !finished {
+            let mut sink = SampleSink::new(&mut part, &mut splats, self.followers.progress);
+            if !queue.take(&self.eye, &mut tracer, &places(tile, &samples), &mut sink) {
                 self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
                 return tracer.counters;
             }
             self.add(&part);
-            if self.eye.integrator.splats()
+            if self.integrator.splats()
                 && let Err(error) = self.take_splats(pass, &mut splats)
             {
                 *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
@@ -232,82 +246,6 @@ impl<'a> Work<'a> {
         if film.splats.len() == film.iterations.len() && self.followers.observer.wants_film() {
             self.followers.observer.show(&film);
         }
-    }
-
-    /// Takes the samples of a job one after the other; false when it was cancelled on the way.
-    fn one_by_one(
-        &self,
-        JobSamples { tile, samples }: JobSamples,
-        tracer: &mut Tracer<'a>,
-        (part, splats): (&mut Film, &mut Splats),
-    ) -> bool {
-        for y in tile.y..tile.y + tile.height {
-            if self.followers.progress.is_cancelled() {
-                return false;
-            }
-            for x in tile.x..tile.x + tile.width {
-                for sample in samples.clone() {
-                    let (ray, mut task) = self.eye.sample(tracer, x, y, sample);
-                    let is_wanted = part.window().index(x, y).is_some();
-                    splats.begin(x, y, sample);
-                    let light = self.eye.integrator.sample(&ray, is_wanted, &mut task, splats);
-                    part.add(x, y, sample, light);
-                }
-            }
-        }
-        true
-    }
-
-    /// The same for paths from the camera, many at a time.
-    fn queue_paths(
-        &self,
-        path: &Path,
-        samples: JobSamples,
-        tracer: &mut Tracer<'a>,
-        (part, queue): (&mut Film, &mut PathQueue),
-    ) -> bool {
-        let is_cancelled = || self.followers.progress.is_cancelled();
-        queue.take(path, &self.eye, tracer, &samples.all(), is_cancelled, |(x, y, sample), light| {
-            part.add(x, y, sample, light)
-        })
-    }
-
-    /// The same for samples of other integrators.
-    fn queue_samples(
-        &self,
-        queue: &mut dyn SampleQueue,
-        samples: JobSamples,
-        tracer: &mut Tracer<'a>,
-        (part, splats): (&mut Film, &mut Splats),
-    ) -> bool {
-        for samples in samples.all().chunks(PATHS) {
-            if self.followers.progress.is_cancelled() {
-                return false;
-            }
-            let queued: Vec<_> = samples
-                .iter()
-                .map(|&(x, y, sample)| {
-                    let (ray, task) = self.eye.sample(tracer, x, y, sample);
-                    QueuedSample::new(ray, &task, part.window().index(x, y).is_some())
-                })
-                .collect();
-            let Some(&(x, y, sample)) = samples.first() else { continue };
-            // Its tools serve all samples; each has its own random numbers and wavelength.
-            let (_, mut task) = self.eye.sample(tracer, x, y, sample);
-            let mut current = None;
-            let light = queue.take(&queued, &mut task, &mut |i, film, light| {
-                if current != Some(i) {
-                    let (x, y, sample) = samples[i];
-                    splats.begin(x, y, sample);
-                    current = Some(i);
-                }
-                splats.add(film, light);
-            });
-            for (&(x, y, sample), light) in samples.iter().zip(light) {
-                part.add(x, y, sample, light);
-            }
-        }
-        true
     }
 
     /// Collects the splats of a tile, and adds them to the film after the last tile of its pass.

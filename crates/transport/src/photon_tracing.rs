@@ -2,10 +2,11 @@
 
 use crate::bidirectional::{LightPaths, PATHS, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
 use crate::photons::{Merging, Photon, PhotonPosition, Photons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
-use crate::techniques::{LightPathVisitor, Tally, TechniqueCounts};
+use crate::techniques::{Contribution, LightPathVisitor, Tally, TechniqueCounts};
 use crate::window::Window;
 use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
@@ -26,12 +27,13 @@ impl Photons {
     /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
     /// their light subpaths goes to `splats`.
     pub(crate) fn of_iteration(
+        integrator: &dyn PixelIntegrator,
         rays: &CameraRays,
         tiles: &[Window],
         iteration: u32,
         splats: Option<&IterationSplats>,
     ) -> Option<(Photons, Counters)> {
-        let merging = rays.integrator.merging()?;
+        let merging = integrator.merging()?;
         let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
         Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats))
     }
@@ -50,7 +52,7 @@ impl<const N: usize> Photons<N> {
         techniques: impl FnOnce(f32, f32) -> TechniqueCounts<N>,
         visitor: Option<&O>,
     ) -> (Photons<N>, Counters) {
-        let scene = eye.scene;
+        let scene = eye.context.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
         let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
         let step = pixels.div_ceil(most.max(1)) as u32;
@@ -73,22 +75,21 @@ impl<const N: usize> Photons<N> {
                 (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
             let mut paths = LightPaths::default();
             for places in places.chunks(PATHS) {
-                let mut sampled = |&(x, y): &(u32, u32)| {
-                    let (time, task) = eye.light_sample(&mut tracer, x, y, iteration);
-                    QueuedSample::of_light(time, &task)
-                };
-                let samples: Vec<_> = places.iter().map(&mut sampled).collect();
-                let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
-                paths.trace(&samples, &mut task, merging.roulette_depth, &techniques);
+                let place = |&(x, y): &(u32, u32)| SamplePlace { x, y, sample: iteration };
+                let mut samples: Vec<_> =
+                    places.iter().map(|at| QueuedSample::of_light(eye.light_sample(place(at)))).collect();
+                let context = &eye.context;
+                paths.trace(&mut samples, context, &mut tracer, merging.roulette_depth, &techniques);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
-                    paths.connect_to_camera(&samples, &mut task, &techniques, |i, film, technique, found| {
+                    let add = |i: usize, film, technique, found: &Contribution<N>| {
                         if current != Some(i) {
                             O::begin(tally, places[i].0, places[i].1, iteration);
                             current = Some(i);
                         }
                         tally.add_splat(film, technique, found);
-                    });
+                    };
+                    paths.connect_to_camera(&mut samples, context, &mut tracer, &techniques, add);
                 }
                 let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
                 let vertices = (0..samples.len()).flat_map(|i| paths.of(i));

@@ -1,22 +1,23 @@
 //! What an integrator has to answer; the integrators are in [`crate::integrators`].
 
-use crate::bidirectional::{BothEnds, BothEndsSamples, SampleQueue};
+use crate::bidirectional::{BothEnds, BothEndsSamples};
+use crate::camera_rays::{CameraRays, CameraSpread};
 use crate::emission::Guide;
 use crate::photons::{Merging, Photons};
 use crate::plan::Choice;
+use crate::sample_queue::SampleQueue;
 use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Counters, Ray, Scene};
-use std::any::Any;
 use std::sync::Arc;
 
 /// Estimates the light along camera rays; [`crate::render()`] handles pixels, tiles and threads.
 ///
 /// What an integrator may do beyond that is asked of it by role: [`LightSubpaths`] of those that trace paths from the lights,
 /// [`Chooser`] of those that let another one render.
-pub trait PixelIntegrator: Any + Send + Sync {
+pub trait PixelIntegrator: Send + Sync + 'static {
     /// Radiance (in the classic modes: intensity) that arrives along a camera ray, as far as the integrator finds it
     /// from the camera.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
@@ -58,7 +59,7 @@ pub trait LightSubpaths: PixelIntegrator {
     /// Takes a sample of a pixel: [`PixelIntegrator::radiance`] where it `is_wanted` (pixels outside the crop trace
     /// only their light subpaths), and all splats.
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        match self.both_ends(task.photons) {
+        match self.both_ends(task.context.photons) {
             Some(both_ends) => {
                 let mut sum = Sum { here: Rgb::BLACK, splats };
                 both_ends.sample(ray, is_wanted, task, &mut sum);
@@ -77,7 +78,7 @@ pub trait LightSubpaths: PixelIntegrator {
     }
 
     /// How camera subpaths are merged with photons. Each sample of all pixels is then an iteration, which begins
-    /// with the photons' light subpaths ([`Task::photons`]).
+    /// with the photons' light subpaths ([`crate::task::Context::photons`]).
     fn merging(&self) -> Option<&Merging> {
         None
     }
@@ -125,29 +126,22 @@ impl dyn PixelIntegrator {
         self.light_subpaths().is_some_and(|subpaths| subpaths.both_ends(None).is_some())
     }
 
+    /// The camera rays of its samples.
+    pub(crate) fn camera_rays<'a>(
+        &self,
+        scene: &'a Scene,
+        camera: &'a dyn Camera,
+        settings: &'a RenderSettings,
+    ) -> CameraRays<'a> {
+        let rays = CameraRays::new(scene, camera, settings, self.camera_spread());
+        let rays = rays.guided(self.light_subpaths().and_then(|subpaths| subpaths.guide()));
+        if self.merging().is_some() { rays.merging() } else { rays }
+    }
+
     /// What it chooses for a picture, if it chooses.
     pub(crate) fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         Some(self.chooser()?.plan(scene, camera, film))
     }
-}
-
-/// How far samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
-/// regular pattern that begins at the centre, and lens and shutter in their middle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraSpread {
-    /// Over the pixel's filter.
-    pub pixel: f32,
-    /// Over the lens.
-    pub lens: f32,
-    /// Over the time that the shutter is open.
-    pub shutter: f32,
-}
-
-impl CameraSpread {
-    /// Full spread.
-    pub const FULL: CameraSpread = CameraSpread { pixel: 1.0, lens: 1.0, shutter: 1.0 };
-    /// No spread.
-    pub const NONE: CameraSpread = CameraSpread { pixel: 0.0, lens: 0.0, shutter: 0.0 };
 }
 
 /// A choice among sets of techniques.

@@ -131,7 +131,7 @@ struct Place<'a> {
 
 impl<'a> Run<'a> {
     fn eye(&self) -> CameraRays<'a> {
-        CameraRays::new(self.scene, self.camera, self.integrator, self.settings)
+        self.integrator.camera_rays(self.scene, self.camera, self.settings)
     }
 
     /// Takes all samples, or those that a checkpoint lacks, until the schedule ends.
@@ -233,7 +233,7 @@ impl<'a> Run<'a> {
         let splats = splats_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
         let mut splats = splats.transpose()?;
         let trace = |splats: Option<&IterationSplats>| {
-            pool.install(|| Photons::of_iteration(&self.eye(), &whole, iteration, splats))
+            pool.install(|| Photons::of_iteration(self.integrator, &self.eye(), &whole, iteration, splats))
         };
         let photons = trace(splats.as_ref().filter(|_| splatted.is_none()));
         if let Some(failures) = splatted {
@@ -242,7 +242,7 @@ impl<'a> Run<'a> {
         let mut eye = self.eye();
         if let Some((photons, counters)) = &photons {
             rendered.counters += *counters;
-            eye.photons = Some(photons);
+            eye.context.photons = Some(photons);
         }
         let keep = |film: &mut Film, mut begun: Begun, counters| match &splats {
             Some(splats) => splats.lend(film, |film, failures| {
@@ -252,7 +252,7 @@ impl<'a> Run<'a> {
             None => self.keep(film, &begun, counters, place),
         };
         let followers = Followers { progress: self.progress, observer: self.observer, keep: &keep };
-        rendered = all_passes(pool, eye, window, passes, followers, rendered)?;
+        rendered = all_passes(pool, self.integrator, eye, window, passes, followers, rendered)?;
         match splats {
             Some(splats) if rendered.cancelled => {
                 splats.take_back(&mut rendered.film, whole.len(), |splats| drop(trace(Some(splats))));

@@ -1,6 +1,5 @@
 //! Replays one sample, with all events along its path.
 
-use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
@@ -8,7 +7,7 @@ use crate::photons::Photons;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};
-use crate::task::Event;
+use crate::task::{Event, Record, Task};
 use crate::techniques::{Contribution, Tally, Technique};
 use crate::window::Window;
 use bilux_math::{Rgb, Vec2};
@@ -102,26 +101,28 @@ pub fn replay(
     }
     let plan = integrator.plan(scene, camera, &settings.for_planning());
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
-    let mut eye = CameraRays::new(scene, camera, integrator, settings);
+    let mut eye = integrator.camera_rays(scene, camera, settings);
     let whole = Window::whole(width, height);
-    let photons = Photons::of_iteration(&eye, &[whole], sample, None);
-    eye.photons = photons.as_ref().map(|(photons, _)| photons);
+    let photons = Photons::of_iteration(integrator, &eye, &[whole], sample, None);
+    eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
     let mut tracer = Tracer::new(scene, false);
-    let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
-    task.events = Some(Vec::new());
+    let (ray, mut state) = eye.sample(place);
+    state.record = Some(Box::new(Record { events: Some(Vec::new()), found: None }));
+    let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
     let mut splats = Splats::new(settings, whole, scale_exponent(scene));
     splats.begin(x, y, sample);
     let subpaths = integrator.light_subpaths();
-    let (radiance, contributions) = match subpaths.and_then(|subpaths| subpaths.both_ends(task.photons)) {
-        Some(both_ends) => {
-            let sum = Sum { here: Rgb::BLACK, splats: &mut splats };
-            let mut recorded = Recorded { sum, contributions: Vec::new() };
-            both_ends.sample(&ray, true, &mut task, &mut recorded);
-            (recorded.sum.here, recorded.contributions)
-        }
-        None => (integrator.sample(&ray, true, &mut task, &mut splats), Vec::new()),
-    };
-    let events = task.events.take().unwrap_or_default();
+    let (radiance, contributions) =
+        match subpaths.and_then(|subpaths| subpaths.both_ends(task.context.photons)) {
+            Some(both_ends) => {
+                let sum = Sum { here: Rgb::BLACK, splats: &mut splats };
+                let mut recorded = Recorded { sum, contributions: Vec::new() };
+                both_ends.sample(&ray, true, &mut task, &mut recorded);
+                (recorded.sum.here, recorded.contributions)
+            }
+            None => (integrator.sample(&ray, true, &mut task, &mut splats), Vec::new()),
+        };
+    let events = state.record.and_then(|record| record.events).unwrap_or_default();
     let splats = splats.deposits.len();
     Ok(Replay { place, ray, events, radiance, splats, contributions, rays: tracer.counters.rays })
 }

@@ -4,8 +4,8 @@
 //! Only direct light counts: alpha is the fraction of it that the model blocks. Where the model casts no shadow, alpha
 //! is exactly 0, without noise.
 
-use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::zeroed;
 use crate::light_choice::LightChoice;
 use crate::pixel_integrator::PixelIntegrator;
@@ -76,17 +76,16 @@ pub fn shadow_alpha(
 ) -> Result<[Vec<f32>; 2], RenderError> {
     settings.check()?;
     let window = settings.window();
-    let (eye, lights) =
-        (CameraRays::new(scene, camera, integrator, settings), shadowed_lights(scene, catcher));
+    let (eye, lights) = (integrator.camera_rays(scene, camera, settings), shadowed_lights(scene, catcher));
     let mut pixels = zeroed::<Sums>(window.pixels())?;
     let least = if denoiser.is_some() { MIN_SAMPLES_DENOISED } else { MIN_SAMPLES };
     let tries = least.div_ceil(samples.max(1));
     let of_row = |(row, pixels): (usize, &mut [Sums])| {
-        let mut tracer = Tracer::new(eye.scene, false);
+        let mut tracer = Tracer::new(eye.context.scene, false);
         for (column, sums) in pixels.iter_mut().enumerate() {
             let (x, y) = (window.x + column as u32, window.y + row as u32);
             for sample in 0..samples {
-                let (ray, _) = eye.sample(&mut tracer, x, y, sample);
+                let (ray, _) = eye.sample(SamplePlace { x, y, sample });
                 let mut sampler = PixelSampler::new(settings.seed, x, y, sample);
                 sampler.enter(STREAM);
                 sums.add(&mut tracer, &ray, (&lights, catcher), (&mut sampler, tries));

@@ -1,9 +1,8 @@
 //! Shadow rays of many connections, which are traced together.
 
 use crate::media::Media;
-use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::Ray;
+use bilux_scene::{Ray, Tracer};
 
 /// Shadow rays, each with what its connection brings if nothing lies between its ends.
 pub(crate) struct ShadowRays<T> {
@@ -11,9 +10,9 @@ pub(crate) struct ShadowRays<T> {
     /// The [normals](bilux_scene::Scene::normal_towards) at their ends; zero where there is no surface.
     normals: Vec<Vec3>,
     contributions: Vec<T>,
-    /// The media at the start of each ray, and its length in metres (0 for light from infinity); none where no medium
-    /// changes light.
-    media: Vec<(Media, f32)>,
+    /// The media at the start of each ray, and its length in metres (`None` to infinity); nothing where no medium changes
+    /// light.
+    media: Vec<(Media, Option<f32>)>,
     occluded: Vec<bool>,
 }
 
@@ -34,7 +33,7 @@ impl<T> ShadowRays<T> {
 
     /// Adds a ray that ends on a surface with the normal `n`. All rays come with their media, or none does.
     #[inline]
-    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, f32)>, contribution: T) {
+    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, Option<f32>)>, contribution: T) {
         self.rays.push(ray);
         self.normals.push(n);
         self.media.extend(media);
@@ -43,12 +42,12 @@ impl<T> ShadowRays<T> {
 
     /// Traces the rays. `add` receives what the unoccluded ones bring and their transmittance, in the order in which
     /// they were added.
-    pub(crate) fn trace(&mut self, task: &mut Task, mut add: impl FnMut(&T, Rgb)) {
+    pub(crate) fn trace(&mut self, tracer: &mut Tracer, mut add: impl FnMut(&T, Rgb)) {
         let ShadowRays { rays, normals, contributions, media, occluded } = self;
         occluded.clear();
         occluded.resize(rays.len(), false);
-        task.tracer.all_occluded(rays, |i| normals[i], occluded);
-        let has_nested = task.scene().has_nested();
+        tracer.all_occluded(rays, |i| normals[i], occluded);
+        let has_nested = tracer.scene.has_nested();
         for (i, contribution) in contributions.iter().enumerate() {
             let passed = match (occluded[i], media.get(i)) {
                 (false, None) => Rgb::WHITE,
@@ -56,8 +55,8 @@ impl<T> ShadowRays<T> {
                 // What it hits may separate nothing.
                 (true, Some((media, distance))) if has_nested => {
                     // Asked again, and counted once.
-                    task.tracer.counters.rays -= 1;
-                    let Some(passed) = media.visible(task.tracer, &rays[i], *distance, normals[i]) else {
+                    tracer.counters.rays -= 1;
+                    let Some(passed) = media.visible(tracer, &rays[i], *distance, normals[i]) else {
                         continue;
                     };
                     passed

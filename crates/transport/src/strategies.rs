@@ -4,6 +4,7 @@
 use crate::bidirectional::BothEnds;
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::{Film, scale_exponent, zeroed};
 use crate::layers::{Both, Layers, Strategy};
 use crate::photon_tracing::iterations;
@@ -12,6 +13,7 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::Iterations;
+use crate::task::Task;
 use crate::window::{TILE, Window};
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Counters, Scene, Tracer};
@@ -70,10 +72,10 @@ pub fn strategies(
     progress.begin(whole.pixels() as u64 * settings.samples.len() as u64);
     let mut sums = Sums::default();
     for samples in iterations(integrator, &settings.samples) {
-        let mut eye = CameraRays::new(scene, camera, integrator, settings);
-        let photons = pool.install(|| Photons::of_iteration(&eye, &tiles, samples.start, None));
-        eye.photons = photons.as_ref().map(|(photons, _)| photons);
-        pool.install(|| sums.add(&eye, &tiles, samples, progress))?;
+        let mut eye = integrator.camera_rays(scene, camera, settings);
+        let photons = pool.install(|| Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
+        eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
+        pool.install(|| sums.add((integrator, &eye), &tiles, samples, progress))?;
     }
     if progress.is_cancelled() {
         return Ok(None);
@@ -95,24 +97,26 @@ struct Sums {
 impl Sums {
     fn add(
         &mut self,
-        eye: &CameraRays,
+        (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
         tiles: &[Window],
         samples: Range<u32>,
         progress: &dyn Progress,
     ) -> Result<(), FilmError> {
-        let both_ends = eye.integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(eye.photons));
+        let photons = eye.context.photons;
+        let both_ends = integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(photons));
         let Some(both_ends) = both_ends.map(BothEnds::splatting) else { return Ok(()) };
         let sums = Mutex::new(self);
         tiles.par_iter().try_for_each(|tile| {
-            let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
-            let mut layers = Layers::new(eye.settings, *tile, scale_exponent(eye.scene));
+            let mut tracer = Tracer::new(eye.context.scene, eye.settings.count_work);
+            let mut layers = Layers::new(eye.settings, *tile, scale_exponent(eye.context.scene));
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
                 if progress.is_cancelled() {
                     return Ok(());
                 }
                 for sample in samples.clone() {
                     layers.begin(x, y, sample);
-                    let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
+                    let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
+                    let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
                     let is_wanted = layers.window.index(x, y).is_some();
                     both_ends.sample(&ray, is_wanted, &mut task, &mut layers);
                 }

@@ -1,4 +1,4 @@
-//! What an integrator works with during one sample.
+//! What an integrator works with: what all samples of a render share, and what belongs to one of them.
 
 use crate::emission::Emission;
 use crate::light_choice::LightChoice;
@@ -8,32 +8,54 @@ use crate::settings::Reach;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, Wavelength};
 
-/// The tools of one sample: the tracer for hits, the source of random numbers, the maximum path length.
-pub struct Task<'a, 's> {
-    /// Traces rays, and counts them.
-    pub tracer: &'a mut Tracer<'s>,
-    /// The random numbers of this sample.
-    pub sampler: PixelSampler,
-    /// The wavelength of this sample's paths, wherever they begin.
-    pub wavelength: Wavelength,
-    /// Maximum number of scattering events after the camera; 0 is emission only.
-    pub max_depth: u32,
+/// What all samples of a render share.
+pub struct Context<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
     /// The camera.
     pub camera: &'a dyn Camera,
     /// Where light subpaths are connected with the camera.
     pub(crate) reach: Reach,
     /// Chooses lights by what they bring.
-    pub lights: &'a LightChoice,
+    pub lights: LightChoice,
     /// Starts light subpaths.
-    pub emission: &'a Emission,
+    pub emission: Emission,
     /// The photons of this iteration's light subpaths, where subpaths are merged.
     pub photons: Option<&'a Photons>,
-    /// Surfaces that the sample's paths have reached so far. Queues do not count them.
+    /// Maximum number of scattering events after the camera; 0 is emission only.
+    pub max_depth: u32,
+}
+
+/// What belongs to one sample.
+#[derive(Clone, Debug)]
+pub struct SampleState {
+    /// Its random numbers.
+    pub sampler: PixelSampler,
+    /// The wavelength of its paths, wherever they begin.
+    pub wavelength: Wavelength,
+    /// Surfaces that its paths have reached so far. Queues do not count them.
     pub vertices: u32,
-    /// Events along the path, if they are recorded.
+    /// What is recorded of it, if anything is.
+    pub record: Option<Box<Record>>,
+}
+
+/// What is recorded of a sample.
+#[derive(Clone, Debug, Default)]
+pub struct Record {
+    /// Events along its paths, if these are wanted.
     pub events: Option<Vec<Event>>,
-    /// The light that the sample finds, light by light, if that is recorded.
+    /// The light that it finds, light by light, if that is wanted.
     pub found: Option<Vec<FoundLight>>,
+}
+
+/// The tools of one sample.
+pub struct Task<'t, 'a> {
+    /// What it shares with all others.
+    pub context: &'t Context<'a>,
+    /// Traces rays, and counts them.
+    pub tracer: &'t mut Tracer<'a>,
+    /// What is its own.
+    pub sample: &'t mut SampleState,
 }
 
 /// Light that a sample has found.
@@ -99,10 +121,10 @@ pub enum VertexKind {
     LightPath,
 }
 
-impl<'s> Task<'_, 's> {
-    /// The scene.
-    pub fn scene(&self) -> &'s Scene {
-        self.tracer.scene
+impl SampleState {
+    /// A sample that has drawn nothing yet.
+    pub fn new(sampler: PixelSampler, wavelength: Wavelength) -> SampleState {
+        SampleState { sampler, wavelength, vertices: 0, record: None }
     }
 
     /// The light of a whole path as the colour channels see it: once a surface has [split](bilux_scene::Bsdf::splits)
@@ -115,15 +137,19 @@ impl<'s> Task<'_, 's> {
     /// Records light, if that is recorded at all.
     #[inline]
     pub(crate) fn find(&mut self, edges: u32, light: Option<usize>, radiance: Rgb) {
-        if let Some(found) = &mut self.found {
+        if let Some(found) = self.record.as_mut().and_then(|record| record.found.as_mut()) {
             found.push(FoundLight { edges, light, radiance });
         }
+    }
+
+    fn events(&mut self) -> Option<&mut Vec<Event>> {
+        self.record.as_mut()?.events.as_mut()
     }
 
     /// Records an event; if events are not recorded, `what` is not called.
     #[inline]
     pub fn note(&mut self, depth: u32, what: impl FnOnce() -> String) {
-        if let Some(events) = &mut self.events {
+        if let Some(events) = self.events() {
             events.push(Event { depth, what: what(), vertex: None });
         }
     }
@@ -131,7 +157,7 @@ impl<'s> Task<'_, 's> {
     /// The same for a vertex of a path.
     #[inline]
     pub fn note_vertex(&mut self, depth: u32, what: impl FnOnce() -> (PathVertex, String)) {
-        if let Some(events) = &mut self.events {
+        if let Some(events) = self.events() {
             let (vertex, what) = what();
             events.push(Event { depth, what, vertex: Some(vertex) });
         }

@@ -6,6 +6,7 @@
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::zeroed;
 use crate::labels::labels;
 use crate::pixel_integrator::PixelIntegrator;
@@ -80,7 +81,7 @@ pub fn visible(
     settings.check()?;
     let least = if integrator.is_random() { MIN_SAMPLES } else { 1 };
     let look = Look {
-        eye: CameraRays::new(scene, camera, integrator, settings),
+        eye: integrator.camera_rays(scene, camera, settings),
         camera,
         wanted,
         samples: samples.clamp(least, MAX_SAMPLES),
@@ -110,7 +111,7 @@ struct Seen {
 
 impl<'a> Look<'a> {
     fn tile(&self, tile: Window) -> Vec<Seen> {
-        let mut tracer = Tracer::new(self.eye.scene, false);
+        let mut tracer = Tracer::new(self.eye.context.scene, false);
         let mut counts = vec![Vec::new(); self.wanted.ids.len()];
         let mut seen = vec![Seen::default(); tile.pixels()];
         if self.wanted.position || self.wanted.uv || self.wanted.motion.is_some() {
@@ -134,12 +135,12 @@ impl<'a> Look<'a> {
         counts: &mut [Vec<(u32, u32)>],
     ) -> Vec<Ranks> {
         let rays: Vec<Ray> =
-            (0..self.samples).map(|sample| self.eye.sample(tracer, x, y, sample).0).collect();
+            (0..self.samples).map(|sample| self.eye.sample(SamplePlace { x, y, sample }).0).collect();
         let mut hits = vec![None; rays.len()];
         tracer.hits(&rays, &mut hits);
         counts.iter_mut().for_each(Vec::clear);
         for hit in hits.iter().flatten() {
-            let object = self.eye.scene.geometry().object_of(hit) as usize;
+            let object = self.eye.context.scene.geometry().object_of(hit) as usize;
             for (counts, ids) in counts.iter_mut().zip(&self.wanted.ids) {
                 count(counts, ids.get(object).copied().unwrap_or_default());
             }
@@ -150,8 +151,8 @@ impl<'a> Look<'a> {
     /// How far the point moves over the picture, in pixels.
     fn motion(&self, hit: &Hit, surface: &Surface) -> Vec2 {
         let Some(next) = &self.wanted.motion else { return Vec2::ZERO };
-        let opens = self.eye.scene.shutter()[0];
-        let here = self.eye.scene.geometry();
+        let opens = self.eye.context.scene.shutter()[0];
+        let here = self.eye.context.scene.geometry();
         let [from, to] = here.moved(hit, surface.p, next.scene.geometry(), [opens, next.time]);
         let from = self.camera.project(from, opens);
         let Some((from, to)) = from.zip(next.camera.project(to, next.time)) else { return Vec2::ZERO };

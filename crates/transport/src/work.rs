@@ -6,6 +6,7 @@
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
+use crate::failures::SamplePlace;
 use crate::film::{scale_exponent, zeroed};
 use crate::photon_tracing::iterations;
 use crate::photons::Photons;
@@ -13,6 +14,7 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::splats::Splats;
+use crate::task::Task;
 use crate::window::{TILE, Window};
 use bilux_scene::{Camera, Scene, Tracer};
 use rayon::prelude::*;
@@ -61,13 +63,14 @@ pub fn work(
     let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
     let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
     for samples in iterations(integrator, &settings.samples) {
-        let mut eye = CameraRays::new(scene, camera, integrator, settings);
+        let mut eye = integrator.camera_rays(scene, camera, settings);
         let of_whole = whole.tiles(TILE);
-        let photons = pool.install(|| Photons::of_iteration(&eye, &of_whole, samples.start, None));
-        eye.photons = photons.as_ref().map(|(photons, _)| photons);
+        let photons =
+            pool.install(|| Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None));
+        eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
         pool.install(|| {
             let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
-                count(&eye, tile, sums, (&samples, with_accel), progress);
+                count((integrator, &eye), tile, sums, (&samples, with_accel), progress);
             };
             tiles.par_iter_mut().for_each(each);
         });
@@ -77,25 +80,26 @@ pub fn work(
 
 /// Adds the work of a tile's samples.
 fn count(
-    eye: &CameraRays,
+    (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
     tile: &Window,
     sums: &mut [Sums],
     (samples, with_accel): (&Range<u32>, bool),
     progress: &dyn Progress,
 ) {
-    let mut tracer = Tracer::new(eye.scene, with_accel);
-    let mut splats = Splats::new(eye.settings, *tile, scale_exponent(eye.scene));
+    let mut tracer = Tracer::new(eye.context.scene, with_accel);
+    let mut splats = Splats::new(eye.settings, *tile, scale_exponent(eye.context.scene));
     for (i, sums) in sums.iter_mut().enumerate() {
         if progress.is_cancelled() {
             return;
         }
         let ((x, y), before) = (tile.position(i), tracer.counters);
         for sample in samples.clone() {
-            let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
+            let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
+            let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
             splats.begin(x, y, sample);
-            eye.integrator.sample(&ray, true, &mut task, &mut splats);
+            integrator.sample(&ray, true, &mut task, &mut splats);
             splats.deposits.clear();
-            sums[1] += u64::from(task.vertices);
+            sums[1] += u64::from(state.vertices);
         }
         let now = tracer.counters;
         sums[0] += now.rays - before.rays;

@@ -6,7 +6,7 @@
 
 use super::connect::{Connection, merged, to_light, to_vertex};
 use super::{
-    CameraSubpath, Partial, Vertex, Walk, connect_to_camera, emitted, from_infinity, light_vertices,
+    CameraSubpath, Partial, Subpath, Vertex, connect_to_camera, emitted, from_infinity, light_vertices,
 };
 use crate::photons::Photons;
 use crate::task::Task;
@@ -67,33 +67,36 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         &self.techniques
     }
 
-    fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>) {
-        let technique = Technique::Connected { s: 0, t: walk.count() };
-        from_infinity(task, walk, |hit| tally.add_sample(technique, &hit.by(walk.seen(task), &walk.partial)));
+    fn escape(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>) {
+        let technique = Technique::Connected { s: 0, t: subpath.count() };
+        from_infinity(task, subpath, |hit| {
+            tally.add_sample(technique, &hit.by(subpath.walk.seen(task.sample), &subpath.partial))
+        });
     }
 
     /// The emitter is found by chance (s = 0).
     fn arrive(
         &self,
-        walk: &mut Walk<N>,
+        subpath: &mut Subpath<N>,
         z: &mut Vertex<N>,
         task: &mut Task,
         tally: &mut impl Tally<N>,
     ) -> bool {
         if z.depth == 0 {
-            let density = task.camera.density(&walk.ray, z.surface.t);
+            let density = task.context.camera.density(&subpath.walk.ray, z.surface.t);
             z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), &self.techniques);
-            walk.partial = z.partial;
+            subpath.partial = z.partial;
         }
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
-            let (seen, technique) = (walk.seen(task), Technique::Connected { s: 0, t: z.count() });
+            let (seen, technique) =
+                (subpath.walk.seen(task.sample), Technique::Connected { s: 0, t: z.count() });
             let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
             tally.add_sample(technique, &found);
         }
-        if z.depth >= task.max_depth {
+        if z.depth >= task.context.max_depth {
             return false;
         }
-        task.sampler.enter(u64::from(z.depth) + 1);
+        task.sample.sampler.enter(u64::from(z.depth) + 1);
         true
     }
 
@@ -106,10 +109,10 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         task: &mut Task,
         mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
     ) {
-        let (lights, is_delta) = (task.lights, z.bsdf.is_delta());
-        let u = task.sampler.next_1d();
-        for index in lights.sample(u) {
-            let u = task.sampler.next_2d();
+        let is_delta = z.bsdf.is_delta();
+        let u = task.sample.sampler.next_1d();
+        for index in task.context.lights.sample(u) {
+            let u = task.sample.sampler.next_2d();
             if !is_delta {
                 let connection = to_light(task, z, index, u, &self.techniques);
                 visit(task, Step::Picked, connection);
@@ -118,7 +121,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         if is_delta || !self.connects() {
             return;
         }
-        let max_depth = task.max_depth;
+        let max_depth = task.context.max_depth;
         for y in light_path.filter(|y| z.depth + y.depth + 2 <= max_depth) {
             let connection = to_vertex(task, z, y, &self.techniques);
             visit(task, Step::Connected, connection);
@@ -136,7 +139,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
     }
 
     #[inline]
-    fn scatter(&self, walk: &mut Walk<N>, z: &Vertex<N>, task: &mut Task) -> bool {
-        walk.scatter(z, self.roulette_depth, task)
+    fn scatter(&self, subpath: &mut Subpath<N>, z: &Vertex<N>, task: &mut Task) -> bool {
+        subpath.scatter(z, self.roulette_depth, task)
     }
 }

@@ -2,7 +2,7 @@
 //! [`super::CameraQueue`] takes each event for many subpaths at a time, and finds the same light, bit for bit.
 
 use super::connect::Connection;
-use super::{Partial, Vertex, Walk};
+use super::{Partial, Subpath, Vertex};
 use crate::task::Task;
 use crate::techniques::{Step, Tally, TechniqueCounts};
 use bilux_math::Rgb;
@@ -14,12 +14,12 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     fn techniques(&self) -> &TechniqueCounts<N>;
 
     /// The subpath leaves the scene.
-    fn escape(&self, walk: &Walk<N>, task: &Task, tally: &mut impl Tally<N>);
+    fn escape(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
     /// It arrives at a surface, and collects the light that is emitted there; false where it ends.
     fn arrive(
         &self,
-        walk: &mut Walk<N>,
+        subpath: &mut Subpath<N>,
         z: &mut Vertex<N>,
         task: &mut Task,
         tally: &mut impl Tally<N>,
@@ -41,32 +41,32 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>);
 
     /// Sends the subpath on; false where it ends.
-    fn scatter(&self, walk: &mut Walk<N>, z: &Vertex<N>, task: &mut Task) -> bool;
+    fn scatter(&self, subpath: &mut Subpath<N>, z: &Vertex<N>, task: &mut Task) -> bool;
 
     /// A subpath with only its first ray.
-    fn leave_camera(&self, ray: &Ray) -> Walk<'_, N> {
-        Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.techniques())
+    fn leave_camera(&self, ray: &Ray) -> Subpath<'_, N> {
+        Subpath::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.techniques())
     }
 
     /// Follows one subpath to its end.
     fn follow(&self, ray: &Ray, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
-        let mut walk = self.leave_camera(ray);
+        let mut subpath = self.leave_camera(ray);
         loop {
             tally.spend(Step::Camera, 1);
-            let Some(mut z) = walk.next_vertex(task) else { return self.escape(&walk, task, tally) };
-            if !self.arrive(&mut walk, &mut z, task, tally) {
+            let Some(mut z) = subpath.next_vertex(task) else { return self.escape(&subpath, task, tally) };
+            if !self.arrive(&mut subpath, &mut z, task, tally) {
                 return;
             }
             self.connect(&z, light_path.iter(), task, |task, step, connection| {
                 tally.spend(step, 1);
                 if let Some(connection) = connection
-                    && let Some(found) = connection.trace(task)
+                    && let Some(found) = connection.trace(task.tracer)
                 {
                     tally.add_sample(connection.technique, &found);
                 }
             });
             self.merge(&z, task, tally);
-            if !self.scatter(&mut walk, &z, task) {
+            if !self.scatter(&mut subpath, &z, task) {
                 return;
             }
         }

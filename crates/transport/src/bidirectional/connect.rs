@@ -1,43 +1,27 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
-use super::walk::{Vertex, count};
+use super::subpath::{Vertex, count};
 use crate::emission::light_number;
-use crate::media::Media;
 use crate::photons::Photons;
-use crate::shadow_rays::ShadowRays;
+use crate::segment::Segment;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
 use bilux_math::{Vec2, Vec3, warp};
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::{Ray, Tracer, TransportMode};
 
 /// A connection, before it is known whether something lies between its ends.
 pub(crate) struct Connection<const N: usize = 1> {
     pub(crate) technique: Technique,
     /// What it contributes if nothing does.
     pub(crate) found: Contribution<N>,
-    /// From one end to the other.
-    pub(crate) ray: Ray,
-    /// Its length in metres; 0 for light from infinity.
-    pub(crate) distance: f32,
-    /// The [normal](bilux_scene::Scene::normal_towards) of the surface at the end of the ray; zero where there is none.
-    pub(crate) n: Vec3,
-    /// The media at the start of the ray.
-    pub(crate) media: Media,
+    pub(crate) segment: Segment,
 }
 
 impl<const N: usize> Connection<N> {
     /// What it contributes; `None` where something blocks it.
     #[inline]
-    pub(crate) fn trace(&self, task: &mut Task) -> Option<Contribution<N>> {
-        let passed = self.media.visible(task.tracer, &self.ray, self.distance, self.n)?;
-        Some(self.found.passed(passed))
-    }
-
-    /// Adds its ray to a list, with what it brings. Where no medium changes light, as `is_clear` says, none is stored.
-    #[inline]
-    pub(super) fn list<T>(&self, shadow_rays: &mut ShadowRays<T>, is_clear: bool, contribution: T) {
-        let media = (!is_clear).then_some((self.media, self.distance));
-        shadow_rays.push(self.ray, self.n, media, contribution);
+    pub(crate) fn trace(&self, tracer: &mut Tracer) -> Option<Contribution<N>> {
+        Some(self.found.passed(self.segment.transmittance(tracer)?))
     }
 }
 
@@ -48,26 +32,26 @@ pub(crate) fn to_camera<const N: usize>(
     y: &Vertex<N>,
     techniques: &TechniqueCounts<N>,
 ) -> Option<(Vec2, Connection<N>)> {
-    let u_lens = task.sampler.next_2d();
-    let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
-    let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
-    if !task.reach.contains(seen.film) {
+    let u_lens = task.sample.sampler.next_2d();
+    let lens = if task.context.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
+    let seen = task.context.camera.connect(y.surface.p, lens, y.surface.time)?;
+    if !task.context.reach.contains(seen.film) {
         return None;
     }
     let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
-    if scattered.is_black() || task.scene().camera_sees_through(&y.surface, seen.wi) {
+    if scattered.is_black() || task.context.scene.camera_sees_through(&y.surface, seen.wi) {
         return None;
     }
-    let media = y.media_towards(task.scene(), seen.wi);
-    let ray = task.scene().to_camera(y.surface.spawn_to(seen.p));
+    let media = y.media_towards(task.context.scene, seen.wi);
+    let ray = task.context.scene.to_camera(y.surface.spawn_to(seen.p));
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
-    let light = task.seen(y.beta * scattered * seen.density, y.is_split());
+    let light = task.sample.seen(y.beta * scattered * seen.density, y.is_split());
     let found =
         Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) };
     let technique = Technique::Connected { s: y.count(), t: 1 };
-    let distance = seen.p.distance(y.surface.p);
-    Some((seen.film, Connection { technique, found, ray, distance, n: Vec3::ZERO, media }))
+    let segment = Segment { ray, distance: Some(seen.p.distance(y.surface.p)), n: Vec3::ZERO, media };
+    Some((seen.film, Connection { technique, found, segment }))
 }
 
 /// Connects a camera vertex with a point sampled on a light (s = 1).
@@ -78,8 +62,8 @@ pub(crate) fn to_light<const N: usize>(
     u: Vec2,
     techniques: &TechniqueCounts<N>,
 ) -> Option<Connection<N>> {
-    let probability = task.lights.probability(index);
-    let scene = task.scene();
+    let probability = task.context.lights.probability(index);
+    let scene = task.context.scene;
     let light = &scene.lights()[index].light;
     if probability == 0.0 {
         return None;
@@ -89,21 +73,27 @@ pub(crate) fn to_light<const N: usize>(
     if scattered.is_black() {
         return None;
     }
-    let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
+    let distance = sample.point.map(|point| point.distance(z.surface.p));
     let media = z.media_towards(scene, sample.wi);
     let cos_light = sample.cos();
     // A delta light has one certain point: its density over solid angle grows with the distance alone.
-    let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
+    let area_to_angle = distance.map_or(1.0, |distance| distance * distance / cos_light);
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
-    let pdf_emission =
-        task.emission.pdf(scene, index, z.surface.p, pdf_direct / area_to_angle, -sample.wi, cos_light);
+    let pdf_emission = task.context.emission.pdf(
+        scene,
+        index,
+        z.surface.p,
+        pdf_direct / area_to_angle,
+        -sample.wi,
+        cos_light,
+    );
     let ratio = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
     let from_light = z.partial.others_of_direct(arriving, back, techniques.direct);
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
-    let light = task.seen(light, z.is_split());
+    let light = task.sample.seen(light, z.is_split());
     let found = Contribution {
         others: PerSet::ONE * ratio + from_light,
         power_factor: power_factor(ratio),
@@ -112,7 +102,7 @@ pub(crate) fn to_light<const N: usize>(
     };
     let technique = Technique::Connected { s: 1, t: z.count() };
     let ray = z.surface.spawn_to_light(&sample);
-    Some(Connection { technique, found, ray, distance, n: sample.n_light, media })
+    Some(Connection { technique, found, segment: Segment { ray, distance, n: sample.n_light, media } })
 }
 
 /// Connects a camera vertex and a light vertex (s, t > 1).
@@ -133,20 +123,21 @@ pub(crate) fn to_vertex<const N: usize>(
     if f_y.is_black() {
         return None;
     }
-    let media = z.media_towards(task.scene(), direction);
-    let n = task.scene().normal_towards(&y.surface, -direction);
+    let media = z.media_towards(task.context.scene, direction);
+    let n = task.context.scene.normal_towards(&y.surface, -direction);
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =
         y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y));
     let from_light =
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
-    let light = task.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
+    let light = task.sample.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
     let others = from_camera + from_light;
     let found =
         Contribution { own: techniques.connections, others, origin: y.origin, ..Contribution::only(light) };
     let technique = Technique::Connected { s: y.count(), t: z.count() };
-    Some(Connection { technique, found, ray: spawn_between(z, y), distance: distance2.sqrt(), n, media })
+    let segment = Segment { ray: spawn_between(z, y), distance: Some(distance2.sqrt()), n, media };
+    Some(Connection { technique, found, segment })
 }
 
 /// Merges a camera vertex with all photons around it, and visits the light that each of them brings.
@@ -159,7 +150,7 @@ pub(crate) fn merged<const N: usize>(
     let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(z.surface.p, |position, y| {
         // Merge only on the same surface, not with the other side of a sheet or around a corner.
-        if z.depth + position.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + position.depth() + 1 > task.context.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };
@@ -168,7 +159,8 @@ pub(crate) fn merged<const N: usize>(
         // brightness.
         let cos = y.n_geom.dot(y.wo).abs();
         let others = y.connected + y.d_vc * pdf + z.partial.before(back);
-        let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || position.is_split());
+        let light =
+            task.sample.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || position.is_split());
         let technique = Technique::Merged { s: count(position.depth()), t: z.count() };
         let own = photons.techniques().eta;
         visit(technique, &Contribution { own, others, origin: position.origin, ..Contribution::only(light) });

@@ -1,6 +1,6 @@
 //! Emitters that a camera subpath hits by chance (s = 0).
 
-use super::{Partial, Walk};
+use super::{Partial, Subpath};
 use crate::emission::light_number;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, power_factor};
@@ -39,30 +39,34 @@ impl EmitterHit {
 }
 
 /// Light from infinity that a camera subpath finds where it leaves the scene.
-pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(EmitterHit)) {
-    let scene = task.scene();
-    let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
+pub(crate) fn from_infinity<const N: usize>(
+    task: &Task,
+    subpath: &Subpath<N>,
+    mut visit: impl FnMut(EmitterHit),
+) {
+    let scene = task.context.scene;
+    let (origin, direction) = (Vec3::from(subpath.walk.ray.origin), Vec3::from(subpath.walk.ray.direction));
     for (index, light) in scene.infinite_lights() {
-        let (radiance, pdf) = match walk.depth {
+        let (radiance, pdf) = match subpath.walk.depth {
             0 => (light.le(direction), 0.0),
             _ => light.le_and_pdf(origin, direction),
         };
-        if radiance.is_black() || !scene.shows(light, walk.depth, walk.specular) {
+        if radiance.is_black() || !scene.shows(light, subpath.walk.depth, subpath.walk.specular) {
             continue;
         }
-        if walk.depth == 0 || light.is_backdrop() {
+        if subpath.walk.depth == 0 || light.is_backdrop() {
             visit(EmitterHit::only(radiance, Some(index)));
             continue;
         }
-        let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
-        let pdf_direct = pdf * task.lights.probability(index);
+        let pdf_emission = task.context.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
+        let pdf_direct = pdf * task.context.lights.probability(index);
         visit(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) });
     }
 }
 
 /// The light that a surface emits towards `wo`; `None` where it emits none.
 pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<EmitterHit> {
-    let scene = task.scene();
+    let scene = task.context.scene;
     let radiance = scene.emission(surface, wo);
     if radiance.is_black() {
         return None;
@@ -74,7 +78,7 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Emitte
     // As the previous vertex would have sampled it.
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
-    let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
-    let pdf_direct = pdf_area * task.lights.probability(index);
+    let pdf_emission = task.context.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
+    let pdf_direct = pdf_area * task.context.lights.probability(index);
     Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) })
 }

@@ -3,19 +3,19 @@
 
 use super::connect::{Connection, to_camera};
 use super::queued_sample::QueuedSample;
-use super::{Partial, Vertex, Walk};
+use super::{Partial, Subpath, Vertex};
 use crate::emission::Start;
 use crate::shadow_rays::ShadowRays;
-use crate::task::Task;
+use crate::task::{Context, SampleState, Task};
 use crate::techniques::{Contribution, Step, Tally, Technique, TechniqueCounts};
 use bilux_accel::Hit;
 use bilux_math::Vec2;
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::{Ray, Tracer, TransportMode};
 
 /// Random number streams of light subpaths begin here, far from those of camera subpaths.
 pub(super) const LIGHT_STREAM: u64 = 1 << 32;
 
-impl Task<'_, '_> {
+impl SampleState {
     /// Enters the stream of random numbers for connecting a vertex of the light subpath.
     pub(crate) fn enter_light_vertex(&mut self, depth: u32) {
         self.sampler.enter(2 * LIGHT_STREAM + u64::from(depth));
@@ -30,9 +30,9 @@ pub(crate) fn light_vertices<const N: usize>(
     techniques: &TechniqueCounts<N>,
 ) -> Vec<Vertex<N>> {
     let mut vertices = Vec::new();
-    let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
-    while let Some(vertex) = walk.next_vertex(task) {
-        let goes_on = goes_on(&mut walk, &vertex, roulette_depth, task);
+    let Some(mut subpath) = begin_at_light(task, time, techniques) else { return vertices };
+    while let Some(vertex) = subpath.next_vertex(task) {
+        let goes_on = goes_on(&mut subpath, &vertex, roulette_depth, task);
         if !vertex.bsdf.is_delta() {
             vertices.push(vertex);
         }
@@ -45,17 +45,17 @@ pub(crate) fn light_vertices<const N: usize>(
 
 /// Continues from a vertex; false when the subpath ends there.
 fn goes_on<const N: usize>(
-    walk: &mut Walk<N>,
+    subpath: &mut Subpath<N>,
     vertex: &Vertex<N>,
     roulette_depth: u32,
     task: &mut Task,
 ) -> bool {
     // The last event of the longest path is on the camera's side.
-    if vertex.depth + 1 >= task.max_depth {
+    if vertex.depth + 1 >= task.context.max_depth {
         return false;
     }
-    task.sampler.enter(LIGHT_STREAM + 1 + u64::from(vertex.depth));
-    walk.scatter(vertex, roulette_depth, task)
+    task.sample.sampler.enter(LIGHT_STREAM + 1 + u64::from(vertex.depth));
+    subpath.scatter(vertex, roulette_depth, task)
 }
 
 /// Connects every vertex of a light subpath with the camera.
@@ -66,10 +66,10 @@ pub(crate) fn connect_to_camera<const N: usize>(
     tally: &mut impl Tally<N>,
 ) {
     for y in light_path.iter().filter(|y| is_connectible(y, techniques)) {
-        task.enter_light_vertex(y.depth);
+        task.sample.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, connection)) = to_camera(task, y, techniques)
-            && let Some(found) = connection.trace(task)
+            && let Some(found) = connection.trace(task.tracer)
         {
             tally.add_splat(film, connection.technique, &found);
         }
@@ -84,26 +84,26 @@ pub(super) fn begin_at_light<'w, const N: usize>(
     task: &mut Task,
     time: f32,
     techniques: &'w TechniqueCounts<N>,
-) -> Option<Walk<'w, N>> {
-    task.sampler.enter(LIGHT_STREAM);
+) -> Option<Subpath<'w, N>> {
+    task.sample.sampler.enter(LIGHT_STREAM);
     let (u_light, u_point, u_direction) =
-        (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
-    if task.max_depth == 0 {
+        (task.sample.sampler.next_1d(), task.sample.sampler.next_2d(), task.sample.sampler.next_2d());
+    if task.context.max_depth == 0 {
         return None;
     }
-    let scene = task.scene();
-    let start = task.emission.sample(scene, time, u_light, (u_point, u_direction))?;
+    let scene = task.context.scene;
+    let start = task.context.emission.sample(scene, time, u_light, (u_point, u_direction))?;
     let Start { light: index, ray, .. } = start;
     let light = &scene.lights()[index].light;
     let (cos, pdf_emission) = (ray.cos(), ray.pdf_emission);
-    let pdf_direct = ray.pdf_direct * task.lights.probability(index);
+    let pdf_direct = ray.pdf_direct * task.context.lights.probability(index);
     let beta = ray.le * (cos / pdf_emission);
     let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
     // The start of a ray from infinity already has a density over area.
     let by_area = light.is_infinite();
     let spawned = ray.spawn(time);
-    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
-    Some(walk.leaving(start))
+    let subpath = Subpath::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
+    Some(subpath.leaving(start))
 }
 
 /// The light subpaths of many samples, which are traced together.
@@ -143,37 +143,40 @@ impl<const N: usize> LightPaths<N> {
     }
 
     /// Traces the light subpath of each sample, as [`light_vertices`] does.
-    pub(crate) fn trace(
+    pub(crate) fn trace<'a>(
         &mut self,
-        samples: &[QueuedSample],
-        task: &mut Task,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
         roulette_depth: u32,
         techniques: &TechniqueCounts<N>,
     ) {
         self.clear(samples.len());
         self.active.clear();
-        let mut walks = Vec::with_capacity(samples.len());
-        for (i, sample) in samples.iter().enumerate() {
-            sample.enter(task);
-            let walk = begin_at_light(task, sample.ray.time, techniques);
-            self.active.extend(walk.is_some().then_some(i as u32));
-            walks.push(walk);
+        let mut subpaths = Vec::with_capacity(samples.len());
+        for (i, sample) in samples.iter_mut().enumerate() {
+            let mut task = Task { context, tracer: &mut *tracer, sample: &mut sample.state };
+            let subpath = begin_at_light(&mut task, sample.ray.time, techniques);
+            self.active.extend(subpath.is_some().then_some(i as u32));
+            subpaths.push(subpath);
         }
         while !self.active.is_empty() {
             self.rays.clear();
-            self.rays.extend(self.active.iter().filter_map(|&i| Some(walks[i as usize].as_ref()?.ray)));
+            self.rays
+                .extend(self.active.iter().filter_map(|&i| Some(subpaths[i as usize].as_ref()?.walk.ray)));
             self.hits.clear();
             self.hits.resize(self.rays.len(), None);
-            task.tracer.hits(&self.rays, &mut self.hits);
+            tracer.hits(&self.rays, &mut self.hits);
             self.next.clear();
             for (&i, hit) in self.active.iter().zip(&self.hits) {
-                let (Some(hit), Some(walk)) = (hit, &mut walks[i as usize]) else { continue };
-                samples[i as usize].enter(task);
-                let surface = task.tracer.surface(&walk.ray, hit);
+                let (Some(hit), Some(subpath)) = (hit, &mut subpaths[i as usize]) else { continue };
+                let surface = tracer.surface(&subpath.walk.ray, hit);
+                let state = &mut samples[i as usize].state;
+                let mut task = Task { context, tracer: &mut *tracer, sample: state };
                 let before = self.vertices.len();
-                self.vertices.extend(walk.vertex_at(surface, task));
+                self.vertices.extend(subpath.vertex_at(surface, &mut task));
                 let Some(vertex) = self.vertices.get(before) else { continue };
-                self.next.extend(goes_on(walk, vertex, roulette_depth, task).then_some(i));
+                self.next.extend(goes_on(subpath, vertex, roulette_depth, &mut task).then_some(i));
                 if vertex.bsdf.is_delta() {
                     self.vertices.truncate(before);
                 } else {
@@ -223,27 +226,28 @@ impl<const N: usize> LightPaths<N> {
 
     /// Connects every vertex with the camera, as [`connect_to_camera`] does. `add` receives the index of the sample, the
     /// point of the film, and what was found, in the order of the samples.
-    pub(crate) fn connect_to_camera(
+    pub(crate) fn connect_to_camera<'a>(
         &mut self,
-        samples: &[QueuedSample],
-        task: &mut Task,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
         techniques: &TechniqueCounts<N>,
         mut add: impl FnMut(usize, Vec2, Technique, &Contribution<N>),
     ) {
         let mut shadow_rays = std::mem::take(&mut self.shadow_rays);
         shadow_rays.clear();
-        let is_clear = task.scene().has_clear_media();
-        for (i, sample) in samples.iter().enumerate() {
-            sample.enter(task);
+        let is_clear = context.scene.has_clear_media();
+        for (i, sample) in samples.iter_mut().enumerate() {
+            let mut task = Task { context, tracer: &mut *tracer, sample: &mut sample.state };
             for y in self.connectible(i, techniques) {
-                task.enter_light_vertex(y.depth);
-                let Some((film, connection)) = to_camera(task, y, techniques) else { continue };
-                let Connection { technique, found, .. } = connection;
+                task.sample.enter_light_vertex(y.depth);
+                let Some((film, connection)) = to_camera(&mut task, y, techniques) else { continue };
+                let Connection { technique, found, segment } = connection;
                 let splat = Splat { sample: i as u32, film, technique, found };
-                connection.list(&mut shadow_rays, is_clear, splat);
+                segment.list(&mut shadow_rays, is_clear, splat);
             }
         }
-        shadow_rays.trace(task, |Splat { sample, film, technique, found }, passed| {
+        shadow_rays.trace(tracer, |Splat { sample, film, technique, found }, passed| {
             add(*sample as usize, *film, *technique, &found.passed(passed));
         });
         self.shadow_rays = shadow_rays;

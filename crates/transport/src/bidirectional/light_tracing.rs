@@ -1,16 +1,19 @@
 //! Light tracing: a subpath from a light, each of whose vertices is connected with the camera; from the camera, only what emits
 //! light is seen. [Arvo 1986]
 
+use super::PATHS;
 use super::connect::to_camera;
 use super::light_paths::{LightPaths, light_vertices};
 use super::queued_sample::QueuedSample;
-use super::sample_queue::SampleQueue;
+use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
 use crate::media::Media;
+use crate::sample_queue::{SampleQueue, SampleSink};
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Ray, Surface};
+use bilux_scene::{Ray, Surface, Tracer};
 
 /// A sample of light tracing. There is no other technique, so nothing is weighted.
 #[derive(Clone, Copy)]
@@ -26,15 +29,15 @@ impl LightTracing {
     pub(crate) fn emitted(ray: &Ray, task: &mut Task) -> Rgb {
         let media = Media::at_start(task.tracer, ray);
         let first = task.tracer.closest(ray);
-        emitted_by(first, media, ray, task)
+        emitted_by(first, media, ray, task.tracer)
     }
 
     /// Follows one light subpath. `add_splat` receives the points of the film, and the light there.
     pub(crate) fn trace(&self, time: f32, task: &mut Task, mut add_splat: impl FnMut(Vec2, Rgb)) {
         for vertex in light_vertices(task, time, self.roulette_depth, &TECHNIQUES) {
-            task.enter_light_vertex(vertex.depth);
+            task.sample.enter_light_vertex(vertex.depth);
             if let Some((film, connection)) = to_camera(task, &vertex, &TECHNIQUES)
-                && let Some(found) = connection.trace(task)
+                && let Some(found) = connection.trace(task.tracer)
             {
                 add_splat(film, found.light);
             }
@@ -43,10 +46,10 @@ impl LightTracing {
 }
 
 /// The light that arrives from the first surface along a camera ray, which starts in these media, or from infinity.
-fn emitted_by(first: Option<Surface>, mut media: Media, ray: &Ray, task: &mut Task) -> Rgb {
-    match first.and_then(|surface| media.closest_from(task.tracer, ray, surface)) {
-        Some((surface, passed)) => passed * task.scene().emission(&surface, -Vec3::from(ray.direction)),
-        None => task.scene().background(ray.direction.into(), 0),
+fn emitted_by(first: Option<Surface>, mut media: Media, ray: &Ray, tracer: &mut Tracer) -> Rgb {
+    match first.and_then(|surface| media.closest_from(tracer, ray, surface)) {
+        Some((surface, passed)) => passed * tracer.scene.emission(&surface, -Vec3::from(ray.direction)),
+        None => tracer.scene.background(ray.direction.into(), 0),
     }
 }
 
@@ -66,28 +69,45 @@ impl LightTracingSamples {
 }
 
 impl SampleQueue for LightTracingSamples {
-    fn take(
+    fn take<'a>(
         &mut self,
-        samples: &[QueuedSample],
-        task: &mut Task,
-        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
-    ) -> Vec<Rgb> {
-        self.light_paths.trace(samples, task, self.light_tracing.roulette_depth, &TECHNIQUES);
-        self.light_paths.connect_to_camera(samples, task, &TECHNIQUES, |i, film, _, found| {
-            add_splat(i, film, found.light);
-        });
-        self.rays.clear();
-        self.rays.extend(samples.iter().filter(|sample| sample.is_wanted).map(|sample| sample.ray));
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        task.tracer.hits(&self.rays, &mut self.hits);
-        let mut hits = self.hits.iter();
-        let light = |sample: &QueuedSample| {
-            let Some(hit) = sample.is_wanted.then(|| hits.next()).flatten() else { return Rgb::BLACK };
-            let first = hit.map(|hit| task.tracer.surface(&sample.ray, &hit));
-            let media = Media::at_start(task.tracer, &sample.ray);
-            emitted_by(first, media, &sample.ray, task)
-        };
-        samples.iter().map(light).collect()
+        rays: &CameraRays<'a>,
+        tracer: &mut Tracer<'a>,
+        places: &[SamplePlace],
+        sink: &mut SampleSink,
+    ) -> bool {
+        for places in places.chunks(PATHS) {
+            if sink.is_cancelled() {
+                return false;
+            }
+            let mut samples = QueuedSample::all(rays, places, sink);
+            let (context, roulette_depth) = (&rays.context, self.light_tracing.roulette_depth);
+            self.light_paths.trace(&mut samples, context, tracer, roulette_depth, &TECHNIQUES);
+            self.light_paths.connect_to_camera(
+                &mut samples,
+                context,
+                tracer,
+                &TECHNIQUES,
+                |i, film, _, found| {
+                    sink.splats(places[i]).add(film, found.light);
+                },
+            );
+            self.rays.clear();
+            self.rays.extend(samples.iter().filter(|sample| sample.is_wanted).map(|sample| sample.ray));
+            self.hits.clear();
+            self.hits.resize(self.rays.len(), None);
+            tracer.hits(&self.rays, &mut self.hits);
+            let mut hits = self.hits.iter();
+            for (&place, sample) in places.iter().zip(&samples) {
+                let hit = sample.is_wanted.then(|| hits.next()).flatten();
+                let light = hit.map_or(Rgb::BLACK, |hit| {
+                    let first = hit.map(|hit| tracer.surface(&sample.ray, &hit));
+                    let media = Media::at_start(tracer, &sample.ray);
+                    emitted_by(first, media, &sample.ray, tracer)
+                });
+                sink.add(place, light);
+            }
+        }
+        true
     }
 }

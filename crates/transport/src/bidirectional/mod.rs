@@ -20,10 +20,12 @@ mod light_tracing;
 mod partial;
 mod queue;
 mod queued_sample;
-mod sample_queue;
-mod walk;
+mod subpath;
 #[cfg(test)]
 mod weights;
+
+/// The number of samples that are taken together: the vertices of their light subpaths fit into the second cache.
+pub(crate) const PATHS: usize = 256;
 
 pub(crate) use both_ends::BothEnds;
 pub(crate) use camera_queue::CameraQueue;
@@ -35,5 +37,4 @@ pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
 pub(crate) use partial::Partial;
 pub(crate) use queue::{BothEndsQueue, BothEndsSamples};
 pub(crate) use queued_sample::QueuedSample;
-pub(crate) use sample_queue::{PATHS, SampleQueue};
-pub(crate) use walk::{Vertex, Walk};
+pub(crate) use subpath::{Subpath, Vertex};

@@ -4,10 +4,14 @@
 use super::camera_queue::CameraQueue;
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
-use super::{BothEnds, SampleQueue};
-use crate::task::Task;
+use super::{BothEnds, PATHS};
+use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
+use crate::sample_queue::{SampleQueue, SampleSink};
+use crate::task::Context;
 use crate::techniques::{Contribution, PixelSum, Step, Tally, Technique};
-use bilux_math::{Rgb, Vec2};
+use bilux_math::Vec2;
+use bilux_scene::Tracer;
 
 /// A queue of samples: the memory that it works in.
 #[derive(Default)]
@@ -19,30 +23,31 @@ pub(crate) struct BothEndsQueue<const N: usize = 1> {
 impl<const N: usize> BothEndsQueue<N> {
     /// Takes samples. What each finds goes to the tally with its index, except for splats: these go to `add_splat`, in
     /// the order of the samples.
-    pub(crate) fn take<T: Tally<N>>(
+    pub(crate) fn take<'a, T: Tally<N>>(
         &mut self,
         both_ends: &BothEnds<N>,
-        samples: &[QueuedSample],
-        task: &mut Task,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
         tallies: &mut [T],
         add_splat: impl FnMut(usize, Vec2, Technique, &Contribution<N>),
     ) {
         let techniques = &both_ends.techniques;
         if both_ends.splats || both_ends.connects() {
-            let rays = task.tracer.counters.rays;
-            self.light_paths.trace(samples, task, both_ends.roulette_depth, techniques);
+            let rays = tracer.counters.rays;
+            self.light_paths.trace(samples, context, &mut *tracer, both_ends.roulette_depth, techniques);
             // Who counts steps adds up those of all samples.
-            tallies[0].spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
+            tallies[0].spend(Step::Light, (tracer.counters.rays - rays) as usize);
         } else {
             self.light_paths.clear(samples.len());
         }
         if both_ends.splats {
-            self.light_paths.connect_to_camera(samples, task, techniques, add_splat);
+            self.light_paths.connect_to_camera(samples, context, &mut *tracer, techniques, add_splat);
             for (i, tally) in tallies.iter_mut().enumerate() {
                 tally.spend(Step::Seen, self.light_paths.connectible(i, techniques).count());
             }
         }
-        self.camera.follow(both_ends, samples, &self.light_paths, task, tallies);
+        self.camera.follow(both_ends, samples, &self.light_paths, context, tracer, tallies);
     }
 }
 
@@ -59,32 +64,43 @@ impl<'a> BothEndsSamples<'a> {
 }
 
 impl SampleQueue for BothEndsSamples<'_> {
-    fn take(
+    fn take<'a>(
         &mut self,
-        samples: &[QueuedSample],
-        task: &mut Task,
-        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
-    ) -> Vec<Rgb> {
-        let mut sums = vec![PixelSum::default(); samples.len()];
-        self.queue.take(&self.both_ends, samples, task, &mut sums, |i, film, _, found| {
-            add_splat(i, film, found.weighted());
-        });
-        sums.into_iter().map(|PixelSum(light)| light).collect()
+        rays: &CameraRays<'a>,
+        tracer: &mut Tracer<'a>,
+        places: &[SamplePlace],
+        sink: &mut SampleSink,
+    ) -> bool {
+        for places in places.chunks(PATHS) {
+            if sink.is_cancelled() {
+                return false;
+            }
+            let mut samples = QueuedSample::all(rays, places, sink);
+            let mut sums = vec![PixelSum::default(); samples.len()];
+            let add_splat = |i: usize, film: Vec2, _, found: &Contribution| {
+                sink.splats(places[i]).add(film, found.weighted());
+            };
+            self.queue.take(&self.both_ends, &mut samples, &rays.context, tracer, &mut sums, add_splat);
+            for (&place, PixelSum(light)) in places.iter().zip(sums) {
+                sink.add(place, light);
+            }
+        }
+        true
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera_rays::CameraRays;
     use crate::photons::Photons;
     use crate::settings::RenderSettings;
     use crate::shapes::{ball, built, integrator, mixed, put, still_life};
     use crate::splats::IterationSplats;
+    use crate::task::Task;
     use crate::techniques::{PerSet, TechniqueCounts};
     use crate::window::Window;
     use bilux_math::Vec3;
-    use bilux_scene::{SceneBuilder, Spec, Tracer};
+    use bilux_scene::{SceneBuilder, Spec};
 
     /// Sets of techniques, as in the pilot of `auto`.
     const N: usize = 3;
@@ -125,7 +141,7 @@ mod tests {
     fn assert_same(name: &str, builder: &SceneBuilder, splats: bool) {
         let (scene, vcm) = (built(builder), integrator("vcm"));
         let settings = RenderSettings::new(64, 48, 1);
-        let rays = CameraRays::new(&scene, &*scene.cameras()[0].1, &*vcm, &settings);
+        let rays = vcm.camera_rays(&scene, &*scene.cameras()[0].1, &settings);
         let (merging, window) = (vcm.merging().unwrap(), Window::whole(64, 48));
         let techniques = |eta, _| techniques(eta, !splats);
         let (photons, _) = Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None);
@@ -135,17 +151,24 @@ mod tests {
         let mut queued = Vec::new();
         let mut one_by_one = vec![Record::default(); places.len()];
         for (&(x, y), record) in places.iter().zip(&mut one_by_one) {
-            let (ray, mut task) = rays.sample(&mut tracer, x, y, 0);
-            queued.push(QueuedSample::new(ray, &task, true));
+            let (ray, mut state) = rays.sample(SamplePlace { x, y, sample: 0 });
+            queued.push(QueuedSample::new((ray, state.clone()), true));
+            let mut task = Task { context: &rays.context, tracer: &mut tracer, sample: &mut state };
             both_ends.sample(&ray, true, &mut task, record);
         }
         let mut together = vec![Record::default(); places.len()];
-        let (_, mut task) = rays.sample(&mut tracer, 0, 0, 0);
         let mut found_splats = Vec::new();
         let add_splat = |i: usize, film: Vec2, technique: Technique, found: &Contribution<N>| {
             found_splats.push((i, film, technique, *found));
         };
-        BothEndsQueue::default().take(&both_ends, &queued, &mut task, &mut together, add_splat);
+        BothEndsQueue::default().take(
+            &both_ends,
+            &mut queued,
+            &rays.context,
+            &mut tracer,
+            &mut together,
+            add_splat,
+        );
         found_splats
             .iter()
             .for_each(|(i, film, technique, found)| together[*i].add_splat(*film, *technique, found));

@@ -58,11 +58,11 @@ impl LocalRules {
         eye: Vec3,
         least: f32,
     ) -> Local {
-        let scene = task.scene();
+        let scene = task.context.scene;
         let mut local = Local { ambient: material.ka * scene.classic_ambient(), ..Local::default() };
         let (mut lights, mut open) = (0, false);
         for light in scene.lights() {
-            let u = if self.light_extent > 0.0 { task.sampler.next_2d() } else { Vec2::ZERO };
+            let u = if self.light_extent > 0.0 { task.sample.sampler.next_2d() } else { Vec2::ZERO };
             let Some(seen) = light.light.classic(surface.p, surface.time, u, self.light_extent) else {
                 continue;
             };

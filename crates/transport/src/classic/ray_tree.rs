@@ -75,22 +75,22 @@ impl RayTree {
     fn trace(&self, task: &mut Task, ray: &Ray, node: RayNode) -> Rgb {
         let direction = Vec3::from(ray.direction);
         let Some(surface) = task.tracer.closest(ray) else {
-            task.note(node.depth, || format!("leaves the scene towards {direction}"));
-            return task.scene().background(direction, node.depth);
+            task.sample.note(node.depth, || format!("leaves the scene towards {direction}"));
+            return task.context.scene.background(direction, node.depth);
         };
-        task.vertices += 1;
+        task.sample.vertices += 1;
         let outside = surface.n_geom.dot(direction) <= 0.0;
-        let material = task.scene().material(&surface);
+        let material = task.context.scene.material(&surface);
         let sigma_a = if outside { node.sigma_a } else { material.sigma_a() };
         let left = transmittance(sigma_a, surface.t);
-        let emission = task.scene().emission(&surface, -direction);
+        let emission = task.context.scene.emission(&surface, -direction);
         if !emission.is_black() {
             let vertex = PathVertex::new(VertexKind::Emitter, surface.p);
-            task.note_vertex(node.depth, || (vertex, format!("reaches a light at {}", surface.p)));
+            task.sample.note_vertex(node.depth, || (vertex, format!("reaches a light at {}", surface.p)));
             return left * emission.clamp(0.0, 1.0);
         }
-        if node.depth >= task.max_depth {
-            task.note(node.depth, || format!("is not traced beyond {}", surface.p));
+        if node.depth >= task.context.max_depth {
+            task.sample.note(node.depth, || format!("is not traced beyond {}", surface.p));
             return Rgb::BLACK;
         }
         left * self.shade(task, &surface, &material.classic(&surface), -direction, node)
@@ -105,12 +105,12 @@ impl RayTree {
         eye: Vec3,
         node: RayNode,
     ) -> Rgb {
-        task.sampler.enter(node.id);
+        task.sample.sampler.enter(node.id);
         let place = ShadingPoint::new(surface, material, eye);
         let least = self.cutoff / (16.0 * node.weight);
         let Local { ambient, diffuse, highlight } =
             self.local.illuminate(task, surface, material, eye, least);
-        task.note_vertex(node.depth, || {
+        task.sample.note_vertex(node.depth, || {
             let (name, side) = (task_name(surface), if place.outside { "outside" } else { "inside" });
             let vertex = PathVertex::new(VertexKind::Surface, surface.p);
             (vertex, format!("hits {name} at {}, {side}", surface.p))
@@ -150,10 +150,10 @@ impl RayTree {
             return Rgb::BLACK;
         }
         let spread = place.material.gloss * self.gloss_extent;
-        let direction = place.spread(place.mirrored(), spread, &mut task.sampler);
+        let direction = place.spread(place.mirrored(), spread, &mut task.sample.sampler);
         let sigma_a = if place.outside { node.sigma_a } else { place.material.sigma_a };
         let child = node.child(0, weight, sigma_a);
-        task.note(node.depth, || format!("reflects towards {direction}, share {share}"));
+        task.sample.note(node.depth, || format!("reflects towards {direction}, share {share}"));
         self.trace(task, &place.surface.spawn(direction), child) * share
     }
 
@@ -167,14 +167,14 @@ impl RayTree {
             return Rgb::BLACK;
         };
         let spread = place.material.translucency * self.translucency_extent;
-        let direction = place.spread(straight, spread, &mut task.sampler);
+        let direction = place.spread(straight, spread, &mut task.sample.sampler);
         let sigma_a = match place.outside {
             _ if place.material.thin => node.sigma_a,
             true => place.material.sigma_a,
             false => Rgb::BLACK,
         };
         let child = node.child(1, weight, sigma_a);
-        task.note(node.depth, || format!("refracts towards {direction}, share {share}"));
+        task.sample.note(node.depth, || format!("refracts towards {direction}, share {share}"));
         self.trace(task, &place.surface.spawn(direction), child) * share
     }
 }

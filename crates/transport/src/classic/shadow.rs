@@ -36,7 +36,7 @@ impl Shadows {
 
 /// What is left of light along a ray: glass tints it, and everything else blocks it except the surfaces of lights.
 fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
-    let scene = task.scene();
+    let scene = task.context.scene;
     let direction = Vec3::from(ray.direction);
     let (mut left, mut before) = (Rgb::WHITE, 0.0);
     for _ in 0..MAX_PANES {

@@ -55,20 +55,20 @@ impl PixelIntegrator for Cast {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let direction = Vec3::from(ray.direction);
         let Some(surface) = task.tracer.closest(ray) else {
-            task.note(0, || "leaves the scene".to_owned());
-            return task.scene().background(direction, 0);
+            task.sample.note(0, || "leaves the scene".to_owned());
+            return task.context.scene.background(direction, 0);
         };
-        task.vertices += 1;
-        task.note(0, || format!("hits object {} at {}", surface.object, surface.p));
-        let material = task.scene().material(&surface);
-        let emission = task.scene().emission(&surface, -direction);
+        task.sample.vertices += 1;
+        task.sample.note(0, || format!("hits object {} at {}", surface.object, surface.p));
+        let material = task.context.scene.material(&surface);
+        let emission = task.context.scene.emission(&surface, -direction);
         if !emission.is_black() {
             return emission.clamp(0.0, 1.0);
         }
-        if task.max_depth == 0 {
+        if task.context.max_depth == 0 {
             return Rgb::BLACK;
         }
-        let eye = if self.infinite_viewer { -task.camera.forward(ray.time) } else { -direction };
+        let eye = if self.infinite_viewer { -task.context.camera.forward(ray.time) } else { -direction };
         let classic = material.classic(&surface);
         let local = self.rules.illuminate(task, &surface, &classic, eye, 0.0);
         (local.ambient + local.diffuse + classic.ks * local.highlight).clamp(0.0, 1.0)

@@ -3,8 +3,9 @@
 //! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
-use crate::bidirectional::{LightTracing, LightTracingSamples, SampleQueue};
+use crate::bidirectional::{LightTracing, LightTracingSamples};
 use crate::photons::Photons;
+use crate::sample_queue::SampleQueue;
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;

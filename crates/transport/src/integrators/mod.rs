@@ -5,7 +5,6 @@ mod bdpt;
 mod cast;
 mod cook;
 mod light;
-mod light_connection;
 mod merging;
 mod occlusion;
 pub(crate) mod path;
@@ -16,7 +15,8 @@ mod whitted;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Reader, SceneError, Spec};
 
-pub use crate::pixel_integrator::{CameraSpread, Chooser, LightSubpaths, PixelIntegrator};
+pub use crate::camera_rays::CameraSpread;
+pub use crate::pixel_integrator::{Chooser, LightSubpaths, PixelIntegrator};
 
 /// A row of [`INTEGRATORS`].
 #[derive(Clone, Copy, Debug)]

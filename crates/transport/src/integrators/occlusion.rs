@@ -38,16 +38,17 @@ impl PixelIntegrator for Occlusion {
     /// 1 where a cosine-distributed direction is unoccluded, 0 where it is occluded; 1 where the ray leaves the scene.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let Some(surface) = task.tracer.closest(ray) else {
-            task.note(0, || "leaves the scene".to_owned());
+            task.sample.note(0, || "leaves the scene".to_owned());
             return Rgb::WHITE;
         };
-        task.vertices += 1;
+        task.sample.vertices += 1;
         let faces_eye = surface.n_shade.dot(Vec3::from(ray.direction)) < 0.0;
         let normal = if faces_eye { surface.n_shade } else { -surface.n_shade };
-        let wi = Frame::from_normal(normal).to_world(warp::sample_cosine_hemisphere(task.sampler.next_2d()));
+        let wi = Frame::from_normal(normal)
+            .to_world(warp::sample_cosine_hemisphere(task.sample.sampler.next_2d()));
         let probe = Ray { t_max: self.distance, ..surface.spawn(wi) };
         let open = !task.tracer.occluded(&probe);
-        task.note(0, || {
+        task.sample.note(0, || {
             format!("at {} the direction {wi} is {}", surface.p, if open { "open" } else { "closed" })
         });
         if open { Rgb::WHITE } else { Rgb::BLACK }

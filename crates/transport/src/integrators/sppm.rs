@@ -4,15 +4,18 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator, merging};
 use crate::bidirectional::{
-    CameraQueue, CameraSubpath, LightPaths, QueuedSample, SampleQueue, Vertex, Walk, emitted, from_infinity,
+    CameraQueue, CameraSubpath, LightPaths, PATHS, QueuedSample, Subpath, Vertex, emitted, from_infinity,
     merged,
 };
+use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
 use crate::photons::{Merging, Photons};
+use crate::sample_queue::{SampleQueue, SampleSink};
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
+use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-use bilux_math::{Rgb, Vec2};
-use bilux_scene::Ray;
+use bilux_scene::{Ray, Tracer};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -40,7 +43,7 @@ impl Sppm {
 impl PixelIntegrator for Sppm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut sum = PixelSum::default();
-        self.gathering(task.photons).follow(ray, &[], task, &mut sum);
+        self.gathering(task.context.photons).follow(ray, &[], task, &mut sum);
         sum.0
     }
 
@@ -77,20 +80,26 @@ impl CameraSubpath for PhotonGathering<'_> {
     }
 
     /// Lights are seen directly, in mirrors too; photons bring the light that they give to other surfaces.
-    fn escape(&self, walk: &Walk, task: &Task, tally: &mut impl Tally<1>) {
-        let technique = Technique::Connected { s: 0, t: walk.count() };
-        from_infinity(task, walk, |hit| {
-            tally.add_sample(technique, &hit.alone(walk.seen(task)));
+    fn escape(&self, subpath: &Subpath, task: &Task, tally: &mut impl Tally<1>) {
+        let technique = Technique::Connected { s: 0, t: subpath.count() };
+        from_infinity(task, subpath, |hit| {
+            tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         });
     }
 
-    fn arrive(&self, walk: &mut Walk, z: &mut Vertex, task: &mut Task, tally: &mut impl Tally<1>) -> bool {
+    fn arrive(
+        &self,
+        subpath: &mut Subpath,
+        z: &mut Vertex,
+        task: &mut Task,
+        tally: &mut impl Tally<1>,
+    ) -> bool {
         if let Some(hit) = emitted(task, &z.surface, z.wo) {
             let technique = Technique::Connected { s: 0, t: z.count() };
-            tally.add_sample(technique, &hit.alone(walk.seen(task)));
+            tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         }
-        task.sampler.enter(u64::from(z.depth) + 1);
-        z.depth < task.max_depth
+        task.sample.sampler.enter(u64::from(z.depth) + 1);
+        z.depth < task.context.max_depth
     }
 
     fn merge(&self, z: &Vertex, task: &Task, tally: &mut impl Tally<1>) {
@@ -104,8 +113,8 @@ impl CameraSubpath for PhotonGathering<'_> {
     }
 
     /// Beyond an event that is not a delta event, photons have counted everything.
-    fn scatter(&self, walk: &mut Walk, z: &Vertex, task: &mut Task) -> bool {
-        walk.scatter(z, self.roulette_depth, task) && walk.specular
+    fn scatter(&self, subpath: &mut Subpath, z: &Vertex, task: &mut Task) -> bool {
+        subpath.scatter(z, self.roulette_depth, task) && subpath.walk.specular
     }
 }
 
@@ -118,15 +127,26 @@ struct PhotonGatheringSamples<'a> {
 }
 
 impl SampleQueue for PhotonGatheringSamples<'_> {
-    fn take(
+    fn take<'a>(
         &mut self,
-        samples: &[QueuedSample],
-        task: &mut Task,
-        _add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
-    ) -> Vec<Rgb> {
-        let mut sums = vec![PixelSum::default(); samples.len()];
-        self.light_paths.clear(samples.len());
-        self.queue.follow(&self.gathering, samples, &self.light_paths, task, &mut sums);
-        sums.into_iter().map(|PixelSum(light)| light).collect()
+        rays: &CameraRays<'a>,
+        tracer: &mut Tracer<'a>,
+        places: &[SamplePlace],
+        sink: &mut SampleSink,
+    ) -> bool {
+        for places in places.chunks(PATHS) {
+            if sink.is_cancelled() {
+                return false;
+            }
+            let mut samples = QueuedSample::all(rays, places, sink);
+            let mut sums = vec![PixelSum::default(); samples.len()];
+            self.light_paths.clear(samples.len());
+            let PhotonGatheringSamples { gathering, queue, light_paths } = self;
+            queue.follow(gathering, &mut samples, light_paths, &rays.context, tracer, &mut sums);
+            for (&place, PixelSum(light)) in places.iter().zip(sums) {
+                sink.add(place, light);
+            }
+        }
+        true
     }
 }

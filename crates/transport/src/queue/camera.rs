@@ -2,38 +2,39 @@
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
 use crate::camera_rays::PinholeRays;
+use crate::failures::SamplePlace;
 use crate::sampler::{self, PixelSampler};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::cameras::Pinhole;
 use bilux_scene::{Ray, Scene};
 
-/// Calls `each` with every sample, given by its column, row and index, its random numbers and its ray.
+/// Calls `each` with every sample, its random numbers and its ray.
 pub(super) fn camera_rays(
     rays: &PinholeRays,
     scene: &Scene,
-    samples: &[(u32, u32, u32)],
-    mut each: impl FnMut((u32, u32, u32), PixelSampler, Ray),
+    places: &[SamplePlace],
+    mut each: impl FnMut(SamplePlace, PixelSampler, Ray),
 ) {
     let level = scene.cpu_level();
     let (mut film, mut directions) = ([Column::ZERO; 2], ZERO3);
     let mut samplers = Vec::with_capacity(LANES);
-    for samples in samples.chunks(LANES) {
+    for places in places.chunks(LANES) {
         let (mut streams, mut reversed_indices) = ([0; LANES], [0; LANES]);
         samplers.clear();
-        samplers.extend(samples.iter().map(|&(x, y, index)| rays.sampler(x, y, index)));
+        samplers.extend(places.iter().map(|&place| rays.sampler(place)));
         for (i, sampler) in samplers.iter().enumerate() {
             (streams[i], reversed_indices[i]) = sampler.state();
         }
         run_at(level, Places { streams: &streams, reversed_indices: &reversed_indices, u: &mut film });
-        for (i, &(x, y, _)) in samples.iter().enumerate() {
+        for (i, &SamplePlace { x, y, .. }) in places.iter().enumerate() {
             let point = rays.film(x, y, Vec2::new(film[0].0[i], film[1].0[i]));
             (film[0].0[i], film[1].0[i]) = (point.x, point.y);
         }
         run_at(level, Directions { pinhole: &rays.pinhole, film: &film, directions: &mut directions });
-        for (i, (sample, sampler)) in samples.iter().zip(samplers.drain(..)).enumerate() {
+        for (i, (place, sampler)) in places.iter().zip(samplers.drain(..)).enumerate() {
             let direction: Vec3 = vec3(&directions, i);
             let ray = Ray::new(rays.pinhole.position.to_array(), direction.to_array());
-            each(*sample, sampler, scene.from_camera(Ray { time: rays.time, ..ray }));
+            each(*place, sampler, scene.from_camera(Ray { time: rays.time, ..ray }));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Lambertian surfaces, [`LANES`] of them at a time: their BSDF, and the next direction.
 //!
-//! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of one
+//! Every expression is the one that a single path evaluates ([`PathTracing::interact`] with a [`bilux_scene::Bsdf`] of one
 //! Lambertian lobe), in the same order, so that the bits are the same.
 
 use super::lanes::{Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
@@ -8,11 +8,12 @@ use super::next_rays::{NextRays, density, sides_agree};
 use super::paths::Paths;
 use super::triangles::Triangles;
 use super::vertices::{NO_PATH, Vertices};
-use crate::integrators::path::Path;
-use crate::task::Task;
+use crate::path_tracing::PathTracing;
+use crate::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::faces_away;
+use bilux_scene::{CpuLevel, Tracer};
 use std::f32::consts::FRAC_1_PI;
 
 /// What Lambertian vertices have beyond the others.
@@ -42,61 +43,70 @@ impl Paths {
     /// Shades the diffuse hits: fills the lists of shadow rays and of paths that go on.
     pub(super) fn shade_diffuse(
         &mut self,
-        (v, d): (&mut Vertices, &mut Diffuse),
-        path: &Path,
-        task: &mut Task,
+        v: &mut Vertices,
+        d: &mut Diffuse,
+        tracing: &PathTracing,
+        context: &Context,
+        tracer: &mut Tracer,
     ) {
         let hits = std::mem::take(&mut self.diffuse_hits);
         for chunk in hits.chunks(LANES) {
-            self.gather(v, d, chunk, task);
+            self.gather(v, d, chunk, context, tracer);
             if v.count > 0 {
                 let eval = |v: &mut Vertices, level| run_at(level, Eval { v, d });
                 // Light samples bring something only on the side that the path comes from.
-                self.connect(v, task, eval, |walk, _, _| walk.media);
-                self.scatter(v, d, path, task);
+                self.connect(v, context, eval, |path, _, _| path.walk.media);
+                self.scatter(v, d, tracing, context.scene.cpu_level());
             }
         }
         self.diffuse_hits = hits;
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
-    fn gather(&mut self, v: &mut Vertices, d: &mut Diffuse, chunk: &[(u32, u32, Hit)], task: &mut Task) {
+    fn gather(
+        &mut self,
+        v: &mut Vertices,
+        d: &mut Diffuse,
+        chunk: &[(u32, u32, Hit)],
+        context: &Context,
+        tracer: &mut Tracer,
+    ) {
         v.count = 0;
         d.others.clear();
-        let is_clear = task.scene().has_clear_media();
+        let is_clear = context.scene.has_clear_media();
         let mut hits = [0; LANES];
         for (number, (index, object, hit)) in chunk.iter().enumerate() {
             let one = &mut self.paths[*index as usize];
-            if one.walk.depth >= task.max_depth {
+            if one.path.walk.depth >= context.max_depth {
                 continue;
             }
-            let (i, wo) = (v.count, -Vec3::from(one.walk.ray.direction));
-            let plain = if is_clear { task.scene().lambertian_triangle(*object, hit) } else { None };
+            let (i, wo) = (v.count, one.path.walk.wo());
+            let plain = if is_clear { context.scene.lambertian_triangle(*object, hit) } else { None };
             let reflectance = match plain {
                 Some(reflectance) => {
                     d.triangles.put(i, *object, hit);
                     reflectance
                 }
                 None => {
-                    let surface = task.tracer.surface(&one.walk.ray, hit);
-                    let reflectance = task.scene().material(&surface).lambertian_reflectance(&surface);
+                    let surface = tracer.surface(&one.path.walk.ray, hit);
+                    let reflectance = context.scene.material(&surface).lambertian_reflectance(&surface);
                     if !is_clear && !faces_away(surface.n_shade, surface.n_geom, wo) {
-                        let walk = &mut one.walk;
-                        let arrived = walk.media.closest_from(task.tracer, &walk.ray, surface);
+                        let walk = &mut one.path.walk;
+                        let arrived = walk.media.closest_from(tracer, &walk.ray, surface);
                         walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
                     }
                     d.others.push((i, [surface.p, surface.p_error, surface.n_geom], surface.n_shade));
                     reflectance
                 }
             };
-            one.begin_event(task);
-            one.sampler.enter(u64::from(one.walk.depth) + 1);
-            v.push_path(*index, (hit.primitive(), one.walk.ray.time), wo, &one.sampler);
+            one.begin_event();
+            one.state.sampler.enter(u64::from(one.path.walk.depth) + 1);
+            v.push_path(*index, (hit.primitive(), one.path.walk.ray.time), wo, &one.state.sampler);
             put(&mut d.reflectance, i, reflectance.to_array());
             d.next.put_path(i, one);
             hits[i] = number;
         }
-        let points = d.triangles.points(task.scene());
+        let points = d.triangles.points(context.scene);
         (v.p, v.p_error, v.n_geom, d.n_shade) = (points.p, points.p_error, points.n_geom, points.n_shade);
         for &(i, point, n_shade) in &d.others {
             v.put_point(i, point);
@@ -115,13 +125,12 @@ impl Paths {
     }
 
     /// Sends every path on in a new direction, and lists those that survive.
-    fn scatter(&mut self, v: &mut Vertices, d: &mut Diffuse, path: &Path, task: &Task) {
-        let level = task.scene().cpu_level();
+    fn scatter(&mut self, v: &mut Vertices, d: &mut Diffuse, tracing: &PathTracing, level: CpuLevel) {
         // The first number would choose among lobes.
         v.dimension += 2;
         v.draw_points(level, v.dimension);
         run_at(level, Scatter { v, d });
-        self.send_on(v, &mut d.next, path, level);
+        self.send_on(v, &mut d.next, tracing, level);
     }
 }
 

@@ -3,11 +3,11 @@
 use super::lanes::{LANES, put, vec3};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
-use crate::integrators::path::{Path, Walk};
-use crate::task::Task;
+use crate::path_tracing::{Path, PathTracing};
+use crate::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Bsdf, CpuLevel, Surface, TransportMode};
+use bilux_scene::{Bsdf, CpuLevel, Surface, Tracer, TransportMode};
 
 /// What these vertices have beyond the others.
 #[derive(Default)]
@@ -18,23 +18,25 @@ pub(super) struct General {
 
 impl Paths {
     /// Shades these hits: fills the lists of shadow rays and of paths that go on.
-    pub(super) fn shade_general(
+    pub(super) fn shade_general<'a>(
         &mut self,
-        (v, g): (&mut Vertices, &mut General),
-        path: &Path,
-        task: &mut Task,
+        v: &mut Vertices,
+        g: &mut General,
+        tracing: &PathTracing,
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
     ) {
         let hits = std::mem::take(&mut self.general_hits);
         let mut begin = 0;
         while begin < hits.len() {
-            begin += self.arrive(v, g, &hits[begin..], path, task);
+            begin += self.arrive(v, g, &hits[begin..], tracing, context, tracer);
             if v.count > 0 {
-                let scene = task.scene();
-                let media = |walk: &Walk, i: usize, wi: Vec3| {
-                    walk.media.towards(scene, &g.surfaces[i], -Vec3::from(walk.ray.direction), wi)
+                let scene = context.scene;
+                let media = |path: &Path, i: usize, wi: Vec3| {
+                    path.walk.media.towards(scene, &g.surfaces[i], path.walk.wo(), wi)
                 };
-                self.connect(v, task, |v, _: CpuLevel| g.eval(v), media);
-                self.leave(v, g, path, task);
+                self.connect(v, context, |v, _: CpuLevel| g.eval(v), media);
+                self.leave(v, g, tracing, context, tracer);
             }
         }
         self.general_hits = hits;
@@ -42,15 +44,16 @@ impl Paths {
 
     /// Fills the columns with vertices; returns the number of hits used. Paths that end here are done, and those that
     /// meet only delta lobes, which no light sample finds, go on at once.
-    fn arrive(
+    fn arrive<'a>(
         &mut self,
         v: &mut Vertices,
         g: &mut General,
         hits: &[(u32, Hit)],
-        path: &Path,
-        task: &mut Task,
+        tracing: &PathTracing,
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
     ) -> usize {
-        let is_clear = task.scene().has_clear_media();
+        let is_clear = context.scene.has_clear_media();
         v.count = 0;
         g.surfaces.clear();
         g.bsdfs.clear();
@@ -59,33 +62,35 @@ impl Paths {
                 return used;
             }
             let one = &mut self.paths[*index as usize];
-            let mut surface = task.tracer.surface(&one.walk.ray, hit);
+            let mut surface = tracer.surface(&one.path.walk.ray, hit);
             if !is_clear {
-                let walk = &mut one.walk;
-                let Some((next, passed)) = walk.media.closest_from(task.tracer, &walk.ray, surface) else {
-                    one.escape(path, task);
+                let walk = &mut one.path.walk;
+                let Some((next, passed)) = walk.media.closest_from(tracer, &walk.ray, surface) else {
+                    let (path, mut task) = one.parts(context, tracer);
+                    tracing.escape(path, &mut task);
                     continue;
                 };
                 surface = next;
                 walk.beta *= passed;
             }
-            (task.sampler, task.wavelength) = (one.sampler.clone(), one.wavelength);
-            let wo = -Vec3::from(one.walk.ray.direction);
-            g.bsdfs.extend(path.arrive(&mut one.walk, &surface, task));
+            let wo = one.path.walk.wo();
+            let (path, mut task) = one.parts(context, tracer);
+            g.bsdfs.extend(tracing.arrive(path, &surface, &mut task));
             if g.bsdfs.len() == v.count {
                 continue;
             }
-            one.begin_event(task);
+            one.begin_event();
             let bsdf = &g.bsdfs[v.count];
             if bsdf.is_delta() {
-                path.skip_lights(task);
-                if path.scatter(&mut one.walk, &surface, bsdf, task) {
+                let (path, mut task) = one.parts(context, tracer);
+                tracing.skip_lights(&mut task);
+                if tracing.scatter(path, &surface, bsdf, &mut task) {
                     self.next.push(*index);
                 }
                 g.bsdfs.truncate(v.count);
                 continue;
             }
-            v.push(*index, &Point::from(&surface), wo, &task.sampler);
+            v.push(*index, &Point::from(&surface), wo, &one.state.sampler);
             g.surfaces.push(surface);
             self.shaded.push(*index);
         }
@@ -93,8 +98,15 @@ impl Paths {
     }
 
     /// Sends every path on in a new direction, and lists those that survive.
-    fn leave(&mut self, v: &mut Vertices, g: &General, path: &Path, task: &mut Task) {
-        let level = task.scene().cpu_level();
+    fn leave<'a>(
+        &mut self,
+        v: &mut Vertices,
+        g: &General,
+        tracing: &PathTracing,
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
+    ) {
+        let level = context.scene.cpu_level();
         let dimension = v.dimension;
         v.draw_numbers(level, dimension + 1);
         let u_choice = v.u[0];
@@ -102,10 +114,10 @@ impl Paths {
         let u = v.u;
         v.draw_numbers(level, dimension + 3);
         for (i, (surface, bsdf)) in g.surfaces.iter().zip(&g.bsdfs).enumerate() {
-            let walk = &mut self.paths[v.paths[i] as usize].walk;
+            let (path, mut task) = self.paths[v.paths[i] as usize].parts(context, tracer);
             let point = Vec2::new(u[0].0[i], u[1].0[i]);
-            let goes_on = path.scatter_by(walk, surface, bsdf, task, (u_choice.0[i], point))
-                && path.survives(walk, || v.u[0].0[i]);
+            let goes_on = tracing.scatter_by(path, surface, bsdf, &mut task, (u_choice.0[i], point))
+                && tracing.survives(path, || v.u[0].0[i]);
             if goes_on {
                 self.next.push(v.paths[i]);
             }

@@ -1,12 +1,13 @@
 //! How paths leave surfaces, [`LANES`] of them at a time: throughput, Russian roulette, the next ray.
 //!
-//! Every expression is the one that a single path evaluates ([`Path::interact`]), in the same order, so that the bits are
+//! Every expression is the one that a single path evaluates ([`PathTracing::interact`]), in the same order, so that the bits are
 //! the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::paths::{Paths, QueuedPath};
 use super::vertices::{NO_PATH, Vertices};
-use crate::integrators::path::{Path, Walk};
+use crate::path_tracing::{Path, PathTracing};
+use crate::walk::survival;
 use bilux_math::Vec3;
 use bilux_scene::CpuLevel;
 use bilux_scene::surface::offset_origin;
@@ -43,8 +44,8 @@ impl NextRays {
     /// A lane's path as it arrives.
     #[inline]
     pub(super) fn put_path(&mut self, i: usize, path: &QueuedPath) {
-        put(&mut self.beta, i, path.walk.beta.to_array());
-        self.eta_scale.0[i] = path.walk.eta_scale;
+        put(&mut self.beta, i, path.path.walk.beta.to_array());
+        self.eta_scale.0[i] = path.path.walk.eta_scale;
     }
 
     /// Where the rays start.
@@ -63,23 +64,35 @@ impl Paths {
     /// Sends every path on in the direction that was sampled for it, and lists those that survive.
     ///
     /// `direction` and `goes_on` have the directions, and `scattered` and `pdf` of the vertices their BSDFs.
-    pub(super) fn send_on(&mut self, v: &mut Vertices, next: &mut NextRays, path: &Path, level: CpuLevel) {
+    pub(super) fn send_on(
+        &mut self,
+        v: &mut Vertices,
+        next: &mut NextRays,
+        tracing: &PathTracing,
+        level: CpuLevel,
+    ) {
         run_at(level, Leave { v, next });
-        self.play_roulette(v, next, path, level);
+        self.play_roulette(v, next, tracing, level);
         let NextRays { pdf, .. } = &*next;
-        self.set_rays(v, next, |walk, i| {
-            walk.specular = false;
-            walk.last = Some((vec3(&v.p, i), pdf.0[i]));
+        self.set_rays(v, next, |path, i| {
+            path.walk.specular = false;
+            path.last = Some((vec3(&v.p, i), pdf.0[i]));
         });
     }
 
     /// Russian roulette for every path.
-    pub(super) fn play_roulette(&self, v: &mut Vertices, next: &mut NextRays, path: &Path, level: CpuLevel) {
+    pub(super) fn play_roulette(
+        &self,
+        v: &mut Vertices,
+        next: &mut NextRays,
+        tracing: &PathTracing,
+        level: CpuLevel,
+    ) {
         let mut plays = false;
         for i in (0..v.count).filter(|&i| v.paths[i] != NO_PATH) {
-            let depth = self.paths[v.paths[i] as usize].walk.depth + 1;
-            next.plays.0[i] = if depth > path.roulette_depth() { 1.0 } else { 0.0 };
-            plays |= depth > path.roulette_depth();
+            let depth = self.paths[v.paths[i] as usize].path.walk.depth + 1;
+            next.plays.0[i] = if depth > tracing.roulette_depth { 1.0 } else { 0.0 };
+            plays |= depth > tracing.roulette_depth;
         }
         if plays {
             v.draw_numbers(level, v.dimension + 1);
@@ -88,13 +101,13 @@ impl Paths {
     }
 
     /// Sets the rays of the paths that go on, and lists these; `set` does what else depends on the kind of surface.
-    pub(super) fn set_rays(&mut self, v: &Vertices, next: &NextRays, mut set: impl FnMut(&mut Walk, usize)) {
+    pub(super) fn set_rays(&mut self, v: &Vertices, next: &NextRays, mut set: impl FnMut(&mut Path, usize)) {
         for i in (0..v.count).filter(|&i| next.goes_on.0[i] != 0.0 && v.paths[i] != NO_PATH) {
-            let walk = &mut self.paths[v.paths[i] as usize].walk;
-            walk.ray = v.leaving(i, vec3(&next.origin, i), vec3(&next.direction, i));
-            walk.beta = rgb(&next.beta, i);
-            walk.depth += 1;
-            set(walk, i);
+            let path = &mut self.paths[v.paths[i] as usize].path;
+            path.walk.ray = v.leaving(i, vec3(&next.origin, i), vec3(&next.direction, i));
+            path.walk.beta = rgb(&next.beta, i);
+            path.walk.depth += 1;
+            set(path, i);
             self.next.push(v.paths[i]);
         }
     }
@@ -146,7 +159,7 @@ impl Stage for Leave<'_> {
     }
 }
 
-/// Russian roulette, as in [`Path::interact`].
+/// Russian roulette, as in [`PathTracing::interact`].
 struct Survive<'a> {
     v: &'a Vertices,
     next: &'a mut NextRays,
@@ -158,7 +171,7 @@ impl Stage for Survive<'_> {
         let Survive { v: Vertices { u, .. }, next } = self;
         for i in 0..LANES {
             let beta = rgb(&next.beta, i);
-            let survival = (beta.max_channel() * next.eta_scale.0[i]).min(0.95);
+            let survival = survival(beta, 1.0, next.eta_scale.0[i]);
             let (plays, survives) = (next.plays.0[i] != 0.0, u[0].0[i] < survival);
             let scaled = beta / survival;
             let of = |c: f32, scaled: f32| if plays & survives { scaled } else { c };

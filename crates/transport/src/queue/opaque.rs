@@ -1,17 +1,18 @@
 //! Surfaces of an [`OpaqueBase`](bilux_scene::bsdf::OpaqueBase), [`LANES`] of them at a time: metal, plastic and paint, as most glTF files have them.
 //! Textures are looked up one by one; the BSDF is built, evaluated and sampled in columns.
 //!
-//! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of that one
+//! Every expression is the one that a single path evaluates ([`PathTracing::interact`] with a [`bilux_scene::Bsdf`] of that one
 //! lobe), in the same order, so that the bits are the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3};
 use super::next_rays::{NextRays, density, rest_of_number, sides_agree};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
-use crate::integrators::path::Path;
-use crate::task::Task;
+use crate::path_tracing::PathTracing;
+use crate::task::Context;
 use bilux_accel::Hit;
-use bilux_math::{Frame, Rgb, Vec2, Vec3};
+use bilux_math::{Frame, Rgb, Vec2};
+use bilux_scene::Tracer;
 use bilux_scene::bsdf::{AlbedoTable, OpaqueBaseAlbedos, OpaqueBaseForWo, OpaqueBaseInputs, faces_away};
 
 /// What these vertices have beyond the others.
@@ -84,50 +85,53 @@ impl Inputs {
 
 impl Paths {
     /// Shades these hits: fills the lists of shadow rays and of paths that go on.
-    pub(super) fn shade_opaque(
+    pub(super) fn shade_opaque<'a>(
         &mut self,
-        (v, o): (&mut Vertices, &mut Opaque),
-        path: &Path,
-        task: &mut Task,
+        v: &mut Vertices,
+        o: &mut Opaque,
+        tracing: &PathTracing,
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
     ) {
         let hits = std::mem::take(&mut self.opaque_hits);
         for chunk in hits.chunks(LANES) {
-            self.gather_opaque(v, o, chunk, path, task);
+            self.gather_opaque(v, o, chunk, tracing, context, tracer);
             if v.count == 0 {
                 continue;
             }
-            let level = task.scene().cpu_level();
+            let level = context.scene.cpu_level();
             run_at(level, Build { v, o });
             // Light samples bring something only on the side that the path comes from.
             let eval = |v: &mut Vertices, level| run_at(level, Eval::<true> { v, o });
-            self.connect(v, task, eval, |walk, _, _| walk.media);
+            self.connect(v, context, eval, |path, _, _| path.walk.media);
             v.draw_numbers(level, v.dimension + 1);
             o.u_choice = v.u[0];
             v.dimension += 2;
             v.draw_points(level, v.dimension);
             run_at(level, Sample { v, o });
             run_at(level, Eval::<false> { v, o });
-            self.send_on(v, &mut o.next, path, level);
+            self.send_on(v, &mut o.next, tracing, level);
         }
         self.opaque_hits = hits;
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
-    fn gather_opaque(
+    fn gather_opaque<'a>(
         &mut self,
         v: &mut Vertices,
         o: &mut Opaque,
         chunk: &[(u32, Hit)],
-        path: &Path,
-        task: &mut Task,
+        tracing: &PathTracing,
+        context: &Context<'a>,
+        tracer: &mut Tracer<'a>,
     ) {
         v.count = 0;
-        let is_clear = task.scene().has_clear_media();
+        let is_clear = context.scene.has_clear_media();
         for (index, hit) in chunk {
             let one = &mut self.paths[*index as usize];
-            let wo = -Vec3::from(one.walk.ray.direction);
-            let surface = task.tracer.surface(&one.walk.ray, hit);
-            let inputs = match task.scene().material(&surface).opaque_base(&surface) {
+            let wo = one.path.walk.wo();
+            let surface = tracer.surface(&one.path.walk.ray, hit);
+            let inputs = match context.scene.material(&surface).opaque_base(&surface) {
                 Some(inputs) if !faces_away(surface.n_shade, surface.n_geom, wo) => inputs,
                 // Few normals face away, and are bent; few points are polished.
                 _ => {
@@ -136,17 +140,18 @@ impl Paths {
                 }
             };
             if !is_clear {
-                let walk = &mut one.walk;
-                let arrived = walk.media.closest_from(task.tracer, &walk.ray, surface);
+                let walk = &mut one.path.walk;
+                let arrived = walk.media.closest_from(tracer, &walk.ray, surface);
                 walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
             }
-            one.begin_event(task);
-            path.collect(&mut one.walk, &surface, task);
-            if one.walk.depth >= task.max_depth {
+            one.begin_event();
+            let (path, mut task) = one.parts(context, tracer);
+            tracing.collect(path, &surface, &mut task);
+            if one.path.walk.depth >= context.max_depth {
                 continue;
             }
-            one.sampler.enter(u64::from(one.walk.depth) + 1);
-            let i = v.push(*index, &Point::from(&surface), wo, &one.sampler);
+            one.state.sampler.enter(u64::from(one.path.walk.depth) + 1);
+            let i = v.push(*index, &Point::from(&surface), wo, &one.state.sampler);
             o.inputs.put(i, &inputs);
             put(&mut o.n_shade, i, surface.n_shade.to_array());
             o.next.put_path(i, one);

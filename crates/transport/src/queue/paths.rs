@@ -1,37 +1,39 @@
 //! The paths of a queue, and what happens to them at one event.
 
-use crate::integrators::path::{Path, Walk};
-use crate::sampler::PixelSampler;
+use crate::failures::SamplePlace;
+use crate::path_tracing::Path;
 use crate::shadow_rays::ShadowRays;
-use crate::task::Task;
+use crate::task::{Context, SampleState, Task};
 use bilux_accel::Hit;
 use bilux_math::Rgb;
-use bilux_scene::Wavelength;
+use bilux_scene::Tracer;
 
 /// A path in the queue.
 pub(super) struct QueuedPath {
-    pub(super) walk: Walk,
-    pub(super) sampler: PixelSampler,
-    pub(super) wavelength: Wavelength,
+    pub(super) path: Path,
+    pub(super) state: SampleState,
     /// Light that connections of its current vertex bring, and the throughput there, as the colour channels see it.
     pub(super) direct: Rgb,
     pub(super) beta: Rgb,
-    /// The sample that it belongs to: a pixel's column and row, and an index.
-    pub(super) sample: (u32, u32, u32),
+    /// The sample that it belongs to.
+    pub(super) place: SamplePlace,
 }
 
 impl QueuedPath {
     /// Starts an event: no connection has contributed anything yet.
     #[inline]
-    pub(super) fn begin_event(&mut self, task: &mut Task) {
-        task.wavelength = self.wavelength;
-        (self.direct, self.beta) = (Rgb::BLACK, task.seen(self.walk.beta, self.walk.is_split));
+    pub(super) fn begin_event(&mut self) {
+        (self.direct, self.beta) = (Rgb::BLACK, self.path.walk.seen(&self.state));
     }
 
-    /// The end of a path that leaves the scene.
-    pub(super) fn escape(&mut self, path: &Path, task: &mut Task) {
-        task.wavelength = self.wavelength;
-        path.escape(&mut self.walk, task);
+    /// The path, and the tools for its sample.
+    #[inline]
+    pub(super) fn parts<'t, 'a>(
+        &'t mut self,
+        context: &'t Context<'a>,
+        tracer: &'t mut Tracer<'a>,
+    ) -> (&'t mut Path, Task<'t, 'a>) {
+        (&mut self.path, Task { context, tracer, sample: &mut self.state })
     }
 }
 
@@ -98,15 +100,15 @@ impl Paths {
 
     /// Traces the shadow rays, and adds the light of connections that nothing blocks. The light of a vertex is summed
     /// before it is weighted by the throughput, as in a single path.
-    pub(super) fn add_direct_light(&mut self, task: &mut Task) {
+    pub(super) fn add_direct_light(&mut self, tracer: &mut Tracer) {
         for list in &mut self.connections.lists {
-            list.trace(task, |contribution, passed| {
+            list.trace(tracer, |contribution, passed| {
                 self.paths[contribution.path as usize].direct += contribution.light * passed;
             });
         }
         for &index in &self.shaded {
             let one = &mut self.paths[index as usize];
-            one.walk.light += one.beta * one.direct;
+            one.path.light += one.beta * one.direct;
         }
     }
 }

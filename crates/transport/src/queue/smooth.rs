@@ -1,6 +1,6 @@
 //! Mirrors and smooth glass, [`LANES`] of them at a time: no light sample reaches them, so paths only change direction.
 //!
-//! Every expression is the one that a single path evaluates ([`Path::interact`] with a [`bilux_scene::Bsdf`] of one delta
+//! Every expression is the one that a single path evaluates ([`PathTracing::interact`] with a [`bilux_scene::Bsdf`] of one delta
 //! lobe), in the same order, so that the bits are the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, numbers_at, put, put_numbers, rgb, run_at, vec3};
@@ -8,10 +8,10 @@ use super::next_rays::{NextRays, rest_of_number};
 use super::paths::Paths;
 use super::triangles::Triangles;
 use super::vertices::{NO_PATH, Vertices};
-use crate::integrators::path::Path;
-use crate::task::Task;
+use crate::path_tracing::PathTracing;
+use crate::task::Context;
 use bilux_accel::Hit;
-use bilux_math::{Frame, Vec3};
+use bilux_math::Frame;
 use bilux_scene::TransportMode;
 use bilux_scene::bsdf::SmoothLobe;
 
@@ -42,50 +42,62 @@ impl Default for Smooth {
 
 impl Paths {
     /// Sends the paths of these hits on, and lists those that survive.
-    pub(super) fn shade_smooth(&mut self, (v, s): (&mut Vertices, &mut Smooth), path: &Path, task: &Task) {
+    pub(super) fn shade_smooth(
+        &mut self,
+        v: &mut Vertices,
+        s: &mut Smooth,
+        tracing: &PathTracing,
+        context: &Context,
+    ) {
         let hits = std::mem::take(&mut self.smooth_hits);
-        let level = task.scene().cpu_level();
+        let level = context.scene.cpu_level();
         for chunk in hits.chunks(LANES) {
-            self.gather_smooth(v, s, chunk, task);
+            self.gather_smooth(v, s, chunk, context);
             if v.count == 0 {
                 continue;
             }
-            v.dimension = path.light_draws(task) + 1;
+            v.dimension = tracing.light_draws(&context.lights) + 1;
             v.draw_numbers(level, v.dimension);
             run_at(level, Bounce { v, s });
             self.leave_failed(v, s, chunk);
             // A point follows that delta lobes do not use.
             v.dimension += 1;
-            self.play_roulette(v, &mut s.next, path, level);
-            self.set_rays(v, &s.next, |walk, i| {
-                walk.eta_scale = s.next.eta_scale.0[i];
-                walk.last = None;
+            self.play_roulette(v, &mut s.next, tracing, level);
+            self.set_rays(v, &s.next, |path, i| {
+                path.walk.eta_scale = s.next.eta_scale.0[i];
+                path.last = None;
             });
         }
         self.smooth_hits = hits;
     }
 
     /// Fills the columns with a chunk of hits; paths that have reached their maximum depth end.
-    fn gather_smooth(&mut self, v: &mut Vertices, s: &mut Smooth, chunk: &[(u32, u32, Hit)], task: &Task) {
+    fn gather_smooth(
+        &mut self,
+        v: &mut Vertices,
+        s: &mut Smooth,
+        chunk: &[(u32, u32, Hit)],
+        context: &Context,
+    ) {
         v.count = 0;
         for (number, (index, object, hit)) in chunk.iter().enumerate() {
             let one = &mut self.paths[*index as usize];
-            if one.walk.depth >= task.max_depth {
+            if one.path.walk.depth >= context.max_depth {
                 continue;
             }
-            let Some(lobe) = task.scene().smooth_triangle(*object, hit) else {
+            let Some(lobe) = context.scene.smooth_triangle(*object, hit) else {
                 self.general_hits.push((*index, *hit));
                 continue;
             };
-            one.sampler.enter(u64::from(one.walk.depth) + 1);
-            let wo = -Vec3::from(one.walk.ray.direction);
-            let i = v.push_path(*index, (hit.primitive(), one.walk.ray.time), wo, &one.sampler);
+            one.state.sampler.enter(u64::from(one.path.walk.depth) + 1);
+            let wo = one.path.walk.wo();
+            let i = v.push_path(*index, (hit.primitive(), one.path.walk.ray.time), wo, &one.state.sampler);
             s.triangles.put(i, *object, hit);
             put_numbers(&mut s.lobes, i, lobe.to_numbers());
             s.next.put_path(i, one);
             s.hits[i] = number;
         }
-        let points = s.triangles.points(task.scene());
+        let points = s.triangles.points(context.scene);
         (v.p, v.p_error, v.n_geom, s.n_shade) = (points.p, points.p_error, points.n_geom, points.n_shade);
     }
 

@@ -1,15 +1,15 @@
 //! Vertices of up to [`LANES`] paths, in columns: what all kinds of surface have in common.
 //!
-//! Every expression is the one that a single path evaluates ([`crate::integrators::path::Path::interact`]), in the same
+//! Every expression is the one that a single path evaluates ([`crate::path_tracing::PathTracing::interact`]), in the same
 //! order, so that the bits are the same.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::light_samples::{LightSamples, Points};
 use super::paths::{Paths, Unoccluded};
-use crate::integrators::path::{Walk, power_heuristic};
 use crate::media::Media;
+use crate::path_tracing::{Path, power_heuristic};
 use crate::sampler::{self, PixelSampler};
-use crate::task::Task;
+use crate::task::Context;
 use bilux_math::Vec3;
 use bilux_scene::surface::{leaving, offset_origin};
 use bilux_scene::{CpuLevel, Primitive, Ray, Scene, Surface};
@@ -132,10 +132,10 @@ impl Vertices {
         run_at(level, Draw::<true> { v: self, dimension });
     }
 
-    /// The distance of a lane's light sample in metres; 0 for light from infinity.
-    fn distance(&self, i: usize) -> f32 {
+    /// The distance of a lane's light sample in metres; `None` for light from infinity.
+    fn distance(&self, i: usize) -> Option<f32> {
         let is_infinite = self.light.is_infinite.0[i] != 0.0;
-        if is_infinite { 0.0 } else { vec3(&self.light.towards, i).distance(vec3(&self.p, i)) }
+        (!is_infinite).then(|| vec3(&self.light.towards, i).distance(vec3(&self.p, i)))
     }
 
     /// The ray that leaves a lane's surface.
@@ -150,11 +150,11 @@ impl Paths {
     pub(super) fn connect(
         &mut self,
         v: &mut Vertices,
-        task: &mut Task,
+        context: &Context,
         mut eval: impl FnMut(&mut Vertices, CpuLevel),
-        media: impl Fn(&Walk, usize, Vec3) -> Media,
+        media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
-        let (choice, level) = (task.lights, task.scene().cpu_level());
+        let (choice, level) = (&context.lights, context.scene.cpu_level());
         let mut picked = [0; LANES];
         let rounds = if choice.takes_all() {
             choice.sample(0.0)
@@ -175,7 +175,7 @@ impl Paths {
                 picked = [round; LANES];
             }
             v.draw_points(level, v.dimension);
-            let lights = task.scene().lights();
+            let lights = context.scene.lights();
             let Vertices { count, times, p, u, light: samples, .. } = &mut *v;
             let points = Points { count: *count, times, p, u };
             match lights[picked[0]].light.as_mesh() {
@@ -186,7 +186,7 @@ impl Paths {
             }
             eval(v, level);
             run_at(level, Weigh { v });
-            self.list_shadow_rays(v, &picked, task.scene(), &media);
+            self.list_shadow_rays(v, &picked, context.scene, &media);
         }
     }
 
@@ -195,7 +195,7 @@ impl Paths {
         v: &Vertices,
         picked: &[usize; LANES],
         scene: &Scene,
-        media: impl Fn(&Walk, usize, Vec3) -> Media,
+        media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
         let is_clear = scene.has_clear_media();
         for (i, &light) in picked.iter().enumerate().take(v.count) {
@@ -207,8 +207,8 @@ impl Paths {
             let contribution = Unoccluded { path: v.paths[i], light: contribution };
             let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
             let media = (!is_clear).then(|| {
-                let walk = &self.paths[v.paths[i] as usize].walk;
-                (media(walk, i, vec3(&v.light.wi, i)), v.distance(i))
+                let path = &self.paths[v.paths[i] as usize].path;
+                (media(path, i, vec3(&v.light.wi, i)), v.distance(i))
             });
             let n_light = vec3(&v.light.n_light, i);
             self.connections.with(light).push(ray, n_light, media, contribution);

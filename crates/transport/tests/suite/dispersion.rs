@@ -274,11 +274,11 @@ fn wavelength_bugs_are_detected() {
         let p = agreement(&light, &blocks(&scene, &**other, 100 * (i as u64 + 6)));
         assert!(p > UNLIKELY, "light and {name}: p = {p}");
     }
-    let twice = |task: &mut Task| task.wavelength.weight *= task.wavelength.weight;
-    let forgotten = |task: &mut Task| task.wavelength.weight = Rgb::WHITE;
+    let twice = |task: &mut Task| task.sample.wavelength.weight *= task.sample.wavelength.weight;
+    let forgotten = |task: &mut Task| task.sample.wavelength.weight = Rgb::WHITE;
     let another = |task: &mut Task| {
-        task.sampler.enter(1 << 40);
-        task.wavelength = Wavelength::sample(task.sampler.next_1d());
+        task.sample.sampler.enter(1 << 40);
+        task.sample.wavelength = Wavelength::sample(task.sample.sampler.next_1d());
     };
     let wrong: [(&str, Wrong); 3] = [
         ("a colour that counts twice", Wrong(integrator("light"), twice)),

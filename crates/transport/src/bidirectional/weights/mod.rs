@@ -12,7 +12,7 @@ mod path;
 mod samples;
 
 use self::path::{Flaw, Path};
-use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
 use crate::integrators;
 use crate::settings::RenderSettings;
 use crate::shapes;
@@ -70,12 +70,13 @@ const SAMPLES: u32 = 16;
 fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
     let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
     let settings = RenderSettings::new(24, 24, SAMPLES);
-    let eye = CameraRays::new(scene, &*scene.cameras()[0].1, &*integrator, &settings);
+    let eye = integrator.camera_rays(scene, &*scene.cameras()[0].1, &settings);
     let mut tracer = Tracer::new(scene, false);
     let mut verdict =
         Verdict { techniques: *techniques, flaw, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
     for i in 0..24 * 24 * SAMPLES {
-        let (ray, mut task) = eye.sample(&mut tracer, i % 24, i / 24 % 24, i / 576);
+        let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
+        let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
         samples::one_sample(&ray, &mut task, &mut verdict);
     }
     verdict

@@ -113,7 +113,7 @@ impl Path {
 
     /// Densities of light subpaths of 0, 1, 2 … vertices.
     fn light_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
-        let (scene, first) = (task.scene(), &self.nodes[0]);
+        let (scene, first) = (task.context.scene, &self.nodes[0]);
         let light = &scene.lights()[self.start.index].light;
         let direct = match (light.is_delta(), light.is_infinite()) {
             (true, _) => 1.0,
@@ -122,8 +122,9 @@ impl Path {
         };
         let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
         let choice =
-            if flaw == Flaw::LightChoice { 1.0 } else { task.emission.probability(self.start.index) };
-        let chosen = if flaw == Flaw::Choice { 1.0 } else { task.lights.probability(self.start.index) };
+            if flaw == Flaw::LightChoice { 1.0 } else { task.context.emission.probability(self.start.index) };
+        let chosen =
+            if flaw == Flaw::Choice { 1.0 } else { task.context.lights.probability(self.start.index) };
         let picked = f64::from(direct) * f64::from(chosen);
         let mut product =
             f64::from(emission) * f64::from(choice) * cosine(first.from_light.1, first.to_light, flaw);
@@ -161,7 +162,7 @@ impl Path {
             product *= density(a) * cosine(b.from_camera.1, b.to_camera, flaw) / edge(b, a, flaw);
             all.push(product);
         }
-        let light = &task.scene().lights()[self.start.index].light;
+        let light = &task.context.scene.lights()[self.start.index].light;
         let first = &self.nodes[0];
         product *= match self.start.p {
             _ if light.is_delta() => 0.0,

@@ -14,77 +14,77 @@ use bilux_scene::{Ray, TransportMode};
 
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     let techniques = &{ verdict.techniques };
-    task.sampler.enter(LIGHT_STREAM);
-    let Some(walk) = begin_at_light(task, ray.time, techniques) else { return };
-    let index = walk.light().unwrap();
-    let light = &task.scene().lights()[index].light;
+    task.sample.sampler.enter(LIGHT_STREAM);
+    let Some(subpath) = begin_at_light(task, ray.time, techniques) else { return };
+    let index = subpath.light().unwrap();
+    let light = &task.context.scene.lights()[index].light;
     let n = if light.is_infinite() || light.is_delta() { None } else { Some(PANEL_NORMAL) };
-    let direction = Vec3::from(walk.ray.direction);
+    let direction = Vec3::from(subpath.walk.ray.direction);
     let start = Start {
         index,
-        p: (!light.is_infinite()).then(|| walk.ray.origin.into()),
+        p: (!light.is_infinite()).then(|| subpath.walk.ray.origin.into()),
         cos: n.map_or(1.0, |n| n.dot(direction).abs()),
     };
-    let y = followed(walk, task, techniques, false);
-    let walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, techniques);
-    let z = followed(walk, task, techniques, true);
+    let y = followed(subpath, task, techniques, false);
+    let subpath = Subpath::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, techniques);
+    let z = followed(subpath, task, techniques, true);
     seen_by_camera(task, verdict, start, &y);
     hit_emitters(task, verdict, &z);
     sampled_lights(task, verdict, &z);
     connected(task, verdict, start, (&y, &z));
 }
 
-fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
+fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Traced) {
     let techniques = &{ verdict.techniques };
     let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || techniques.direct);
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
-        task.enter_light_vertex(vertex.depth);
+        task.sample.enter_light_vertex(vertex.depth);
         let Some((_, connection)) = to_camera(task, vertex, techniques) else { continue };
-        let Some(found) = connection.trace(task) else { continue };
-        task.enter_light_vertex(vertex.depth);
-        let u = task.sampler.next_2d();
-        let lens = if task.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
-        let seen = task.camera.connect(vertex.surface.p, lens, vertex.surface.time).unwrap();
+        let Some(found) = connection.trace(task.tracer) else { continue };
+        task.sample.enter_light_vertex(vertex.depth);
+        let u = task.sample.sampler.next_2d();
+        let lens = if task.context.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
+        let seen = task.context.camera.connect(vertex.surface.p, lens, vertex.surface.time).unwrap();
         let nodes = y.nodes(i, true, seen.wi, false);
         let path = Path { start, nodes, camera_density: seen.density };
         verdict.look(task, &found, (false, i + 2), &path);
     }
 }
 
-fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
         let Some(found) = emitted(task, &vertex.surface, vertex.wo) else { continue };
         let found = found.by(vertex.beta, &vertex.partial);
-        let index = task.scene().light_index_of(vertex.surface.object).unwrap();
+        let index = task.context.scene.light_index_of(vertex.surface.object).unwrap();
         let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
         let start = Start { index, p: Some(vertex.surface.p), cos };
         let nodes = z.nodes(i - 1, false, -vertex.wo, z.is_delta[i - 1]);
         let path = Path { start, nodes, camera_density: z.camera_density };
         verdict.look(task, &found, (false, 0), &path);
     }
-    let (Some(walk), Some(last)) = (&z.left, z.vertices.len().checked_sub(1)) else { return };
-    let lights = task.scene().lights();
+    let (Some(subpath), Some(last)) = (&z.left, z.vertices.len().checked_sub(1)) else { return };
+    let lights = task.context.scene.lights();
     let Some(index) = lights.iter().position(|l| l.light.is_infinite() && !l.light.is_delta()) else {
         return;
     };
     let mut founds = Vec::new();
-    from_infinity(task, walk, |hit| founds.push(hit.by(walk.beta, &walk.partial)));
+    from_infinity(task, subpath, |hit| founds.push(hit.by(subpath.walk.beta, &subpath.partial)));
     for found in founds {
-        let nodes = z.nodes(last, false, walk.ray.direction.into(), z.is_delta[last]);
+        let nodes = z.nodes(last, false, subpath.walk.ray.direction.into(), z.is_delta[last]);
         let path =
             Path { start: Start { index, p: None, cos: 1.0 }, nodes, camera_density: z.camera_density };
         verdict.look(task, &found, (false, 0), &path);
     }
 }
 
-fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     let techniques = &{ verdict.techniques };
     for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
-        for index in 0..task.scene().lights().len() {
-            let u = task.sampler.next_2d();
+        for index in 0..task.context.scene.lights().len() {
+            let u = task.sample.sampler.next_2d();
             let Some(connection) = to_light(task, vertex, index, u, techniques) else { continue };
-            let Some(found) = connection.trace(task) else { continue };
-            let light = &task.scene().lights()[index].light;
+            let Some(found) = connection.trace(task.tracer) else { continue };
+            let light = &task.context.scene.lights()[index].light;
             let sample = light.sample_li(vertex.surface.p, vertex.surface.time, u).unwrap();
             let start = Start { index, p: sample.point, cos: sample.cos() };
             let nodes = z.nodes(i, false, sample.wi, false);
@@ -95,15 +95,15 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
 }
 
 /// Connects all ends; and, as if each light vertex lay at each camera vertex, merges them.
-fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
+fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Traced, &Traced)) {
     let techniques = &{ verdict.techniques };
-    let open = |subpath: &Subpath| {
+    let open = |subpath: &Traced| {
         (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].bsdf.is_delta()).collect::<Vec<_>>()
     };
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
         let Some(connection) = to_vertex(task, camera_end, light_end, techniques) else { continue };
-        let Some(found) = connection.trace(task) else { continue };
+        let Some(found) = connection.trace(task.tracer) else { continue };
         let direction = (light_end.surface.p - camera_end.surface.p).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));
@@ -136,16 +136,16 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Sub
 }
 
 /// A subpath with all surfaces that it hits.
-struct Subpath<'w> {
+struct Traced<'w> {
     vertices: Vec<Vertex>,
     /// Which events were delta events.
     is_delta: Vec<bool>,
-    /// The walk with which it left the scene.
-    left: Option<Walk<'w>>,
+    /// The subpath with which it left the scene.
+    left: Option<Subpath<'w>>,
     camera_density: f32,
 }
 
-impl Subpath<'_> {
+impl Traced<'_> {
     /// The vertices up to and including index `upto`.
     fn nodes(&self, upto: usize, from_light: bool, onwards: Vec3, is_delta: bool) -> Vec<PathVertex> {
         let node = |i: usize| {
@@ -162,31 +162,31 @@ impl Subpath<'_> {
 }
 
 fn followed<'w>(
-    mut walk: Walk<'w>,
+    mut subpath: Subpath<'w>,
     task: &mut Task,
     techniques: &TechniqueCounts,
     is_camera: bool,
-) -> Subpath<'w> {
+) -> Traced<'w> {
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
     loop {
-        let Some(mut vertex) = walk.next_vertex(task) else {
-            left = Some(walk);
+        let Some(mut vertex) = subpath.next_vertex(task) else {
+            left = Some(subpath);
             break;
         };
         if is_camera && vertex.depth == 0 {
-            camera_density = task.camera.density(&walk.ray, vertex.surface.t);
+            camera_density = task.context.camera.density(&subpath.walk.ray, vertex.surface.t);
             let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
             vertex.partial = Partial::of_camera(camera_density * cos, techniques);
-            walk.partial = vertex.partial;
+            subpath.partial = vertex.partial;
         }
         let stream = if is_camera { 1 } else { LIGHT_STREAM + 1 };
-        task.sampler.enter(stream + u64::from(vertex.depth));
-        let goes_on = vertex.depth < 4 && walk.scatter(&vertex, 1000, task);
+        task.sample.sampler.enter(stream + u64::from(vertex.depth));
+        let goes_on = vertex.depth < 4 && subpath.scatter(&vertex, 1000, task);
         vertices.push(vertex);
-        is_delta.push(walk.partial.d_vcm == 0.0);
+        is_delta.push(subpath.partial.d_vcm == 0.0);
         if !goes_on {
             break;
         }
     }
-    Subpath { vertices, is_delta, left, camera_density }
+    Traced { vertices, is_delta, left, camera_density }
 }

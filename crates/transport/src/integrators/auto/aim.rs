@@ -52,7 +52,7 @@ pub(super) fn learn(
     (eta, near): (f32, f64),
 ) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
-    let Some(untrained) = Guide::untrained(round.eye.scene) else { return (None, counters) };
+    let Some(untrained) = Guide::untrained(round.eye.context.scene) else { return (None, counters) };
     let round = round.guided(&Some(Arc::new(untrained.clone())));
     let grid = Grid::of(round.eye.settings);
     let tiles = grid.tiles();
@@ -104,11 +104,11 @@ fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
 
 /// How often an unaimed light subpath begins in each cell.
 fn starts(round: &PilotRound, cells: usize) -> Vec<f64> {
-    let (scene, seed) = (round.eye.scene, round.eye.settings.seed);
+    let (scene, seed) = (round.eye.context.scene, round.eye.settings.seed);
     let cell = |i| {
         let mut sampler = PixelSampler::new(seed, i, 0, 0);
         let (u_light, u) = (sampler.next_1d(), (sampler.next_2d(), sampler.next_2d()));
-        Some(round.eye.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
+        Some(round.eye.context.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
     };
     let begun: Vec<Option<u16>> = (0..STARTS).into_par_iter().map(cell).collect();
     let mut counts = vec![0.0; cells];

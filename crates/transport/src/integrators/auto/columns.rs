@@ -2,19 +2,20 @@
 
 use super::pilot::Grid;
 use crate::camera_rays::CameraRays;
+use crate::failures::SamplePlace;
 use crate::settings::RenderSettings;
 use crate::window::Window;
 use bilux_scene::{Shading, Tracer};
 
 /// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none.
 pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
-    let (scene, mut tracer) = (eye.scene, Tracer::new(eye.scene, false));
+    let (scene, mut tracer) = (eye.context.scene, Tracer::new(eye.context.scene, false));
     let grid = Grid::of(film);
     let whole = Window::whole(grid.size[0], grid.size[1]);
     let (mut hits, mut in_columns) = (0u32, 0u32);
     for (x, y) in (0..whole.pixels()).map(|i| grid.pixel(whole.position(i))) {
-        let (ray, task) = eye.sample(&mut tracer, x, y, 0);
-        let Some(hit) = task.tracer.hit(&ray) else { continue };
+        let (ray, _) = eye.sample(SamplePlace { x, y, sample: 0 });
+        let Some(hit) = tracer.hit(&ray) else { continue };
         let shading = scene.shading(scene.geometry().object_of(&hit));
         let is_any = shading == Shading::General || (shading == Shading::Smooth && !scene.has_clear_media());
         hits += 1;

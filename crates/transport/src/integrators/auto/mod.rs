@@ -12,12 +12,12 @@ mod outliers;
 mod pilot;
 mod sets;
 
-use super::path::Path;
 use super::vcm::Vcm;
 use super::{Chooser, IntegratorEntry, PixelIntegrator, merging};
-use crate::camera_rays::CameraRays;
+use crate::camera_rays::{CameraRays, CameraSpread};
 use crate::emission::Guide;
 use crate::light_choice::LightChoice;
+use crate::path_tracing::PathTracing;
 use crate::photons::Merging;
 use crate::pixel_integrator::Plan;
 use crate::plan::{Candidate, Choice};
@@ -118,7 +118,7 @@ const TYPICAL_ITERATION: u32 = 16;
 impl PixelIntegrator for Auto {
     /// Without a plan: path tracing.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        Path::new(self.merging.roulette_depth).radiance(ray, task)
+        PathTracing::new(self.merging.roulette_depth).trace(ray, task)
     }
 
     fn chooser(&self) -> Option<&dyn Chooser> {
@@ -131,7 +131,7 @@ impl Chooser for Auto {
         let settings = pilot::settings(film);
         let least = |round| if round == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|round| pilot::photon_settings(film, &settings[round], least(round)));
-        let eye = |settings| CameraRays::new(scene, camera, self, settings).merging();
+        let eye = |settings| CameraRays::new(scene, camera, settings, CameraSpread::FULL).merging();
         let round = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
         // A point on each of few lights is always sampled; of many, photons find the nearest by themselves.
@@ -192,7 +192,7 @@ impl Auto {
 
     fn made_of(&self, set: &Set, merging: Merging, guide: Option<Arc<Guide>>) -> Box<dyn PixelIntegrator> {
         if !set.splats && !set.connections && !set.merges() {
-            return Box::new(Path::new(self.merging.roulette_depth));
+            return Box::new(PathTracing::new(self.merging.roulette_depth));
         }
         Box::new(Vcm { merging: set.merging(merging), guide })
     }

@@ -11,6 +11,7 @@ use super::sets::SET_COUNT;
 use crate::bidirectional::{BothEnds, BothEndsQueue, QueuedSample};
 use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
+use crate::failures::SamplePlace;
 use crate::filters::Filter;
 use crate::photons::{Merging, Photons};
 use crate::settings::{PixelAnchor, RenderSettings};
@@ -134,16 +135,16 @@ pub(super) fn photon_settings(film: &RenderSettings, round: &RenderSettings, lea
 /// The radius of a disc as large as a pixel's footprint on the first surface there, in metres: the median over the
 /// pilot's pixels.
 pub(super) fn pixel_radius(eye: &CameraRays, film: &RenderSettings) -> f32 {
-    let mut tracer = Tracer::new(eye.scene, false);
+    let mut tracer = Tracer::new(eye.context.scene, false);
     let pixels = film.width as f32 * film.height as f32;
     let grid = Grid::of(film);
     let whole = Window::whole(grid.size[0], grid.size[1]);
     let mut areas: Vec<f32> = (0..whole.pixels())
         .map(|i| grid.pixel(whole.position(i)))
         .filter_map(|(x, y)| {
-            let (ray, task) = eye.sample(&mut tracer, x, y, 0);
-            let camera = task.camera;
-            let surface = task.tracer.closest(&ray)?;
+            let (ray, _) = eye.sample(SamplePlace { x, y, sample: 0 });
+            let camera = eye.context.camera;
+            let surface = tracer.closest(&ray)?;
             let cos = surface.n_geom.dot(ray.direction.into()).abs();
             Some(1.0 / (camera.density(&ray, surface.t) * cos * pixels)).filter(|area| area.is_finite())
         })
@@ -248,20 +249,15 @@ where
     let splats = visitor.is_none();
     let both_ends = BothEnds::merging(&photons, splats, merging.roulette_depth);
     let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
-        let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
+        let mut tracer = Tracer::new(eye.context.scene, eye.settings.count_work);
         let places = tiles.iter().flat_map(|tile| (0..tile.pixels()).map(|i| grid.pixel(tile.position(i))));
-        let places: Vec<(u32, u32)> = places.collect();
-        let mut sampled = |&(x, y): &(u32, u32)| {
-            let (ray, task) = eye.sample(&mut tracer, x, y, iteration);
-            QueuedSample::new(ray, &task, true)
-        };
-        let samples: Vec<_> = places.iter().map(&mut sampled).collect();
-        let (_, mut task) = eye.sample(&mut tracer, places[0].0, places[0].1, iteration);
+        let places = places.map(|(x, y)| SamplePlace { x, y, sample: iteration });
+        let mut samples: Vec<_> = places.map(|place| QueuedSample::new(eye.sample(place), true)).collect();
         let mut tallies: Vec<T> = samples.iter().map(|_| T::default()).collect();
         let mut splats = Vec::new();
-        queue.take(&both_ends, &samples, &mut task, &mut tallies, |i, film, technique, found| {
-            splats.push((i, film, technique, *found));
-        });
+        let add_splat =
+            |i, film, technique, found: &Contribution<N>| splats.push((i, film, technique, *found));
+        queue.take(&both_ends, &mut samples, &eye.context, &mut tracer, &mut tallies, add_splat);
         for (i, film, technique, found) in &splats {
             tallies[*i].add_splat(*film, *technique, found);
         }

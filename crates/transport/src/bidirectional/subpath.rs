@@ -1,4 +1,4 @@
-//! A random walk: a subpath while it grows, from either end.
+//! Subpaths while they grow, from either end, and their vertices.
 
 use super::Partial;
 use crate::emission::Start;
@@ -6,8 +6,9 @@ use crate::media::Media;
 use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, Task, VertexKind};
 use crate::techniques::{PerSet, TechniqueCounts};
+use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{Bsdf, Ray, Scene, Surface, TransportMode};
 
 /// A surface that a subpath has hit.
 pub(crate) struct Vertex<const N: usize = 1> {
@@ -59,35 +60,24 @@ pub(crate) fn count(depth: u32) -> u32 {
 }
 
 /// A subpath on its way to the next vertex.
-pub(crate) struct Walk<'w, const N: usize = 1> {
+pub(crate) struct Subpath<'w, const N: usize = 1> {
+    pub(crate) walk: Walk,
     /// What it carries: radiance on a camera subpath, importance on a light subpath.
     mode: TransportMode,
-    pub(crate) ray: Ray,
-    pub(crate) beta: Rgb,
     pub(crate) partial: Partial<N>,
-    /// Scattering events so far.
-    pub(crate) depth: u32,
-    /// True while all events have been delta events: what only the camera sees may still be visible.
-    pub(crate) specular: bool,
-    /// It carries a single wavelength.
-    pub(crate) is_split: bool,
     /// The density of arriving is over area already: at the first surface that light from infinity hits.
     by_area: bool,
-    /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
-    eta_scale: f32,
-    /// The maximum channel at the start of a light subpath; Russian roulette measures survival against it.
+    /// The maximum channel at the start; Russian roulette measures the survival of light subpaths against it.
     full: f32,
     /// The light that it comes from and how it left, until it hits a surface.
     start: Option<Start>,
-    /// The media that the ray travels in; known once it has hit a surface.
-    media: Option<Media>,
     origin: u16,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
 
-impl<'w, const N: usize> Walk<'w, N> {
-    /// A subpath with only its first ray.
+impl<'w, const N: usize> Subpath<'w, N> {
+    /// A subpath with only its first ray. The media that this starts in are looked for when it hits a surface.
     pub(crate) fn new(
         mode: TransportMode,
         ray: Ray,
@@ -95,29 +85,14 @@ impl<'w, const N: usize> Walk<'w, N> {
         partial: Partial<N>,
         by_area: bool,
         techniques: &'w TechniqueCounts<N>,
-    ) -> Walk<'w, N> {
-        let full = beta.max_channel();
-        Walk {
-            ray,
-            beta,
-            partial,
-            depth: 0,
-            specular: true,
-            is_split: false,
-            by_area,
-            eta_scale: 1.0,
-            full,
-            start: None,
-            media: None,
-            mode,
-            origin: 0,
-            techniques,
-        }
+    ) -> Subpath<'w, N> {
+        let (walk, full) = (Walk::new(&ray, beta, Media::AIR), beta.max_channel());
+        Subpath { walk, mode, partial, by_area, full, start: None, origin: 0, techniques }
     }
 
     /// The same from a light of the scene.
-    pub(crate) fn leaving(self, start: Start) -> Walk<'w, N> {
-        Walk { origin: start.cell, start: Some(start), ..self }
+    pub(crate) fn leaving(self, start: Start) -> Subpath<'w, N> {
+        Subpath { origin: start.cell, start: Some(start), ..self }
     }
 
     /// The light that it comes from.
@@ -128,16 +103,17 @@ impl<'w, const N: usize> Walk<'w, N> {
 
     /// Traces to the next surface; `None` where the ray leaves the scene.
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
-        let hit = task.tracer.closest(&self.ray);
+        let hit = task.tracer.closest(&self.walk.ray);
         let vertex = hit.and_then(|surface| self.vertex_at(surface, task));
-        task.vertices += u32::from(vertex.is_some());
+        let sample = &mut *task.sample;
+        sample.vertices += u32::from(vertex.is_some());
         let is_light = self.mode == TransportMode::Importance;
         let kind = if is_light { VertexKind::LightPath } else { VertexKind::Surface };
         match &vertex {
-            None => task.note(self.depth, || {
-                format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
+            None => sample.note(self.walk.depth, || {
+                format!("{} leaves the scene towards {:?}", self.whose(), self.walk.ray.direction)
             }),
-            Some(Vertex { surface, .. }) => task.note_vertex(self.depth, || {
+            Some(Vertex { surface, .. }) => sample.note_vertex(self.walk.depth, || {
                 let what = format!("{} hits object {} at {}", self.whose(), surface.object, surface.p);
                 (PathVertex::new(kind, surface.p), what)
             }),
@@ -148,45 +124,48 @@ impl<'w, const N: usize> Walk<'w, N> {
     /// The same where the first surface along the ray is known.
     #[inline]
     pub(crate) fn vertex_at(&mut self, surface: Surface, task: &mut Task) -> Option<Vertex<N>> {
-        let mut media = self.media.unwrap_or_else(|| Media::at_start(task.tracer, &self.ray));
-        let (surface, passed) = media.closest_from(task.tracer, &self.ray, surface)?;
-        let wo = -Vec3::from(self.ray.direction);
-        self.beta *= passed;
+        let Task { context, tracer, sample } = task;
+        let walk = &mut self.walk;
+        if walk.depth == 0 {
+            walk.media = Media::at_start(tracer, &walk.ray);
+        }
+        let mut media = walk.media;
+        let (surface, passed) = media.closest_from(tracer, &walk.ray, surface)?;
+        let wo = walk.wo();
+        walk.beta *= passed;
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
         // Light sampling connects the first surface of a light subpath with the light.
-        let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
+        let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
         let merged = if is_at_light && !self.techniques.direct { PerSet::ZERO } else { self.techniques.eta };
-        let distance2 = distance2 * self.light_sampling_ratio(task.scene(), surface.p);
+        let distance2 = distance2 * self.light_sampling_ratio(context.scene, surface.p);
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), connections, merged);
         self.by_area = false;
-        let bsdf = media.bsdf(task.scene(), &surface, &task.wavelength);
-        let (beta, partial, depth, origin) = (self.beta, self.partial, self.depth, self.origin);
-        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, came_split: self.is_split, media })
+        let bsdf = media.bsdf(context.scene, &surface, &sample.wavelength);
+        let Subpath { walk: Walk { beta, depth, is_split, .. }, partial, origin, .. } = *self;
+        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, came_split: is_split, media })
     }
 
     /// Continues from a vertex; false when the subpath ends there.
     pub(crate) fn scatter(&mut self, vertex: &Vertex<N>, roulette_depth: u32, task: &mut Task) -> bool {
-        let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
-        let u_survival = task.sampler.next_1d();
-        let Some(sample) = vertex.bsdf.sample(vertex.wo, u_choice, u, self.mode) else { return false };
-        let cos = vertex.surface.n_geom.dot(sample.wi).abs();
-        let back = || vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo, self.mode.reversed());
+        let sampler = &mut task.sample.sampler;
+        let (u_choice, u) = (sampler.next_1d(), sampler.next_2d());
+        let u_survival = sampler.next_1d();
+        let Vertex { surface, bsdf, wo, media, .. } = vertex;
+        let Some(sample) = bsdf.sample(*wo, u_choice, u, self.mode) else { return false };
+        let cos = surface.n_geom.dot(sample.wi).abs();
+        let back = || bsdf.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         let counts = self.techniques.direct || self.mode == TransportMode::Importance;
         self.partial.leave(cos, pdfs, counts);
-        self.follow(vertex, &sample, task);
-        self.survives(u_survival, roulette_depth)
+        self.walk.is_split = vertex.is_split();
+        self.walk.follow(task.context.scene, (surface, *wo, media), &sample, self.mode);
+        self.walk.survives(roulette_depth, self.full, || u_survival)
     }
 
     /// The number of its vertices if it hits an emitter next.
     pub(crate) fn count(&self) -> u32 {
-        count(self.depth)
-    }
-
-    /// Its throughput as the colour channels see it, if it hits an emitter next.
-    pub(crate) fn seen(&self, task: &Task) -> Rgb {
-        task.seen(self.beta, self.is_split)
+        count(self.walk.depth)
     }
 
     /// The factor by which the first surface of a light subpath would sample its start more often than assumed so far.
@@ -200,33 +179,5 @@ impl<'w, const N: usize> Walk<'w, N> {
 
     fn whose(&self) -> &'static str {
         if self.mode == TransportMode::Radiance { "the camera's path" } else { "the light's path" }
-    }
-
-    fn follow(&mut self, vertex: &Vertex<N>, sample: &BsdfSample, task: &Task) {
-        self.beta *= sample.weight;
-        self.depth += 1;
-        self.specular &= sample.is_delta;
-        self.is_split = vertex.is_split();
-        self.eta_scale *= sample.eta * sample.eta;
-        self.media = Some(vertex.media_towards(task.scene(), sample.wi));
-        self.ray = vertex.surface.spawn(sample.wi);
-    }
-
-    /// Russian roulette by the subpath's throughput. [Arvo 1990]
-    fn survives(&mut self, u: f32, roulette_depth: u32) -> bool {
-        if self.beta.is_black() {
-            return false;
-        }
-        if self.depth <= roulette_depth {
-            return true;
-        }
-        let eta_scale = if self.mode == TransportMode::Radiance { self.eta_scale } else { 1.0 };
-        let survival = (self.beta.max_channel() / self.full * eta_scale).min(0.95);
-        if u < survival {
-            self.beta = self.beta / survival;
-            return true;
-        }
-        // NaN must reach the film, which reports it.
-        survival.is_nan()
     }
 }

@@ -1,0 +1,310 @@
+//! PathTracing tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic combines the two.
+//! [Kajiya 1986; Veach 1997, 9.2]
+
+mod light_connection;
+
+use crate::light_choice::LightChoice;
+use crate::media::Media;
+use crate::segment::Segment;
+use crate::task::{Context, PathVertex, Task, VertexKind};
+use crate::walk::Walk;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::lights::Light;
+use bilux_scene::{Bsdf, Ray, Surface, TransportMode};
+use light_connection::LightConnection;
+
+#[derive(Clone, Copy)]
+pub(crate) struct PathTracing {
+    pub(crate) sampling: Sampling,
+    pub(crate) roulette_depth: u32,
+}
+
+/// A vertex that samples lights.
+#[derive(Clone, Copy)]
+struct Vertex<'a> {
+    surface: &'a Surface,
+    bsdf: &'a Bsdf,
+    wo: Vec3,
+    /// The media on the side of `wo`.
+    media: &'a Media,
+}
+
+/// How light is sampled where both techniques could find it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sampling {
+    Mis,
+    Lights,
+    Scattering,
+}
+
+/// A path as it grows from the camera.
+pub(crate) struct Path {
+    pub(crate) walk: Walk,
+    /// What it has found.
+    pub(crate) light: Rgb,
+    /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
+    /// where no light can be sampled.
+    pub(crate) last: Option<(Vec3, f32)>,
+}
+
+impl PathTracing {
+    /// Follows one path to its end; returns the light that it finds.
+    pub(crate) fn trace(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
+        loop {
+            let Some((surface, passed)) = path.walk.media.closest(task.tracer, &path.walk.ray) else {
+                self.escape(&mut path, task);
+                return path.light;
+            };
+            path.walk.beta *= passed;
+            task.sample.vertices += 1;
+            if !self.interact(&mut path, &surface, task) {
+                return path.light;
+            }
+        }
+    }
+
+    /// With multiple importance sampling.
+    pub(crate) fn new(roulette_depth: u32) -> PathTracing {
+        PathTracing { sampling: Sampling::Mis, roulette_depth }
+    }
+
+    /// True when light is sampled by both techniques.
+    pub(crate) fn is_mis(&self) -> bool {
+        self.sampling == Sampling::Mis
+    }
+
+    /// The end of a path that leaves the scene.
+    pub(crate) fn escape(&self, path: &mut Path, task: &mut Task) {
+        path.light += path.walk.seen(task.sample) * self.background(task, path);
+    }
+
+    /// What happens to a path at a surface: it collects the light that is emitted there, connects to lights, and goes
+    /// on in another direction; false when it ends.
+    #[inline]
+    fn interact(&self, path: &mut Path, surface: &Surface, task: &mut Task) -> bool {
+        let wo = path.walk.wo();
+        let Some(bsdf) = self.arrive(path, surface, task) else { return false };
+        let from = Vertex { surface, bsdf: &bsdf, wo, media: &path.walk.media };
+        let seen = path.walk.seen(task.sample);
+        path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
+        self.scatter(path, surface, &bsdf, task)
+    }
+
+    /// The first part of [`PathTracing::interact`]: collects the light that is emitted here; returns how the surface scatters,
+    /// or `None` where the path ends.
+    #[inline]
+    pub(crate) fn arrive(&self, path: &mut Path, surface: &Surface, task: &mut Task) -> Option<Bsdf> {
+        self.collect(path, surface, task);
+        if path.walk.depth >= task.context.max_depth {
+            return None;
+        }
+        task.sample.sampler.enter(u64::from(path.walk.depth) + 1);
+        let bsdf = path.walk.media.bsdf(task.context.scene, surface, &task.sample.wavelength);
+        path.walk.is_split |= bsdf.splits();
+        Some(bsdf)
+    }
+
+    /// Collects the light that a surface emits.
+    #[inline]
+    pub(crate) fn collect(&self, path: &mut Path, surface: &Surface, task: &mut Task) {
+        path.light += path.walk.seen(task.sample) * self.emitted(task, path, surface);
+    }
+
+    /// The last part of [`PathTracing::interact`]: goes on in another direction, or ends.
+    #[inline]
+    pub(crate) fn scatter(&self, path: &mut Path, surface: &Surface, bsdf: &Bsdf, task: &mut Task) -> bool {
+        let u = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
+        self.scatter_by(path, surface, bsdf, task, u) && self.survives(path, || task.sample.sampler.next_1d())
+    }
+
+    /// Samples a direction by these random numbers; false where there is none.
+    #[inline]
+    pub(crate) fn scatter_by(
+        &self,
+        path: &mut Path,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        task: &mut Task,
+        (u_choice, u): (f32, Vec2),
+    ) -> bool {
+        let wo = path.walk.wo();
+        let Some(sample) = bsdf.sample(wo, u_choice, u, TransportMode::Radiance) else {
+            let vertex = PathVertex::new(VertexKind::Absorption, surface.p);
+            task.sample.note_vertex(path.walk.depth, || (vertex, format!("is absorbed at {}", surface.p)));
+            return false;
+        };
+        let media = path.walk.media;
+        path.walk.follow(task.context.scene, (surface, wo, &media), &sample, TransportMode::Radiance);
+        path.last = (!sample.is_delta).then_some((surface.p, sample.pdf_solid_angle));
+        task.sample.note_vertex(path.walk.depth, || {
+            let (kind, how) = match sample.transmits {
+                true => (VertexKind::Transmission, "transmitted"),
+                false => (VertexKind::Reflection, "scattered"),
+            };
+            let what = format!("{how} by object {} at {} towards {}", surface.object, surface.p, sample.wi);
+            (PathVertex::new(kind, surface.p), what)
+        });
+        true
+    }
+
+    /// Light from infinity that the ray reaches, weighted against light sampling.
+    fn background(&self, task: &mut Task, path: &Path) -> Rgb {
+        let direction = Vec3::from(path.walk.ray.direction);
+        let mut sum = Rgb::BLACK;
+        for (index, light) in task.context.scene.infinite_lights() {
+            let found = match path.last {
+                Some((from, _)) => light.le_and_pdf(from, direction),
+                None => (light.le(direction), 0.0),
+            };
+            let seen = self.seen_of(task.context, path, (index, light), found);
+            task.sample.find(path.walk.depth + 1, Some(index), path.walk.seen(task.sample) * seen);
+            sum += seen;
+        }
+        let light = path.walk.seen(task.sample) * sum;
+        task.sample.note_vertex(path.walk.depth, || {
+            let vertex = PathVertex { kind: VertexKind::Escape, at: direction, light };
+            (vertex, format!("leaves the scene towards {direction}"))
+        });
+        sum
+    }
+
+    /// What a ray that leaves the scene sees of an infinite light of this radiance and density.
+    #[inline]
+    pub(crate) fn seen_of(
+        &self,
+        context: &Context,
+        path: &Path,
+        (index, light): (usize, &dyn Light),
+        (radiance, light_pdf): (Rgb, f32),
+    ) -> Rgb {
+        if radiance.is_black() || !context.scene.shows(light, path.walk.depth, path.walk.specular) {
+            return Rgb::BLACK;
+        }
+        match path.last {
+            Some((_, pdf)) if !light.is_backdrop() => {
+                radiance * self.scattering_weight(pdf, light_pdf * context.lights.probability(index))
+            }
+            _ => radiance,
+        }
+    }
+
+    /// Light that the surface itself emits, weighted against light sampling.
+    fn emitted(&self, task: &mut Task, path: &Path, surface: &Surface) -> Rgb {
+        let radiance = task.context.scene.emission(surface, path.walk.wo());
+        if radiance.is_black() {
+            return radiance;
+        }
+        let index = task.context.scene.light_index_of(surface.object);
+        let seen = match (path.last, index) {
+            (Some((from, pdf)), Some(index)) => {
+                let light = &task.context.scene.lights()[index].light;
+                let direction = Vec3::from(path.walk.ray.direction);
+                let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface));
+                radiance * self.scattering_weight(pdf, light_pdf * task.context.lights.probability(index))
+            }
+            _ => radiance,
+        };
+        let light = path.walk.seen(task.sample) * seen;
+        task.sample.find(path.walk.depth + 1, index, light);
+        task.sample.note_vertex(path.walk.depth, || {
+            let vertex = PathVertex { kind: VertexKind::Emitter, at: surface.p, light };
+            (vertex, format!("hits a light at {}", surface.p))
+        });
+        seen
+    }
+
+    /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`. The depth of the vertex
+    /// and what the sample sees of it are for the record.
+    fn direct(&self, task: &mut Task, from: &Vertex, (depth, seen): (u32, Rgb)) -> Rgb {
+        if from.bsdf.is_delta() {
+            self.skip_lights(task);
+            return Rgb::BLACK;
+        }
+        let lights = &task.context.lights;
+        let chosen = if lights.takes_all() {
+            task.sample.sampler.skip(1);
+            lights.sample(0.0)
+        } else {
+            lights.sample(task.sample.sampler.next_1d())
+        };
+        chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
+            Some(connection) => {
+                let found = connection.trace(task.tracer);
+                connection.note(task.sample, depth, seen * found);
+                task.sample.find(depth + 2, Some(light), seen * found);
+                sum + found
+            }
+            None => sum,
+        })
+    }
+
+    /// Leaves out the random numbers of light samples.
+    pub(crate) fn skip_lights(&self, task: &mut Task) {
+        task.sample.sampler.skip(self.light_draws(&task.context.lights));
+    }
+
+    /// How many random numbers and points light samples take.
+    pub(crate) fn light_draws(&self, lights: &LightChoice) -> u32 {
+        1 + if lights.takes_all() { lights.sample(0.0).len() as u32 } else { 1 }
+    }
+
+    /// Samples one light; `None` if it brings nothing.
+    fn connection(&self, task: &mut Task, index: usize, from: &Vertex) -> Option<LightConnection> {
+        let Vertex { surface, bsdf, wo, media } = *from;
+        let probability = task.context.lights.probability(index);
+        let light = &task.context.scene.lights()[index].light;
+        if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
+            task.sample.sampler.skip(1);
+            return None;
+        }
+        let u = task.sample.sampler.next_2d();
+        let sample = light.sample_li(surface.p, surface.time, u).filter(|sample| !sample.li.is_black())?;
+        let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
+        let scattered_light = scattered * sample.li;
+        if scattered_light.is_black() {
+            return None;
+        }
+        let light_pdf = sample.pdf_solid_angle * probability;
+        let weight = match self.sampling {
+            Sampling::Mis if !light.is_delta() => power_heuristic(light_pdf, pdf),
+            _ => 1.0,
+        };
+        let segment = Segment {
+            ray: surface.spawn_to_light(&sample),
+            distance: sample.point.map(|point| point.distance(surface.p)),
+            n: sample.n_light,
+            media: media.towards(task.context.scene, surface, wo, sample.wi),
+        };
+        Some(LightConnection { segment, light: scattered_light, factor: weight / light_pdf })
+    }
+
+    /// MIS weight of light that BSDF sampling has found and light sampling could have found.
+    fn scattering_weight(&self, pdf: f32, light_pdf: f32) -> f32 {
+        match self.sampling {
+            Sampling::Mis => power_heuristic(pdf, light_pdf),
+            Sampling::Lights if light_pdf > 0.0 => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Russian roulette.
+    #[inline]
+    pub(crate) fn survives(&self, path: &mut Path, u: impl FnOnce() -> f32) -> bool {
+        path.walk.survives(self.roulette_depth, 1.0, u)
+    }
+}
+
+impl Path {
+    /// A path with only its camera ray, which travels in these media.
+    pub(crate) fn new(ray: &Ray, media: Media) -> Path {
+        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None }
+    }
+}
+
+/// MIS weight of a sample of density `a` against another technique of density `b`. [Veach 1997, eq. 9.17]
+#[inline(always)]
+pub(crate) fn power_heuristic(a: f32, b: f32) -> f32 {
+    // The ratio is used so that squares of large densities do not overflow.
+    if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
+}

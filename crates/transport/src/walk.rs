@@ -1,0 +1,88 @@
+//! A random walk: what every path has while it grows, from whichever end.
+
+use crate::media::Media;
+use crate::task::SampleState;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{BsdfSample, Ray, Scene, Surface, TransportMode};
+
+/// A path on its way to its next vertex.
+pub(crate) struct Walk {
+    /// The ray to it.
+    pub(crate) ray: Ray,
+    /// Scattering events so far.
+    pub(crate) depth: u32,
+    /// Throughput: the weight of all events, over their density.
+    pub(crate) beta: Rgb,
+    /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
+    pub(crate) eta_scale: f32,
+    /// True while all events have been delta events: what only the camera sees may still be visible.
+    pub(crate) specular: bool,
+    /// It carries a single wavelength.
+    pub(crate) is_split: bool,
+    /// The media that the ray travels in.
+    pub(crate) media: Media,
+}
+
+impl Walk {
+    /// One with only its first ray.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, beta: Rgb, media: Media) -> Walk {
+        Walk { ray: *ray, depth: 0, beta, eta_scale: 1.0, specular: true, is_split: false, media }
+    }
+
+    /// Its throughput as the colour channels see it, up to here.
+    #[inline]
+    pub(crate) fn seen(&self, sample: &SampleState) -> Rgb {
+        sample.seen(self.beta, self.is_split)
+    }
+
+    /// The unit direction to where it comes from.
+    #[inline]
+    pub(crate) fn wo(&self) -> Vec3 {
+        -Vec3::from(self.ray.direction)
+    }
+
+    /// Continues from a surface that it reached along `wo` and which these media surround.
+    #[inline]
+    pub(crate) fn follow(
+        &mut self,
+        scene: &Scene,
+        (surface, wo, media): (&Surface, Vec3, &Media),
+        sample: &BsdfSample,
+        mode: TransportMode,
+    ) {
+        self.beta *= sample.weight;
+        self.depth += 1;
+        self.specular &= sample.is_delta;
+        if mode == TransportMode::Radiance {
+            self.eta_scale *= sample.eta * sample.eta;
+        }
+        self.media = media.towards(scene, surface, wo, sample.wi);
+        self.ray = surface.spawn(sample.wi);
+    }
+
+    /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the
+    /// beginning. [Arvo 1990]
+    #[inline]
+    pub(crate) fn survives(&mut self, free: u32, full: f32, u: impl FnOnce() -> f32) -> bool {
+        if self.beta.is_black() {
+            return false;
+        }
+        if self.depth <= free {
+            return true;
+        }
+        let survival = survival(self.beta, full, self.eta_scale);
+        if u() < survival {
+            self.beta = self.beta / survival;
+            return true;
+        }
+        // NaN must reach the film, which reports it.
+        survival.is_nan()
+    }
+}
+
+/// The probability of surviving Russian roulette.
+#[inline(always)]
+pub(crate) fn survival(beta: Rgb, full: f32, eta_scale: f32) -> f32 {
+    (beta.max_channel() / full * eta_scale).min(0.95)
+}
