@@ -263,3 +263,29 @@ def test_warnings_speak_of_arguments(square):
     with pytest.warns(bilux.SceneWarning, match='^ground="mirror" is opaque.*use ground="shadow"'):
         picture = scene.render(size=16, spp=1, ground="mirror", background="transparent")
     assert picture.info["warnings"][0].startswith('ground="mirror"')
+
+
+def test_files_that_give_a_few_bytes_at_a_time_are_read_to_their_end(folder):
+    """`RawIOBase.read` may give fewer bytes than it is asked for, as sockets and pipes do; only none is the end."""
+
+    class Slow(io.RawIOBase):
+        def __init__(self, data):
+            self.data = io.BytesIO(data)
+
+        def read(self, size=-1):
+            return self.data.read(min(size, 7) if size > 0 else size)
+
+    assert len(bilux.load(Slow(TRIANGLE), format="obj")) == 1
+    picture = io.BytesIO()
+    bilux.Picture(np.full((5, 4, 3), 0.5)).save(picture, format="png")
+    assert bilux.read_picture(Slow(picture.getvalue())).pixels.shape == (5, 4, 3)
+
+
+def test_textures_of_numbers_are_not_decoded(tmp_path):
+    """Of sRGB 188 of 255, the light is a half; as a number, it is 188 / 255."""
+    bilux.Picture(np.full((2, 2, 3), 0.5)).save(tmp_path / "grey.png", bits=16)
+    colour, number = (bilux.Texture.read(tmp_path / "grey.png", data=data) for data in (False, True))
+    light = [textured(each).render(size=8, spp=64, integrator="path", denoise=False).pixels for each in (colour, number)]
+    curve = 1.055 * 0.5 ** (1 / 2.4) - 0.055
+    np.testing.assert_allclose(light[0][4, 4], 0.5, rtol=0.1)
+    np.testing.assert_allclose(light[1][4, 4], curve, rtol=0.1)

@@ -313,3 +313,19 @@ def test_a_turntable_is_that_of_the_command_line(folder, command_line, square):
 
 def stop(progress):
     raise RuntimeError("enough")
+
+
+def test_a_crop_fits_into_the_height_whatever_the_width_is():
+    scene = bilux.generate("cornell")
+    settings = dict(size=(32, 16), spp=1, integrator="path")
+    assert scene.render(crop=(24, 8, 8, 8), **settings).pixels.shape == (8, 8, 3)
+    for crop in ((0, 10, 8, 8), (26, 0, 8, 8)):
+        with pytest.raises(bilux.SceneError, match=r"crop: the window .* lie within the picture, which is 32x16"):
+            scene.render(crop=crop, **settings)
+
+
+def test_the_samples_that_were_asked_for_are_unknown_where_noise_decides():
+    scene = bilux.generate("cornell")
+    assert scene.render(size=8, spp=3, integrator="path").info["spp_asked"] == 3
+    by_noise = scene.render(size=8, noise=0.5, integrator="path", denoise=False).info
+    assert by_noise["spp_asked"] is None and by_noise["spp"] > 0

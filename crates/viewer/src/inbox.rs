@@ -220,6 +220,19 @@ mod tests {
         assert_eq!(inbox.take(None).answered, Some(Some("first".to_owned())), "a problem is not lost");
     }
 
+    /// A slider moves on however much waits; only what is new finds no room.
+    #[test]
+    fn a_full_inbox_takes_later_values_of_the_settings_that_wait() {
+        let inbox = Inbox::default();
+        let set = |i: usize, value: i64| inbox.post(Request::Set(format!("key{i}"), Value::Integer(value)));
+        (0..MOVES).for_each(|i| set(i, 0).unwrap());
+        assert!(set(MOVES, 0).is_err());
+        set(3, 7).unwrap();
+        let waiting = inbox.take(None);
+        assert_eq!(waiting.settings.0.len(), MOVES);
+        assert_eq!(waiting.settings.find("key3").map(|(value, _)| value.clone()), Some(Value::Integer(7)));
+    }
+
     #[test]
     fn whoever_asks_when_the_view_has_ended_waits_for_nothing() {
         let inbox = Inbox::default();

@@ -183,3 +183,52 @@ fn begin(common: &Arc<Common>, view: &View) -> Result<JoinHandle<()>, ViewerErro
     };
     crate::server::start("view", render)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Options;
+    use crate::open_scene::{Keeper, OpenScene};
+    use bilux::scene::{Parameters, Spec};
+
+    /// Visitors of the box of Cornell in few pixels.
+    fn visitors() -> Arc<Visitors> {
+        let mut settings = Parameters::default();
+        for (key, value) in [("size", "8x8"), ("integrator", "path"), ("denoise", "off")] {
+            settings.set(key, value);
+        }
+        let options = Options {
+            address: "127.0.0.1:0".parse().unwrap(),
+            title: String::new(),
+            shared: false,
+            visitors: 4,
+            sandboxed: false,
+            environments: Vec::new(),
+            may_edit: false,
+            may_drop: false,
+            settings,
+            max_memory: 1 << 30,
+            command: Vec::new(),
+            open: Box::new(|_| bilux::generate(&Spec::new("", "cornell")).map_err(|error| error.to_string())),
+        };
+        let open = Arc::new(OpenScene::default());
+        let common = Arc::new(Common::new(&options, open.clone()));
+        drop(Keeper::new(options, open, Arc::default()).unwrap());
+        Arc::new(Visitors::new(common, false, 4))
+    }
+
+    /// Whoever comes back to a view whose render has failed gets one that works.
+    #[test]
+    fn a_view_that_has_ended_is_not_entered_again() {
+        let visitors = visitors();
+        let first = visitors.enter(None).unwrap();
+        let key = first.view.key.clone();
+        assert_eq!(visitors.enter(Some(&key)).unwrap().view.key, key, "it is kept");
+        first.view.inbox.end();
+        let again = visitors.enter(Some(&key)).unwrap();
+        assert!(again.view.key != key && !again.view.inbox.has_ended());
+        for thread in visitors.end() {
+            thread.join().unwrap();
+        }
+    }
+}

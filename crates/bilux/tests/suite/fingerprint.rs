@@ -290,3 +290,20 @@ fn films_of_two_integrators_or_two_materials_do_not_join() {
     }
     first.clone().merge(&film(&scene(), "path", 2..4)).unwrap();
 }
+
+/// A job that moves on to another frame is another picture, whether or not its fingerprint was asked for before.
+#[test]
+fn each_frame_of_an_animation_has_the_fingerprint_of_its_time() {
+    let mut user = Parameters::default();
+    user.set("size", "4x4");
+    let mut moved = Job::new(&scene(), &user).unwrap();
+    let mut all = Vec::new();
+    for time in [0.0, 0.5, 1.0] {
+        moved.at_time(time);
+        let mut at = user.clone();
+        at.set("time", time);
+        assert_eq!(moved.fingerprint(), Job::new(&scene(), &at).unwrap().fingerprint(), "at {time} s");
+        all.push(moved.fingerprint().to_owned());
+    }
+    assert!(all[0] != all[1] && all[1] != all[2], "{all:?}");
+}

@@ -474,3 +474,25 @@ fn all_pictures_of_a_series_are_exposed_alike() {
     assert!(exposure(&first) < -8.0);
     assert_eq!((exposure(&next), next.notes()), (exposure(&first), first.notes()));
 }
+
+/// A wall whose front gets 30 lux and whose back 10000: the exposure of all pictures is that of the brighter side, wherever the
+/// turntable begins.
+#[test]
+fn no_picture_of_a_turntable_is_burnt_by_the_brighter_side() {
+    let exposure = |front: f32, back: f32| {
+        let mut scene = file();
+        put(&mut scene, cuboid(Vec3::new(-1.0, 0.0, -0.1), Vec3::new(1.0, 2.0, 0.1)), clay(0.6));
+        for (z, lux) in [(-1.0, front), (1.0, back)] {
+            let sun = Spec::new("", "directional").with("direction", Vec3::new(0.0, -0.2, z));
+            scene.lights.push(sun.with("irradiance", lux));
+        }
+        let series = Series::turntable(&scene, &settings(), u64::MAX, 2).unwrap();
+        let job = Job::in_series(&scene, &settings(), u64::MAX, &series.turned(0, 2)).unwrap();
+        job.write_options().unwrap().exposure
+    };
+    let [begun_dim, begun_bright] = [exposure(30.0, 10_000.0), exposure(10_000.0, 30.0)];
+    // White paper there has a radiance of 10000 / π, for which a display has about a half.
+    let wanted = -bilux::math::transcendental::log2(2.0 * 10_000.0 / std::f32::consts::PI);
+    assert!((begun_bright - wanted).abs() < 1.5, "{begun_bright}");
+    assert!((begun_dim - begun_bright).abs() < 0.5, "{begun_dim} and {begun_bright}");
+}

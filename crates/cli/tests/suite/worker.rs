@@ -326,3 +326,23 @@ fn a_worker_outlives_its_file() {
     assert_eq!(result["status"], 0, "{result:#}");
     assert_eq!(talk.end(), Some(0));
 }
+
+/// A sandbox is never left: after a job that needs less than the one before, a third that needs as much as the first is
+/// rendered all the same.
+#[test]
+fn a_job_that_needs_less_takes_nothing_from_those_after_it() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::create_dir(path.join("skies")).unwrap();
+    std::fs::write(path.join("skies/one.ppm"), "P3 1 1 255 128 128 128\n").unwrap();
+    let mut talk = Talk::begun(path, &["--sandbox"]);
+    for (id, sky) in [(1, true), (2, false), (3, true), (4, false), (5, true)] {
+        let mut more = json!({ "output": format!("b/{id}.png") });
+        if sky {
+            more["env"] = json!("skies/one.ppm");
+        }
+        let result = talk.done(&job(id, "a/card.obj", more));
+        assert_eq!((&result["status"], &result["warnings"]), (&json!(0), &json!([])), "{result:#}");
+    }
+    assert_eq!(talk.end(), Some(0));
+}

@@ -389,3 +389,42 @@ fn each_face_of_a_ply_has_the_texture_of_its_number() {
     assert_eq!(scene.objects.len(), 1);
     assert!(warnings(&scene).contains("textures after the first"), "{}", warnings(&scene));
 }
+
+/// Flat splats, as of 2D Gaussian splatting, have two scales, whose geometric mean is the radius. Where no opacity is stated,
+/// splats are opaque.
+#[test]
+fn splats_may_be_flat_and_need_no_opacity() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+                property float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float scale_0\n\
+                property float scale_1\nproperty float rot_0\nend_header\n0 0 0 0 0 0 -1 -3 1\n";
+    let scene = read_text("ply", text).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    let width = f64::from(mesh.point_widths[0]);
+    assert!((width - 2.0 * exp_f64(-2.0)).abs() < 1e-6, "{width}");
+    assert!(mesh.vertex_opacity.is_empty(), "opaque");
+}
+
+/// `COLOR=` is the diffuse colour of the whole, also where `MATERIAL=`, whose first colour is diffuse too, says another.
+#[test]
+fn the_colour_of_a_magics_header_counts_before_its_material() {
+    let header = b"MATERIAL=\x00\x00\xff\xff\x00\x00\x00\xff\x00\x00\x00\xff,COLOR=\xff\x80\x00\xff";
+    let scene = read_text("stl", stl(header, &[0])).unwrap();
+    assert_near(&kd(&scene), &[shown(&[[1.0, 128.0 / 255.0, 0.0]])[0]; 3], 1e-6, "both");
+    let alone = read_text("stl", stl(&header[..21], &[0])).unwrap();
+    assert_near(&kd(&alone), &[Rgb::new(0.0, 0.0, 1.0); 3], 1e-6, "the material alone");
+}
+
+/// A line is no face: the colours of the faces after it stay with them.
+#[test]
+fn colours_of_off_stay_with_their_faces_where_others_are_left_out() {
+    let text = "OFF\n4 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 1 0 255 0\n3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n";
+    let scene = read_text("off", text).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    let faces = mesh.triangles.iter().map(|triangle| mesh.vertex_kd[triangle[0] as usize]);
+    assert_near(
+        &faces.collect::<Vec<_>>(),
+        &[Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 0.0, 1.0)],
+        1e-6,
+        "red and blue",
+    );
+}

@@ -243,3 +243,44 @@ fn uris_outside_the_folder_and_of_the_network_are_refused() {
         assert!(error.contains(part), "{uri}: {error}");
     }
 }
+
+/// What is animated takes the place of what the node says, which may be that it is hidden. [KHR_animation_pointer]
+#[test]
+fn a_node_that_is_hidden_at_rest_is_shown_where_its_animation_says_so() {
+    let mut parts = Parts::default();
+    parts.floats("VEC3", 3, &TRIANGLE);
+    let times = parts.floats("SCALAR", 1, &[0.0, 1.0]);
+    let visible = parts.add("SCALAR", 5121, 2, &[0, 1]);
+    let text = parts.document(&format!(
+        r#""scenes":[{{"nodes":[0]}}],
+        "nodes":[{{"mesh":0,"extensions":{{"KHR_node_visibility":{{"visible":false}}}}}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "animations":[{{"samplers":[{{"input":{times},"output":{visible},"interpolation":"STEP"}}],
+        "channels":[{{"sampler":0,"target":{{"path":"pointer","extensions":{{"KHR_animation_pointer":
+        {{"pointer":"/nodes/0/extensions/KHR_node_visibility/visible"}}}}}}}}]}}],
+        "extensionsUsed":["KHR_node_visibility","KHR_animation_pointer"]"#
+    ));
+    for (time, count) in [(0.0, 0), (0.5, 0), (1.0, 1), (2.0, 1)] {
+        let options = ReadOptions { time, ..ReadOptions::default() };
+        let scene = read_bytes(text.as_bytes(), "gltf", None, "a.gltf", &options).unwrap();
+        assert_eq!(scene.objects.len(), count, "at {time} s");
+    }
+}
+
+/// A vertex without weights belongs to the first joint of its first set, whatever the second set names.
+#[test]
+fn the_first_joint_is_that_of_the_first_set() {
+    let mut parts = Parts::default();
+    parts.floats("VEC3", 3, &TRIANGLE);
+    parts.add("VEC4", 5121, 3, &[1, 0, 0, 0].repeat(3));
+    parts.floats("VEC4", 4, &[0.; 12]);
+    parts.add("VEC4", 5121, 3, &[0; 12]);
+    let text = parts.document(
+        r#""scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0,"skin":0},{"translation":[5,0,0]},{"translation":[0,7,0]}],
+        "skins":[{"joints":[1,2]}],"meshes":[{"primitives":[{"attributes":
+        {"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2,"JOINTS_1":3,"WEIGHTS_1":2}}]}]"#,
+    );
+    let scene = scene(&text);
+    let positions = &scene.objects[0].mesh.positions;
+    assert_eq!(positions[..], [Vec3::new(0., 7., 0.), Vec3::new(1., 7., 0.), Vec3::new(0., 8., 0.)]);
+}

@@ -235,3 +235,13 @@ fn names_in_other_letters_stay_within_the_folder() {
         assert!(scene.files.iter().all(|file| !file.ends_with("secret.png")), "{name}");
     }
 }
+
+/// The picture says where there are holes. A number beside it is a factor on it, but for a zero, which would leave nothing.
+#[test]
+fn a_zero_beside_a_picture_of_holes_does_not_hide_everything() {
+    for (d, factor) in [("d 0", 1.0), ("d .25", 0.25), ("Tr 1\nd 0", 1.0)] {
+        let library = format!("newmtl m\nKd .5 .5 .5\n{d}\nmap_d t.png\nnewmtl n\nKd 1 0 0\n");
+        let scene = with_files(&library, |folder| write_picture(&folder.join("t.png"), Rgb::WHITE));
+        assert_eq!(scene.textures[0].factor, Rgb::grey(factor), "{d}");
+    }
+}

@@ -1,7 +1,7 @@
 //! Pictures as cameras and interrupted downloads leave them: turned by Exif, cut short, of 12 bits.
 
 use bilux_math::Rgb;
-use bilux_pictures::{Limits, Picture, WriteOptions, read_bytes, read_rgba8, write_bytes};
+use bilux_pictures::{BitDepth, Limits, Picture, WriteOptions, read_bytes, read_rgba8, write_bytes};
 
 /// Red and green above blue and white, each of 16 × 8 pixels.
 fn quarters() -> Picture {
@@ -33,7 +33,10 @@ fn in_jpeg(orientation: u8) -> Vec<u8> {
 
 /// A chunk `eXIf` before the pixels. [PNG, 11.3.4.5]
 fn in_png(orientation: u8, options: &WriteOptions) -> Vec<u8> {
-    let plain = write_bytes("png", &quarters(), options).unwrap();
+    with_exif(&write_bytes("png", &quarters(), options).unwrap(), orientation)
+}
+
+fn with_exif(plain: &[u8], orientation: u8) -> Vec<u8> {
     let body = [&b"eXIf"[..], &exif(orientation)].concat();
     let crc = body.iter().fold(!0u32, |crc, &byte| {
         (0..8).fold(crc ^ u32::from(byte), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
@@ -274,5 +277,44 @@ fn hdr_pictures_are_turned_as_their_resolution_strings_say() {
                 assert!((found - wanted).abs() < 0.003, "{resolution} at {x}, {y}: {found}, not {wanted}");
             }
         }
+    }
+}
+
+/// The same colour in Rec. 2020: the file states its primaries, whose luminance has other weights (ITU-R BT.2020: 0.2627,
+/// 0.6780, 0.0593), and a grey stays grey.
+#[test]
+fn an_exr_of_luminance_and_chroma_has_the_colours_of_its_primaries() {
+    let [r, g, b] = [0.5, 0.25, 2.0f32];
+    let y = 0.2627 * r + 0.6780 * g + 0.0593 * b;
+    let of = |channels: &[(&str, f32)]| {
+        let mut picture = Picture::new(2, 2).unwrap();
+        for (name, value) in channels {
+            picture.push_channel(*name, vec![*value; 4]).unwrap();
+        }
+        let mut bytes = write_bytes("exr", &picture, &WriteOptions::default()).unwrap();
+        let key = b"chromaticities\0chromaticities\0";
+        let at = bytes.windows(key.len()).position(|part| part == key).unwrap() + key.len() + 4;
+        let primaries = [0.708f32, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290];
+        bytes[at..at + 32].copy_from_slice(&primaries.map(f32::to_le_bytes).concat());
+        read_bytes(&bytes, None, &Limits::default()).unwrap().rgb(1, 1).to_array()
+    };
+    let chroma = of(&[("Y", y), ("RY", (r - y) / y), ("BY", (b - y) / y)]);
+    let plain = of(&[("R", r), ("G", g), ("B", b)]);
+    assert!(chroma.iter().zip(plain).all(|(a, b)| (a - b).abs() < 2e-3), "{chroma:?}, not {plain:?}");
+    assert!((plain[2] - b).abs() > 0.1, "the primaries count: {plain:?}");
+}
+
+/// A PNG of 16 bits has straight alpha, turned or not, and its light is multiplied by it.
+#[test]
+fn a_turned_picture_with_alpha_keeps_its_light() {
+    let mut stored = Picture::from_rgb(2, 1, vec![Rgb::new(0.25, 0.125, 0.5); 2]).unwrap();
+    stored.push_channel("A", vec![0.5; 2]).unwrap();
+    let options = WriteOptions { bit_depth: BitDepth::Sixteen, ..WriteOptions::default() };
+    for orientation in [1, 3, 6] {
+        let bytes = with_exif(&write_bytes("png", &stored, &options).unwrap(), orientation);
+        let picture = read_bytes(&bytes, None, &Limits::default()).unwrap().into_linear();
+        let found = [picture.rgb(0, 0).to_array().as_slice(), &[picture.alpha_at(0, 0)]].concat();
+        let is_near = found.iter().zip([0.25, 0.125, 0.5, 0.5]).all(|(a, b)| (a - b).abs() < 1e-4);
+        assert!(is_near, "orientation {orientation}: {found:?}");
     }
 }

@@ -313,3 +313,14 @@ fn bytes_for_a_display_are_encoded_and_have_alpha() {
     assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 188, 188, 188, 128]);
     assert_eq!(Picture::new(2, 1).unwrap().to_rgba8(), None);
 }
+
+/// A short name is a whole word of the long one: `direct` is not the end of `indirect`.
+#[test]
+fn a_layer_is_not_taken_for_one_whose_name_ends_alike() {
+    let mut picture = Picture::from_rgb(1, 1, vec![Rgb::BLACK]).unwrap();
+    picture.push_rgb("View.direct", &[Rgb::grey(1.0)]).unwrap();
+    picture.push_rgb("View.indirect", &[Rgb::grey(2.0)]).unwrap();
+    assert_eq!(picture.clone().with_main(Some("direct")).unwrap().rgb(0, 0), Rgb::grey(1.0));
+    assert_eq!(picture.clone().with_main(Some("Indirect")).unwrap().rgb(0, 0), Rgb::grey(2.0));
+    assert!(picture.with_main(Some("rect")).is_err());
+}

@@ -283,3 +283,32 @@ fn shells_that_become_a_sheet_are_found() {
         assert!(reused == answers(&builder.build(&accel, SHUTTER, 1.0).unwrap()), "material {material}");
     }
 }
+
+/// Two meshes that differ only in what their vertices let through, or in the widths of points, are two meshes, in whichever
+/// order they are built.
+#[test]
+fn meshes_that_differ_in_opacity_or_width_alone_are_not_taken_for_each_other() {
+    let quad = |opacity: f32| Mesh {
+        vertex_opacity: vec![opacity; 4],
+        ..Mesh::quad(Vec3::new(-1.0, -1.0, 0.0), Vec3::X * 2.0, Vec3::Y * 2.0)
+    };
+    let cloud = |width: f32| Mesh {
+        positions: vec![Vec3::ZERO],
+        points: vec![0],
+        point_widths: vec![width],
+        ..Mesh::default()
+    };
+    let hits = |mesh: Mesh, at: f32, parts: &mut BuiltParts| {
+        let mut builder = SceneBuilder::default();
+        builder.add_material(Spec::new("", "diffuse"));
+        builder.objects.push(Object { instanced: true, ..Object::new("", Arc::new(mesh), 0) });
+        let scene = built(&builder, parts, &AccelChoice::default());
+        let ray = Ray::new([at, 0.0, 5.0], [0.0, 0.0, -1.0]);
+        Tracer::new(&scene, false).closest(&ray).is_some()
+    };
+    let mut parts = BuiltParts::default();
+    let seen = [0.0, 1.0, 0.0].map(|opacity| hits(quad(opacity), 0.3, &mut parts));
+    assert_eq!(seen, [false, true, false]);
+    let seen = [0.2, 1.0, 0.2].map(|width| hits(cloud(width), 0.3, &mut parts));
+    assert_eq!(seen, [false, true, false]);
+}

@@ -1,6 +1,6 @@
 //! A scene is built from plain data, rejects errors, and answers ray queries.
 
-use bilux_math::{Rgb, Transform, Vec2, Vec3};
+use bilux_math::{Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, SceneBuilder, SceneError, Spec, Tracer};
 use std::sync::Arc;
@@ -187,4 +187,29 @@ fn typed_specs_equal_handwritten_specs() {
     let mut builder = SceneBuilder::default();
     builder.add_light(Point::new("bulb").position(Vec3::Y));
     assert_eq!(builder.lights, [Spec::new("bulb", "point").with("position", Vec3::Y)]);
+}
+
+/// What is placed, and then moves, is where both put it at each time while the shutter is open.
+#[test]
+fn what_is_placed_before_it_moves_is_seen_on_its_way() {
+    let key = |time_seconds: f32, z: f32| MotionKey {
+        time_seconds,
+        translation: Vec3::Z * z,
+        rotation: Quat::IDENTITY,
+        scale: Vec3::ONE,
+    };
+    let place = Motion::still(Transform::translate(Vec3::X * 10.0).unwrap());
+    let motion = place.then(&Motion::from_keys(vec![key(0.0, 0.0), key(1.0, 8.0)]).unwrap());
+    for instanced in [false, true] {
+        let mut builder = builder();
+        builder.objects.push(Object { motion: motion.clone(), instanced, ..Object::new("", floor(), 0) });
+        let scene = builder.build(&AccelChoice::default(), [0.0, 1.0], 1.0).unwrap();
+        for (time, now) in [(0.0, 0.0), (0.5, 4.0), (1.0, 8.0)] {
+            for z in [0.0, 4.0, 8.0] {
+                let down = bilux_scene::Ray::new([10.0, 1.0, z + 0.3], [0.0, -1.0, 0.0]);
+                let seen = Tracer::new(&scene, false).closest(&bilux_scene::Ray { time, ..down });
+                assert_eq!(seen.is_some(), z == now, "at {time} s, z = {z}, instanced: {instanced}");
+            }
+        }
+    }
 }

@@ -96,3 +96,23 @@ fn features_do_not_depend_on_threads_crop_or_range() {
         assert_eq!((part.depth[i], part.object[i]), (all.depth[whole], all.object[whole]));
     }
 }
+
+/// Beside nothing, the guides of a cut-out are those of what covers a part of the pixel: a normal of unit length, and the whole
+/// albedo. Elsewhere they are means over all samples.
+#[test]
+fn guides_of_a_cut_out_are_those_of_what_is_there() {
+    let mut builder = SceneBuilder::default();
+    let card = quad(Vec3::new(-0.52, -0.53, 0.0), Vec3::X * 1.03, Vec3::Y * 1.07);
+    put(&mut builder, "card", card, diffuse(RED));
+    look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 40.0);
+    let found = seen(&builder, &RenderSettings::new(16, 16, 8));
+    let [cut_out, whole] = [true, false].map(|is_cut_out| found.guides(is_cut_out, 0..256));
+    let parts = found.coverage.iter().filter(|coverage| (0.1..0.9).contains(*coverage));
+    assert!(parts.count() > 8, "{:?}", found.coverage);
+    for (i, coverage) in found.coverage.iter().enumerate().filter(|(_, coverage)| **coverage > 0.0) {
+        let normals = [&cut_out, &whole].map(|(_, normals)| Vec3::from(normals[i]));
+        assert!(near(cut_out.0[i], RED) && near(whole.0[i], RED * *coverage), "{i}: {coverage}");
+        assert!(normals[0].distance(Vec3::Z) < 1e-4, "{i}: {}", normals[0]);
+        assert!(normals[1].distance(Vec3::Z * *coverage) < 1e-4, "{i}: {}", normals[1]);
+    }
+}

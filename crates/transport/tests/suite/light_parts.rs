@@ -198,3 +198,26 @@ fn those_that_cannot_divide_their_light_say_so() {
         assert!(found.unwrap().is_none(), "{name}");
     }
 }
+
+/// A lamp without a surface comes before the sky, which the camera sees too: all of the sky's light is in its own group, and
+/// nothing in that of lights without one.
+#[test]
+fn the_sky_is_in_its_own_group_wherever_it_is_seen() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
+    let lamp = Spec::new("lamp", "point").with("position", Vec3::Y * 2.0);
+    builder.lights.push(lamp.with("intensity", Rgb::new(9.0, 0.0, 0.0)));
+    builder.lights.push(Spec::new("sky", "environment").with("radiance", Rgb::new(0.0, 0.0, 0.5)));
+    look(&mut builder, Vec3::new(0.0, 1.0, 4.0), Vec3::Y, 60.0);
+    let scene = built(&builder);
+    for integrator in dividing() {
+        let found = parts(&scene, &integrator, &RenderSettings::new(24, 16, 4));
+        let sum = |film: &Film| film.to_rgb().iter().fold(Rgb::BLACK, |sum, pixel| sum + *pixel);
+        let [lamp, sky, others] = [0, 1, 2].map(|group| sum(&found.groups[group]));
+        assert!(lamp.r > 1.0 && lamp.g == 0.0 && lamp.b == 0.0, "{integrator:?}: {lamp:?}");
+        assert!(sky.b > 1.0 && sky.r == 0.0 && sky.g == 0.0, "{integrator:?}: {sky:?}");
+        assert!(others.is_black(), "{integrator:?}: {others:?}");
+        // Nothing but sky is seen there.
+        assert!((found.groups[1].pixel(0, 0).b - 0.5).abs() < 1e-4, "{integrator:?}");
+    }
+}

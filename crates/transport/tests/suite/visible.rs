@@ -250,3 +250,15 @@ fn the_same_for_any_number_of_threads_and_any_part() {
         assert_eq!(part.mattes[0][i], all.mattes[0][whole]);
     }
 }
+
+/// While the shutter is open for a second the ball rises by a metre: labels are of where it is at first.
+#[test]
+fn labels_are_of_the_moment_when_the_shutter_opens() {
+    let scene = rising().build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    let wanted = Wanted { position: true, ..Wanted::default() };
+    let found = seen(&scene, &RenderSettings::new(41, 41, 1), &wanted);
+    let metre = 41.0 / (2.0 * 7.5 * tan(20f32.to_radians()));
+    let (middle, above) = (20 * 41 + 20, (20 - metre as usize) * 41 + 20);
+    assert!((found.position[middle].length() - 0.5).abs() < 0.01, "{}", found.position[middle]);
+    assert_eq!(found.position[above], Vec3::ZERO, "it is not there yet");
+}

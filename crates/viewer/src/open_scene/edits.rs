@@ -178,6 +178,24 @@ mod tests {
         session.scene().lights.iter().map(|light| light.value_or("radiance", 0.0f32)).collect()
     }
 
+    /// The edit is made again in the file as it is now, and undone it is that file, not the one before.
+    #[test]
+    fn undo_in_a_scene_that_was_opened_anew_is_the_new_file() {
+        let (mut before, mut edits) = (session(), Edits::default());
+        edits.change(&mut before, (Part::Light, 1), "radiance", Value::Number(7.0)).unwrap();
+        let mut scene = session().scene().clone();
+        scene.lights[1].parameters.set("radiance", 3.0f32);
+        let mut settings = Parameters::default();
+        settings.set("size", "8x8");
+        let mut now = Session::new(scene, &settings).unwrap();
+        edits.again(&mut now).unwrap();
+        assert_eq!(radiances(&now)[1], Value::Number(7.0));
+        edits.undo(&mut now).unwrap();
+        assert_eq!(radiances(&now)[1], Value::Number(3.0));
+        edits.redo(&mut now).unwrap();
+        assert_eq!(radiances(&now)[1], Value::Number(7.0));
+    }
+
     /// A slider makes one step of many changes. Another light, another part and another parameter are other steps.
     #[test]
     fn only_changes_of_the_same_parameter_of_the_same_part_are_one_step() {

@@ -173,3 +173,27 @@ fn layers_follow_an_edit() {
         assert!(floor[0] < 0.01 && floor[1] < 0.01 && floor[2] > 0.99, "{floor:?}");
     });
 }
+
+/// The clean picture of half the size stays until the large one has half as many samples for each of its pixels, which are four
+/// times as many.
+#[test]
+fn the_first_large_picture_is_no_draft() {
+    let viewer = viewer(settings("160x134", 200));
+    run(async {
+        let mut client = Client::connect(&viewer).await;
+        client.frame(|_| true).await;
+        client.send(json!({ "do": "orbit", "by": [10, 4] })).await;
+        client.text("state", |state| state["moved"] == true).await;
+        let mut before = client.frame(|frame| frame.header["eye"][0][0] != 0.0).await;
+        loop {
+            let frame = client.frame(|_| true).await;
+            if frame.header["preview"] == false {
+                let [small, large] = [&before, &frame].map(|frame| frame.number("samples"));
+                let is_clean = before.header["preview"] == true;
+                assert!(!is_clean || large >= small.div_ceil(2), "{small}, then {large}");
+                return;
+            }
+            before = frame;
+        }
+    });
+}

@@ -194,3 +194,18 @@ fn twenty_visitors_all_get_their_picture_and_nobody_much_later_than_others() {
         assert!(grown < 16 << 20, "each takes {grown} bytes");
     });
 }
+
+/// Also where all see the same picture, each browser takes a place.
+#[test]
+fn those_who_share_a_view_are_counted_too() {
+    let viewer = Viewer::with(Options { shared: true, visitors: 2, ..options(cornell) });
+    run(async {
+        let mut one = Client::connect(&viewer).await;
+        let two = Client::connect(&viewer).await;
+        assert!(one.refused.is_none() && two.refused.is_none());
+        let three = Client::connect(&viewer).await;
+        let why = three.refused.expect("there is no third place");
+        assert!(why.contains("is taken (2)"), "{why}");
+        one.frame(Frame::rests).await;
+    });
+}
