@@ -38,9 +38,14 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     }
     let begun = Instant::now();
     begin_loading(arguments, common);
-    confine(&targets, arguments, common)?;
-    if let Some(timeout) = arguments.timeout {
-        interrupt.end_after(timeout.saturating_sub(begun.elapsed()), timeout)?;
+    if let Err(error) = begin(&targets, arguments, common, begun) {
+        // Nothing is rendered, which who reads JSON learns of each scene.
+        if arguments.json && !usage::is_command_line(&error) {
+            for target in &targets {
+                log::print_failure(&target.scene, &target.output, &error)?;
+            }
+        }
+        return Err(error);
     }
     if let ([target], true) = (&targets[..], arguments.lasting.watch) {
         return watching::run(target, common, interrupt, |watched| {
@@ -71,6 +76,15 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
         bail!("{failed} of {} scenes could not be rendered", targets.len());
     }
     Ok(DONE)
+}
+
+/// Prepares the process: its sandbox, its threads, and its end.
+fn begin(targets: &[Target], arguments: &Render, common: &Common, begun: Instant) -> anyhow::Result<()> {
+    confine(targets, arguments, common)?;
+    match arguments.timeout {
+        Some(timeout) => interrupt().end_after(timeout.saturating_sub(begun.elapsed()), timeout),
+        None => Ok(()),
+    }
 }
 
 /// Under `--sandbox`: refuses to write elsewhere than to the picture's folder, and confines the process.

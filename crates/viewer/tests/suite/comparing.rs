@@ -92,17 +92,22 @@ fn accelerators_are_measured_beside_each_other_and_their_visits_are_shown() {
         for row in &rows {
             assert!(row["rate"].as_f64().is_some_and(|rate| rate > 1000.0), "{row}");
         }
-        // Each builds all of them: another visitor, or the same one, waits.
+        // Each builds all of them: of two who ask at the same time, one has to ask again later.
         let mut other = Client::connect(&viewer).await;
-        client.send(json!({ "do": "measure" })).await;
-        client.text("accelerator", |_| true).await;
-        other.send(json!({ "do": "measure" })).await;
-        let answer = other.text("accelerator", |_| true).await;
-        assert!(
-            answer["is_last"] == true && answer["why_not"].as_str().unwrap().contains("another"),
-            "{answer}"
-        );
-        client.text("accelerator", |row| row["is_last"] == true).await;
+        let mut refusal = None;
+        for _ in 0..20 {
+            for visitor in [&mut client, &mut other] {
+                visitor.send(json!({ "do": "measure" })).await;
+            }
+            for visitor in [&mut client, &mut other] {
+                let last = visitor.text("accelerator", |row| row["is_last"] == true).await;
+                refusal = last["why_not"].as_str().map(str::to_owned).or(refusal);
+            }
+            if refusal.is_some() {
+                break;
+            }
+        }
+        assert!(refusal.is_some_and(|why| why.contains("another")));
         let tests =
             |name: &str| rows.iter().find(|row| row["name"] == name).unwrap()["tests"].as_f64().unwrap();
         assert!(tests("brute") > 2.0 * tests("bvh"), "brute force tests them all");
