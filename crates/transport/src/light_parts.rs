@@ -86,7 +86,7 @@ pub fn light_parts(
             let photons = sums.photons(integrator, &rays(), &whole.tiles(TILE), samples.start)?;
             let mut eye = rays();
             eye.context.photons = photons.as_ref();
-            tiles.par_iter().try_for_each(|tile| sums.add_tile((integrator, &eye), *tile, &samples, progress))
+            tiles.par_iter().try_for_each(|tile| sums.add_tile(integrator, &eye, *tile, &samples, progress))
         })?;
     }
     if progress.is_cancelled() { Ok(None) } else { Ok(Some(sums.parts(integrator)?)) }
@@ -159,7 +159,8 @@ impl<'a> Sums<'a> {
 
     fn add_tile(
         &self,
-        (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
+        integrator: &dyn PixelIntegrator,
+        eye: &CameraRays,
         tile: Window,
         samples: &Range<u32>,
         progress: &dyn Progress,
@@ -178,7 +179,7 @@ impl<'a> Sums<'a> {
             let is_wanted = wanted.index(x, y).is_some();
             for sample in samples.clone() {
                 tally.begin(x, y, sample);
-                tally.take((integrator, eye), both_ends.as_ref(), &mut tracer, is_wanted);
+                tally.take(integrator, eye, both_ends.as_ref(), &mut tracer, is_wanted);
                 if is_wanted {
                     tally.add_to(&mut films);
                 }
@@ -255,7 +256,8 @@ impl PartTally<'_> {
     /// Takes the sample.
     fn take<'s>(
         &mut self,
-        (integrator, eye): (&dyn PixelIntegrator, &CameraRays<'s>),
+        integrator: &dyn PixelIntegrator,
+        eye: &CameraRays<'s>,
         both_ends: Option<&BothEnds>,
         tracer: &mut Tracer<'s>,
         is_wanted: bool,

@@ -58,7 +58,7 @@ pub(crate) fn all_passes(
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
     let Rendered { film, mut counters, choice, reached, interval, batch_means, .. } = before;
-    let mut work = Work::new((integrator, eye), sampled, passes, followers, film);
+    let mut work = Work::new(integrator, eye, sampled, passes, followers, film);
     loop {
         pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
         if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
@@ -150,7 +150,8 @@ impl SampleQueue for OneByOne<'_> {
 
 impl<'a> Work<'a> {
     fn new(
-        (integrator, eye): (&'a dyn PixelIntegrator, CameraRays<'a>),
+        integrator: &'a dyn PixelIntegrator,
+        eye: CameraRays<'a>,
         sampled: Window,
         Passes { side, ranges }: Passes,
         followers: Followers<'a>,

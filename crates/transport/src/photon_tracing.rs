@@ -1,6 +1,6 @@
 //! Traces the light subpaths of one iteration, whose vertices are kept as photons.
 
-use crate::bidirectional::{LightPaths, PATHS, QueuedSample, Vertex};
+use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
 use crate::photons::{Merging, Photon, PhotonPosition, Photons};
@@ -74,7 +74,7 @@ impl<const N: usize> Photons<N> {
             let places: Vec<(u32, u32)> =
                 (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
             let mut paths = LightPaths::default();
-            for places in places.chunks(PATHS) {
+            for places in places.chunks(BATCH) {
                 let place = |&(x, y): &(u32, u32)| SamplePlace { x, y, sample: iteration };
                 let mut samples: Vec<_> =
                     places.iter().map(|at| QueuedSample::of_light(eye.light_sample(place(at)))).collect();

@@ -75,7 +75,7 @@ pub fn strategies(
         let mut eye = integrator.camera_rays(scene, camera, settings);
         let photons = pool.install(|| Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
         eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
-        pool.install(|| sums.add((integrator, &eye), &tiles, samples, progress))?;
+        pool.install(|| sums.add(integrator, &eye, &tiles, samples, progress))?;
     }
     if progress.is_cancelled() {
         return Ok(None);
@@ -97,7 +97,8 @@ struct Sums {
 impl Sums {
     fn add(
         &mut self,
-        (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
+        integrator: &dyn PixelIntegrator,
+        eye: &CameraRays,
         tiles: &[Window],
         samples: Range<u32>,
         progress: &dyn Progress,

@@ -47,7 +47,9 @@ impl Walk {
     pub(crate) fn follow(
         &mut self,
         scene: &Scene,
-        (surface, wo, media): (&Surface, Vec3, &Media),
+        surface: &Surface,
+        wo: Vec3,
+        media: &Media,
         sample: &BsdfSample,
         mode: TransportMode,
     ) {

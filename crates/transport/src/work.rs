@@ -70,7 +70,7 @@ pub fn work(
         eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
         pool.install(|| {
             let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
-                count((integrator, &eye), tile, sums, (&samples, with_accel), progress);
+                count(integrator, &eye, tile, sums, (&samples, with_accel), progress);
             };
             tiles.par_iter_mut().for_each(each);
         });
@@ -80,7 +80,8 @@ pub fn work(
 
 /// Adds the work of a tile's samples.
 fn count(
-    (integrator, eye): (&dyn PixelIntegrator, &CameraRays),
+    integrator: &dyn PixelIntegrator,
+    eye: &CameraRays,
     tile: &Window,
     sums: &mut [Sums],
     (samples, with_accel): (&Range<u32>, bool),

@@ -1,6 +1,7 @@
 //! In a batch, each ray gets the same hit as on its own, bit for bit, whatever else is in the batch.
 
-use crate::support::{Numbers, bits, build_variant, effort, meshes, queries, rays, variants};
+use crate::support::effort::effort;
+use crate::support::{Numbers, bits, build_variant, meshes, queries, rays, variants};
 use bilux_accel::{Accelerator, BuildOptions, Hit, Query, Ray};
 use rayon::prelude::*;
 use std::sync::Arc;

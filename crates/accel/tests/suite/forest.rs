@@ -1,9 +1,8 @@
 //! Trees over parts of a mesh answer as brute force over the whole mesh does, bit for bit, one ray at a time and in
 //! batches.
 
-use crate::support::{
-    Numbers, Truth, bits, build_variant, effort, is_blocker, meshes, queries, rays, variants,
-};
+use crate::support::effort::effort;
+use crate::support::{Numbers, Truth, bits, build_variant, is_blocker, meshes, queries, rays, variants};
 use bilux_accel::{
     Accelerator, BuildOptions, Counters, Forest, Hit, Primitive, Query, Ray, TriangleMesh, build,
 };

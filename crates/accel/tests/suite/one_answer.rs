@@ -1,6 +1,7 @@
 //! Every structure gives the hits of `brute`, bit for bit, on input that has broken ray tracers.
 
-use crate::support::{Truth, build_variant, effort, meshes, rays, variants};
+use crate::support::effort::effort;
+use crate::support::{Truth, build_variant, meshes, rays, variants};
 use bilux_accel::registry::Quality;
 use bilux_accel::{ACCELERATORS, BuildOptions, Bvh, Bvh8, Query, RefitError, TriangleMesh};
 use rayon::prelude::*;

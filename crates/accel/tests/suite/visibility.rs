@@ -1,6 +1,6 @@
 //! Every exact algorithm gives the image of ray casting.
 
-use crate::support::effort;
+use crate::support::effort::effort;
 use bilux_accel::visibility::{
     BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
 };

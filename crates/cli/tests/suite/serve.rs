@@ -110,6 +110,19 @@ fn what_cannot_be_watched_is_refused() {
     }
 }
 
+/// What needs no file is named in the help of each command that surrounds a scene.
+#[test]
+fn surroundings_of_the_table_are_in_the_help() {
+    for command in ["render", "serve", "explain"] {
+        let help = bilux(&[command, "--help"]).output().unwrap();
+        let help = String::from_utf8_lossy(&help.stdout).into_owned();
+        let values = help.split_once("--env <").and_then(|(_, rest)| rest.split_once('>')).unwrap().0;
+        for row in bilux::presets::SURROUNDINGS {
+            assert!(values.split('|').any(|value| value == row.name), "{command}: {values}");
+        }
+    }
+}
+
 #[test]
 fn a_camera_is_moved_by_options() {
     let folder = tempfile::tempdir().unwrap();

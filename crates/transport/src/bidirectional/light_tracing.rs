@@ -1,15 +1,12 @@
 //! Light tracing: a subpath from a light, each of whose vertices is connected with the camera; from the camera, only what emits
 //! light is seen. [Arvo 1986]
 
-use super::PATHS;
+use super::BatchQueue;
 use super::connect::to_camera;
 use super::light_paths::{LightPaths, light_vertices};
 use super::queued_sample::QueuedSample;
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
 use crate::media::Media;
-use crate::sample_queue::{SampleQueue, SampleSink};
-use crate::task::Task;
+use crate::task::{Context, Task};
 use crate::techniques::TechniqueCounts;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -68,46 +65,30 @@ impl LightTracingSamples {
     }
 }
 
-impl SampleQueue for LightTracingSamples {
-    fn take<'a>(
+impl BatchQueue for LightTracingSamples {
+    fn take_batch<'a>(
         &mut self,
-        rays: &CameraRays<'a>,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
         tracer: &mut Tracer<'a>,
-        places: &[SamplePlace],
-        sink: &mut SampleSink,
-    ) -> bool {
-        for places in places.chunks(PATHS) {
-            if sink.is_cancelled() {
-                return false;
-            }
-            let mut samples = QueuedSample::all(rays, places, sink);
-            let (context, roulette_depth) = (&rays.context, self.light_tracing.roulette_depth);
-            self.light_paths.trace(&mut samples, context, tracer, roulette_depth, &TECHNIQUES);
-            self.light_paths.connect_to_camera(
-                &mut samples,
-                context,
-                tracer,
-                &TECHNIQUES,
-                |i, film, _, found| {
-                    sink.splats(places[i]).add(film, found.light);
-                },
-            );
-            self.rays.clear();
-            self.rays.extend(samples.iter().filter(|sample| sample.is_wanted).map(|sample| sample.ray));
-            self.hits.clear();
-            self.hits.resize(self.rays.len(), None);
-            tracer.hits(&self.rays, &mut self.hits);
-            let mut hits = self.hits.iter();
-            for (&place, sample) in places.iter().zip(&samples) {
-                let hit = sample.is_wanted.then(|| hits.next()).flatten();
-                let light = hit.map_or(Rgb::BLACK, |hit| {
-                    let first = hit.map(|hit| tracer.surface(&sample.ray, &hit));
-                    let media = Media::at_start(tracer, &sample.ray);
-                    emitted_by(first, media, &sample.ray, tracer)
-                });
-                sink.add(place, light);
-            }
-        }
-        true
+        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        self.light_paths.trace(samples, context, tracer, self.light_tracing.roulette_depth, &TECHNIQUES);
+        self.light_paths.connect_to_camera(samples, context, tracer, &TECHNIQUES, |i, film, _, found| {
+            add_splat(i, film, found.light);
+        });
+        self.rays.clear();
+        self.rays.extend(samples.iter().filter(|sample| sample.is_wanted).map(|sample| sample.ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        tracer.hits(&self.rays, &mut self.hits);
+        let mut hits = self.hits.iter();
+        let light = |sample: &QueuedSample| {
+            let Some(hit) = sample.is_wanted.then(|| hits.next()).flatten() else { return Rgb::BLACK };
+            let first = hit.map(|hit| tracer.surface(&sample.ray, &hit));
+            let media = Media::at_start(tracer, &sample.ray);
+            emitted_by(first, media, &sample.ray, tracer)
+        };
+        samples.iter().map(light).collect()
     }
 }

@@ -10,6 +10,7 @@
 //! Densities assume a film of area 1 and one light subpath per camera subpath. They leave out Russian roulette: all
 //! that weights need is to be the same for all techniques.
 
+mod batches;
 mod both_ends;
 mod camera_queue;
 mod camera_subpath;
@@ -24,9 +25,7 @@ mod subpath;
 #[cfg(test)]
 mod weights;
 
-/// The number of samples that are taken together: the vertices of their light subpaths fit into the second cache.
-pub(crate) const PATHS: usize = 256;
-
+pub(crate) use batches::{BATCH, BatchQueue};
 pub(crate) use both_ends::BothEnds;
 pub(crate) use camera_queue::CameraQueue;
 pub(crate) use camera_subpath::CameraSubpath;

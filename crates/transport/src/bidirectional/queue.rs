@@ -4,13 +4,10 @@
 use super::camera_queue::CameraQueue;
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
-use super::{BothEnds, PATHS};
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
-use crate::sample_queue::{SampleQueue, SampleSink};
+use super::{BatchQueue, BothEnds};
 use crate::task::Context;
 use crate::techniques::{Contribution, PixelSum, Step, Tally, Technique};
-use bilux_math::Vec2;
+use bilux_math::{Rgb, Vec2};
 use bilux_scene::Tracer;
 
 /// A queue of samples: the memory that it works in.
@@ -63,35 +60,26 @@ impl<'a> BothEndsSamples<'a> {
     }
 }
 
-impl SampleQueue for BothEndsSamples<'_> {
-    fn take<'a>(
+impl BatchQueue for BothEndsSamples<'_> {
+    fn take_batch<'a>(
         &mut self,
-        rays: &CameraRays<'a>,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
         tracer: &mut Tracer<'a>,
-        places: &[SamplePlace],
-        sink: &mut SampleSink,
-    ) -> bool {
-        for places in places.chunks(PATHS) {
-            if sink.is_cancelled() {
-                return false;
-            }
-            let mut samples = QueuedSample::all(rays, places, sink);
-            let mut sums = vec![PixelSum::default(); samples.len()];
-            let add_splat = |i: usize, film: Vec2, _, found: &Contribution| {
-                sink.splats(places[i]).add(film, found.weighted());
-            };
-            self.queue.take(&self.both_ends, &mut samples, &rays.context, tracer, &mut sums, add_splat);
-            for (&place, PixelSum(light)) in places.iter().zip(sums) {
-                sink.add(place, light);
-            }
-        }
-        true
+        add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        let mut sums = vec![PixelSum::default(); samples.len()];
+        self.queue.take(&self.both_ends, samples, context, tracer, &mut sums, |i, film, _, found| {
+            add_splat(i, film, found.weighted());
+        });
+        sums.into_iter().map(|PixelSum(light)| light).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failures::SamplePlace;
     use crate::photons::Photons;
     use crate::settings::RenderSettings;
     use crate::shapes::{ball, built, integrator, mixed, put, still_life};

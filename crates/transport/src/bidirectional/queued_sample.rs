@@ -1,8 +1,5 @@
 //! A sample that waits in a queue of them.
 
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
-use crate::sample_queue::SampleSink;
 use crate::task::SampleState;
 use bilux_scene::Ray;
 
@@ -16,11 +13,6 @@ pub(crate) struct QueuedSample {
 }
 
 impl QueuedSample {
-    /// Samples of a film, as their sink wants them.
-    pub(crate) fn all(rays: &CameraRays, places: &[SamplePlace], sink: &SampleSink) -> Vec<QueuedSample> {
-        places.iter().map(|&place| QueuedSample::new(rays.sample(place), sink.is_wanted(place))).collect()
-    }
-
     /// A sample with both subpaths, or without the one from the camera.
     pub(crate) fn new((ray, state): (Ray, SampleState), is_wanted: bool) -> QueuedSample {
         QueuedSample { ray, state, is_wanted }

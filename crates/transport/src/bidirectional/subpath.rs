@@ -159,7 +159,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let counts = self.techniques.direct || self.mode == TransportMode::Importance;
         self.partial.leave(cos, pdfs, counts);
         self.walk.is_split = vertex.is_split();
-        self.walk.follow(task.context.scene, (surface, *wo, media), &sample, self.mode);
+        self.walk.follow(task.context.scene, surface, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
     }
 

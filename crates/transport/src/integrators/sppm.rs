@@ -4,17 +4,15 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator, merging};
 use crate::bidirectional::{
-    CameraQueue, CameraSubpath, LightPaths, PATHS, QueuedSample, Subpath, Vertex, emitted, from_infinity,
-    merged,
+    BatchQueue, CameraQueue, CameraSubpath, LightPaths, QueuedSample, Subpath, Vertex, emitted,
+    from_infinity, merged,
 };
-use crate::camera_rays::CameraRays;
-use crate::failures::SamplePlace;
 use crate::photons::{Merging, Photons};
-use crate::sample_queue::{SampleQueue, SampleSink};
-use crate::task::Task;
+use crate::sample_queue::SampleQueue;
+use crate::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
-use bilux_math::Rgb;
 use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Ray, Tracer};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -126,27 +124,17 @@ struct PhotonGatheringSamples<'a> {
     light_paths: LightPaths,
 }
 
-impl SampleQueue for PhotonGatheringSamples<'_> {
-    fn take<'a>(
+impl BatchQueue for PhotonGatheringSamples<'_> {
+    fn take_batch<'a>(
         &mut self,
-        rays: &CameraRays<'a>,
+        samples: &mut [QueuedSample],
+        context: &Context<'a>,
         tracer: &mut Tracer<'a>,
-        places: &[SamplePlace],
-        sink: &mut SampleSink,
-    ) -> bool {
-        for places in places.chunks(PATHS) {
-            if sink.is_cancelled() {
-                return false;
-            }
-            let mut samples = QueuedSample::all(rays, places, sink);
-            let mut sums = vec![PixelSum::default(); samples.len()];
-            self.light_paths.clear(samples.len());
-            let PhotonGatheringSamples { gathering, queue, light_paths } = self;
-            queue.follow(gathering, &mut samples, light_paths, &rays.context, tracer, &mut sums);
-            for (&place, PixelSum(light)) in places.iter().zip(sums) {
-                sink.add(place, light);
-            }
-        }
-        true
+        _add_splat: &mut dyn FnMut(usize, Vec2, Rgb),
+    ) -> Vec<Rgb> {
+        let mut sums = vec![PixelSum::default(); samples.len()];
+        self.light_paths.clear(samples.len());
+        self.queue.follow(&self.gathering, samples, &self.light_paths, context, tracer, &mut sums);
+        sums.into_iter().map(|PixelSum(light)| light).collect()
     }
 }

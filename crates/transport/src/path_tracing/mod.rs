@@ -135,7 +135,7 @@ impl PathTracing {
             return false;
         };
         let media = path.walk.media;
-        path.walk.follow(task.context.scene, (surface, wo, &media), &sample, TransportMode::Radiance);
+        path.walk.follow(task.context.scene, surface, wo, &media, &sample, TransportMode::Radiance);
         path.last = (!sample.is_delta).then_some((surface.p, sample.pdf_solid_angle));
         task.sample.note_vertex(path.walk.depth, || {
             let (kind, how) = match sample.transmits {

@@ -43,9 +43,9 @@ impl Default for NextRays {
 impl NextRays {
     /// A lane's path as it arrives.
     #[inline]
-    pub(super) fn put_path(&mut self, i: usize, path: &QueuedPath) {
-        put(&mut self.beta, i, path.path.walk.beta.to_array());
-        self.eta_scale.0[i] = path.path.walk.eta_scale;
+    pub(super) fn put_path(&mut self, i: usize, one: &QueuedPath) {
+        put(&mut self.beta, i, one.path.walk.beta.to_array());
+        self.eta_scale.0[i] = one.path.walk.eta_scale;
     }
 
     /// Where the rays start.

@@ -1,13 +1,11 @@
 //! Shared by the tests of all structures: nasty meshes, nasty rays, and the comparison.
-#![allow(dead_code, unreachable_pub, unused_imports)] // Each test uses a part of it.
+#![allow(dead_code, unreachable_pub)] // Each test uses a part of it.
 
 pub mod closed;
-mod effort;
+pub mod effort;
 pub mod fuzzed;
 pub mod meshes;
 pub mod rays;
-
-pub use effort::effort;
 
 use bilux_accel::ray::Filter;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
