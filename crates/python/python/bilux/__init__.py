@@ -10,7 +10,10 @@ layers are numpy arrays; `Accel` answers ray queries. What has variants is liste
 `materials()`, `lights()`, `cameras()`, `settings()` and more.
 """
 
-from . import cluster, trimesh
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from . import trimesh
 from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
@@ -35,6 +38,9 @@ from ._tables import (
 )
 from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy
 from ._view import View
+
+if TYPE_CHECKING:
+    from . import cluster
 
 __all__ = [
     "Accel",
@@ -84,3 +90,14 @@ __all__ = [
     "tonemaps",
     "trimesh",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """`bilux.cluster`, which few need and which takes most of what importing the package would, when it is first used."""
+    if name == "cluster":
+        return import_module(".cluster", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), "cluster"})
