@@ -21,6 +21,7 @@ const TABLES: &[(&str, &str)] = &[
     ("materials", "Materials"),
     ("textures", "Procedural textures"),
     ("bsdfs", "BSDFs"),
+    ("phases", "Phase functions"),
     ("lights", "Lights"),
     ("cameras", "Cameras"),
     ("generators", "Built-in scenes"),

@@ -127,7 +127,11 @@ fn surface_at(events: &[Event], depth: u32) -> Option<Vec3> {
     let is_there = |kind: VertexKind| {
         matches!(
             kind,
-            VertexKind::Surface | VertexKind::Reflection | VertexKind::Transmission | VertexKind::Absorption
+            VertexKind::Surface
+                | VertexKind::Reflection
+                | VertexKind::Transmission
+                | VertexKind::Absorption
+                | VertexKind::Medium
         )
     };
     let vertices = events.iter().filter(|event| event.depth == depth).filter_map(|event| event.vertex);

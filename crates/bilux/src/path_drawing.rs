@@ -79,6 +79,7 @@ fn colour(kind: VertexKind, light: Rgb) -> Rgb {
         VertexKind::Surface | VertexKind::Reflection => [0xdf, 0xe9, 0xf5],
         VertexKind::Transmission => [0x7f, 0xd4, 0xee],
         VertexKind::Absorption | VertexKind::Escape => [0x9a, 0xa1, 0xaa],
+        VertexKind::Medium => [0xff, 0xff, 0xff],
         VertexKind::LightPath => [0xd7, 0x9b, 0xff],
     };
     Rgb::from_array(bytes.map(|byte| f32::from(byte) / 255.0))

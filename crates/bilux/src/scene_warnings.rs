@@ -174,9 +174,11 @@ fn solids_around(scene: &Scene, mut ray: Ray) -> Vec<u32> {
     left.into_iter().filter(|(_, count)| *count > 0).map(|(object, _)| object).collect()
 }
 
+/// Fog is meant to be around cameras.
 fn is_solid_glass(scene: &Scene, surface: &Surface) -> bool {
-    let classic = scene.material(surface).classic(surface);
-    !classic.kt.is_black() && !classic.thin
+    let material = scene.material(surface);
+    let classic = material.classic(surface);
+    !classic.kt.is_black() && !classic.thin && !material.is_interface()
 }
 
 #[cfg(test)]

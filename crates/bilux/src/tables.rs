@@ -47,6 +47,11 @@ pub const TABLES: &[Table] = &[
         summary: "lobes that materials are built from",
         rows: rows!(bilux_scene::bsdf::BSDFS),
     },
+    Table {
+        name: "phases",
+        summary: "phase functions: the directions that media scatter light into",
+        rows: rows!(bilux_scene::media::PHASES),
+    },
     Table { name: "lights", summary: "light sources", rows: rows!(bilux_scene::lights::LIGHTS) },
     Table { name: "cameras", summary: "kinds of camera", rows: rows!(bilux_scene::cameras::CAMERAS) },
     Table {

@@ -99,6 +99,12 @@ pub enum RenderError {
              integrator, such as path"
     )]
     IntervalOfPattern,
+    /// The integrator does not follow light in media.
+    #[error(
+        "this scene has a medium that scatters light, which this integrator does not follow: choose another, such as auto, \
+         path, bdpt or vcm"
+    )]
+    Media,
     /// A checkpoint was made by a render that did not need something.
     #[error("the checkpoint does not hold {what}: render as before, or begin anew")]
     CheckpointLacks {

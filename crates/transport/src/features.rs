@@ -217,7 +217,7 @@ impl Sums {
                 return;
             };
             beta *= next.weight.clamp(0.0, 1.0);
-            media = media.towards(scene, &surface, -direction, next.wi);
+            media = media.beyond(scene, &surface, -direction, next.wi);
             ray = surface.spawn(next.wi);
         }
     }

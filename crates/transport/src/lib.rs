@@ -23,6 +23,7 @@ pub mod filters;
 pub mod gathering;
 pub mod illumination;
 pub mod integrators;
+mod interaction;
 pub mod interval;
 mod labels;
 mod layers;

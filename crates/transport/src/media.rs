@@ -1,4 +1,5 @@
-//! Media between surfaces: nothing, or absorbing glass and water, which have priorities where they overlap.
+//! Media between surfaces: nothing, or what absorbs and scatters, such as glass, water and fog, with priorities where they
+//! overlap.
 //!
 //! Where two media overlap, that of higher priority wins. The surface of the other one separates nothing in there: paths
 //! pass through it without an event. [Schmidt 2002]
@@ -10,17 +11,15 @@
 //! Materials without a priority take no part. Their refractive index is relative to whatever surrounds them.
 
 mod coincident;
+mod nested;
+mod passage;
 
-use bilux_math::transcendental::exp;
+use crate::interaction::{Interaction, MediumPoint};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer, Wavelength};
-use coincident::{Coincident, MAX_COINCIDENT};
-
-/// Maximum number of nested media; further ones are ignored.
-const MAX_NESTED: usize = 4;
-
-/// No object.
-const NONE: u32 = u32::MAX;
+use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
+use coincident::Coincident;
+use nested::{NONE, Overlap, strength};
+pub(crate) use passage::{Arrival, Passage, Travelled};
 
 /// Maximum number of surfaces that a ray passes to find the media that it starts in.
 const MAX_SURFACES: usize = 64;
@@ -28,18 +27,15 @@ const MAX_SURFACES: usize = 64;
 /// The media that a path is in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Media {
-    /// Surrounding objects that have a priority.
-    around: [u32; MAX_NESTED],
-    /// Objects whose surfaces coincide with the one that the path has reached: they are crossed together with it.
-    together: [u32; MAX_COINCIDENT],
-    /// Absorption of the medium that the path travels through, as far as it is known.
-    sigma_a: Rgb,
+    /// Objects around it that have a priority.
+    overlap: Overlap,
+    /// The object whose medium the path travels through, as far as it is known.
+    inside: u32,
 }
 
 impl Media {
     /// No media.
-    pub(crate) const AIR: Media =
-        Media { around: [NONE; MAX_NESTED], together: [NONE; MAX_COINCIDENT], sigma_a: Rgb::BLACK };
+    pub(crate) const AIR: Media = Media { overlap: Overlap::NOTHING, inside: NONE };
 
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
@@ -64,30 +60,83 @@ impl Media {
                 }
                 let material = scene.material(surface);
                 if material.nested().is_some() {
-                    media.add(surface.object);
-                } else if !material.sigma_a().is_black() && media.around == Media::AIR.around {
+                    media.overlap.add(surface.object);
+                } else if material.medium().is_some() && media.overlap == Overlap::NOTHING {
                     // What the ray leaves first is innermost. One without a priority replaces what surrounds it.
-                    let sigma_a = *innermost.get_or_insert(material.sigma_a());
+                    let inside = *innermost.get_or_insert(surface.object);
                     if !scene.has_nested() {
-                        return Media { sigma_a, ..media };
+                        return Media { inside, ..media };
                     }
                 }
             }
             ray = behind(&ray, &Surface { t: coincident.t, ..closest });
         }
-        media.sigma_a = innermost.unwrap_or_else(|| media.sigma_of_strongest(scene));
+        media.inside = innermost.unwrap_or_else(|| media.overlap.strongest_object(scene));
         media
     }
 
-    /// The first surface along a ray of unit direction that separates two media, and the transmittance up to there.
-    /// Afterwards these are the media on the side that the ray comes from.
+    /// What the path travels through, as far as it is known.
     #[inline]
-    pub(crate) fn closest(&mut self, tracer: &mut Tracer, ray: &Ray) -> Option<(Surface, Rgb)> {
-        let surface = tracer.closest(ray)?;
-        self.closest_from(tracer, ray, surface)
+    fn medium(&self, scene: &Scene) -> Medium {
+        match self.inside {
+            NONE => Medium::VACUUM,
+            object => scene.material_of(object).medium().unwrap_or(Medium::VACUUM),
+        }
     }
 
-    /// The same where the first surface along the ray is known.
+    /// Transmittance of what the path travels through, over a distance in metres.
+    #[inline]
+    fn transmittance(&self, scene: &Scene, distance: f32) -> Rgb {
+        if self.inside == NONE { Rgb::WHITE } else { self.medium(scene).transmittance(distance) }
+    }
+
+    /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the
+    /// first surface that separates two media. `first` is the first surface along the ray. Afterwards these are the media on
+    /// the side that the ray comes from.
+    ///
+    /// Beyond the last surface nothing happens: the boundary of what scatters would have been met.
+    #[inline]
+    pub(crate) fn travel(
+        &mut self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        first: Option<Surface>,
+        mut draw: impl FnMut() -> f32,
+    ) -> Travelled {
+        let scene = tracer.scene;
+        let direction = Vec3::from(ray.direction);
+        let mut travelled = Travelled::NOWHERE;
+        let (mut next, mut begin) = (first, 0.0);
+        while let Some(surface) = next {
+            let surface = self.arrive(tracer, ray, surface);
+            let medium = self.medium(scene);
+            let length = surface.t - begin;
+            if medium.scatters() {
+                let distance = medium.sample_distance(draw(), draw());
+                if distance < length {
+                    let t = begin + distance;
+                    let p = Vec3::from(ray.origin) + direction * t;
+                    self.overlap.leave();
+                    return travelled.scattered(
+                        &medium,
+                        distance,
+                        MediumPoint { p, t, time: ray.time, phase: medium.phase },
+                    );
+                }
+            }
+            travelled = travelled.passed(medium.free_path(length));
+            if self.overlap.separates(scene, &surface) {
+                return Travelled { arrival: Arrival::Surface(surface), ..travelled };
+            }
+            self.cross(scene, &surface, direction);
+            begin = surface.t;
+            next = tracer.closest(&behind(ray, &surface));
+        }
+        travelled
+    }
+
+    /// The first surface along a ray of unit direction that separates two media, and the transmittance up to there, given the
+    /// first surface along the ray. Afterwards these are the media on the side that the ray comes from.
     #[inline]
     pub(crate) fn closest_from(
         &mut self,
@@ -98,8 +147,8 @@ impl Media {
         let scene = tracer.scene;
         let direction = Vec3::from(ray.direction);
         let surface = self.arrive(tracer, ray, surface);
-        let passed = transmittance(self.sigma_a, surface.t);
-        if self.separates(scene, &surface) {
+        let passed = self.transmittance(scene, surface.t);
+        if self.overlap.separates(scene, &surface) {
             return Some((surface, passed));
         }
         let (mut last, mut passed) = (surface, passed);
@@ -107,8 +156,8 @@ impl Media {
             self.cross(scene, &last, direction);
             let surface = tracer.closest(&behind(ray, &last))?;
             let surface = self.arrive(tracer, ray, surface);
-            passed *= transmittance(self.sigma_a, surface.t - last.t);
-            if self.separates(scene, &surface) {
+            passed *= self.transmittance(scene, surface.t - last.t);
+            if self.overlap.separates(scene, &surface) {
                 return Some((surface, passed));
             }
             last = surface;
@@ -126,15 +175,14 @@ impl Media {
     ) -> Result<Surface, Ray> {
         let scene = tracer.scene;
         let surface = self.arrive(tracer, ray, surface);
-        if self.separates(scene, &surface) {
+        if self.overlap.separates(scene, &surface) {
             return Ok(surface);
         }
         self.cross(scene, &surface, Vec3::from(ray.direction));
         Err(behind(ray, &surface))
     }
 
-    /// The transmittance of a ray that begins in these media and is `distance` metres long; `None` where something
-    /// blocks it.
+    /// What lies along a ray that begins in these media and is `distance` metres long; `None` where something blocks it.
     ///
     /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the
     /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none.
@@ -145,35 +193,41 @@ impl Media {
         ray: &Ray,
         distance: Option<f32>,
         n: Vec3,
-    ) -> Option<Rgb> {
+    ) -> Option<Passage> {
         tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance))
     }
 
-    /// The transmittance of a ray of this length that nothing blocks, where media have no priorities.
+    /// What lies along a ray of this length that nothing blocks, where media have no priorities.
     #[inline]
-    pub(crate) fn unoccluded(&self, distance: Option<f32>) -> Rgb {
-        distance.map_or(Rgb::WHITE, |distance| transmittance(self.sigma_a, distance))
+    pub(crate) fn unoccluded(&self, scene: &Scene, distance: Option<f32>) -> Passage {
+        match distance {
+            Some(distance) if self.inside != NONE => {
+                Passage::CLEAR.then(self.medium(scene).free_path(distance))
+            }
+            _ => Passage::CLEAR,
+        }
     }
 
     #[inline]
-    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>) -> Option<Rgb> {
+    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>) -> Option<Passage> {
         if !tracer.scene.has_nested() {
-            return (!tracer.occluded(ray)).then(|| self.unoccluded(distance));
+            return (!tracer.occluded(ray)).then(|| self.unoccluded(tracer.scene, distance));
         }
         let (mut media, mut rest, scene) = (*self, *ray, tracer.scene);
         let direction = Vec3::from(ray.direction);
-        let (length, mut begin, mut passed) = (direction.length(), 0.0, Rgb::WHITE);
+        let (length, mut begin, mut passed) = (direction.length(), 0.0, Passage::CLEAR);
         while let Some(surface) = tracer.closest(&rest) {
             let surface = media.arrive(tracer, ray, surface);
-            if media.separates(scene, &surface) {
+            if media.overlap.separates(scene, &surface) {
                 return None;
             }
-            passed *= transmittance(media.sigma_a, (surface.t - begin) * length);
+            passed = passed.then(media.medium(scene).free_path((surface.t - begin) * length));
             media.cross(scene, &surface, direction);
             (begin, rest) = (surface.t, behind(&rest, &surface));
         }
-        let rest = distance.map(|distance| (distance - begin * length).max(0.0));
-        Some(passed * media.unoccluded(rest))
+        let rest =
+            distance.filter(|_| media.inside != NONE).map(|distance| (distance - begin * length).max(0.0));
+        Some(rest.map_or(passed, |rest| passed.then(media.medium(scene).free_path(rest))))
     }
 
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
@@ -186,8 +240,8 @@ impl Media {
         }
         let is_nested = scene.has_nested() && scene.material(surface).nested().is_some();
         // On the far side of a surface that the path would leave through, those that coincide with it are crossed.
-        let is_left = || self.around.contains(&surface.object);
-        let outside = if is_left() { self.with_all_together() } else { *self };
+        let is_left = || self.overlap.contains(surface.object);
+        let outside = if is_left() { self.overlap.with_all_together() } else { self.overlap };
         let around = if is_nested { outside.without(surface.object).strongest(scene) } else { None };
         match around {
             Some((_, outside)) => {
@@ -199,14 +253,37 @@ impl Media {
         }
     }
 
-    /// The media in which a path continues from a surface that it reached along `wo`.
+    /// How light scatters, at a wavelength, where a path through these media has arrived; `None` where it escapes.
     #[inline]
-    pub(crate) fn towards(&self, scene: &Scene, surface: &Surface, wo: Vec3, direction: Vec3) -> Media {
+    pub(crate) fn interaction(
+        &self,
+        scene: &Scene,
+        arrival: &Arrival,
+        wavelength: &Wavelength,
+    ) -> Option<Interaction> {
+        match arrival {
+            Arrival::Surface(surface) => {
+                Some(Interaction::Surface(*surface, self.bsdf(scene, surface, wavelength)))
+            }
+            Arrival::Medium(point) => Some(Interaction::Medium(*point)),
+            Arrival::Escape => None,
+        }
+    }
+
+    /// The media in which a path continues from where it came along `wo`.
+    #[inline]
+    pub(crate) fn towards(&self, scene: &Scene, at: &Interaction, wo: Vec3, direction: Vec3) -> Media {
+        at.surface().map_or(*self, |surface| self.beyond(scene, surface, wo, direction))
+    }
+
+    /// The same for a surface.
+    #[inline]
+    pub(crate) fn beyond(&self, scene: &Scene, surface: &Surface, wo: Vec3, direction: Vec3) -> Media {
         let mut media = *self;
         if wo.dot(surface.n_geom) * direction.dot(surface.n_geom) < 0.0 {
             media.cross(scene, surface, direction);
         }
-        media.together = [NONE; MAX_COINCIDENT];
+        media.overlap.leave();
         media
     }
 
@@ -220,7 +297,7 @@ impl Media {
 
     /// The same for all that coincide with it.
     fn arrive_at_all(&mut self, tracer: &mut Tracer, ray: &Ray, surface: Surface) -> Surface {
-        self.together = [NONE; MAX_COINCIDENT];
+        self.overlap.leave();
         let Coincident { others, t } = Coincident::with(tracer, ray, &surface);
         if others.is_empty() {
             return surface;
@@ -228,15 +305,15 @@ impl Media {
         let scene = tracer.scene;
         others.iter().for_each(|other| self.meet(scene, other, Vec3::from(ray.direction)));
         let all = || std::iter::once(&surface).chain(&others);
-        let behind = all().fold(*self, |media, face| media.changed(face.object));
-        let strongest = [self.strongest(scene), behind.strongest(scene)];
+        let behind = all().fold(self.overlap, |overlap, face| overlap.changed(face.object));
+        let strongest = [self.overlap.strongest(scene), behind.strongest(scene)];
         let strongest =
             strongest.into_iter().flatten().max_by_key(|(object, nested)| strength(*object, nested));
         // The stronger one is left or entered here, unless it is the same in front and behind.
         let separating = all().find(|face| strongest.is_some_and(|(object, _)| object == face.object));
         let surface = *separating.unwrap_or(&surface);
         let rest = all().map(|face| face.object).filter(|object| *object != surface.object);
-        self.together.iter_mut().zip(rest).for_each(|(slot, object)| *slot = object);
+        self.overlap.cross_together(rest);
         Surface { t, ..surface }
     }
 
@@ -247,12 +324,12 @@ impl Media {
         let leaves = surface.n_geom.dot(direction) > 0.0;
         if scene.has_nested() && scene.material(surface).nested().is_some() {
             let object = surface.object;
-            if leaves != self.around.contains(&object) {
-                *self = if leaves { self.with(object) } else { self.without(object) };
-                self.sigma_a = self.sigma_of_strongest(scene);
+            if leaves != self.overlap.contains(object) {
+                self.overlap = if leaves { self.overlap.with(object) } else { self.overlap.without(object) };
+                self.inside = self.overlap.strongest_object(scene);
             }
-        } else if leaves {
-            self.sigma_a = scene.material(surface).sigma_a();
+        } else if leaves && scene.material(surface).medium().is_some() {
+            self.inside = surface.object;
         }
     }
 
@@ -260,93 +337,18 @@ impl Media {
     #[inline]
     fn cross(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
         let enters = direction.dot(surface.n_geom) < 0.0;
-        if scene.has_nested() {
-            if scene.material(surface).nested().is_some() {
-                let all = self.with_all_together();
-                *self = if enters { all.with(surface.object) } else { all.without(surface.object) };
-                self.together = [NONE; MAX_COINCIDENT];
-                self.sigma_a = self.sigma_of_strongest(scene);
-                return;
-            }
-            self.sigma_a = self.sigma_of_strongest(scene);
-        } else {
-            self.sigma_a = Rgb::BLACK;
-        }
-        if enters {
-            self.sigma_a = scene.material(surface).sigma_a();
+        if scene.has_nested() && scene.material(surface).nested().is_some() {
+            let all = self.overlap.with_all_together();
+            self.overlap = if enters { all.with(surface.object) } else { all.without(surface.object) };
+            self.overlap.leave();
+            self.inside = self.overlap.strongest_object(scene);
+        } else if scene.material(surface).medium().is_some() {
+            self.inside = if enters { surface.object } else { self.overlap.strongest_object(scene) };
         }
     }
-
-    /// False for the surface of a medium inside one of higher priority. Of equal priorities the object that comes first
-    /// in the scene wins, so that the result is the same from both ends of a path.
-    #[inline]
-    fn separates(&self, scene: &Scene, surface: &Surface) -> bool {
-        if !scene.has_nested() {
-            return true;
-        }
-        let Some(own) = scene.material(surface).nested() else { return true };
-        let separates = |media: &Media| match media.without(surface.object).strongest(scene) {
-            Some((object, other)) => strength(surface.object, &own) > strength(object, &other),
-            None => true,
-        };
-        separates(self) && (self.together[0] == NONE || separates(&self.with_all_together()))
-    }
-
-    /// The medium of highest priority.
-    fn strongest(&self, scene: &Scene) -> Option<(u32, Nested)> {
-        let media = self.around.iter().filter(|&&object| object != NONE);
-        let media = media.filter_map(|&object| Some((object, scene.material_of(object).nested()?)));
-        media.max_by_key(|(object, nested)| strength(*object, nested))
-    }
-
-    fn sigma_of_strongest(&self, scene: &Scene) -> Rgb {
-        self.strongest(scene).map_or(Rgb::BLACK, |(object, _)| scene.material_of(object).sigma_a())
-    }
-
-    /// These media on the other side of the surfaces that are crossed together.
-    fn with_all_together(&self) -> Media {
-        self.together
-            .iter()
-            .filter(|&&object| object != NONE)
-            .fold(*self, |media, &object| media.changed(object))
-    }
-
-    /// The media on the other side of an object's surface.
-    fn changed(self, object: u32) -> Media {
-        if self.around.contains(&object) { self.without(object) } else { self.with(object) }
-    }
-
-    fn with(mut self, object: u32) -> Media {
-        self.add(object);
-        self
-    }
-
-    fn add(&mut self, object: u32) {
-        if !self.around.contains(&object)
-            && let Some(free) = self.around.iter_mut().find(|slot| **slot == NONE)
-        {
-            *free = object;
-        }
-    }
-
-    fn without(mut self, object: u32) -> Media {
-        self.around.iter_mut().filter(|slot| **slot == object).for_each(|slot| *slot = NONE);
-        self
-    }
-}
-
-/// Greater for the medium that wins where two overlap: by priority, and of equal ones for the object that comes first.
-fn strength(object: u32, nested: &Nested) -> (u32, std::cmp::Reverse<u32>) {
-    (nested.priority, std::cmp::Reverse(object))
 }
 
 /// The same ray, from behind a surface that it has hit.
 fn behind(ray: &Ray, surface: &Surface) -> Ray {
     Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
-}
-
-/// Transmittance over a distance in metres, by Beer's law.
-#[inline]
-pub(crate) fn transmittance(sigma_a: Rgb, distance: f32) -> Rgb {
-    if sigma_a.is_black() { Rgb::WHITE } else { sigma_a.map(|sigma| exp(-sigma * distance)) }
 }

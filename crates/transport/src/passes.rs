@@ -214,7 +214,7 @@ impl<'a> Work<'a> {
         let mut part = Film::part(scale);
         let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
         let one_by_one = || Box::new(OneByOne(self.integrator)) as Box<dyn SampleQueue>;
-        let mut queue = self.integrator.queue(self.eye.context.photons).unwrap_or_else(one_by_one);
+        let mut queue = self.integrator.queue(&self.eye.context).unwrap_or_else(one_by_one);
         while let Some(job) = self.next_job() {
             let tile = self.tiles[job as usize % self.tiles.len()];
             let pass = job as usize / self.tiles.len();

@@ -93,7 +93,7 @@ impl<const N: usize> Photons<N> {
                 }
                 let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
                 let vertices = (0..samples.len()).flat_map(|i| paths.of(i));
-                photons.extend(vertices.filter(is_kept).map(Vertex::photon));
+                photons.extend(vertices.filter(is_kept).filter_map(Vertex::photon));
             }
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);

@@ -8,7 +8,7 @@ use crate::plan::Choice;
 use crate::sample_queue::SampleQueue;
 use crate::settings::RenderSettings;
 use crate::splats::{Splats, Sum};
-use crate::task::Task;
+use crate::task::{Context, Task};
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Counters, Ray, Scene};
 use std::sync::Arc;
@@ -25,6 +25,11 @@ pub trait PixelIntegrator: Send + Sync + 'static {
     /// How far samples spread over pixel, lens and shutter.
     fn camera_spread(&self) -> CameraSpread {
         CameraSpread::FULL
+    }
+
+    /// True if it follows light that media scatter.
+    fn follows_media(&self) -> bool {
+        true
     }
 
     /// True if it reports each piece of light that a path finds (`Task::find`), so that light can be divided into parts.
@@ -44,8 +49,8 @@ pub trait PixelIntegrator: Send + Sync + 'static {
 
     /// Takes many of its samples at a time, each as if on its own; `None` where they are taken one by one.
     #[doc(hidden)]
-    fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
-        Some(Box::new(BothEndsSamples::new(self.light_subpaths()?.both_ends(photons)?)))
+    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
+        Some(Box::new(BothEndsSamples::new(self.light_subpaths()?.both_ends(context.photons)?)))
     }
 }
 

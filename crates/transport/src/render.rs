@@ -98,6 +98,9 @@ pub fn render_from(
     if settings.interval && !integrator.is_random() {
         return Err(RenderError::IntervalOfPattern);
     }
+    if scene.scatters() && !integrator.follows_media() {
+        return Err(RenderError::Media);
+    }
     progress.begin(settings.sample_count(integrator));
     let interval = settings.interval.then(|| Interval::new(settings.window())).transpose()?;
     let empty =

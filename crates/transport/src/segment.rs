@@ -1,8 +1,8 @@
 //! The straight line from one vertex of a path to another.
 
-use crate::media::Media;
+use crate::media::{Media, Passage};
 use crate::shadow_rays::ShadowRays;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::Vec3;
 use bilux_scene::{Ray, Tracer};
 
 /// A line between two points, or to what is infinitely far away, before it is known whether light passes.
@@ -19,9 +19,9 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// Its transmittance; `None` where something blocks it.
+    /// What lies along it; `None` where something blocks it.
     #[inline]
-    pub(crate) fn transmittance(&self, tracer: &mut Tracer) -> Option<Rgb> {
+    pub(crate) fn passage(&self, tracer: &mut Tracer) -> Option<Passage> {
         self.media.visible(tracer, &self.ray, self.distance, self.n)
     }
 

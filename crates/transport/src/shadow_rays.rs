@@ -1,7 +1,7 @@
 //! Shadow rays of many connections, which are traced together.
 
-use crate::media::Media;
-use bilux_math::{Rgb, Vec3};
+use crate::media::{Media, Passage};
+use bilux_math::Vec3;
 use bilux_scene::{Ray, Tracer};
 
 /// Shadow rays, each with what its connection brings if nothing lies between its ends.
@@ -40,9 +40,9 @@ impl<T> ShadowRays<T> {
         self.contributions.push(contribution);
     }
 
-    /// Traces the rays. `add` receives what the unoccluded ones bring and their transmittance, in the order in which
+    /// Traces the rays. `add` receives what the unoccluded ones bring and what lies along them, in the order in which
     /// they were added.
-    pub(crate) fn trace(&mut self, tracer: &mut Tracer, mut add: impl FnMut(&T, Rgb)) {
+    pub(crate) fn trace(&mut self, tracer: &mut Tracer, mut add: impl FnMut(&T, &Passage)) {
         let ShadowRays { rays, normals, contributions, media, occluded } = self;
         occluded.clear();
         occluded.resize(rays.len(), false);
@@ -50,8 +50,8 @@ impl<T> ShadowRays<T> {
         let has_nested = tracer.scene.has_nested();
         for (i, contribution) in contributions.iter().enumerate() {
             let passed = match (occluded[i], media.get(i)) {
-                (false, None) => Rgb::WHITE,
-                (false, Some((media, distance))) => media.unoccluded(*distance),
+                (false, None) => Passage::CLEAR,
+                (false, Some((media, distance))) => media.unoccluded(tracer.scene, *distance),
                 // What it hits may separate nothing.
                 (true, Some((media, distance))) if has_nested => {
                     // Asked again, and counted once.
@@ -63,7 +63,7 @@ impl<T> ShadowRays<T> {
                 }
                 (true, _) => continue,
             };
-            add(contribution, passed);
+            add(contribution, &passed);
         }
     }
 }

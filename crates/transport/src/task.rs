@@ -6,7 +6,7 @@ use crate::photons::Photons;
 use crate::sampler::PixelSampler;
 use crate::settings::Reach;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Camera, Scene, Tracer, Wavelength};
+use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
 
 /// What all samples of a render share.
 pub struct Context<'a> {
@@ -33,7 +33,7 @@ pub struct SampleState {
     pub sampler: PixelSampler,
     /// The wavelength of its paths, wherever they begin.
     pub wavelength: Wavelength,
-    /// Surfaces that its paths have reached so far. Queues do not count them.
+    /// Vertices that its paths have reached so far. Queues do not count them.
     pub vertices: u32,
     /// What is recorded of it, if anything is.
     pub record: Option<Box<Record>>,
@@ -109,6 +109,8 @@ pub enum VertexKind {
     Transmission,
     /// A surface absorbs the path.
     Absorption,
+    /// A medium scatters the path.
+    Medium,
     /// The path hits a surface that emits light.
     Emitter,
     /// The path leaves the scene.
@@ -121,6 +123,10 @@ pub enum VertexKind {
     LightPath,
 }
 
+/// Random number streams of what happens to paths between surfaces begin here: to those from the camera, then to those from
+/// lights.
+const MEDIUM_STREAM: u64 = 3 << 32;
+
 impl SampleState {
     /// A sample that has drawn nothing yet.
     pub fn new(sampler: PixelSampler, wavelength: Wavelength) -> SampleState {
@@ -132,6 +138,13 @@ impl SampleState {
     #[inline]
     pub fn seen(&self, light: Rgb, is_split: bool) -> Rgb {
         if is_split { light * self.wavelength.weight } else { light }
+    }
+
+    /// Enters the stream of random numbers for what happens on the way to the vertex after `depth` events.
+    #[inline]
+    pub(crate) fn enter_medium(&mut self, depth: u32, mode: TransportMode) {
+        let from_light = if mode == TransportMode::Importance { 1 << 32 } else { 0 };
+        self.sampler.enter(MEDIUM_STREAM + from_light + u64::from(depth));
     }
 
     /// Records light, if that is recorded at all.

@@ -157,12 +157,6 @@ impl<const N: usize> Contribution<N> {
         Contribution { light, own: PerSet::ONE, others: PerSet::ZERO, power_factor: 1.0, origin: 0 }
     }
 
-    /// The same along a connection with this transmittance.
-    #[inline]
-    pub(crate) fn passed(&self, passed: Rgb) -> Contribution<N> {
-        Contribution { light: self.light * passed, ..*self }
-    }
-
     /// Its MIS weight: the balance heuristic, except for [`power_factor`].
     pub(crate) fn mis_weight(&self) -> f32 {
         self.own.0[0] * (self.power_factor / (self.own.0[0] + self.others.0[0]))

@@ -1,9 +1,10 @@
 //! A random walk: what every path has while it grows, from whichever end.
 
-use crate::media::Media;
+use crate::interaction::Interaction;
+use crate::media::{Media, Travelled};
 use crate::task::SampleState;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{BsdfSample, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
 
 /// A path on its way to its next vertex.
 pub(crate) struct Walk {
@@ -42,12 +43,12 @@ impl Walk {
         -Vec3::from(self.ray.direction)
     }
 
-    /// Continues from a surface that it reached along `wo` and which these media surround.
+    /// Continues from where it came along `wo` through these media.
     #[inline]
     pub(crate) fn follow(
         &mut self,
         scene: &Scene,
-        surface: &Surface,
+        at: &Interaction,
         wo: Vec3,
         media: &Media,
         sample: &BsdfSample,
@@ -59,8 +60,26 @@ impl Walk {
         if mode == TransportMode::Radiance {
             self.eta_scale *= sample.eta * sample.eta;
         }
-        self.media = media.towards(scene, surface, wo, sample.wi);
-        self.ray = surface.spawn(sample.wi);
+        self.media = media.towards(scene, at, wo, sample.wi);
+        self.ray = at.spawn(sample.wi);
+    }
+
+    /// Travels along its ray to the next event, given the first surface there; `mode` is what it carries. Afterwards its media
+    /// are those on the side that it comes from.
+    #[inline]
+    pub(crate) fn travel(
+        &mut self,
+        first: Option<Surface>,
+        tracer: &mut Tracer,
+        sample: &mut SampleState,
+        mode: TransportMode,
+    ) -> Travelled {
+        if tracer.scene.scatters() {
+            sample.enter_medium(self.depth, mode);
+        }
+        let travelled = self.media.travel(tracer, &self.ray, first, || sample.sampler.next_1d());
+        self.beta *= travelled.weight;
+        travelled
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the

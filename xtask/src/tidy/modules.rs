@@ -5,7 +5,7 @@ use super::rust_text::RustText;
 use std::collections::BTreeMap;
 
 /// Enums that are tables: each variant holds the type of one file, which registers itself there.
-const CLOSED_SETS: &[&str] = &["Lobe"];
+const CLOSED_SETS: &[&str] = &["Lobe", "Phase"];
 
 /// How many re-exports a name may pass through.
 const MAX_REEXPORTS: usize = 16;

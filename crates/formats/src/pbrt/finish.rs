@@ -187,30 +187,30 @@ impl Pbrt<'_, '_> {
         radiance: Option<TextureOrValue>,
     ) -> Result<Option<Spec>, FormatError> {
         let [inside, outside] = &piece.attributes.media;
-        let absorption = self.absorption_of(inside, &piece.at)?;
-        if !self.absorption_of(outside, &piece.at)?.is_black() {
-            let what = "absorption by a medium outside shapes is not supported";
-            self.oddities.note(what, || piece.at.clone());
-        }
+        let medium = self.medium_of(inside, &piece.at)?;
+        // Inside another shape that is filled with it, it counts there.
+        self.medium_of(outside, &piece.at)?;
         let base = self.base_material(piece)?;
         if base.is_none() && radiance.is_some() {
             self.oddities.note("an interface material emits no light", || piece.at.clone());
         }
         let mut spec = match base {
             Some(spec) => spec,
-            None if absorption.is_black() => return Ok(None),
-            None => Spec::new("interface", "dielectric").with("eta", 1.0f32),
+            // Inside of a medium a boundary without one makes a hole.
+            None if medium.is_clear() && outside.is_empty() => return Ok(None),
+            None => Spec::new("interface", "interface"),
         };
-        if !absorption.is_black() {
-            if spec.kind == "dielectric" && spec.parameters.find("thin").is_none() {
-                spec.parameters.set("absorption", absorption.clamp(0.0, 1e6));
+        if !medium.is_clear() {
+            if spec.kind == "interface" || spec.kind == "dielectric" && spec.parameters.find("thin").is_none()
+            {
+                medium.fill(&mut spec);
             } else {
-                let what = "absorption inside is supported only in dielectrics";
+                let what = "a medium inside is supported only in dielectrics and interfaces";
                 self.oddities.note(what, || piece.at.clone());
             }
         }
         if let (Some(glow), Some(radiance)) = (glow, radiance)
-            && spec.name != "interface"
+            && spec.kind != "interface"
         {
             spec = self.glowing(spec, glow, radiance, piece);
         }

@@ -1,4 +1,4 @@
-//! Participating media, of which only the absorption is used.
+//! Participating media that are the same everywhere.
 
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
@@ -6,13 +6,34 @@ use super::texture_or_value::SpectrumType;
 use super::unknown;
 use crate::FormatError;
 use bilux_math::Rgb;
+use bilux_scene::{Span, Spec};
 use std::sync::Arc;
 
 /// The supported properties of a medium.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Medium {
     /// Absorption per unit of length.
     pub(super) absorption: Rgb,
+    /// Scattering per unit of length.
+    pub(super) scattering: Rgb,
+    /// The mean cosine of Henyey and Greenstein's phase function.
+    pub(super) anisotropy: f32,
+}
+
+impl Medium {
+    /// True when it changes nothing.
+    pub(super) fn is_clear(&self) -> bool {
+        self.absorption.is_black() && self.scattering.is_black()
+    }
+
+    /// Sets the parameters of a material that it fills.
+    pub(super) fn fill(&self, spec: &mut Spec) {
+        spec.parameters.set("absorption", self.absorption.clamp(0.0, 1e6));
+        if !self.scattering.is_black() {
+            spec.parameters.set("scattering", self.scattering.clamp(0.0, 1e6));
+            spec.parameters.set("scattering_anisotropy", self.anisotropy.clamp(-0.99, 0.99));
+        }
+    }
 }
 
 /// Measured media: scattering (reduced) and absorption per millimetre. [Jensen 2001, figure 5]
@@ -44,7 +65,7 @@ impl Pbrt<'_, '_> {
         if kind != "homogeneous" {
             let what = format!("a medium of type '{kind}' is not supported");
             self.oddities.note(&what, || list.at.clone());
-            self.media.insert(name.into(), Medium { absorption: Rgb::BLACK });
+            self.media.insert(name.into(), Medium::default());
             return Ok(());
         }
         let preset = list.text("preset")?;
@@ -66,32 +87,27 @@ impl Pbrt<'_, '_> {
             Some(scattering) => scattering,
             None => self.spectrum(list, "sigma_s", SpectrumType::Number)?.unwrap_or(Rgb::WHITE),
         };
-        list.has("g");
-        if !scattering.is_black() {
-            let what = "scattering in a medium is not supported: only its absorption is used";
-            self.oddities.note(what, || list.place("sigma_s"));
-        }
+        let anisotropy = list.finite("g", 0.0)?;
         if list.has("Le") {
             self.oddities.note("emission by a medium is not supported", || list.place("Le"));
             list.has("Lescale");
         }
         let scale = list.finite("scale", 1.0)?;
         list.report_unused(&mut self.oddities);
-        self.media.insert(name.into(), Medium { absorption: absorption * scale });
+        self.media.insert(
+            name.into(),
+            Medium { absorption: absorption * scale, scattering: scattering * scale, anisotropy },
+        );
         Ok(())
     }
 
-    /// The absorption inside a surface; an error for an undefined medium.
-    pub(super) fn absorption_of(
-        &mut self,
-        name: &Arc<str>,
-        at: &bilux_scene::Span,
-    ) -> Result<Rgb, FormatError> {
+    /// The medium on one side of a surface; an error if it is not defined.
+    pub(super) fn medium_of(&mut self, name: &Arc<str>, at: &Span) -> Result<Medium, FormatError> {
         if name.is_empty() {
-            return Ok(Rgb::BLACK);
+            return Ok(Medium::default());
         }
         match self.media.get(name) {
-            Some(medium) => Ok(medium.absorption),
+            Some(medium) => Ok(*medium),
             None => {
                 let names = self.media.keys().map(|name| &**name);
                 Err(unknown("medium", name, names, at))

@@ -46,7 +46,10 @@ impl Pbrt<'_, '_> {
             "camera" => {
                 let matrices = self.state.matrices;
                 if !self.state.media[1].is_empty() {
-                    self.oddities.note("a medium around the camera is not supported", || entity.at.clone());
+                    self.oddities
+                        .note("a medium around the camera counts only inside shapes that bound it", || {
+                            entity.at.clone()
+                        });
                 }
                 self.systems.insert("camera".to_owned(), matrices.map(|m| m.inverse()));
                 self.options.camera = Some((entity, matrices));

@@ -395,12 +395,36 @@ fn media_absorb() {
         close(colour(&scene.materials[object.material], "absorption"), [10.0, 20.0, 30.0]);
     }
     assert_eq!(warnings(&scene), "");
-    let fog = world("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nLightSource \"point\"");
-    assert!(
-        warnings(&fog).contains("scene.pbrt:2:1: scattering in a medium is not supported"),
-        "{}",
-        warnings(&fog)
+}
+
+#[test]
+fn media_scatter_inside_interfaces_and_glass() {
+    let scene = world(
+        r#"
+        MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [1 2 3] "rgb sigma_a" [.1 .2 .3] "float g" [.6] "float scale" [2]
+        AttributeBegin
+        MediumInterface "fog" ""
+        Material "interface"
+        Shape "sphere"
+        AttributeEnd
+        MediumInterface "" "fog"
+        Material "interface"
+        Shape "sphere" "float radius" .5
+        MediumInterface "fog" ""
+        Material "dielectric"
+        Shape "sphere""#,
     );
+    assert_eq!(warnings(&scene), "");
+    let of = |i: usize| &scene.materials[scene.objects[i].material];
+    let kinds: Vec<&str> = (0..3).map(|i| &*of(i).kind).collect();
+    assert_eq!(kinds, ["interface", "interface", "dielectric"]);
+    for i in [0, 2] {
+        close(colour(of(i), "scattering"), [2.0, 4.0, 6.0]);
+        close(colour(of(i), "absorption"), [0.2, 0.4, 0.6]);
+        assert_eq!(of(i).number("scattering_anisotropy"), Some(0.6));
+    }
+    // A hole in the fog.
+    assert!(of(1).colour("scattering").is_none());
 }
 
 #[test]

@@ -132,6 +132,11 @@ fn materials_come_back() {
     assert_near(&spec, "eta", &[1.7]);
     assert_near(&spec, "absorption", &[1.0, 2.0, 3.0]);
     assert_near(&spec, "roughness", &[0.2]);
+    let spec =
+        quiet("kind = \"interface\"\nscattering = [1, 2, 3]\nscattering_anisotropy = 0.4\nabsorption = 0.5");
+    assert_eq!(&*spec.kind, "interface");
+    assert_near(&spec, "scattering", &[1.0, 2.0, 3.0]);
+    assert_near(&spec, "scattering_anisotropy", &[0.4]);
     let spec = quiet(
         "kind = \"principled\"\nbase_color = [0.8, 0.4, 0.1]\nspecular_ior = 1.6\nspecular_roughness = 0.5",
     );

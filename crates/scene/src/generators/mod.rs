@@ -55,6 +55,7 @@ pub const GENERATORS: &[GeneratorEntry] = &[
     gallery::bidirectional::ENTRY,
     gallery::door_ajar::ENTRY,
     gallery::many_lights::ENTRY,
+    gallery::fog::ENTRY,
 ];
 
 /// Makes the scene that a spec describes.

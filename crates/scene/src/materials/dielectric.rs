@@ -9,6 +9,7 @@ use super::{
 use crate::bsdf::{Bsdf, RoughDielectric, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::media::{DIAMETER, DRAINE_ALPHA, Medium, PHASE, PHASE_ANISOTROPY, SCATTERING};
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
 use crate::texture::ColourMap;
@@ -29,6 +30,11 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             DISPERSION,
             reflectance("tint", "factor on reflected and transmitted light; white for real glass", "1"),
             ABSORPTION,
+            SCATTERING,
+            PHASE,
+            PHASE_ANISOTROPY,
+            DRAINE_ALPHA,
+            DIAMETER,
             PRIORITY,
             THIN,
             roughness("0"),
@@ -56,7 +62,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             eta,
             dispersion: if reader.bool("thin") { 0.0 } else { dispersion },
             tint: colour_map(reader, "tint", inputs)?,
-            sigma_a: reader.colour("absorption"),
+            medium: Medium::read(reader, reader.colour("absorption"))?,
             priority: reader.integer("priority") as u32,
             thin: reader.bool("thin"),
             roughness: Roughness::read(reader, inputs)?,
@@ -137,7 +143,7 @@ struct Glass {
     eta: f32,
     dispersion: f32,
     tint: ColourMap,
-    sigma_a: Rgb,
+    medium: Medium,
     priority: u32,
     thin: bool,
     roughness: Roughness,
@@ -168,7 +174,7 @@ impl Material for Glass {
             exponent: 500.0,
             reflectivity: 1.0,
             eta: self.eta,
-            sigma_a: self.sigma_a,
+            sigma_a: self.medium.sigma_a,
             thin: self.thin,
             gloss: self.gloss.max(spread),
             translucency: self.translucency.max(spread),
@@ -190,7 +196,7 @@ impl Material for Glass {
         (priority > 0 && !thin).then_some(Nested { priority, eta, dispersion })
     }
 
-    fn sigma_a(&self) -> Rgb {
-        if self.thin { Rgb::BLACK } else { self.sigma_a }
+    fn medium(&self) -> Option<Medium> {
+        (!self.thin).then_some(self.medium)
     }
 }

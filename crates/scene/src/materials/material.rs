@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
+use crate::media::Medium;
 use crate::sides::Sides;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};
@@ -81,9 +82,13 @@ pub trait Material: Send + Sync {
     fn nested(&self) -> Option<Nested> {
         None
     }
-    /// Absorption per metre inside, by Beer's law; black if there is no interior.
-    fn sigma_a(&self) -> Rgb {
-        Rgb::BLACK
+    /// True for the boundary of a medium without a surface: light passes straight through, without an event.
+    fn is_interface(&self) -> bool {
+        false
+    }
+    /// What its inside is filled with; `None` where there is no inside that light enters: behind opaque surfaces and thin walls.
+    fn medium(&self) -> Option<Medium> {
+        None
     }
 }
 

@@ -4,6 +4,7 @@ use super::{Material, MaterialEntry, MaterialInputs, NORMAL, NORMAL_SCALE, Neste
 use crate::bsdf::{Bsdf, MAX_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::media::Medium;
 use crate::parameters::Reader;
 use crate::sides::Sides;
 use crate::surface::Surface;
@@ -135,8 +136,13 @@ impl Material for Mix {
     }
 
     /// The interior does not depend on where light entered: use the denser of the two.
-    fn sigma_a(&self) -> Rgb {
-        let (a, b) = (self.a.sigma_a(), self.b.sigma_a());
-        Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))
+    fn medium(&self) -> Option<Medium> {
+        let (a, b) = match (self.a.medium(), self.b.medium()) {
+            (Some(a), Some(b)) => (a, b),
+            (a, b) => return a.or(b),
+        };
+        let denser = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
+        let phase = if a.scatters() { a.phase } else { b.phase };
+        Some(Medium { sigma_a: denser(a.sigma_a, b.sigma_a), sigma_s: denser(a.sigma_s, b.sigma_s), phase })
     }
 }

@@ -12,6 +12,7 @@
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
 //! | `conductor` | 0 | 0 | R₀ | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
+//! | `interface` | 0 | 0 | 0 | 1 | – | 0 | no |
 //! | `principled` | opaque base | as ka | R₀; 1 where kt > 0 | transmission | as `conductor` | 1 | where kt > 0 |
 //! | `mix` | in between | in between | in between | in between | in between | in between | as the transmitting part |
 //!
@@ -24,6 +25,7 @@ mod diffuse;
 mod emission;
 mod glasses;
 mod inputs;
+mod interface;
 mod material;
 mod metals;
 mod mirror;
@@ -100,6 +102,7 @@ pub const MATERIALS: &[MaterialEntry] = &[
     mirror::ENTRY,
     conductor::ENTRY,
     dielectric::ENTRY,
+    interface::ENTRY,
     principled::ENTRY,
     mix::ENTRY,
 ];

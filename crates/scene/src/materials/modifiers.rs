@@ -8,6 +8,7 @@ use super::{Material, MaterialInputs, Nested, opacity};
 use crate::bsdf::{Bsdf, OpaqueBaseInputs, SmoothLobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::media::Medium;
 use crate::parameters::Reader;
 use crate::sides::Sides;
 use crate::surface::Surface;
@@ -24,9 +25,9 @@ pub(super) fn apply(
     inputs: &MaterialInputs,
 ) -> Result<Arc<dyn Material>, SceneError> {
     let has = |name: &str| row.parameters.iter().any(|parameter| parameter.name == name);
-    let normals = normal_map::read(reader, inputs)?;
+    let normals = if has(normal_map::NORMAL.name) { normal_map::read(reader, inputs)? } else { None };
     let glow = if has(emission::EMISSION.name) { emission::read(reader, inputs)? } else { None };
-    let opacity = opacity::read(reader, inputs)?;
+    let opacity = if has(opacity::OPACITY.name) { opacity::read(reader, inputs)? } else { None };
     let visible = if has(VISIBLE_SIDES.name) {
         Sides::from_name(&reader.text(VISIBLE_SIDES.name))
     } else {
@@ -119,7 +120,11 @@ impl Material for ModifiedMaterial {
         self.material.nested()
     }
 
-    fn sigma_a(&self) -> Rgb {
-        self.material.sigma_a()
+    fn is_interface(&self) -> bool {
+        self.material.is_interface()
+    }
+
+    fn medium(&self) -> Option<Medium> {
+        self.material.medium()
     }
 }

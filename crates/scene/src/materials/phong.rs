@@ -10,6 +10,7 @@ use super::{
 };
 use crate::bsdf::{Bsdf, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use crate::classic::ClassicMaterial;
+use crate::media::Medium;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
@@ -140,7 +141,8 @@ impl Material for Phong {
         3
     }
 
-    fn sigma_a(&self) -> Rgb {
-        if self.constants.thin { Rgb::BLACK } else { self.constants.sigma_a }
+    fn medium(&self) -> Option<Medium> {
+        let is_clear = self.kt.texture.is_some() || !self.kt.colour.is_black();
+        (is_clear && !self.constants.thin).then_some(Medium::absorbing(self.constants.sigma_a))
     }
 }

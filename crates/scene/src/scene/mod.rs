@@ -44,7 +44,7 @@ pub struct Scene {
     view: Option<FootprintView>,
     /// The gaps between the shells of sheets, if any.
     sheets: Option<Sheets>,
-    /// The bounds of the objects that absorb light and whose medium has no priority.
+    /// The bounds of the objects whose medium changes light and has no priority.
     absorbers: Vec<Aabb>,
     cpu_level: CpuLevel,
 }
@@ -65,7 +65,7 @@ impl Scene {
         };
         let absorbs = |o: &&Placed| {
             let material = &parts.materials[o.material as usize];
-            !material.sigma_a().is_black() && material.nested().is_none()
+            material.medium().is_some_and(|medium| !medium.is_clear()) && material.nested().is_none()
         };
         let bounds = |o: &Placed| {
             let bounds = o.motion.bounds_over(&o.mesh.bounds(), shutter);
@@ -205,7 +205,7 @@ impl Scene {
         self.parts.has_nested
     }
 
-    /// How far a ray may travel inside an object that absorbs light and whose medium has no priority, if it begins in
+    /// How far a ray may travel inside an object whose medium changes light and has no priority, if it begins in
     /// one: up to where it leaves the objects' bounds. `None` where it begins in none.
     pub fn absorption_distance(&self, ray: &Ray) -> Option<f32> {
         let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
@@ -221,7 +221,13 @@ impl Scene {
         around.map(exit).reduce(f32::max)
     }
 
-    /// True when no medium changes what light carries: none absorbs, has a priority or disperses.
+    /// True when some medium scatters light.
+    #[inline]
+    pub fn scatters(&self) -> bool {
+        self.parts.scatters
+    }
+
+    /// True when no medium changes what light carries: none absorbs, scatters, has a priority or disperses.
     #[inline]
     pub fn has_clear_media(&self) -> bool {
         !self.parts.absorbs && !self.parts.has_nested && !self.parts.disperses

@@ -54,6 +54,7 @@ pub(crate) struct SceneParts {
     pub(super) passes: Vec<MayPass>,
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
+    pub(super) scatters: bool,
     /// For each object of triangles.
     pub(super) shading: Vec<ObjectShading>,
 }
@@ -112,7 +113,9 @@ impl SceneParts {
         let passes = MayPass::of_all(&geometry, &materials);
         let has_holes = passes.iter().any(|passes| passes.has_holes);
         let disperses = materials.iter().any(|material| material.disperses());
-        let absorbs = materials.iter().any(|material| !material.sigma_a().is_black());
+        let media = || materials.iter().filter_map(|material| material.medium());
+        let absorbs = media().any(|medium| !medium.is_clear());
+        let scatters = media().any(|medium| medium.scatters());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
         SceneParts {
             geometry,
@@ -131,6 +134,7 @@ impl SceneParts {
             passes,
             disperses,
             absorbs,
+            scatters,
             shading,
         }
     }

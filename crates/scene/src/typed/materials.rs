@@ -138,6 +138,16 @@ typed! {
         tint: impl Into<crate::Value>,
         /// Absorption coefficient inside (Beer-Lambert law) (1/m); default `0`.
         absorption: bilux_math::Rgb,
+        /// Scattering coefficient inside: 1 over the mean distance that light travels before it is scattered (1/m); default `0`.
+        scattering: bilux_math::Rgb,
+        /// The directions that the inside scatters into: by one number (henyey-greenstein), as air (rayleigh), as dust (draine), or as fog, by the size of its droplets: `henyey-greenstein`, `rayleigh`, `draine`, `droplets`; default `henyey-greenstein`.
+        phase: &str,
+        /// The mean cosine by which henyey-greenstein and draine scatter: 0 is even, 0.9 nearly straight on, negative back; default `0`.
+        scattering_anisotropy: f32,
+        /// The second number of draine: 0 is henyey-greenstein; 1 without anisotropy is rayleigh; default `1`.
+        draine_alpha: f32,
+        /// The diameter of droplets: 5 to 15 in clouds, 10 to 20 in fog, 50 in mist (µm); default `15`.
+        droplet_diameter: f32,
         /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
         priority: i32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
@@ -158,6 +168,23 @@ typed! {
         normal: impl Into<crate::Value>,
         /// Strength of the normal map; default `1`.
         normal_scale: f32,
+    }
+    /// The boundary of fog, smoke or a cloud, which light passes straight through.
+    Interface = "interface" {
+        /// Absorption coefficient inside (Beer-Lambert law) (1/m); default `0`.
+        absorption: bilux_math::Rgb,
+        /// Scattering coefficient inside: 1 over the mean distance that light travels before it is scattered (1/m); default `0`.
+        scattering: bilux_math::Rgb,
+        /// The directions that the inside scatters into: by one number (henyey-greenstein), as air (rayleigh), as dust (draine), or as fog, by the size of its droplets: `henyey-greenstein`, `rayleigh`, `draine`, `droplets`; default `henyey-greenstein`.
+        phase: &str,
+        /// The mean cosine by which henyey-greenstein and draine scatter: 0 is even, 0.9 nearly straight on, negative back; default `0`.
+        scattering_anisotropy: f32,
+        /// The second number of draine: 0 is henyey-greenstein; 1 without anisotropy is rayleigh; default `1`.
+        draine_alpha: f32,
+        /// The diameter of droplets: 5 to 15 in clouds, 10 to 20 in fog, 50 in mist (µm); default `15`.
+        droplet_diameter: f32,
+        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
+        priority: i32,
     }
     /// Plastic, metal, paint, glass: one material for nearly everything.
     Principled = "principled" {

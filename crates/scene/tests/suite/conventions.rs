@@ -230,7 +230,7 @@ fn transmission_color_is_reached_at_transmission_depth() {
         Spec::new("", "principled").with("transmission_weight", 1.0f32).with("transmission_depth", 2.0f32);
     let spec = spec.with("transmission_color", Rgb::new(0.5, 0.25, 1.0));
     let (scene, surface) = brushed(spec, UPRIGHT, DMat4::IDENTITY);
-    let sigma = scene.material(&surface).sigma_a();
+    let sigma = scene.material(&surface).medium().unwrap().sigma_a;
     let ln_2 = std::f32::consts::LN_2;
     for (found, wanted) in sigma.to_array().into_iter().zip([ln_2 / 2.0, ln_2, 0.0]) {
         assert!((found - wanted).abs() < 1e-5, "{sigma:?}");

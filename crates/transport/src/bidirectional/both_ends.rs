@@ -83,11 +83,11 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         tally: &mut impl Tally<N>,
     ) -> bool {
         if z.depth == 0 {
-            let density = task.context.camera.density(&subpath.walk.ray, z.surface.t);
-            z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), &self.techniques);
+            let density = task.context.camera.density(&subpath.walk.ray, z.at.t());
+            z.partial = Partial::of_camera(density * z.arriving, &self.techniques, z.partial.merged);
             subpath.partial = z.partial;
         }
-        if let Some(hit) = emitted(task, &z.surface, z.wo) {
+        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo)) {
             let (seen, technique) =
                 (subpath.walk.seen(task.sample), Technique::Connected { s: 0, t: z.count() });
             let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
@@ -109,7 +109,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         task: &mut Task,
         mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
     ) {
-        let is_delta = z.bsdf.is_delta();
+        let is_delta = z.at.is_delta();
         let u = task.sample.sampler.next_1d();
         for index in task.context.lights.sample(u) {
             let u = task.sample.sampler.next_2d();
@@ -131,7 +131,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
     #[inline]
     fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>) {
         if let Some(photons) = self.photons
-            && !z.bsdf.is_delta()
+            && !z.at.is_delta()
         {
             tally.spend(Step::Lookup, 1);
             merged(task, photons, z, |technique, found| tally.add_sample(technique, found));

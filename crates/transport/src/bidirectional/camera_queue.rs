@@ -1,13 +1,13 @@
 //! Many camera subpaths at a time, event by event, so that rays are traced in batches. What happens to one of them is told by
 //! [`CameraSubpath`].
 
-use super::connect::Connection;
+use super::connect::{Connection, Join};
 use super::light_paths::LightPaths;
 use super::queued_sample::QueuedSample;
 use super::{CameraSubpath, Subpath, Vertex};
 use crate::shadow_rays::ShadowRays;
 use crate::task::{Context, Task};
-use crate::techniques::{Contribution, Step, Tally, Technique};
+use crate::techniques::{Step, Tally, Technique};
 use bilux_accel::Hit;
 use bilux_scene::{Ray, Tracer};
 
@@ -37,8 +37,7 @@ struct Subpaths<'b, const N: usize, S, T> {
 /// What a connection brings if its shadow ray hits nothing.
 struct Unoccluded<const N: usize> {
     sample: u32,
-    technique: Technique,
-    found: Contribution<N>,
+    join: Join<N>,
 }
 
 impl<const N: usize> CameraQueue<N> {
@@ -86,7 +85,7 @@ impl<const N: usize> CameraQueue<N> {
             let surface = hit.map(|hit| tracer.surface(&subpath.walk.ray, &hit));
             let mut task = Task { context, tracer: &mut *tracer, sample: &mut samples[i].state };
             let before = self.vertices.len();
-            self.vertices.extend(surface.and_then(|surface| subpath.vertex_at(surface, &mut task)));
+            self.vertices.extend(surface.and_then(|surface| subpath.vertex_before(surface, &mut task)));
             let Some(z) = self.vertices.get_mut(before) else {
                 events.escape(subpath, &task, tally);
                 continue;
@@ -117,15 +116,15 @@ impl<const N: usize> CameraQueue<N> {
             events.connect(z, light_path, &mut task, |_, step, connection| {
                 tallies[*sample as usize].spend(step, 1);
                 let Some(connection) = connection else { return };
-                let Connection { technique, found, segment } = connection;
-                let is_between_subpaths = matches!(technique, Technique::Connected { s: 2.., .. });
-                let unoccluded = Unoccluded { sample: *sample, technique, found };
+                let Connection { join, segment } = connection;
+                let is_between_subpaths = matches!(join.technique, Technique::Connected { s: 2.., .. });
+                let unoccluded = Unoccluded { sample: *sample, join };
                 segment.list(&mut self.shadow_rays[usize::from(is_between_subpaths)], is_clear, unoccluded);
             });
         }
         for shadow_rays in &mut self.shadow_rays {
-            shadow_rays.trace(tracer, |Unoccluded { sample, technique, found }, passed| {
-                tallies[*sample as usize].add_sample(*technique, &found.passed(passed));
+            shadow_rays.trace(tracer, |Unoccluded { sample, join }, passage| {
+                tallies[*sample as usize].add_sample(join.technique, &join.along(passage));
             });
         }
     }

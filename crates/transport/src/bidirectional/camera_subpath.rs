@@ -16,7 +16,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     /// The subpath leaves the scene.
     fn escape(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
-    /// It arrives at a surface, and collects the light that is emitted there; false where it ends.
+    /// It arrives at a vertex, and collects the light that is emitted there; false where it ends.
     fn arrive(
         &self,
         subpath: &mut Subpath<N>,
@@ -62,7 +62,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
                 if let Some(connection) = connection
                     && let Some(found) = connection.trace(task.tracer)
                 {
-                    tally.add_sample(connection.technique, &found);
+                    tally.add_sample(connection.join.technique, &found);
                 }
             });
             self.merge(&z, task, tally);

@@ -2,6 +2,8 @@
 
 use super::subpath::{Vertex, count};
 use crate::emission::light_number;
+use crate::interaction::Interaction;
+use crate::media::Passage;
 use crate::photons::Photons;
 use crate::segment::Segment;
 use crate::task::Task;
@@ -9,19 +11,49 @@ use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, Tracer, TransportMode};
 
-/// A connection, before it is known whether something lies between its ends.
+/// A connection, before it is known what lies between its ends.
 pub(crate) struct Connection<const N: usize = 1> {
-    pub(crate) technique: Technique,
-    /// What it contributes if nothing does.
-    pub(crate) found: Contribution<N>,
+    pub(crate) join: Join<N>,
     pub(crate) segment: Segment,
+}
+
+/// What joins the ends of a connection, if nothing blocks it.
+pub(crate) struct Join<const N: usize = 1> {
+    pub(crate) technique: Technique,
+    /// What it contributes, but for other techniques and what absorbs on the way.
+    found: Contribution<N>,
+    /// How often other techniques find the path that go on along the segment to its end, and those that come back to its start,
+    /// if no medium is on the way.
+    others: [PerSet<N>; 2],
+    /// How often the camera subpath hits the light by chance, if the segment ends on one.
+    picked: Option<f32>,
+    /// Whether each end is a point of a medium.
+    in_medium: [bool; 2],
 }
 
 impl<const N: usize> Connection<N> {
     /// What it contributes; `None` where something blocks it.
     #[inline]
     pub(crate) fn trace(&self, tracer: &mut Tracer) -> Option<Contribution<N>> {
-        Some(self.found.passed(self.segment.transmittance(tracer)?))
+        Some(self.join.along(&self.segment.passage(tracer)?))
+    }
+}
+
+impl<const N: usize> Join<N> {
+    /// What it contributes along this.
+    #[inline]
+    pub(crate) fn along(&self, passage: &Passage) -> Contribution<N> {
+        let [on, back] = self.others;
+        let [leaves_medium, ends_in_medium] = self.in_medium;
+        let on_by = passage.arriving((!ends_in_medium).then_some(1.0));
+        let back = back * passage.returning(leaves_medium);
+        let picked = self.picked.map(|picked| picked * on_by);
+        Contribution {
+            light: self.found.light * passage.transmittance,
+            others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back,
+            power_factor: picked.map_or(1.0, power_factor),
+            ..self.found
+        }
     }
 }
 
@@ -34,24 +66,29 @@ pub(crate) fn to_camera<const N: usize>(
 ) -> Option<(Vec2, Connection<N>)> {
     let u_lens = task.sample.sampler.next_2d();
     let lens = if task.context.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
-    let seen = task.context.camera.connect(y.surface.p, lens, y.surface.time)?;
+    let seen = task.context.camera.connect(y.at.p(), lens, y.at.time())?;
     if !task.context.reach.contains(seen.film) {
         return None;
     }
-    let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
-    if scattered.is_black() || task.context.scene.camera_sees_through(&y.surface, seen.wi) {
+    let scattered = y.at.eval(y.wo, seen.wi, TransportMode::Importance);
+    let hides = |surface| task.context.scene.camera_sees_through(surface, seen.wi);
+    if scattered.is_black() || y.at.surface().is_some_and(hides) {
         return None;
     }
     let media = y.media_towards(task.context.scene, seen.wi);
-    let ray = task.context.scene.to_camera(y.surface.spawn_to(seen.p));
-    let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
-    let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
+    let ray = task.context.scene.to_camera(y.at.spawn_to(seen.p));
+    let arriving = seen.density * y.at.cos(seen.wi).unwrap_or(1.0);
+    let others = y.partial.others(arriving, y.at.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
     let light = task.sample.seen(y.beta * scattered * seen.density, y.is_split());
-    let found =
-        Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) };
-    let technique = Technique::Connected { s: y.count(), t: 1 };
-    let segment = Segment { ray, distance: Some(seen.p.distance(y.surface.p)), n: Vec3::ZERO, media };
-    Some((seen.film, Connection { technique, found, segment }))
+    let join = Join {
+        technique: Technique::Connected { s: y.count(), t: 1 },
+        found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },
+        others: [PerSet::ZERO, others],
+        picked: None,
+        in_medium: [y.at.is_in_medium(), false],
+    };
+    let segment = Segment { ray, distance: Some(seen.p.distance(y.at.p())), n: Vec3::ZERO, media };
+    Some((seen.film, Connection { join, segment }))
 }
 
 /// Connects a camera vertex with a point sampled on a light (s = 1).
@@ -68,41 +105,35 @@ pub(crate) fn to_light<const N: usize>(
     if probability == 0.0 {
         return None;
     }
-    let sample = light.sample_li(z.surface.p, z.surface.time, u)?;
-    let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, sample.wi, TransportMode::Radiance);
+    let sample = light.sample_li(z.at.p(), z.at.time(), u)?;
+    let (scattered, pdf) = z.at.eval_and_pdf(z.wo, sample.wi, TransportMode::Radiance);
     if scattered.is_black() {
         return None;
     }
-    let distance = sample.point.map(|point| point.distance(z.surface.p));
+    let distance = sample.point.map(|point| point.distance(z.at.p()));
     let media = z.media_towards(scene, sample.wi);
     let cos_light = sample.cos();
     // A delta light has one certain point: its density over solid angle grows with the distance alone.
     let area_to_angle = distance.map_or(1.0, |distance| distance * distance / cos_light);
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
-    let pdf_emission = task.context.emission.pdf(
-        scene,
-        index,
-        z.surface.p,
-        pdf_direct / area_to_angle,
-        -sample.wi,
-        cos_light,
-    );
+    let pdf_emission =
+        task.context.emission.pdf(scene, index, z.at.p(), pdf_direct / area_to_angle, -sample.wi, cos_light);
     let ratio = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
-    let cos = z.surface.n_geom.dot(sample.wi).abs();
+    let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
-    let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
+    let back = z.at.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
     let from_light = z.partial.others_of_direct(arriving, back, techniques.direct);
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());
-    let found = Contribution {
-        others: PerSet::ONE * ratio + from_light,
-        power_factor: power_factor(ratio),
-        origin: light_number(index),
-        ..Contribution::only(light)
+    let join = Join {
+        technique: Technique::Connected { s: 1, t: z.count() },
+        found: Contribution { origin: light_number(index), ..Contribution::only(light) },
+        others: [PerSet::ZERO, from_light],
+        picked: Some(ratio),
+        in_medium: [z.at.is_in_medium(), false],
     };
-    let technique = Technique::Connected { s: 1, t: z.count() };
-    let ray = z.surface.spawn_to_light(&sample);
-    Some(Connection { technique, found, segment: Segment { ray, distance, n: sample.n_light, media } })
+    let ray = z.at.spawn_to_light(&sample);
+    Some(Connection { join, segment: Segment { ray, distance, n: sample.n_light, media } })
 }
 
 /// Connects a camera vertex and a light vertex (s, t > 1).
@@ -112,45 +143,50 @@ pub(crate) fn to_vertex<const N: usize>(
     y: &Vertex<N>,
     techniques: &TechniqueCounts<N>,
 ) -> Option<Connection<N>> {
-    let between = y.surface.p - z.surface.p;
+    let between = y.at.p() - z.at.p();
     let distance2 = between.length_squared();
     let direction = between.try_normalize()?;
-    let (f_z, pdf_z) = z.bsdf.eval_and_pdf(z.wo, direction, TransportMode::Radiance);
+    let (f_z, pdf_z) = z.at.eval_and_pdf(z.wo, direction, TransportMode::Radiance);
     if f_z.is_black() {
         return None;
     }
-    let (f_y, pdf_y) = y.bsdf.eval_and_pdf(y.wo, -direction, TransportMode::Importance);
+    let (f_y, pdf_y) = y.at.eval_and_pdf(y.wo, -direction, TransportMode::Importance);
     if f_y.is_black() {
         return None;
     }
     let media = z.media_towards(task.context.scene, direction);
-    let n = task.context.scene.normal_towards(&y.surface, -direction);
-    let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
+    let normal = |surface| task.context.scene.normal_towards(surface, -direction);
+    let n = y.at.surface().map_or(Vec3::ZERO, normal);
+    let cos = |vertex: &Vertex<N>| vertex.at.cos(direction).unwrap_or(1.0);
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =
-        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y));
+        y.partial.others(pdf_z * cos(y) / distance2, y.at.pdf_solid_angle(-direction, y.wo, back_y));
     let from_light =
-        z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
+        z.partial.others(pdf_y * cos(z) / distance2, z.at.pdf_solid_angle(direction, z.wo, back_z));
     let light = task.sample.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
-    let others = from_camera + from_light;
-    let found =
-        Contribution { own: techniques.connections, others, origin: y.origin, ..Contribution::only(light) };
-    let technique = Technique::Connected { s: y.count(), t: z.count() };
-    let segment = Segment { ray: spawn_between(z, y), distance: Some(distance2.sqrt()), n, media };
-    Some(Connection { technique, found, segment })
+    let join = Join {
+        technique: Technique::Connected { s: y.count(), t: z.count() },
+        found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
+        others: [from_camera, from_light],
+        picked: None,
+        in_medium: [z.at.is_in_medium(), y.at.is_in_medium()],
+    };
+    let segment = Segment { ray: spawn_between(&z.at, &y.at), distance: Some(distance2.sqrt()), n, media };
+    Some(Connection { join, segment })
 }
 
-/// Merges a camera vertex with all photons around it, and visits the light that each of them brings.
+/// Merges a camera vertex on a surface with all photons around it, and visits the light that each of them brings.
 pub(crate) fn merged<const N: usize>(
     task: &Task,
     photons: &Photons<N>,
     z: &Vertex<N>,
     mut visit: impl FnMut(Technique, &Contribution<N>),
 ) {
-    let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
-    photons.around(z.surface.p, |position, y| {
+    let Interaction::Surface(surface, bsdf) = &z.at else { return };
+    let facing = bsdf.facing(z.wo, TransportMode::Radiance);
+    photons.around(surface.p, |position, y| {
         // Merge only on the same surface, not with the other side of a sheet or around a corner.
-        if z.depth + position.depth() + 1 > task.context.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + position.depth() + 1 > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };
@@ -167,14 +203,15 @@ pub(crate) fn merged<const N: usize>(
     });
 }
 
-/// A ray from one surface to another that ends just before the second.
-fn spawn_between<const N: usize>(z: &Vertex<N>, y: &Vertex<N>) -> Ray {
-    let ray = z.surface.spawn_to(y.surface.p);
+/// A ray from one vertex to another that ends just before the second, if that is on a surface.
+fn spawn_between(z: &Interaction, y: &Interaction) -> Ray {
+    let ray = z.spawn_to(y.p());
+    let Some(surface) = y.surface() else { return ray };
     let direction = Vec3::from(ray.direction);
     let length = direction.length();
-    let cos = y.surface.n_geom.dot(direction).abs() / length;
-    let error = y.surface.n_geom.abs().dot(y.surface.p_error)
-        + f32::EPSILON * (length + z.surface.p.abs().max_element() + y.surface.p.abs().max_element());
+    let cos = surface.n_geom.dot(direction).abs() / length;
+    let error = surface.n_geom.abs().dot(surface.p_error)
+        + f32::EPSILON * (length + z.p().abs().max_element() + y.p().abs().max_element());
     // A ray hits the second surface within the position error there, over the cosine.
     let clearance = (8.0 * error / (cos * length)).min(0.5);
     Ray { t_max: 1.0 - clearance, ..ray }

@@ -1,7 +1,7 @@
 //! Light subpaths: from a light through the scene, and how the camera sees them. One at a time, or many together: both
 //! give the same vertices, bit for bit.
 
-use super::connect::{Connection, to_camera};
+use super::connect::{Connection, Join, to_camera};
 use super::queued_sample::QueuedSample;
 use super::{Partial, Subpath, Vertex};
 use crate::emission::Start;
@@ -22,7 +22,7 @@ impl SampleState {
     }
 }
 
-/// Traces a light subpath: every surface that it hits, in order, except those that scatter into single directions only.
+/// Traces a light subpath: every vertex, in order, except those that scatter into single directions only.
 pub(crate) fn light_vertices<const N: usize>(
     task: &mut Task,
     time: f32,
@@ -33,7 +33,7 @@ pub(crate) fn light_vertices<const N: usize>(
     let Some(mut subpath) = begin_at_light(task, time, techniques) else { return vertices };
     while let Some(vertex) = subpath.next_vertex(task) {
         let goes_on = goes_on(&mut subpath, &vertex, roulette_depth, task);
-        if !vertex.bsdf.is_delta() {
+        if !vertex.at.is_delta() {
             vertices.push(vertex);
         }
         if !goes_on {
@@ -71,7 +71,7 @@ pub(crate) fn connect_to_camera<const N: usize>(
         if let Some((film, connection)) = to_camera(task, y, techniques)
             && let Some(found) = connection.trace(task.tracer)
         {
-            tally.add_splat(film, connection.technique, &found);
+            tally.add_splat(film, connection.join.technique, &found);
         }
     }
 }
@@ -128,8 +128,7 @@ pub(crate) struct LightPaths<const N: usize = 1> {
 struct Splat<const N: usize> {
     sample: u32,
     film: Vec2,
-    technique: Technique,
-    found: Contribution<N>,
+    join: Join<N>,
 }
 
 impl<const N: usize> LightPaths<N> {
@@ -174,10 +173,10 @@ impl<const N: usize> LightPaths<N> {
                 let state = &mut samples[i as usize].state;
                 let mut task = Task { context, tracer: &mut *tracer, sample: state };
                 let before = self.vertices.len();
-                self.vertices.extend(subpath.vertex_at(surface, &mut task));
+                self.vertices.extend(subpath.vertex_before(surface, &mut task));
                 let Some(vertex) = self.vertices.get(before) else { continue };
                 self.next.extend(goes_on(subpath, vertex, roulette_depth, &mut task).then_some(i));
-                if vertex.bsdf.is_delta() {
+                if vertex.at.is_delta() {
                     self.vertices.truncate(before);
                 } else {
                     self.samples.push(i);
@@ -242,13 +241,13 @@ impl<const N: usize> LightPaths<N> {
             for y in self.connectible(i, techniques) {
                 task.sample.enter_light_vertex(y.depth);
                 let Some((film, connection)) = to_camera(&mut task, y, techniques) else { continue };
-                let Connection { technique, found, segment } = connection;
-                let splat = Splat { sample: i as u32, film, technique, found };
+                let Connection { join, segment } = connection;
+                let splat = Splat { sample: i as u32, film, join };
                 segment.list(&mut shadow_rays, is_clear, splat);
             }
         }
-        shadow_rays.trace(tracer, |Splat { sample, film, technique, found }, passed| {
-            add(*sample as usize, *film, *technique, &found.passed(passed));
+        shadow_rays.trace(tracer, |Splat { sample, film, join }, passage| {
+            add(*sample as usize, *film, join.technique, &join.along(passage));
         });
         self.shadow_rays = shadow_rays;
     }

@@ -19,8 +19,17 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) except_direct: PerSet<N>,
 }
 
+/// What turns densities over solid angle into those of arriving, per area or per volume, times the squared distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    /// At the end: the cosine at a surface, or the density of an event in a medium, times the probability of coming so far.
+    pub(super) forward: f32,
+    /// The same at the start, without the cosine at a surface, which the subpath has counted when it left.
+    pub(super) back: f32,
+}
+
 impl<const N: usize> Partial<N> {
-    /// The start of a camera subpath, before any surface.
+    /// The start of a camera subpath, before any vertex.
     pub(crate) const START: Partial<N> = Partial {
         d_vcm: 0.0,
         connected: PerSet::ZERO,
@@ -37,24 +46,32 @@ impl<const N: usize> Partial<N> {
         Partial { d_vcm: pdf_direct / pdf_emission, d_vc: PerSet::ONE * d_vc, ..Partial::START }
     }
 
-    /// A camera subpath at its first surface, given the density over area of hitting it there.
-    pub(crate) fn of_camera(pdf_area: f32, techniques: &TechniqueCounts<N>) -> Partial<N> {
-        let d_vcm = 1.0 / pdf_area;
-        Partial { d_vcm, splatted: techniques.splats * d_vcm, merged: techniques.eta, ..Partial::START }
+    /// A camera subpath at its first vertex, given the density over area or volume of arriving there, and what merging counts
+    /// there.
+    pub(crate) fn of_camera(pdf: f32, techniques: &TechniqueCounts<N>, merged: PerSet<N>) -> Partial<N> {
+        let d_vcm = 1.0 / pdf;
+        Partial { d_vcm, splatted: techniques.splats * d_vcm, merged, ..Partial::START }
     }
 
-    /// Arrives at a surface from the distance √`distance2`, under the cosine `cos`, where `connections` techniques connect
-    /// the last vertex with this one, and merging counts `merged`.
-    pub(super) fn arrive(&mut self, distance2: f32, cos: f32, connections: PerSet<N>, merged: PerSet<N>) {
-        self.d_vcm *= distance2 / cos;
+    /// Arrives from the distance √`distance2`, by an [edge](Edge), where `connections` techniques connect the last vertex with
+    /// this one, and merging counts `merged`.
+    pub(super) fn arrive(&mut self, distance2: f32, edge: Edge, connections: PerSet<N>, merged: PerSet<N>) {
+        self.pass(distance2, edge);
         self.connected = connections * self.d_vcm;
         self.splatted = PerSet::ZERO;
         self.merged = merged;
-        self.d_vc = self.d_vc * (1.0 / cos);
-        self.except_direct = self.except_direct * (1.0 / cos);
     }
 
-    /// Leaves under the cosine `cos`, with the forward and reverse densities; `None` for a delta event. `counts` is
+    /// Goes along an edge; where it ends infinitely far away, densities stay over solid angle, and `distance2` is 1.
+    #[inline]
+    pub(super) fn pass(&mut self, distance2: f32, edge: Edge) {
+        self.d_vcm *= distance2 / edge.forward;
+        let ratio = edge.back / edge.forward;
+        self.d_vc = self.d_vc * ratio;
+        self.except_direct = self.except_direct * ratio;
+    }
+
+    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `counts` is
     /// false where light subpaths do not look for what would be direct light here.
     pub(super) fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool) {
         match pdfs {

@@ -1,19 +1,20 @@
 //! Subpaths while they grow, from either end, and their vertices.
 
 use super::Partial;
+use super::partial::Edge;
 use crate::emission::Start;
-use crate::media::Media;
+use crate::interaction::Interaction;
+use crate::media::{Media, Travelled};
 use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, Task, VertexKind};
 use crate::techniques::{PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{Ray, Scene, Surface, TransportMode};
 
-/// A surface that a subpath has hit.
+/// A vertex of a subpath.
 pub(crate) struct Vertex<const N: usize = 1> {
-    pub(crate) surface: Surface,
-    pub(crate) bsdf: Bsdf,
+    pub(crate) at: Interaction,
     /// The direction that the subpath came from, a unit vector.
     pub(crate) wo: Vec3,
     /// Throughput: what arrives, over the density of having come here.
@@ -23,10 +24,12 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) depth: u32,
     /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
-    /// The subpath carries a single wavelength, whatever the surface here does.
+    /// The subpath carries a single wavelength, whatever is here.
     pub(super) came_split: bool,
     /// The media on the side of `wo`.
     media: Media,
+    /// The density of arriving, per area or volume, over that over solid angle over the squared distance.
+    pub(super) arriving: f32,
 }
 
 impl<const N: usize> Vertex<N> {
@@ -37,23 +40,27 @@ impl<const N: usize> Vertex<N> {
 
     /// True where a path through here carries a single wavelength.
     pub(super) fn is_split(&self) -> bool {
-        self.came_split || self.bsdf.splits()
+        self.came_split || self.at.splits()
     }
 
-    /// The photon that is stored for merging.
-    pub(crate) fn photon(&self) -> (PhotonPosition, Photon<N>) {
-        let position = PhotonPosition::new(self.surface.p, self.depth, self.came_split, self.origin);
-        let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
-        (position, Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc })
+    /// The photon that is stored for merging; `None` in a medium.
+    pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
+        let surface = self.at.surface()?;
+        let position = PhotonPosition::new(surface.p, self.depth, self.came_split, self.origin);
+        let (wo, n_geom, beta) = (self.wo, surface.n_geom, self.beta);
+        Some((
+            position,
+            Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc },
+        ))
     }
 
     /// The media in which light travels on along `direction`.
     pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
-        self.media.towards(scene, &self.surface, self.wo, direction)
+        self.media.towards(scene, &self.at, self.wo, direction)
     }
 }
 
-/// The number of vertices of a subpath up to the surface after `depth` scattering events: this one, one per event, and
+/// The number of vertices of a subpath up to the one after `depth` scattering events: this one, one per event, and
 /// the one on the light or at the camera.
 pub(crate) fn count(depth: u32) -> u32 {
     depth + 2
@@ -65,19 +72,21 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     /// What it carries: radiance on a camera subpath, importance on a light subpath.
     mode: TransportMode,
     pub(crate) partial: Partial<N>,
-    /// The density of arriving is over area already: at the first surface that light from infinity hits.
+    /// The density of arriving is over area already: at the first vertex that light from infinity reaches.
     by_area: bool,
     /// The maximum channel at the start; Russian roulette measures the survival of light subpaths against it.
     full: f32,
-    /// The light that it comes from and how it left, until it hits a surface.
+    /// The light that it comes from and how it left, until it has a vertex.
     start: Option<Start>,
     origin: u16,
+    /// Its last vertex is a point of a medium.
+    leaves_medium: bool,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
 
 impl<'w, const N: usize> Subpath<'w, N> {
-    /// A subpath with only its first ray. The media that this starts in are looked for when it hits a surface.
+    /// A subpath with only its first ray. The media that this starts in are looked for when it is followed.
     pub(crate) fn new(
         mode: TransportMode,
         ray: Ray,
@@ -87,7 +96,17 @@ impl<'w, const N: usize> Subpath<'w, N> {
         techniques: &'w TechniqueCounts<N>,
     ) -> Subpath<'w, N> {
         let (walk, full) = (Walk::new(&ray, beta, Media::AIR), beta.max_channel());
-        Subpath { walk, mode, partial, by_area, full, start: None, origin: 0, techniques }
+        Subpath {
+            walk,
+            mode,
+            partial,
+            by_area,
+            full,
+            start: None,
+            origin: 0,
+            leaves_medium: false,
+            techniques,
+        }
     }
 
     /// The same from a light of the scene.
@@ -101,10 +120,10 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.start.map(|start| start.light)
     }
 
-    /// Traces to the next surface; `None` where the ray leaves the scene.
+    /// Traces to the next vertex; `None` where the ray leaves the scene.
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
-        let hit = task.tracer.closest(&self.walk.ray);
-        let vertex = hit.and_then(|surface| self.vertex_at(surface, task));
+        let first = task.tracer.closest(&self.walk.ray);
+        let vertex = first.and_then(|first| self.vertex_before(first, task));
         let sample = &mut *task.sample;
         sample.vertices += u32::from(vertex.is_some());
         let is_light = self.mode == TransportMode::Importance;
@@ -113,9 +132,17 @@ impl<'w, const N: usize> Subpath<'w, N> {
             None => sample.note(self.walk.depth, || {
                 format!("{} leaves the scene towards {:?}", self.whose(), self.walk.ray.direction)
             }),
-            Some(Vertex { surface, .. }) => sample.note_vertex(self.walk.depth, || {
-                let what = format!("{} hits object {} at {}", self.whose(), surface.object, surface.p);
-                (PathVertex::new(kind, surface.p), what)
+            Some(Vertex { at, .. }) => sample.note_vertex(self.walk.depth, || {
+                let (p, whose) = (at.p(), self.whose());
+                match at.surface() {
+                    Some(surface) => {
+                        (PathVertex::new(kind, p), format!("{whose} hits object {} at {p}", surface.object))
+                    }
+                    None => {
+                        let kind = if is_light { kind } else { VertexKind::Medium };
+                        (PathVertex::new(kind, p), format!("{whose} meets a medium at {p}"))
+                    }
+                }
             }),
         }
         vertex
@@ -123,27 +150,35 @@ impl<'w, const N: usize> Subpath<'w, N> {
 
     /// The same where the first surface along the ray is known.
     #[inline]
-    pub(crate) fn vertex_at(&mut self, surface: Surface, task: &mut Task) -> Option<Vertex<N>> {
+    pub(crate) fn vertex_before(&mut self, first: Surface, task: &mut Task) -> Option<Vertex<N>> {
         let Task { context, tracer, sample } = task;
         let walk = &mut self.walk;
         if walk.depth == 0 {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
-        let mut media = walk.media;
-        let (surface, passed) = media.closest_from(tracer, &walk.ray, surface)?;
-        let wo = walk.wo();
-        walk.beta *= passed;
-        let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
+        let Travelled { arrival, passage, .. } = walk.travel(Some(first), tracer, sample, self.mode);
+        let media = walk.media;
+        let back = passage.returning(self.leaves_medium);
+        let Some(at) = media.interaction(context.scene, &arrival, &sample.wavelength) else {
+            self.partial.pass(1.0, Edge { forward: passage.survival, back });
+            return None;
+        };
+        let (wo, t) = (walk.wo(), at.t());
+        let edge = Edge { forward: passage.arriving(at.cos(wo)), back };
+        let distance2 = if self.by_area { 1.0 } else { t * t };
         // Light sampling connects the first surface of a light subpath with the light.
         let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
         let merged = if is_at_light && !self.techniques.direct { PerSet::ZERO } else { self.techniques.eta };
-        let distance2 = distance2 * self.light_sampling_ratio(context.scene, surface.p);
-        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), connections, merged);
+        // Photons lie on surfaces.
+        let merged = if at.is_in_medium() { PerSet::ZERO } else { merged };
+        let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
+        self.partial.arrive(distance2, edge, connections, merged);
         self.by_area = false;
-        let bsdf = media.bsdf(context.scene, &surface, &sample.wavelength);
+        self.leaves_medium = at.is_in_medium();
         let Subpath { walk: Walk { beta, depth, is_split, .. }, partial, origin, .. } = *self;
-        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, came_split: is_split, media })
+        let arriving = edge.forward;
+        Some(Vertex { at, wo, beta, partial, depth, origin, came_split: is_split, media, arriving })
     }
 
     /// Continues from a vertex; false when the subpath ends there.
@@ -151,15 +186,15 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let sampler = &mut task.sample.sampler;
         let (u_choice, u) = (sampler.next_1d(), sampler.next_2d());
         let u_survival = sampler.next_1d();
-        let Vertex { surface, bsdf, wo, media, .. } = vertex;
-        let Some(sample) = bsdf.sample(*wo, u_choice, u, self.mode) else { return false };
-        let cos = surface.n_geom.dot(sample.wi).abs();
-        let back = || bsdf.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
+        let Vertex { at, wo, media, .. } = vertex;
+        let Some(sample) = at.sample(*wo, u_choice, u, self.mode) else { return false };
+        let cos = at.cos(sample.wi).unwrap_or(1.0);
+        let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         let counts = self.techniques.direct || self.mode == TransportMode::Importance;
         self.partial.leave(cos, pdfs, counts);
         self.walk.is_split = vertex.is_split();
-        self.walk.follow(task.context.scene, surface, *wo, media, &sample, self.mode);
+        self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
     }
 
@@ -168,7 +203,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         count(self.walk.depth)
     }
 
-    /// The factor by which the first surface of a light subpath would sample its start more often than assumed so far.
+    /// The factor by which the first vertex of a light subpath would sample its start more often than assumed so far.
     fn light_sampling_ratio(&mut self, scene: &Scene, from: Vec3) -> f32 {
         self.start.take().map_or(1.0, |Start { light, ray, .. }| {
             let light = &scene.lights()[light].light;

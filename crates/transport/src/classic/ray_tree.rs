@@ -5,13 +5,13 @@
 //! [Cook 1984]; with all extents zero it uses no random numbers.
 
 use super::{Local, LocalRules};
-use crate::media::transmittance;
 use crate::sampler::PixelSampler;
 use crate::task::{PathVertex, Task, VertexKind};
 use bilux_math::hash::hash_words;
 use bilux_math::transcendental::{cos, sin_cos};
 use bilux_math::{Frame, Rgb, Vec3, frame::reflect};
 use bilux_scene::bsdf::{fresnel_dielectric, refract, schlick};
+use bilux_scene::media::beer;
 use bilux_scene::{ClassicMaterial, Ray, Surface};
 
 /// How Equation 2 is interpreted.
@@ -81,8 +81,12 @@ impl RayTree {
         task.sample.vertices += 1;
         let outside = surface.n_geom.dot(direction) <= 0.0;
         let material = task.context.scene.material(&surface);
-        let sigma_a = if outside { node.sigma_a } else { material.sigma_a() };
-        let left = transmittance(sigma_a, surface.t);
+        let sigma_a = if outside {
+            node.sigma_a
+        } else {
+            material.medium().map_or(Rgb::BLACK, |medium| medium.sigma_a)
+        };
+        let left = beer(sigma_a, surface.t);
         let emission = task.context.scene.emission(&surface, -direction);
         if !emission.is_black() {
             let vertex = PathVertex::new(VertexKind::Emitter, surface.p);

@@ -1,8 +1,8 @@
 //! Shadows of the classic modes.
 
-use crate::media::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
+use bilux_scene::media::beer;
 use bilux_scene::{ClassicLight, Ray, Surface};
 
 /// What an object between a light and a surface does.
@@ -44,7 +44,7 @@ fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
         if scene.light_of(surface.object).is_none() {
             let material = scene.material(&surface).classic(&surface);
             if surface.n_geom.dot(direction) > 0.0 && !material.thin {
-                left *= transmittance(material.sigma_a, (surface.t - before) * direction.length());
+                left *= beer(material.sigma_a, (surface.t - before) * direction.length());
             } else {
                 // Each body counts once: where the light enters it.
                 left *= material.kt;

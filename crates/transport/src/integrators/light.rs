@@ -4,10 +4,9 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::{LightTracing, LightTracingSamples};
-use crate::photons::Photons;
 use crate::sample_queue::SampleQueue;
 use crate::splats::Splats;
-use crate::task::Task;
+use crate::task::{Context, Task};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;
@@ -36,7 +35,7 @@ impl PixelIntegrator for LightTracing {
         Some(self)
     }
 
-    fn queue<'a>(&self, _photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+    fn queue<'a>(&self, _context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
         Some(Box::new(LightTracingSamples::new(*self)))
     }
 }

@@ -2,10 +2,9 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::path_tracing::{PathTracing, Sampling};
-use crate::photons::Photons;
 use crate::queue::PathQueue;
 use crate::sample_queue::SampleQueue;
-use crate::task::Task;
+use crate::task::{Context, Task};
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::Ray;
@@ -49,7 +48,9 @@ impl PixelIntegrator for PathTracing {
         true
     }
 
-    fn queue<'a>(&self, _photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
-        self.is_mis().then(|| Box::new(PathQueue::new(*self)) as _)
+    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
+        // Columns do not stop between surfaces.
+        let has_columns = self.is_mis() && !context.scene.scatters();
+        has_columns.then(|| Box::new(PathQueue::new(*self)) as _)
     }
 }

@@ -39,6 +39,11 @@ impl Sppm {
 }
 
 impl PixelIntegrator for Sppm {
+    /// Its photons lie on surfaces, and nothing else would find light in media.
+    fn follows_media(&self) -> bool {
+        false
+    }
+
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut sum = PixelSum::default();
         self.gathering(task.context.photons).follow(ray, &[], task, &mut sum);
@@ -49,9 +54,13 @@ impl PixelIntegrator for Sppm {
         Some(self)
     }
 
-    fn queue<'a>(&self, photons: Option<&'a Photons>) -> Option<Box<dyn SampleQueue + 'a>> {
+    fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
         let (queue, light_paths) = (CameraQueue::default(), LightPaths::default());
-        Some(Box::new(PhotonGatheringSamples { gathering: self.gathering(photons), queue, light_paths }))
+        Some(Box::new(PhotonGatheringSamples {
+            gathering: self.gathering(context.photons),
+            queue,
+            light_paths,
+        }))
     }
 }
 
@@ -92,7 +101,7 @@ impl CameraSubpath for PhotonGathering<'_> {
         task: &mut Task,
         tally: &mut impl Tally<1>,
     ) -> bool {
-        if let Some(hit) = emitted(task, &z.surface, z.wo) {
+        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo)) {
             let technique = Technique::Connected { s: 0, t: z.count() };
             tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         }
@@ -102,7 +111,7 @@ impl CameraSubpath for PhotonGathering<'_> {
 
     fn merge(&self, z: &Vertex, task: &Task, tally: &mut impl Tally<1>) {
         if let Some(photons) = self.photons
-            && !z.bsdf.is_delta()
+            && !z.at.is_delta()
         {
             merged(task, photons, z, |technique, found| {
                 tally.add_sample(technique, &Contribution { others: PerSet::ZERO, ..*found });

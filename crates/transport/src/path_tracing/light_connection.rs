@@ -8,20 +8,20 @@ use bilux_scene::Tracer;
 /// A connection from a vertex to a sample of a light, before it is known whether something lies between.
 pub(super) struct LightConnection {
     pub(super) segment: Segment,
-    /// The light that the vertex would scatter along the path, without the factor.
+    /// The light that the vertex would scatter along the path, before it is weighted and divided by the density.
     pub(super) light: Rgb,
-    /// MIS weight over density.
-    pub(super) factor: f32,
+    /// The densities over solid angle of sampling the light, and of scattering towards it where the path could also find it so.
+    pub(super) light_pdf: f32,
+    pub(super) pdf: Option<f32>,
 }
 
 impl LightConnection {
     /// What it brings.
     #[inline]
     pub(super) fn trace(&self, tracer: &mut Tracer) -> Rgb {
-        match self.segment.transmittance(tracer) {
-            Some(passed) => self.light * self.factor * passed,
-            None => Rgb::BLACK,
-        }
+        let Some(passage) = self.segment.passage(tracer) else { return Rgb::BLACK };
+        let weight = self.pdf.map_or(1.0, |pdf| power_heuristic(self.light_pdf, pdf * passage.survival));
+        self.light * (weight / self.light_pdf) * passage.transmittance
     }
 
     /// Records the connection, if it brings light to the sample.
@@ -38,4 +38,11 @@ impl LightConnection {
             (PathVertex { kind, at, light }, format!("is lit from {at}, which brings {:?}", light.to_array()))
         });
     }
+}
+
+/// MIS weight of a sample of density `a` against another technique of density `b`. [Veach 1997, eq. 9.17]
+#[inline(always)]
+pub(crate) fn power_heuristic(a: f32, b: f32) -> f32 {
+    // The ratio is used so that squares of large densities do not overflow.
+    if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
 }

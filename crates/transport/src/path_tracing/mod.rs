@@ -1,17 +1,19 @@
-//! PathTracing tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic combines the two.
+//! Path tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic combines the two.
 //! [Kajiya 1986; Veach 1997, 9.2]
 
 mod light_connection;
 
+use crate::interaction::Interaction;
 use crate::light_choice::LightChoice;
-use crate::media::Media;
+use crate::media::{Arrival, Media};
 use crate::segment::Segment;
 use crate::task::{Context, PathVertex, Task, VertexKind};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
-use bilux_scene::{Bsdf, Ray, Surface, TransportMode};
+use bilux_scene::{Ray, Surface, TransportMode};
 use light_connection::LightConnection;
+pub(crate) use light_connection::power_heuristic;
 
 #[derive(Clone, Copy)]
 pub(crate) struct PathTracing {
@@ -22,8 +24,7 @@ pub(crate) struct PathTracing {
 /// A vertex that samples lights.
 #[derive(Clone, Copy)]
 struct Vertex<'a> {
-    surface: &'a Surface,
-    bsdf: &'a Bsdf,
+    at: &'a Interaction,
     wo: Vec3,
     /// The media on the side of `wo`.
     media: &'a Media,
@@ -52,13 +53,17 @@ impl PathTracing {
     pub(crate) fn trace(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
         loop {
-            let Some((surface, passed)) = path.walk.media.closest(task.tracer, &path.walk.ray) else {
+            let first = task.tracer.closest(&path.walk.ray);
+            let travelled = path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance);
+            if let Some((_, pdf)) = &mut path.last {
+                *pdf *= travelled.passage.survival;
+            }
+            if matches!(travelled.arrival, Arrival::Escape) {
                 self.escape(&mut path, task);
                 return path.light;
-            };
-            path.walk.beta *= passed;
+            }
             task.sample.vertices += 1;
-            if !self.interact(&mut path, &surface, task) {
+            if !self.interact(&mut path, &travelled.arrival, task) {
                 return path.light;
             }
         }
@@ -79,30 +84,32 @@ impl PathTracing {
         path.light += path.walk.seen(task.sample) * self.background(task, path);
     }
 
-    /// What happens to a path at a surface: it collects the light that is emitted there, connects to lights, and goes
-    /// on in another direction; false when it ends.
+    /// What happens to a path at a surface or in a medium: it collects the light that is emitted there, connects to lights, and
+    /// goes on in another direction; false when it ends.
     #[inline]
-    fn interact(&self, path: &mut Path, surface: &Surface, task: &mut Task) -> bool {
+    fn interact(&self, path: &mut Path, arrival: &Arrival, task: &mut Task) -> bool {
         let wo = path.walk.wo();
-        let Some(bsdf) = self.arrive(path, surface, task) else { return false };
-        let from = Vertex { surface, bsdf: &bsdf, wo, media: &path.walk.media };
+        let Some(at) = self.arrive(path, arrival, task) else { return false };
+        let from = Vertex { at: &at, wo, media: &path.walk.media };
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
-        self.scatter(path, surface, &bsdf, task)
+        self.scatter(path, &at, task)
     }
 
-    /// The first part of [`PathTracing::interact`]: collects the light that is emitted here; returns how the surface scatters,
-    /// or `None` where the path ends.
+    /// The first part of [`PathTracing::interact`]: collects the light that is emitted here; returns how light scatters here, or
+    /// `None` where the path ends.
     #[inline]
-    pub(crate) fn arrive(&self, path: &mut Path, surface: &Surface, task: &mut Task) -> Option<Bsdf> {
-        self.collect(path, surface, task);
+    pub(crate) fn arrive(&self, path: &mut Path, arrival: &Arrival, task: &mut Task) -> Option<Interaction> {
+        if let Arrival::Surface(surface) = arrival {
+            self.collect(path, surface, task);
+        }
         if path.walk.depth >= task.context.max_depth {
             return None;
         }
         task.sample.sampler.enter(u64::from(path.walk.depth) + 1);
-        let bsdf = path.walk.media.bsdf(task.context.scene, surface, &task.sample.wavelength);
-        path.walk.is_split |= bsdf.splits();
-        Some(bsdf)
+        let at = path.walk.media.interaction(task.context.scene, arrival, &task.sample.wavelength)?;
+        path.walk.is_split |= at.splits();
+        Some(at)
     }
 
     /// Collects the light that a surface emits.
@@ -113,9 +120,9 @@ impl PathTracing {
 
     /// The last part of [`PathTracing::interact`]: goes on in another direction, or ends.
     #[inline]
-    pub(crate) fn scatter(&self, path: &mut Path, surface: &Surface, bsdf: &Bsdf, task: &mut Task) -> bool {
+    pub(crate) fn scatter(&self, path: &mut Path, at: &Interaction, task: &mut Task) -> bool {
         let u = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
-        self.scatter_by(path, surface, bsdf, task, u) && self.survives(path, || task.sample.sampler.next_1d())
+        self.scatter_by(path, at, task, u) && self.survives(path, || task.sample.sampler.next_1d())
     }
 
     /// Samples a direction by these random numbers; false where there is none.
@@ -123,27 +130,31 @@ impl PathTracing {
     pub(crate) fn scatter_by(
         &self,
         path: &mut Path,
-        surface: &Surface,
-        bsdf: &Bsdf,
+        at: &Interaction,
         task: &mut Task,
         (u_choice, u): (f32, Vec2),
     ) -> bool {
         let wo = path.walk.wo();
-        let Some(sample) = bsdf.sample(wo, u_choice, u, TransportMode::Radiance) else {
-            let vertex = PathVertex::new(VertexKind::Absorption, surface.p);
-            task.sample.note_vertex(path.walk.depth, || (vertex, format!("is absorbed at {}", surface.p)));
+        let p = at.p();
+        let Some(sample) = at.sample(wo, u_choice, u, TransportMode::Radiance) else {
+            let vertex = PathVertex::new(VertexKind::Absorption, p);
+            task.sample.note_vertex(path.walk.depth, || (vertex, format!("is absorbed at {p}")));
             return false;
         };
         let media = path.walk.media;
-        path.walk.follow(task.context.scene, surface, wo, &media, &sample, TransportMode::Radiance);
-        path.last = (!sample.is_delta).then_some((surface.p, sample.pdf_solid_angle));
+        path.walk.follow(task.context.scene, at, wo, &media, &sample, TransportMode::Radiance);
+        path.last = (!sample.is_delta).then_some((p, sample.pdf_solid_angle));
         task.sample.note_vertex(path.walk.depth, || {
+            let Some(surface) = at.surface() else {
+                let what = format!("scattered by a medium at {p} towards {}", sample.wi);
+                return (PathVertex::new(VertexKind::Medium, p), what);
+            };
             let (kind, how) = match sample.transmits {
                 true => (VertexKind::Transmission, "transmitted"),
                 false => (VertexKind::Reflection, "scattered"),
             };
-            let what = format!("{how} by object {} at {} towards {}", surface.object, surface.p, sample.wi);
-            (PathVertex::new(kind, surface.p), what)
+            let what = format!("{how} by object {} at {p} towards {}", surface.object, sample.wi);
+            (PathVertex::new(kind, p), what)
         });
         true
     }
@@ -217,7 +228,7 @@ impl PathTracing {
     /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`. The depth of the vertex
     /// and what the sample sees of it are for the record.
     fn direct(&self, task: &mut Task, from: &Vertex, (depth, seen): (u32, Rgb)) -> Rgb {
-        if from.bsdf.is_delta() {
+        if from.at.is_delta() {
             self.skip_lights(task);
             return Rgb::BLACK;
         }
@@ -251,7 +262,7 @@ impl PathTracing {
 
     /// Samples one light; `None` if it brings nothing.
     fn connection(&self, task: &mut Task, index: usize, from: &Vertex) -> Option<LightConnection> {
-        let Vertex { surface, bsdf, wo, media } = *from;
+        let Vertex { at, wo, media } = *from;
         let probability = task.context.lights.probability(index);
         let light = &task.context.scene.lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
@@ -259,24 +270,21 @@ impl PathTracing {
             return None;
         }
         let u = task.sample.sampler.next_2d();
-        let sample = light.sample_li(surface.p, surface.time, u).filter(|sample| !sample.li.is_black())?;
-        let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
+        let sample = light.sample_li(at.p(), at.time(), u).filter(|sample| !sample.li.is_black())?;
+        let (scattered, pdf) = at.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
         let scattered_light = scattered * sample.li;
         if scattered_light.is_black() {
             return None;
         }
         let light_pdf = sample.pdf_solid_angle * probability;
-        let weight = match self.sampling {
-            Sampling::Mis if !light.is_delta() => power_heuristic(light_pdf, pdf),
-            _ => 1.0,
-        };
+        let pdf = (self.sampling == Sampling::Mis && !light.is_delta()).then_some(pdf);
         let segment = Segment {
-            ray: surface.spawn_to_light(&sample),
-            distance: sample.point.map(|point| point.distance(surface.p)),
+            ray: at.spawn_to_light(&sample),
+            distance: sample.point.map(|point| point.distance(at.p())),
             n: sample.n_light,
-            media: media.towards(task.context.scene, surface, wo, sample.wi),
+            media: media.towards(task.context.scene, at, wo, sample.wi),
         };
-        Some(LightConnection { segment, light: scattered_light, factor: weight / light_pdf })
+        Some(LightConnection { segment, light: scattered_light, light_pdf, pdf })
     }
 
     /// MIS weight of light that BSDF sampling has found and light sampling could have found.
@@ -300,11 +308,4 @@ impl Path {
     pub(crate) fn new(ray: &Ray, media: Media) -> Path {
         Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None }
     }
-}
-
-/// MIS weight of a sample of density `a` against another technique of density `b`. [Veach 1997, eq. 9.17]
-#[inline(always)]
-pub(crate) fn power_heuristic(a: f32, b: f32) -> f32 {
-    // The ratio is used so that squares of large densities do not overflow.
-    if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
 }

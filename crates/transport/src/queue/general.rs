@@ -3,17 +3,18 @@
 use super::lanes::{LANES, put, vec3};
 use super::paths::Paths;
 use super::vertices::{Point, Vertices};
+use crate::interaction::Interaction;
+use crate::media::Arrival;
 use crate::path_tracing::{Path, PathTracing};
 use crate::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Bsdf, CpuLevel, Surface, Tracer, TransportMode};
+use bilux_scene::{CpuLevel, Tracer, TransportMode};
 
 /// What these vertices have beyond the others.
 #[derive(Default)]
 pub(super) struct General {
-    surfaces: Vec<Surface>,
-    bsdfs: Vec<Bsdf>,
+    interactions: Vec<Interaction>,
 }
 
 impl Paths {
@@ -33,7 +34,7 @@ impl Paths {
             if v.count > 0 {
                 let scene = context.scene;
                 let media = |path: &Path, i: usize, wi: Vec3| {
-                    path.walk.media.towards(scene, &g.surfaces[i], path.walk.wo(), wi)
+                    path.walk.media.towards(scene, &g.interactions[i], path.walk.wo(), wi)
                 };
                 self.connect(v, context, |v, _: CpuLevel| g.eval(v), media);
                 self.leave(v, g, tracing, context, tracer);
@@ -55,8 +56,7 @@ impl Paths {
     ) -> usize {
         let is_clear = context.scene.has_clear_media();
         v.count = 0;
-        g.surfaces.clear();
-        g.bsdfs.clear();
+        g.interactions.clear();
         for (used, (index, hit)) in hits.iter().enumerate() {
             if v.count == LANES {
                 return used;
@@ -75,23 +75,22 @@ impl Paths {
             }
             let wo = one.path.walk.wo();
             let (path, mut task) = one.parts(context, tracer);
-            g.bsdfs.extend(tracing.arrive(path, &surface, &mut task));
-            if g.bsdfs.len() == v.count {
+            g.interactions.extend(tracing.arrive(path, &Arrival::Surface(surface), &mut task));
+            if g.interactions.len() == v.count {
                 continue;
             }
             one.begin_event();
-            let bsdf = &g.bsdfs[v.count];
-            if bsdf.is_delta() {
+            let at = &g.interactions[v.count];
+            if at.is_delta() {
                 let (path, mut task) = one.parts(context, tracer);
                 tracing.skip_lights(&mut task);
-                if tracing.scatter(path, &surface, bsdf, &mut task) {
+                if tracing.scatter(path, at, &mut task) {
                     self.next.push(*index);
                 }
-                g.bsdfs.truncate(v.count);
+                g.interactions.truncate(v.count);
                 continue;
             }
             v.push(*index, &Point::from(&surface), wo, &one.state.sampler);
-            g.surfaces.push(surface);
             self.shaded.push(*index);
         }
         hits.len()
@@ -113,10 +112,10 @@ impl Paths {
         v.draw_points(level, dimension + 2);
         let u = v.u;
         v.draw_numbers(level, dimension + 3);
-        for (i, (surface, bsdf)) in g.surfaces.iter().zip(&g.bsdfs).enumerate() {
+        for (i, at) in g.interactions.iter().enumerate() {
             let (path, mut task) = self.paths[v.paths[i] as usize].parts(context, tracer);
             let point = Vec2::new(u[0].0[i], u[1].0[i]);
-            let goes_on = tracing.scatter_by(path, surface, bsdf, &mut task, (u_choice.0[i], point))
+            let goes_on = tracing.scatter_by(path, at, &mut task, (u_choice.0[i], point))
                 && tracing.survives(path, || v.u[0].0[i]);
             if goes_on {
                 self.next.push(v.paths[i]);
@@ -129,10 +128,10 @@ impl General {
     /// The BSDFs for the light samples.
     fn eval(&self, v: &mut Vertices) {
         let Vertices { wo, light, scattered, pdf, .. } = v;
-        for (i, bsdf) in self.bsdfs.iter().enumerate() {
+        for (i, at) in self.interactions.iter().enumerate() {
             let is_wanted = light.pdf.0[i] > 0.0 && !super::lanes::rgb(&light.li, i).is_black();
             let (found, density) = match is_wanted {
-                true => bsdf.eval_and_pdf(vec3(wo, i), vec3(&light.wi, i), TransportMode::Radiance),
+                true => at.eval_and_pdf(vec3(wo, i), vec3(&light.wi, i), TransportMode::Radiance),
                 false => (Rgb::BLACK, 0.0),
             };
             put(scattered, i, found.to_array());

@@ -103,7 +103,7 @@ impl Paths {
     pub(super) fn add_direct_light(&mut self, tracer: &mut Tracer) {
         for list in &mut self.connections.lists {
             list.trace(tracer, |contribution, passed| {
-                self.paths[contribution.path as usize].direct += contribution.light * passed;
+                self.paths[contribution.path as usize].direct += contribution.light * passed.transmittance;
             });
         }
         for &index in &self.shaded {

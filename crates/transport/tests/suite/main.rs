@@ -20,6 +20,7 @@ mod one_picture;
 mod path_tracing;
 mod queue;
 mod random_numbers;
+mod scattering;
 mod sides;
 mod stop;
 mod strategies;

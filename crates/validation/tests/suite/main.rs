@@ -9,6 +9,7 @@ mod course;
 mod formats_agree;
 mod light_contract;
 mod pbrt_scenes;
+mod phase_contract;
 mod principled_contract;
 mod shared_scenes;
 mod vertex_looks;

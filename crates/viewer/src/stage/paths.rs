@@ -42,6 +42,7 @@ fn name(kind: VertexKind) -> &'static str {
         VertexKind::Reflection => "reflection",
         VertexKind::Transmission => "transmission",
         VertexKind::Absorption => "absorption",
+        VertexKind::Medium => "medium",
         VertexKind::Emitter => "emitter",
         VertexKind::Escape => "escape",
         VertexKind::LightSample => "light sample",

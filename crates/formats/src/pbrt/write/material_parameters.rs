@@ -8,7 +8,21 @@ pub(super) const HOLDS: MaterialSupport = MaterialSupport {
         ("diffuse", &["reflectance"]),
         ("mirror", &["reflectance"]),
         ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "anisotropy", "rotation"]),
-        ("dielectric", &["glass", "eta", "absorption", "thin", "roughness", "anisotropy", "rotation"]),
+        (
+            "dielectric",
+            &[
+                "glass",
+                "eta",
+                "absorption",
+                "scattering",
+                "scattering_anisotropy",
+                "thin",
+                "roughness",
+                "anisotropy",
+                "rotation",
+            ],
+        ),
+        ("interface", &["absorption", "scattering", "scattering_anisotropy"]),
         (
             "principled",
             &[

@@ -1,5 +1,6 @@
 //! Writes pbrt materials: the inverse of [`super::super::materials`].
 
+use super::super::media::Medium;
 use super::material_parameters::HOLDS;
 use super::shape_attributes::AS_IT_IS;
 use super::textures::{Change, TexelMeaning};
@@ -17,20 +18,29 @@ use bilux_scene::{Spec, Value};
 /// Roughness is written as alpha, so pbrt must not take its root.
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
+/// What fills a material.
+fn inside(spec: &Spec) -> Medium {
+    Medium {
+        absorption: colour(spec, "absorption").unwrap_or(Rgb::BLACK),
+        scattering: colour(spec, "scattering").unwrap_or(Rgb::BLACK),
+        anisotropy: number(spec, "scattering_anisotropy").unwrap_or(0.0),
+    }
+}
+
 impl Document<'_> {
-    /// Writes a material; returns its name and the absorption inside.
+    /// Writes a material; returns its name and what is inside.
     pub(super) fn material(
         &mut self,
         spec: &Spec,
         writing: &mut Writing,
-    ) -> Result<(String, Rgb), FormatError> {
+    ) -> Result<(String, Medium), FormatError> {
         let plain = with_indices(spec);
         let spec = if GLASSES.iter().any(|(_, ours)| is_of(spec, ours)) { spec } else { &*plain };
         let is_known = HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind);
         let principled = if is_known { None } else { as_principled(spec, "pbrt", writing) };
         let spec = principled.as_ref().unwrap_or(spec);
         HOLDS.warn_unsupported(spec, writing);
-        let mut absorbed = Rgb::BLACK;
+        let mut medium = Medium::default();
         let given = match spec.kind.as_str() {
             "diffuse" => self.diffuse(spec, "reflectance", 0.7, writing)?,
             "mirror" => {
@@ -40,14 +50,18 @@ impl Document<'_> {
             }
             "conductor" => self.metal(spec, writing)?,
             "dielectric" => {
-                absorbed = colour(spec, "absorption").unwrap_or(Rgb::BLACK);
+                medium = inside(spec);
                 self.glass(spec, "eta", "thin", ["roughness", "anisotropy", "rotation"], writing)?
+            }
+            "interface" => {
+                medium = inside(spec);
+                " \"string type\" \"interface\"".to_owned()
             }
             "principled" => return self.principled(spec, writing),
             "mix" => self.mix(spec, writing)?,
             _ => self.shiny(spec, writing)?,
         };
-        self.named(spec, &spec.name, &given, writing).map(|name| (name, absorbed))
+        self.named(spec, &spec.name, &given, writing).map(|name| (name, medium))
     }
 
     /// Writes a named material of this kind.
@@ -180,7 +194,7 @@ impl Document<'_> {
     }
 
     /// Writes metal, glass and a coated base, mixed if a surface combines several of them.
-    fn principled(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(String, Rgb), FormatError> {
+    fn principled(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(String, Medium), FormatError> {
         let white =
             |key: &str| colour(spec, key).is_none_or(|c| c == Rgb::WHITE) && texture(spec, key).is_none();
         let given = |key: &str| texture(spec, key).is_some() || number(spec, key).is_some_and(|x| x > 0.0);
@@ -208,7 +222,7 @@ impl Document<'_> {
             writing.warn("pbrt files can store 'coat_weight' only for metal: left out");
         }
         let name = self.named(spec, &spec.name, &whole.unwrap_or_default(), writing)?;
-        Ok((name, absorbed))
+        Ok((name, Medium { absorption: absorbed, ..Medium::default() }))
     }
 
     /// Mixes one material with the ones so far; `share` names the parameter with its weight.

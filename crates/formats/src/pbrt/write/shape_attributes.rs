@@ -30,12 +30,15 @@ impl Document<'_> {
         spec: &Spec,
         writing: &mut Writing,
     ) -> Result<ShapeAttributes, FormatError> {
-        let (name, absorbed) = self.material(spec, writing)?;
+        let (name, inside) = self.material(spec, writing)?;
         let mut look =
             ShapeAttributes { begin: format!("NamedMaterial \"{name}\"\n"), ..ShapeAttributes::default() };
-        if !absorbed.is_black() {
+        if !inside.is_clear() {
             let medium = self.name(&spec.name, "medium");
-            let given = rgb("sigma_a", absorbed) + &rgb("sigma_s", Rgb::BLACK);
+            let mut given = rgb("sigma_a", inside.absorption) + &rgb("sigma_s", inside.scattering);
+            if inside.anisotropy != 0.0 {
+                given += &float("g", inside.anisotropy);
+            }
             self.line(&format!("MakeNamedMedium \"{medium}\" \"string type\" \"homogeneous\"{given}"));
             let _ = writeln!(look.begin, "MediumInterface \"{medium}\" \"\"");
         }

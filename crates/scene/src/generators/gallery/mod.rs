@@ -1,10 +1,11 @@
-//! Eight small scenes that look good, each difficult for light transport in a different way. Each scene has its own
+//! Nine small scenes that look good, each difficult for light transport in a different way. Each scene has its own
 //! file and is composed for a 4:3 image; `bilux bench render` measures on them.
 
 pub(super) mod bidirectional;
 pub(super) mod caustics;
 pub(super) mod daylight;
 pub(super) mod door_ajar;
+pub(super) mod fog;
 pub(super) mod indirect;
 pub(super) mod lampshades;
 pub(super) mod many_lights;

@@ -15,6 +15,7 @@ use super::{
 use crate::bsdf::{Bsdf, Lobe, OpaqueBase, OpaqueBaseInputs, is_rough};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::media::Medium;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::{atan, ln};
@@ -193,6 +194,11 @@ struct Principled {
 }
 
 impl Principled {
+    /// True when light enters an inside.
+    fn is_solid(&self) -> bool {
+        !self.maps.thin && is_there(&self.maps.transmission_weight)
+    }
+
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
         let point = self.maps.at(surface.uvs());
@@ -308,15 +314,14 @@ impl Material for Principled {
     }
 
     fn nested(&self) -> Option<Nested> {
-        let is_solid = !self.maps.thin && is_there(&self.maps.transmission_weight);
-        (is_solid && self.priority > 0).then_some(Nested {
+        (self.is_solid() && self.priority > 0).then_some(Nested {
             priority: self.priority,
             eta: self.maps.specular_ior.number,
             dispersion: self.maps.dispersion,
         })
     }
 
-    fn sigma_a(&self) -> Rgb {
-        self.sigma_a
+    fn medium(&self) -> Option<Medium> {
+        self.is_solid().then_some(Medium::absorbing(self.sigma_a))
     }
 }

@@ -33,6 +33,7 @@ const PANEL_NORMAL: Vec3 = Vec3::Y;
 struct Verdict {
     techniques: TechniqueCounts,
     flaw: Flaw,
+    fog: Option<Rgb>,
     compared: usize,
     wrong: usize,
     worst: f64,
@@ -45,6 +46,10 @@ impl Verdict {
     fn look(&mut self, task: &Task, found: &Contribution, key: (bool, usize), path: &Path) {
         let all = path.densities(task, &self.techniques, self.flaw);
         let sum: f64 = all.iter().map(|(_, density)| density).sum();
+        if sum == 0.0 && found.own == PerSet::ZERO {
+            // No technique that takes samples finds it.
+            return;
+        }
         let own = all.iter().find(|(k, _)| *k == key).map_or(0.0, |(_, density)| *density);
         let wanted = own / sum;
         let weight = f64::from(found.own.0[0]) / (f64::from(found.own.0[0]) + f64::from(found.others.0[0]));
@@ -67,13 +72,13 @@ impl Verdict {
 const SAMPLES: u32 = 16;
 
 /// Checks every path of some samples, by every technique.
-fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
+fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw, fog: Option<Rgb>) -> Verdict {
     let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
     let settings = RenderSettings::new(24, 24, SAMPLES);
     let eye = integrator.camera_rays(scene, &*scene.cameras()[0].1, &settings);
     let mut tracer = Tracer::new(scene, false);
     let mut verdict =
-        Verdict { techniques: *techniques, flaw, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
+        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
         let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
@@ -85,6 +90,23 @@ fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
 /// Diffuse, rough, polished and transparent bodies, with normals from a normal map or interpolated, under a light of
 /// each kind that `lights` names.
 fn scene(lights: &[&str], camera: Spec) -> Scene {
+    let glass = Spec::new("", "dielectric");
+    shapes::built(&filled(lights, camera, &glass))
+}
+
+/// How much of each channel the fog absorbs and scatters, per metre.
+const FOG: [Rgb; 2] = [Rgb::new(0.02, 0.05, 0.01), Rgb::new(0.25, 0.15, 0.1)];
+
+/// The same bodies in fog, with mirrors in place of glass, so that fog fills every edge.
+fn foggy(lights: &[&str]) -> Scene {
+    let mut builder = filled(lights, cameras()[0].clone(), &Spec::new("", "mirror"));
+    let fog = Spec::new("", "interface").with("absorption", FOG[0]).with("scattering", FOG[1]);
+    let fog = fog.with("scattering_anisotropy", 0.4f32);
+    shapes::put(&mut builder, "fog", shapes::ball(Vec3::ZERO, 9.0, 8, false), fog);
+    shapes::built(&builder)
+}
+
+fn filled(lights: &[&str], camera: Spec, glass: &Spec) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     let waves = (0..64).map(|i| {
         let lean = |k: i32| 0.5 + 0.3 * bilux_math::transcendental::sin_cos(k as f32 * FRAC_PI_4).0;
@@ -97,10 +119,13 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
     let wall = shapes::quad(Vec3::new(-2.5, 0.0, -2.0), Vec3::X * 5.0, Vec3::Y * 3.0);
     shapes::put(&mut builder, "wall", wall, shapes::diffuse(0.6f32));
     let silver = Spec::new("", "conductor").with("metal", "silver");
-    let frosted = Spec::new("", "dielectric").with("roughness", 0.6f32);
+    let frosted = match &*glass.kind {
+        "dielectric" => glass.clone().with("roughness", 0.6f32),
+        _ => glass.clone(),
+    };
     let balls = [
         (-1.4, silver.clone().with("roughness", 0.5f32)),
-        (-0.5, Spec::new("", "dielectric")),
+        (-0.5, glass.clone()),
         (0.5, silver),
         (1.4, frosted),
     ];
@@ -125,7 +150,7 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
     }
     let camera = camera.with("position", Vec3::new(0.0, 1.6, 4.0)).with("look_at", Vec3::new(0.0, 0.6, 0.0));
     builder.cameras = vec![CameraSpec { spec: camera, keyframes: Vec::new() }];
-    shapes::built(&builder)
+    builder
 }
 
 fn cameras() -> [Spec; 3] {
@@ -156,7 +181,7 @@ fn every_mis_weight_matches_its_definition() {
             let scene = scene(lights, camera);
             for direct in [true, false] {
                 let techniques = TechniqueCounts { direct, ..sets()[(i + k) % 4] };
-                let verdict = verdict(&scene, &techniques, Flaw::None);
+                let verdict = verdict(&scene, &techniques, Flaw::None, None);
                 let Verdict { compared, wrong, worst, telling, .. } = verdict;
                 assert!(
                     wrong == 0,
@@ -180,11 +205,12 @@ fn every_mis_weight_matches_its_definition_among_many_lights() {
         let scene = scene(lights, cameras()[i].clone());
         assert!(!crate::LightChoice::new(&scene).takes_all());
         for techniques in [sets()[0], TechniqueCounts { direct: false, ..sets()[1] }] {
-            let Verdict { compared, wrong, worst, telling, .. } = verdict(&scene, &techniques, Flaw::None);
+            let Verdict { compared, wrong, worst, telling, .. } =
+                verdict(&scene, &techniques, Flaw::None, None);
             assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
             assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
         }
-        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[0], Flaw::Choice);
+        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[0], Flaw::Choice, None);
         assert!(
             wrong > compared / 20,
             "only {wrong} of {compared} weights know how seldom a light is chosen"
@@ -205,8 +231,32 @@ fn densities_with_a_factor_left_out_give_other_weights() {
         Flaw::Reverse,
     ];
     for flaw in flaws {
-        let verdict = verdict(&scene, &TechniqueCounts { direct: flaw != Flaw::Direct, ..sets()[1] }, flaw);
+        let techniques = TechniqueCounts { direct: flaw != Flaw::Direct, ..sets()[1] };
+        let verdict = verdict(&scene, &techniques, flaw, None);
         let Verdict { compared, wrong, .. } = verdict;
+        assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
+    }
+}
+
+#[test]
+fn every_mis_weight_matches_its_definition_in_fog() {
+    let extinction = Some(FOG[0] + FOG[1]);
+    for (i, lights) in [&["rect"][..], &["point", "rect"]].into_iter().enumerate() {
+        let scene = foggy(lights);
+        for techniques in [sets()[i], sets()[2 + i]] {
+            let Verdict { compared, wrong, worst, telling, .. } =
+                verdict(&scene, &techniques, Flaw::None, extinction);
+            assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
+            assert!(compared > 3000 && telling[..4].iter().sum::<usize>() > 500, "{telling:?}");
+        }
+    }
+}
+
+#[test]
+fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
+    let scene = foggy(&["rect"]);
+    for flaw in [Flaw::Survival, Flaw::Hazard, Flaw::Cosine, Flaw::Distance] {
+        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, Some(FOG[0] + FOG[1]));
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }
 }

@@ -1,20 +1,20 @@
 //! A whole path, and how often each technique finds it by the definition.
 
 use super::PANEL_AREA;
+use crate::interaction::Interaction;
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
-use bilux_math::Vec3;
-use bilux_scene::Bsdf;
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::TransportMode;
 
 /// A vertex between the light and the camera, in both directions as the code has evaluated it.
 #[derive(Clone)]
 pub(super) struct PathVertex {
-    /// Position and normal, as the light subpath reached them and as the camera subpath did: not quite the same where
+    /// Position and normal (zero in a medium), as the light subpath reached them and as the camera subpath did: not quite the same where
     /// the two merge.
     pub(super) from_light: (Vec3, Vec3),
     pub(super) from_camera: (Vec3, Vec3),
-    pub(super) bsdf: Bsdf,
+    pub(super) at: Interaction,
     pub(super) to_light: Vec3,
     pub(super) to_camera: Vec3,
     /// Its event was a delta event.
@@ -36,6 +36,8 @@ pub(super) struct Path {
     pub(super) nodes: Vec<PathVertex>,
     /// The density of camera rays at the last vertex, over the area perpendicular to them.
     pub(super) camera_density: f32,
+    /// The extinction coefficient of the fog that fills the scene.
+    pub(super) fog: Option<Rgb>,
 }
 
 /// A factor that is left out of the densities, or a mistake in them.
@@ -50,6 +52,10 @@ pub(super) enum Flaw {
     MergedTwice,
     Direct,
     Reverse,
+    /// The probability of coming so far is left out.
+    Survival,
+    /// Points of a medium have a density per area.
+    Hazard,
 }
 
 impl Path {
@@ -84,7 +90,8 @@ impl Path {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
-        for i in (1..=count).filter(|&i| is_open(i)) {
+        let is_merged = |i: &usize| is_open(*i) && !self.nodes[i - 1].at.is_in_medium();
+        for i in (1..=count).filter(is_merged) {
             let copies = match i {
                 1 if leaves_direct => 0.0,
                 _ if flaw == Flaw::MergedTwice => 2.0 * eta,
@@ -101,13 +108,19 @@ impl Path {
     /// are amplified: a cosine has that error whatever its size, and a distance has the error of positions in a scene a
     /// few metres wide. A weight is off by no more than the products are. [Higham 2002, 3.1]
     pub(super) fn tolerance(&self) -> f64 {
-        let inverse_cosine = |node: &PathVertex, to: Vec3| 1.0 / cosine(node.from_light.1, to, Flaw::None);
+        let inverse_cosine = |node: &PathVertex, to: Vec3| match node.at.is_in_medium() {
+            true => 1.0,
+            false => 1.0 / cosine(node.from_light.1, to, Flaw::None),
+        };
         let cosines = self
             .nodes
             .iter()
             .map(|node| inverse_cosine(node, node.to_light) + inverse_cosine(node, node.to_camera));
         let lengths = self.nodes.windows(2).map(|pair| 4.0 / edge(&pair[0], &pair[1], Flaw::None).sqrt());
-        let roundings = 8.0 * self.nodes.len() as f64 + cosines.chain(lengths).sum::<f64>();
+        // Each way along an edge has exponentials of rounded exponents, two sums of three channels and a ratio.
+        let edges = if self.fog.is_some() { self.nodes.len() + 1 } else { 0 };
+        let roundings =
+            8.0 * self.nodes.len() as f64 + 2.0 * 8.0 * edges as f64 + cosines.chain(lengths).sum::<f64>();
         roundings / f64::from(1 << 24)
     }
 
@@ -126,16 +139,19 @@ impl Path {
         let chosen =
             if flaw == Flaw::Choice { 1.0 } else { task.context.lights.probability(self.start.index) };
         let picked = f64::from(direct) * f64::from(chosen);
-        let mut product =
-            f64::from(emission) * f64::from(choice) * cosine(first.from_light.1, first.to_light, flaw);
+        let mut product = f64::from(emission)
+            * f64::from(choice)
+            * self.arriving(first, first.from_light.1, first.to_light, flaw);
         if let Some(p) = self.start.p {
-            product /= distance2(p, first.from_light.0, flaw);
+            product *= self.passing(first, p.distance(first.from_light.0), flaw)
+                / distance2(p, first.from_light.0, flaw);
         }
         let mut all = vec![1.0, picked, product];
         for pair in self.nodes.windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
             product *= a.density(a.to_light, a.to_camera, TransportMode::Importance)
-                * cosine(b.from_light.1, b.to_light, flaw)
+                * self.arriving(b, b.from_light.1, b.to_light, flaw)
+                * self.passing(b, a.from_camera.0.distance(b.from_light.0), flaw)
                 / edge(a, b, flaw);
             all.push(product);
         }
@@ -145,8 +161,13 @@ impl Path {
     /// Densities of camera subpaths of 0, 1, 2 … vertices.
     fn camera_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
         let last = self.nodes.last().unwrap();
-        let mut product =
-            f64::from(self.camera_density) * cosine(last.from_camera.1, last.to_camera, Flaw::None);
+        let mut product = f64::from(self.camera_density)
+            * self.arriving(last, last.from_camera.1, last.to_camera, Flaw::None);
+        if self.fog.is_some() {
+            let p = last.from_camera.0;
+            let seen = task.context.camera.connect(p, Vec2::ZERO, last.at.time()).unwrap();
+            product *= self.passing(last, seen.p.distance(p), flaw);
+        }
         let mut all = vec![1.0, 1.0, product];
         let mode = if flaw == Flaw::Reverse { TransportMode::Importance } else { TransportMode::Radiance };
         let density = |node: &PathVertex| {
@@ -159,7 +180,8 @@ impl Path {
         };
         for pair in self.nodes.windows(2).rev() {
             let [b, a] = [&pair[0], &pair[1]];
-            product *= density(a) * cosine(b.from_camera.1, b.to_camera, flaw) / edge(b, a, flaw);
+            product *= density(a) * self.arriving(b, b.from_camera.1, b.to_camera, flaw) / edge(b, a, flaw);
+            product *= self.passing(b, b.from_camera.0.distance(a.from_light.0), flaw);
             all.push(product);
         }
         let light = &task.context.scene.lights()[self.start.index].light;
@@ -167,16 +189,42 @@ impl Path {
         product *= match self.start.p {
             _ if light.is_delta() => 0.0,
             None => density(first),
-            Some(p) => density(first) * f64::from(self.start.cos) / distance2(p, first.from_light.0, flaw),
+            Some(p) => {
+                let survival = self.survival(p.distance(first.from_light.0), flaw);
+                density(first) * f64::from(self.start.cos) * survival / distance2(p, first.from_light.0, flaw)
+            }
         };
         all.push(product);
         all
     }
 }
 
+impl Path {
+    /// The cosine at a surface.
+    fn arriving(&self, node: &PathVertex, n: Vec3, direction: Vec3, flaw: Flaw) -> f64 {
+        if node.at.is_in_medium() { 1.0 } else { cosine(n, direction, flaw) }
+    }
+
+    /// The probability of coming to a surface over this distance through the fog, or the density per metre of an event there:
+    /// means over the channels.
+    fn passing(&self, node: &PathVertex, distance: f32, flaw: Flaw) -> f64 {
+        let Some(fog) = self.fog.filter(|_| node.at.is_in_medium() && flaw != Flaw::Hazard) else {
+            return self.survival(distance, flaw);
+        };
+        let channel = |sigma: f32| f64::from(sigma) * (-f64::from(sigma) * f64::from(distance)).exp();
+        fog.to_array().map(channel).iter().sum::<f64>() / 3.0
+    }
+
+    fn survival(&self, distance: f32, flaw: Flaw) -> f64 {
+        let Some(fog) = self.fog.filter(|_| flaw != Flaw::Survival) else { return 1.0 };
+        let channel = |sigma: f32| (-f64::from(sigma) * f64::from(distance)).exp();
+        fog.to_array().map(channel).iter().sum::<f64>() / 3.0
+    }
+}
+
 impl PathVertex {
     fn density(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f64 {
-        if self.is_delta { 1.0 } else { f64::from(self.bsdf.pdf_solid_angle(wo, wi, mode)) }
+        if self.is_delta { 1.0 } else { f64::from(self.at.pdf_solid_angle(wo, wi, mode)) }
     }
 }
 

@@ -36,7 +36,7 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
 
 fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Traced) {
     let techniques = &{ verdict.techniques };
-    let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || techniques.direct);
+    let is_seen = |vertex: &Vertex| !vertex.at.is_delta() && (vertex.depth > 0 || techniques.direct);
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.sample.enter_light_vertex(vertex.depth);
         let Some((_, connection)) = to_camera(task, vertex, techniques) else { continue };
@@ -44,22 +44,22 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
         task.sample.enter_light_vertex(vertex.depth);
         let u = task.sample.sampler.next_2d();
         let lens = if task.context.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
-        let seen = task.context.camera.connect(vertex.surface.p, lens, vertex.surface.time).unwrap();
+        let seen = task.context.camera.connect(vertex.at.p(), lens, vertex.at.time()).unwrap();
         let nodes = y.nodes(i, true, seen.wi, false);
-        let path = Path { start, nodes, camera_density: seen.density };
+        let path = Path { start, nodes, camera_density: seen.density, fog: verdict.fog };
         verdict.look(task, &found, (false, i + 2), &path);
     }
 }
 
 fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
-        let Some(found) = emitted(task, &vertex.surface, vertex.wo) else { continue };
+        let Some(surface) = vertex.at.surface() else { continue };
+        let Some(found) = emitted(task, surface, vertex.wo) else { continue };
         let found = found.by(vertex.beta, &vertex.partial);
-        let index = task.context.scene.light_index_of(vertex.surface.object).unwrap();
-        let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
-        let start = Start { index, p: Some(vertex.surface.p), cos };
+        let index = task.context.scene.light_index_of(surface.object).unwrap();
+        let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
         let nodes = z.nodes(i - 1, false, -vertex.wo, z.is_delta[i - 1]);
-        let path = Path { start, nodes, camera_density: z.camera_density };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
         verdict.look(task, &found, (false, 0), &path);
     }
     let (Some(subpath), Some(last)) = (&z.left, z.vertices.len().checked_sub(1)) else { return };
@@ -71,24 +71,28 @@ fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     from_infinity(task, subpath, |hit| founds.push(hit.by(subpath.walk.beta, &subpath.partial)));
     for found in founds {
         let nodes = z.nodes(last, false, subpath.walk.ray.direction.into(), z.is_delta[last]);
-        let path =
-            Path { start: Start { index, p: None, cos: 1.0 }, nodes, camera_density: z.camera_density };
+        let path = Path {
+            start: Start { index, p: None, cos: 1.0 },
+            nodes,
+            camera_density: z.camera_density,
+            fog: verdict.fog,
+        };
         verdict.look(task, &found, (false, 0), &path);
     }
 }
 
 fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     let techniques = &{ verdict.techniques };
-    for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
+    for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.at.is_delta()) {
         for index in 0..task.context.scene.lights().len() {
             let u = task.sample.sampler.next_2d();
             let Some(connection) = to_light(task, vertex, index, u, techniques) else { continue };
             let Some(found) = connection.trace(task.tracer) else { continue };
             let light = &task.context.scene.lights()[index].light;
-            let sample = light.sample_li(vertex.surface.p, vertex.surface.time, u).unwrap();
+            let sample = light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
             let start = Start { index, p: sample.point, cos: sample.cos() };
             let nodes = z.nodes(i, false, sample.wi, false);
-            let path = Path { start, nodes, camera_density: z.camera_density };
+            let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
             verdict.look(task, &found, (false, 1), &path);
         }
     }
@@ -98,16 +102,16 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
 fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Traced, &Traced)) {
     let techniques = &{ verdict.techniques };
     let open = |subpath: &Traced| {
-        (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].bsdf.is_delta()).collect::<Vec<_>>()
+        (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].at.is_delta()).collect::<Vec<_>>()
     };
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
         let Some(connection) = to_vertex(task, camera_end, light_end, techniques) else { continue };
         let Some(found) = connection.trace(task.tracer) else { continue };
-        let direction = (light_end.surface.p - camera_end.surface.p).normalize();
+        let direction = (light_end.at.p() - camera_end.at.p()).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));
-        let path = Path { start, nodes, camera_density: z.camera_density };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
         verdict.look(task, &found, (false, b + 2), &path);
     }
     if techniques.eta == PerSet::ZERO {
@@ -118,9 +122,11 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         if light_end.depth == 0 && !techniques.direct {
             continue;
         }
-        let (position, photon) = light_end.photon();
-        let position = PhotonPosition { p: camera_end.surface.p, ..position };
-        let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
+        let (Some((position, photon)), Some(surface)) = (light_end.photon(), camera_end.at.surface()) else {
+            continue;
+        };
+        let position = PhotonPosition { p: surface.p, ..position };
+        let photon = Photon { n_geom: surface.n_geom, ..photon };
         let photons = Photons::new(vec![(position, photon)], 1.0, *techniques);
         // One vertex replaces both: it scatters as it does at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
@@ -128,7 +134,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         let behind = nodes.len();
         nodes.extend(z.nodes(a, false, light_end.wo, false));
         nodes[behind].from_light = shared.from_light;
-        let path = Path { start, nodes, camera_density: z.camera_density };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
         merged(task, &photons, camera_end, |_, found| {
             verdict.look(task, found, (true, b + 2), &path);
         });
@@ -153,8 +159,9 @@ impl Traced<'_> {
             let next = if i < upto { -self.vertices[i + 1].wo } else { onwards };
             let (to_light, to_camera) = if from_light { (vertex.wo, next) } else { (next, vertex.wo) };
             let is_delta = if i < upto { self.is_delta[i] } else { is_delta };
-            let at = (vertex.surface.p, vertex.surface.n_geom);
-            PathVertex { from_light: at, from_camera: at, bsdf: vertex.bsdf, to_light, to_camera, is_delta }
+            let place = (vertex.at.p(), vertex.at.surface().map_or(Vec3::ZERO, |surface| surface.n_geom));
+            let at = vertex.at;
+            PathVertex { from_light: place, from_camera: place, at, to_light, to_camera, is_delta }
         };
         let nodes = (0..=upto).map(node);
         if from_light { nodes.collect() } else { nodes.rev().collect() }
@@ -174,9 +181,9 @@ fn followed<'w>(
             break;
         };
         if is_camera && vertex.depth == 0 {
-            camera_density = task.context.camera.density(&subpath.walk.ray, vertex.surface.t);
-            let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
-            vertex.partial = Partial::of_camera(camera_density * cos, techniques);
+            camera_density = task.context.camera.density(&subpath.walk.ray, vertex.at.t());
+            vertex.partial =
+                Partial::of_camera(camera_density * vertex.arriving, techniques, vertex.partial.merged);
             subpath.partial = vertex.partial;
         }
         let stream = if is_camera { 1 } else { LIGHT_STREAM + 1 };

@@ -1,0 +1,64 @@
+//! `interface`: the boundary of a medium, without a surface of its own: fog, smoke, a cloud.
+
+use super::dielectric::PRIORITY;
+use super::{ABSORPTION, Material, MaterialEntry, Nested};
+use crate::bsdf::{Bsdf, Dielectric, Lobe};
+use crate::classic::ClassicMaterial;
+use crate::media::{DIAMETER, DRAINE_ALPHA, Medium, PHASE, PHASE_ANISOTROPY, SCATTERING};
+use crate::surface::Surface;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "interface",
+        summary: "the boundary of fog, smoke or a cloud, which light passes straight through",
+        source: "",
+        parameters: &[ABSORPTION, SCATTERING, PHASE, PHASE_ANISOTROPY, DRAINE_ALPHA, DIAMETER, PRIORITY],
+    },
+    build: |reader, _| {
+        let medium = Medium::read(reader, reader.colour(ABSORPTION.name))?;
+        // Without a priority it would be a surface that others refract against.
+        let priority = (reader.integer(PRIORITY.name) as u32).max(1);
+        Ok(Arc::new(Interface { medium, priority }))
+    },
+    principled: None,
+};
+
+/// What is on both sides alike.
+const NOTHING: Dielectric =
+    Dielectric { eta: 1.0, dispersion: 0.0, tint: Rgb::WHITE, thin: true, film: None };
+
+struct Interface {
+    medium: Medium,
+    priority: u32,
+}
+
+impl Material for Interface {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        Bsdf::of(surface.n_shade, surface.n_geom, Lobe::Dielectric(NOTHING))
+    }
+
+    fn classic(&self, _surface: &Surface) -> ClassicMaterial {
+        ClassicMaterial {
+            ks: Rgb::BLACK,
+            kt: Rgb::WHITE,
+            reflectivity: 0.0,
+            sigma_a: self.medium.sigma_a,
+            ..ClassicMaterial::default()
+        }
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        Some(Nested { priority: self.priority, eta: 1.0, dispersion: 0.0 })
+    }
+
+    fn is_interface(&self) -> bool {
+        true
+    }
+
+    fn medium(&self) -> Option<Medium> {
+        Some(self.medium)
+    }
+}

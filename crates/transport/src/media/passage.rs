@@ -1,0 +1,96 @@
+//! What lies along a line through media, and how far a path comes along it.
+
+use crate::interaction::MediumPoint;
+use bilux_math::Rgb;
+use bilux_scene::media::FreePath;
+use bilux_scene::{Medium, Surface};
+
+/// A line through media on which nothing blocks light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    /// The fraction of light that passes.
+    pub(crate) transmittance: Rgb,
+    /// The probability that a walk along it, in either direction, has no event on the way.
+    pub(crate) survival: f32,
+    /// The densities of an event at its start, by a walk from its end, and at its end, by a walk from its start; per metre,
+    /// where the walk comes so far.
+    pub(crate) hazards: [f32; 2],
+    is_first: bool,
+}
+
+/// Where a ray ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Arrival {
+    /// At a surface.
+    Surface(Surface),
+    /// In a medium, which scatters there.
+    Medium(MediumPoint),
+    /// Nowhere: it leaves the scene.
+    Escape,
+}
+
+/// What happened to a path along a ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Travelled {
+    pub(crate) arrival: Arrival,
+    /// The fraction of light that comes so far and is scattered there, over the density with which the path does.
+    pub(crate) weight: Rgb,
+    pub(crate) passage: Passage,
+}
+
+impl Passage {
+    /// Through nothing.
+    pub(crate) const CLEAR: Passage =
+        Passage { transmittance: Rgb::WHITE, survival: 1.0, hazards: [0.0; 2], is_first: true };
+
+    /// The same line, continued by this.
+    #[inline]
+    pub(crate) fn then(self, next: FreePath) -> Passage {
+        Passage {
+            transmittance: self.transmittance * next.transmittance,
+            survival: self.survival * next.survival,
+            hazards: [if self.is_first { next.hazard } else { self.hazards[0] }, next.hazard],
+            is_first: false,
+        }
+    }
+
+    /// The density of arriving at its end by a walk from its start, over the density over solid angle over the squared
+    /// distance: per area of a surface that the walk meets under this cosine, or per volume (`None`).
+    #[inline]
+    pub(crate) fn arriving(&self, cos: Option<f32>) -> f32 {
+        self.survival * cos.unwrap_or(self.hazards[1])
+    }
+
+    /// The same at its start, by a walk from its end, without the cosine at a surface.
+    #[inline]
+    pub(crate) fn returning(&self, is_in_medium: bool) -> f32 {
+        if is_in_medium { self.survival * self.hazards[0] } else { self.survival }
+    }
+}
+
+impl Travelled {
+    /// At the start.
+    pub(super) const NOWHERE: Travelled =
+        Travelled { arrival: Arrival::Escape, weight: Rgb::WHITE, passage: Passage::CLEAR };
+
+    /// Past all of this.
+    #[inline]
+    pub(super) fn passed(self, part: FreePath) -> Travelled {
+        // Where numbers run out the path carries nothing.
+        let weight = if part.survival > 0.0 { part.transmittance / part.survival } else { Rgb::BLACK };
+        Travelled { weight: self.weight * weight, passage: self.passage.then(part), ..self }
+    }
+
+    /// To an event of a medium after this distance in it.
+    #[inline]
+    pub(super) fn scattered(self, medium: &Medium, distance: f32, point: MediumPoint) -> Travelled {
+        let part = medium.free_path(distance);
+        let density = part.survival * part.hazard;
+        let weight = if density > 0.0 { part.transmittance * medium.sigma_s / density } else { Rgb::BLACK };
+        Travelled {
+            arrival: Arrival::Medium(point),
+            weight: self.weight * weight,
+            passage: self.passage.then(part),
+        }
+    }
+}

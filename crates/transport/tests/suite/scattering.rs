@@ -1,0 +1,241 @@
+//! Media that scatter, against closed forms and against numbers of discrete ordinates: slabs, light in fog, furnaces; and the same mean
+//! by every integrator.
+
+use crate::common::statistics::{assert_like_path, assert_like_path_in_turn, assert_unlike_path, estimate};
+use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot, sky, without_mirrors};
+use bilux_math::{Aabb, Rgb, Vec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::generators::shapes::cuboid;
+use bilux_scene::{Scene, SceneBuilder, Spec};
+use bilux_transport::{RenderError, RenderSettings, Silent, integrators, render};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+fn medium(absorption: impl Into<bilux_scene::Value>, scattering: impl Into<bilux_scene::Value>) -> Spec {
+    Spec::new("", "interface").with("absorption", absorption).with("scattering", scattering)
+}
+
+fn boxed(min: Vec3, max: Vec3) -> Arc<bilux_scene::Mesh> {
+    Arc::new(cuboid(Aabb { min, max }))
+}
+
+/// Looks along a direction by parallel rays through a window of this height.
+fn parallel(builder: &mut SceneBuilder, from: Vec3, at: Vec3, up: Vec3, height: f32) {
+    let camera = Spec::new("", "orthographic").with("position", from).with("look_at", at).with("up", up);
+    builder.cameras = vec![CameraSpec { spec: camera.with("height", height), keyframes: Vec::new() }];
+}
+
+/// The mean over a picture of one value, in green, and its standard error.
+fn mean(scene: &Scene, name: &str, max_depth: u32, side: u32, spp: u32) -> (f64, f64) {
+    let integrator = integrators::build(&Spec::new("", name).with("roulette_depth", 1000)).unwrap();
+    let settings = RenderSettings { max_depth, ..RenderSettings::new(side, side, spp) };
+    let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
+    estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
+}
+
+/// Fails unless the mean is this, within three standard errors and these are at most `error`.
+fn assert_is(what: &str, (mean, error): (f64, f64), wanted: f64, largest: f64) {
+    assert!(error <= largest, "{what}: the standard error is {error}, more than {largest}");
+    assert!((mean - wanted).abs() < 3.0 * error + 2e-6, "{what}: {mean} ± {error}, not {wanted}");
+}
+
+/// Half the width of slabs: so much that what leaves at their sides does not count.
+const WIDE: f32 = 200.0;
+
+/// A slab of optical thickness `tau`, a metre thick. Light comes from above, or shines from a panel close below.
+fn slab(albedo: f32, tau: f32, phase: &[(&str, f32)], from_above: bool) -> Scene {
+    let mut builder = SceneBuilder::default();
+    let fog = medium((1.0 - albedo) * tau, albedo * tau);
+    let fog = phase.iter().fold(fog, |fog, (name, value)| match *name {
+        "rayleigh" => fog.with("phase", "rayleigh"),
+        name => fog.with(name, *value),
+    });
+    put(&mut builder, "slab", boxed(Vec3::new(-WIDE, 0.0, -WIDE), Vec3::new(WIDE, 1.0, WIDE)), fog);
+    let below = if from_above { diffuse(0.0f32) } else { diffuse(0.0f32).with("emission", 1.0f32) };
+    put(&mut builder, "below", floor(-0.01, WIDE), below);
+    if from_above {
+        sky(&mut builder, 1.0);
+    }
+    parallel(&mut builder, Vec3::Y * 3.0, Vec3::ZERO, Vec3::Z, 1.0);
+    built(&builder)
+}
+
+/// Light that a slab reflects and passes at normal incidence: albedo, optical thickness, mean cosine, and both numbers. By
+/// discrete ordinates with 40 nodes in each hemisphere; those with 32 agree to 3e-10. [Hulst 1980]
+const SLABS: &[(f32, f32, f32, f64, f64)] = &[
+    (1.0, 0.5, 0.0, 0.2025060, 0.7974940),
+    (0.9, 2.0, 0.0, 0.3616489, 0.3565007),
+    (0.9, 2.0, 0.75, 0.0973946, 0.6609577),
+    (1.0, 2.0, -0.3, 0.5876700, 0.4123300),
+    (0.5, 2.0, 0.0, 0.1128332, 0.1893215),
+    (0.9, 8.0, 0.0, 0.4148432, 0.0160196),
+];
+
+#[test]
+fn slabs_reflect_and_pass_what_discrete_ordinates_say() {
+    let (spp, error) = effort((20, 1.6e-3), (600, 3e-4));
+    for &(albedo, tau, g, reflected, passed) in effort(&SLABS[..4], SLABS) {
+        for (from_above, wanted) in [(true, reflected), (false, passed)] {
+            let scene = slab(albedo, tau, &[("scattering_anisotropy", g)], from_above);
+            let what = format!("albedo {albedo}, thickness {tau}, mean cosine {g}, from above {from_above}");
+            assert_is(&what, mean(&scene, "path", 200, 64, spp), wanted, error);
+        }
+    }
+    for (from_above, wanted) in [(true, 0.3639935), (false, 0.3601731)] {
+        let scene = slab(0.9, 2.0, &[("rayleigh", 0.0)], from_above);
+        assert_is("air", mean(&scene, "path", 200, 64, spp), wanted, error);
+    }
+}
+
+#[test]
+fn connections_in_slabs_find_the_same() {
+    for (albedo, tau, g, reflected, passed) in effort(&SLABS[2..3], SLABS) {
+        let (spp, error) = effort((4, 5e-3), (100, 1e-3));
+        for name in ["bdpt", "vcm"] {
+            let of = |from_above| slab(*albedo, *tau, &[("scattering_anisotropy", *g)], from_above);
+            assert_is(name, mean(&of(true), name, 60, 64, spp), *reflected, error);
+            assert_is(name, mean(&of(false), name, 60, 64, spp), *passed, error);
+        }
+    }
+}
+
+/// A slab whose walks forget what absorbs is brighter by more than the proof allows.
+#[test]
+fn a_slab_without_absorption_is_noticed() {
+    let scene = slab(1.0, 2.0, &[], true);
+    let (found, error) = mean(&scene, "path", 200, 64, 16);
+    assert!((found - SLABS[1].3).abs() > 10.0 * error, "{found} ± {error}");
+}
+
+/// Light scattered once out of a point light's, along a ray that passes at a distance of 1 m: the integral by the
+/// trapezoidal rule over the angle from the light. [Pegoraro 2009]
+fn airlight(sigma_s: f64, sigma_t: f64, half: f64) -> f64 {
+    const STEPS: u32 = 20_000;
+    let end = half.atan();
+    let at = |i: u32| {
+        let angle = -end + 2.0 * end * (f64::from(i) + 0.5) / f64::from(STEPS);
+        // The squared distance cancels against the step along the ray.
+        (-sigma_t * (half + angle.tan() + 1.0 / angle.cos())).exp()
+    };
+    sigma_s / (4.0 * PI) * (0..STEPS).map(at).sum::<f64>() * 2.0 * end / f64::from(STEPS)
+}
+
+#[test]
+fn light_in_fog_is_what_the_closed_form_says() {
+    // Numbers from outside for the integral itself.
+    assert!((airlight(0.1, 0.1, 5.0) - 0.011_375_223_08).abs() < 1e-9);
+    assert!((airlight(0.5, 0.5, 5.0) - 0.004_991_425_82).abs() < 1e-9);
+    for (sigma_s, sigma_t) in [(0.1f32, 0.1f32), (0.5, 0.5), (0.1, 0.4)] {
+        let mut builder = SceneBuilder::default();
+        let fog = medium(sigma_t - sigma_s, sigma_s);
+        put(&mut builder, "fog", boxed(Vec3::new(-5.0, -9.0, -9.0), Vec3::new(5.0, 9.0, 9.0)), fog);
+        builder.lights.push(Spec::new("", "point").with("position", Vec3::Y).with("intensity", 1.0f32));
+        parallel(&mut builder, Vec3::X * -7.0, Vec3::ZERO, Vec3::Y, 1e-3);
+        let scene = built(&builder);
+        let wanted = airlight(f64::from(sigma_s), f64::from(sigma_t), 5.0);
+        for name in ["path", "bdpt", "vcm"] {
+            let found = mean(&scene, name, 1, 64, effort(16, 256));
+            assert_is(&format!("{name}, {sigma_s} of {sigma_t}"), found, wanted, 0.02 * wanted);
+        }
+    }
+}
+
+/// Where nothing absorbs, all is as bright as what surrounds it.
+#[test]
+fn white_media_vanish_in_a_furnace() {
+    let scattering = Rgb::new(1.5, 0.7, 3.0);
+    let spec = medium(0.0f32, scattering);
+    let phases = [
+        spec.clone().with("scattering_anisotropy", 0.6f32),
+        spec.clone().with("phase", "droplets"),
+        spec.with("phase", "draine").with("scattering_anisotropy", -0.3f32),
+        Spec::new("", "dielectric").with("scattering", scattering).with("eta", 1.3f32),
+    ];
+    for (i, material) in phases.into_iter().enumerate() {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), material);
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 20.0);
+        let scene = built(&builder);
+        for name in ["path", "bdpt", "vcm", "auto"].iter().skip(i % 2) {
+            let integrator = integrators::build(&Spec::new("", name)).unwrap();
+            let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(24, 24, effort(16, 256)) };
+            let pixels = shoot(&scene, &*integrator, &settings).film.to_rgb();
+            for channel in 0..3 {
+                let values: Vec<f64> = pixels.iter().map(|pixel| f64::from(pixel[channel])).collect();
+                let (mean, error) = estimate(&values);
+                assert!((mean - 1.0).abs() < 3.5 * error + 1e-4, "{name}, {i}: {mean} ± {error}");
+            }
+        }
+    }
+}
+
+/// Diffuse and glossy bodies in coloured fog, with a lamp in it.
+fn foggy(light: Spec, fog: Spec) -> SceneBuilder {
+    let mut builder = without_mirrors(light);
+    put(&mut builder, "fog", boxed(Vec3::new(-6.0, -1.0, -6.0), Vec3::new(6.0, 6.0, 6.0)), fog);
+    builder
+}
+
+fn fog() -> Spec {
+    medium(Rgb::new(0.01, 0.02, 0.05), Rgb::new(0.1, 0.15, 0.06)).with("scattering_anisotropy", 0.5f32)
+}
+
+#[test]
+fn fog_looks_the_same_from_both_ends() {
+    let lights = [
+        Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)).with("intensity", 4.0f32),
+        Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
+        Spec::new("", "directional").with("direction", Vec3::new(0.3, -1.0, -0.4)),
+        Spec::new("", "environment").with("radiance", 0.5f32),
+        Spec::new("", "sphere")
+            .with("position", Vec3::new(-0.5, 2.5, 0.0))
+            .with("radius", 0.3f32)
+            .with("intensity", 10.0f32),
+    ];
+    for (turn, light) in lights.into_iter().enumerate() {
+        let name = light.kind.clone();
+        assert_like_path_in_turn(turn, &name, &built(&foggy(light, fog())), &["bdpt", "light", "vcm"]);
+    }
+}
+
+/// A ball of milk in a glass with a wall, a clear ball in the fog, a leaf that light passes, a mirror: what borders on what.
+#[test]
+fn fog_around_glass_and_milk_looks_the_same_from_both_ends() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let mut builder = foggy(panel, fog());
+    let milk = Spec::new("", "dielectric").with("eta", 1.33f32).with("scattering", Rgb::new(3.0, 2.0, 1.0));
+    let glass = Spec::new("", "dielectric").with("priority", 3).with("roughness", 0.3f32);
+    put(&mut builder, "glass", ball(Vec3::new(0.0, 0.5, 1.6), 0.5, 10, true), glass);
+    let milk = milk.with("absorption", 0.1f32).with("roughness", 0.3f32);
+    put(&mut builder, "milk", ball(Vec3::new(0.0, 0.5, 1.6), 0.4, 10, true), milk.with("priority", 4));
+    let clear = Spec::new("", "dielectric").with("roughness", 0.4f32);
+    put(&mut builder, "clear", ball(Vec3::new(-1.6, 0.4, 1.2), 0.4, 10, true), clear);
+    let leaf = Spec::new("", "translucent");
+    put(&mut builder, "leaf", quad(Vec3::new(1.0, 0.2, 1.2), Vec3::X * 0.8, Vec3::Y * 0.8), leaf);
+    assert_like_path("milk in glass in fog", &built(&builder), &["bdpt", "vcm"]);
+}
+
+/// Fog that is twice as thick, or scatters back what it ought to scatter on, is noticed.
+#[test]
+fn fog_that_is_thicker_or_turned_is_noticed() {
+    let panel =
+        || Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let thick =
+        medium(Rgb::new(0.01, 0.02, 0.05), Rgb::new(0.2, 0.3, 0.12)).with("scattering_anisotropy", 0.5f32);
+    let turned = fog().with("scattering_anisotropy", -0.5f32);
+    let right = built(&foggy(panel(), fog()));
+    for wrong in [thick, turned] {
+        assert_unlike_path(&right, &built(&foggy(panel(), wrong)), &["path", "bdpt"]);
+    }
+}
+
+#[test]
+fn photon_mapping_says_that_it_does_not_follow_media() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("radiance", 1.0f32);
+    let scene = built(&foggy(panel, fog()));
+    let integrator = integrators::build(&Spec::new("", "sppm")).unwrap();
+    let settings = RenderSettings::new(8, 8, 1);
+    let found = render(&scene, &*scene.cameras()[0].1, &*integrator, &settings, &Silent);
+    assert!(matches!(found, Err(RenderError::Media)));
+}
