@@ -359,7 +359,7 @@ pub struct Merge {
     bilux list materials --json"
 )]
 pub struct List {
-    /// What to list: integrators, accels, visibility, materials, textures, bsdfs, lights, cameras, generators, presets,
+    /// What to list: integrators, accels, visibility, materials, textures, bsdfs, phases, lights, cameras, generators, presets,
     /// formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics or settings
     pub what: String,
     /// Print JSON instead of text

@@ -10,6 +10,7 @@ const STYLES = {
   "reflection": "scatter",
   "transmission": "through",
   "absorption": "lost",
+  "medium": "scatter",
   "emitter": "light",
   "escape": "lost",
   "light sample": "light",

@@ -39,6 +39,7 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
         "emission_sides" => ("emission", Value::Number(2.0)),
         "rotation" => ("radiance", Value::Texture(0)),
         "edge" => ("reflectance", Value::Number(0.5)),
+        "scattering_anisotropy" => ("scattering", Value::Number(2.0)),
         "k" => ("eta", Value::Number(2.0)),
         "eta" => ("k", Value::Number(2.0)),
         "diffuse_transmission_color" => ("diffuse_transmission_weight", Value::Number(0.5)),

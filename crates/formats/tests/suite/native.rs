@@ -340,7 +340,7 @@ fn errors_state_the_location_and_the_nearest_name() {
         ("[[material]]\nkind = \"phong\"\n", "scene.toml:1:1: name (what models call the material)"),
         (
             "[[material]]\nname = \"a\"\n",
-            "scene.toml:1:1: kind (of the material: phong, diffuse, translucent, mirror, conductor, dielectric, principled, mix)",
+            "scene.toml:1:1: kind (of the material: phong, diffuse, translucent, mirror, conductor, dielectric, interface, principled, mix)",
         ),
         ("[[material]]\nname = \"a\"\nkind = \"glas\"\n", "scene.toml:3:8: there is no material 'glas'"),
         (
