@@ -8,6 +8,10 @@ use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportM
 
 /// A vertex of a path, as far as it scatters.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most are surfaces, and a box for each would be allocated at every event"
+)]
 pub(crate) enum Interaction {
     /// A surface, and how it scatters here.
     Surface(Surface, Bsdf),

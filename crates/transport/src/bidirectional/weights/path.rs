@@ -4,6 +4,7 @@ use super::PANEL_AREA;
 use crate::interaction::Interaction;
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
+use bilux_math::transcendental::exp_f64;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::TransportMode;
 
@@ -211,13 +212,13 @@ impl Path {
         let Some(fog) = self.fog.filter(|_| node.at.is_in_medium() && flaw != Flaw::Hazard) else {
             return self.survival(distance, flaw);
         };
-        let channel = |sigma: f32| f64::from(sigma) * (-f64::from(sigma) * f64::from(distance)).exp();
+        let channel = |sigma: f32| f64::from(sigma) * exp_f64(-f64::from(sigma) * f64::from(distance));
         fog.to_array().map(channel).iter().sum::<f64>() / 3.0
     }
 
     fn survival(&self, distance: f32, flaw: Flaw) -> f64 {
         let Some(fog) = self.fog.filter(|_| flaw != Flaw::Survival) else { return 1.0 };
-        let channel = |sigma: f32| (-f64::from(sigma) * f64::from(distance)).exp();
+        let channel = |sigma: f32| exp_f64(-f64::from(sigma) * f64::from(distance));
         fog.to_array().map(channel).iter().sum::<f64>() / 3.0
     }
 }
