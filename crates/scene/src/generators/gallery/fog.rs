@@ -12,7 +12,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 };
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(1.2);
+    let mut stage = Stage::new(1.8);
     stage.deep(24);
     let plaster = stage.diffuse("plaster", [0.55, 0.52, 0.48]);
     stage.put("floor", shapes::floor(Vec3::ZERO, 12.0), plaster);
