@@ -1,7 +1,7 @@
 //! Where a path scatters: on a surface, or at a point of a medium.
 //!
 //! A density over solid angle becomes one over the next vertex: per area of a surface, with the cosine there, or per volume of
-//! a medium, without. [Pauly 2000; Veach 1997, 8.2]
+//! a medium, without. [Pauly 2000]
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};

@@ -93,7 +93,7 @@ impl Draine {
         scale * (part(1.0 + g) - part(s)) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0)
     }
 
-    /// [Jendersie 2023, eq. 5]
+    /// [Jendersie 2023]
     pub(super) fn mean_cosine(&self) -> f32 {
         let Draine { g, alpha } = *self;
         g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / self.norm()

@@ -27,7 +27,7 @@ impl Rayleigh {
         3.0 / 16.0 * FRAC_1_PI * (1.0 + cos * cos)
     }
 
-    /// The root of a cubic. [Frisvad 2011, eq. 14]
+    /// The root of a cubic. [Frisvad 2011]
     #[inline]
     pub(super) fn sample_turn(&self, _u_choice: f32, u: f32) -> f32 {
         let z = 2.0 * (2.0 * u - 1.0);
