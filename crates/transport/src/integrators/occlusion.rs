@@ -2,6 +2,7 @@
 //! the quickest way to see the shape of a bare model. [Zhukov 1998]
 
 use super::{IntegratorEntry, PixelIntegrator};
+use crate::media::Media;
 use crate::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Frame, Rgb, Vec3, warp};
@@ -37,7 +38,10 @@ struct Occlusion {
 impl PixelIntegrator for Occlusion {
     /// 1 where a cosine-distributed direction is unoccluded, 0 where it is occluded; 1 where the ray leaves the scene.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let Some(surface) = task.tracer.closest(ray) else {
+        // Boundaries of media are not surfaces.
+        let mut media = Media::at_start(task.tracer, ray);
+        let first = task.tracer.closest(ray);
+        let Some((surface, _)) = first.and_then(|first| media.closest_from(task.tracer, ray, first)) else {
             task.sample.note(0, || "leaves the scene".to_owned());
             return Rgb::WHITE;
         };
@@ -47,7 +51,8 @@ impl PixelIntegrator for Occlusion {
         let wi = Frame::from_normal(normal)
             .to_world(warp::sample_cosine_hemisphere(task.sample.sampler.next_2d()));
         let probe = Ray { t_max: self.distance, ..surface.spawn(wi) };
-        let open = !task.tracer.occluded(&probe);
+        let media = media.beyond(task.context.scene, &surface, -Vec3::from(ray.direction), wi);
+        let open = media.visible(task.tracer, &probe, None, Vec3::ZERO).is_some();
         task.sample.note(0, || {
             format!("at {} the direction {wi} is {}", surface.p, if open { "open" } else { "closed" })
         });

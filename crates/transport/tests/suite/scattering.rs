@@ -240,3 +240,20 @@ fn photon_mapping_says_that_it_does_not_follow_media() {
     let found = render(&scene, &*scene.cameras()[0].1, &*integrator, &settings, &Silent);
     assert!(matches!(found, Err(RenderError::Media)));
 }
+
+/// The box around fog is not what hides the sky.
+#[test]
+fn fog_occludes_nothing() {
+    let panel =
+        || Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let of = |scene: &SceneBuilder| {
+        shoot(
+            &built(scene),
+            &*integrators::build(&Spec::new("", "occlusion")).unwrap(),
+            &RenderSettings::new(24, 24, 4),
+        )
+        .film
+        .to_rgb()
+    };
+    assert!(of(&foggy(panel(), fog())) == of(&without_mirrors(panel())));
+}
