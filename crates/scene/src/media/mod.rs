@@ -4,8 +4,10 @@
 //! Coefficients are per metre and per channel. Where a channel is chosen, all channels are as likely, wherever a path comes from: so a
 //! density does not depend on the path so far, and is the same for the same line from both ends.
 
+mod grid;
 mod phases;
 
+pub use grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE};
 pub use phases::{
     Draine, Droplets, HenyeyGreenstein, PHASES, Phase, PhaseEntry, PhaseSample, Rayleigh, read_phase,
 };

@@ -1,0 +1,542 @@
+//! Numbers in space, on a regular lattice: the density of smoke, the temperature of fire.
+//!
+//! Voxels come in blocks of 8³, as in the leaves of OpenVDB, and blocks of zeros are not stored. Each block has a bound, its
+//! majorant, so that paths cross thin parts in long steps. [Woodcock 1965; Museth 2013]
+
+use bilux_math::{Transform, Vec3};
+use std::fmt;
+
+/// Voxels along each side of a block.
+pub const BLOCK: usize = 8;
+/// Voxels of a block.
+pub const BLOCK_VOXELS: usize = BLOCK * BLOCK * BLOCK;
+
+/// The values of a block, x varying fastest, then y.
+pub type Block = [f32; BLOCK_VOXELS];
+
+/// Marks a block of zeros.
+const EMPTY: u32 = u32::MAX;
+
+/// The maximum number of voxels along a side: positions in voxels need digits for fractions.
+pub const MAX_SIDE: usize = 1 << 16;
+/// The maximum number of blocks, stored or not: 32 bytes for 8 GiB.
+const MAX_BLOCKS: usize = 1 << 30;
+
+/// Halves are exact from here to their maximum; smaller values lose digits.
+const HALF_NORMAL: f32 = 6.103_515_6e-5;
+const HALF_MAX: f32 = 65_504.0;
+
+/// Numbers, none of them negative, at the centres of voxels, linear in between, and 0 outside.
+#[derive(Clone, PartialEq)]
+pub struct Grid {
+    name: String,
+    size: [usize; 3],
+    to_voxels: Transform,
+    /// For each block, x varying fastest, then y: its place among the stored ones, or [`EMPTY`].
+    places: Box<[u32]>,
+    /// The values of stored blocks over `scale`, as halves.
+    voxels: Box<[u16]>,
+    /// Upper bounds of all values inside a block, and of what lies within a voxel around.
+    majorants: Box<[f32]>,
+    scale: f32,
+}
+
+/// Why there is no such grid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GridError {
+    /// A side of no voxels, or of too many.
+    #[error(
+        "a grid of {0} x {1} x {2} voxels: a side has 1 to {MAX_SIDE}, and all together {MAX_BLOCKS} blocks of 8 x 8 x 8"
+    )]
+    Size(usize, usize, usize),
+    /// The wrong number of values.
+    #[error("a grid of {wanted} voxels has {found} values")]
+    Count {
+        /// Voxels.
+        wanted: usize,
+        /// Values.
+        found: usize,
+    },
+    /// A value that is negative or not finite.
+    #[error("the voxel ({0}, {1}, {2}) is negative or not finite")]
+    Value(usize, usize, usize),
+}
+
+/// A straight line through the voxels of a grid.
+#[derive(Clone, Copy, Debug)]
+pub struct GridLine {
+    /// Where it begins, in voxels.
+    origin: Vec3,
+    /// Voxels per metre along each axis.
+    direction: Vec3,
+}
+
+impl Grid {
+    /// A grid of this many voxels, of which `fill` gives the blocks, in order, x varying fastest: true if it has written any
+    /// value but zeros into the block at these block coordinates. `to_object` maps voxel coordinates, in which the first voxel
+    /// reaches from 0 to 1, to the object whose inside it fills. Values beyond the last voxel are ignored.
+    ///
+    /// # Errors
+    /// When a side has no voxel or too many, or a value is negative or not finite.
+    pub fn new(
+        name: &str,
+        size: [usize; 3],
+        to_object: &Transform,
+        mut fill: impl FnMut([usize; 3], &mut Block) -> bool,
+    ) -> Result<Grid, GridError> {
+        let blocks = blocks_of(size)?;
+        let (mut places, mut stored) = (Vec::new(), Vec::new());
+        let (mut block, mut largest) = ([0.0; BLOCK_VOXELS], 0.0f32);
+        for at in all(blocks) {
+            block.fill(0.0);
+            if !fill(at, &mut block) {
+                places.push(EMPTY);
+                continue;
+            }
+            largest = largest.max(check(&mut block, at, size)?);
+            places.push((stored.len() / BLOCK_VOXELS) as u32);
+            stored.extend_from_slice(&block);
+        }
+        let scale = scale_of(largest);
+        let voxels = stored.iter().map(|value| half(value / scale)).collect();
+        let to_voxels = to_object.inverted();
+        let (name, majorants) = (name.to_owned(), Box::default());
+        let mut grid = Grid { name, size, to_voxels, places: places.into(), voxels, majorants, scale };
+        grid.majorants = grid.bounds_of_blocks(blocks);
+        Ok(grid)
+    }
+
+    /// A grid from one value for each voxel, x varying fastest, then y.
+    ///
+    /// # Errors
+    /// As [`Grid::new`], and when there are more or fewer values.
+    pub fn dense(
+        name: &str,
+        size: [usize; 3],
+        to_object: &Transform,
+        values: &[f32],
+    ) -> Result<Grid, GridError> {
+        blocks_of(size)?;
+        let wanted = size[0] * size[1] * size[2];
+        if values.len() != wanted {
+            return Err(GridError::Count { wanted, found: values.len() });
+        }
+        Grid::new(name, size, to_object, |at, block| {
+            let mut any = false;
+            for (i, voxel) in block.iter_mut().enumerate() {
+                let [x, y, z] = voxel_of(at, i);
+                if x < size[0] && y < size[1] && z < size[2] {
+                    *voxel = values[(z * size[1] + y) * size[0] + x];
+                    any |= *voxel != 0.0;
+                }
+            }
+            any
+        })
+    }
+
+    /// The file that it came from, and the name there.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Voxels along x, y and z.
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// From voxel coordinates to the object that it fills.
+    pub fn to_object(&self) -> Transform {
+        self.to_voxels.inverted()
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(&*self.places) + size_of_val(&*self.voxels) + size_of_val(&*self.majorants)) as u64
+    }
+
+    /// Blocks that are stored.
+    pub fn stored_blocks(&self) -> usize {
+        self.voxels.len() / BLOCK_VOXELS
+    }
+
+    /// The largest value.
+    pub fn maximum(&self) -> f32 {
+        self.majorants.iter().copied().fold(0.0, f32::max)
+    }
+
+    /// The value of a voxel.
+    #[inline]
+    pub fn voxel(&self, [x, y, z]: [usize; 3]) -> f32 {
+        let place = self.places[self.block_index([x / BLOCK, y / BLOCK, z / BLOCK])];
+        if place == EMPTY { 0.0 } else { self.stored(place, within(x, y, z)) }
+    }
+
+    /// The values of a block; `None` for zeros.
+    pub fn block(&self, at: [usize; 3]) -> Option<Block> {
+        let place = self.places[self.block_index(at)];
+        (place != EMPTY).then(|| std::array::from_fn(|i| self.stored(place, i)))
+    }
+
+    /// The line of a ray in an object, whose directions are per metre of the ray.
+    pub fn line(&self, origin: Vec3, direction: Vec3) -> GridLine {
+        GridLine { origin: self.to_voxels.point(origin), direction: self.to_voxels.vector(direction) }
+    }
+
+    /// The value after this distance along a line, in metres.
+    #[inline]
+    pub fn at(&self, line: &GridLine, distance: f32) -> f32 {
+        self.look_up(line.origin + line.direction * distance)
+    }
+
+    /// The value at a point of the object.
+    pub fn value(&self, p: Vec3) -> f32 {
+        self.look_up(self.to_voxels.point(p))
+    }
+
+    /// The value at voxel coordinates: linear between the centres of voxels, as the outermost ones between these and the
+    /// border, and 0 beyond.
+    #[inline]
+    fn look_up(&self, p: Vec3) -> f32 {
+        let size = self.size.map(|n| n as f32);
+        if !(p.cmpge(Vec3::ZERO).all() && p.cmple(Vec3::from(size)).all()) {
+            return 0.0;
+        }
+        let (mut low, mut high, mut part) = ([0; 3], [0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let centred = (p[axis] - 0.5).clamp(0.0, size[axis] - 1.0);
+            // Not negative, and below the number of voxels.
+            low[axis] = centred as usize;
+            high[axis] = (low[axis] + 1).min(self.size[axis] - 1);
+            part[axis] = centred - low[axis] as f32;
+        }
+        let corners = self.corners(low, high);
+        let lerp = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        let along_x = |i: usize| lerp(corners[i], corners[i + 1], part[0]);
+        let front = lerp(along_x(0), along_x(2), part[1]);
+        let back = lerp(along_x(4), along_x(6), part[1]);
+        lerp(front, back, part[2])
+    }
+
+    /// The voxels between `low` and `high`, x varying fastest.
+    #[inline]
+    fn corners(&self, low: [usize; 3], high: [usize; 3]) -> [f32; 8] {
+        let [a, b] = [low, high].map(|at| at.map(|x| x / BLOCK));
+        let pick =
+            |i: usize| [0, 1, 2].map(|axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        if a != b {
+            return std::array::from_fn(|i| self.voxel(pick(i)));
+        }
+        match self.places[self.block_index(a)] {
+            EMPTY => [0.0; 8],
+            place => std::array::from_fn(|i| {
+                let [x, y, z] = pick(i);
+                self.stored(place, within(x, y, z))
+            }),
+        }
+    }
+
+    #[inline]
+    fn stored(&self, place: u32, index: usize) -> f32 {
+        from_half(self.voxels[place as usize * BLOCK_VOXELS + index]) * self.scale
+    }
+
+    #[inline]
+    fn block_index(&self, [x, y, z]: [usize; 3]) -> usize {
+        let [nx, ny, _] = self.size.map(|n| n.div_ceil(BLOCK));
+        (z * ny + y) * nx + x
+    }
+
+    /// The majorant of each block: what lies between voxels is a mean of those on both sides, also of the neighbours.
+    fn bounds_of_blocks(&self, blocks: [usize; 3]) -> Box<[f32]> {
+        let reach = |block: usize, voxels: usize| {
+            let low = (block * BLOCK).saturating_sub(1);
+            low..(block * BLOCK + BLOCK + 1).min(voxels)
+        };
+        let bound = |at: [usize; 3]| {
+            if self.is_empty_around(at, blocks) {
+                return 0.0;
+            }
+            let [xs, ys, zs] = [0, 1, 2].map(|axis: usize| reach(at[axis], self.size[axis]));
+            let mut largest = 0.0f32;
+            for z in zs {
+                for y in ys.clone() {
+                    xs.clone().for_each(|x| largest = largest.max(self.voxel([x, y, z])));
+                }
+            }
+            largest
+        };
+        all(blocks).map(bound).collect()
+    }
+
+    /// True where neither a block nor one of its neighbours is stored.
+    fn is_empty_around(&self, at: [usize; 3], blocks: [usize; 3]) -> bool {
+        let around = |axis: usize| at[axis].saturating_sub(1)..(at[axis] + 2).min(blocks[axis]);
+        around(2)
+            .all(|z| around(1).all(|y| around(0).all(|x| self.places[self.block_index([x, y, z])] == EMPTY)))
+    }
+
+    /// Visits the blocks along a line, up to a length in metres: where it enters and leaves each of them, and their majorants, until
+    /// `visit` returns false. Beyond the border the value is 0.
+    #[inline]
+    pub fn for_each_block(&self, line: &GridLine, length: f32, mut visit: impl FnMut(f32, f32, f32) -> bool) {
+        let size = Vec3::from(self.size.map(|n| n as f32));
+        let Some([begin, end]) = inside(line, size, length) else { return };
+        let start = line.origin + line.direction * begin;
+        let blocks = self.size.map(|n| n.div_ceil(BLOCK));
+        let (mut at, mut next, mut step) = ([0; 3], [f32::INFINITY; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let block = (start[axis].max(0.0) / BLOCK as f32) as usize;
+            at[axis] = block.min(blocks[axis] - 1);
+            let towards = line.direction[axis];
+            if towards != 0.0 {
+                let border = (at[axis] + usize::from(towards > 0.0)) * BLOCK;
+                next[axis] = (border as f32 - line.origin[axis]) / towards;
+                step[axis] = BLOCK as f32 / towards.abs();
+            }
+        }
+        let mut t = begin;
+        loop {
+            let axis = if next[0] <= next[1] && next[0] <= next[2] {
+                0
+            } else if next[1] <= next[2] {
+                1
+            } else {
+                2
+            };
+            let leave = next[axis].min(end).max(t);
+            if !visit(t, leave, self.majorants[self.block_index(at)]) || next[axis] >= end {
+                return;
+            }
+            t = leave;
+            next[axis] += step[axis];
+            let beyond = if line.direction[axis] > 0.0 { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
+            if beyond >= blocks[axis] {
+                return;
+            }
+            at[axis] = beyond;
+        }
+    }
+}
+
+/// The part of a line, up to this length, inside a box from zero; `None` where it passes by.
+#[inline]
+fn inside(line: &GridLine, size: Vec3, length: f32) -> Option<[f32; 2]> {
+    let (mut begin, mut end) = (0.0f32, length);
+    for axis in 0..3 {
+        let (origin, towards) = (line.origin[axis], line.direction[axis]);
+        if towards == 0.0 {
+            if !(0.0..=size[axis]).contains(&origin) {
+                return None;
+            }
+            continue;
+        }
+        let [a, b] = [-origin / towards, (size[axis] - origin) / towards];
+        begin = begin.max(a.min(b));
+        end = end.min(a.max(b));
+    }
+    (begin < end).then_some([begin, end])
+}
+
+/// The number of blocks along each side.
+fn blocks_of(size: [usize; 3]) -> Result<[usize; 3], GridError> {
+    let [x, y, z] = size;
+    let blocks = size.map(|n| n.div_ceil(BLOCK));
+    // At most 2¹³ blocks along each side, so that their product fits.
+    if size.iter().any(|n| !(1..=MAX_SIDE).contains(n)) || blocks.iter().product::<usize>() > MAX_BLOCKS {
+        return Err(GridError::Size(x, y, z));
+    }
+    Ok(blocks)
+}
+
+/// All coordinates below these, x varying fastest.
+fn all([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
+}
+
+/// The place of a voxel in its block.
+#[inline]
+fn within(x: usize, y: usize, z: usize) -> usize {
+    (z % BLOCK * BLOCK + y % BLOCK) * BLOCK + x % BLOCK
+}
+
+/// The voxel at a place in a block.
+fn voxel_of(block: [usize; 3], index: usize) -> [usize; 3] {
+    let at = [index % BLOCK, index / BLOCK % BLOCK, index / (BLOCK * BLOCK)];
+    [0, 1, 2].map(|axis: usize| block[axis] * BLOCK + at[axis])
+}
+
+/// The largest value of a block; what lies outside of the grid becomes 0.
+fn check(block: &mut Block, at: [usize; 3], size: [usize; 3]) -> Result<f32, GridError> {
+    let mut largest = 0.0f32;
+    for (i, value) in block.iter_mut().enumerate() {
+        let [x, y, z] = voxel_of(at, i);
+        if x >= size[0] || y >= size[1] || z >= size[2] {
+            *value = 0.0;
+        } else if !(value.is_finite() && *value >= 0.0) {
+            return Err(GridError::Value(x, y, z));
+        }
+        largest = largest.max(*value);
+    }
+    Ok(largest)
+}
+
+/// The factor on halves: 1 where they hold values like this maximum well, so that halves of files stay as they are; otherwise a power
+/// of two.
+fn scale_of(largest: f32) -> f32 {
+    let holds = (1024.0 * HALF_NORMAL..=HALF_MAX).contains(&largest) || largest == 0.0;
+    // The exponent of a half's maximum is 15.
+    let exponent = (largest.to_bits() >> 23) as i32 - 127 - 14;
+    if holds { 1.0 } else { f32::from_bits(((exponent + 127).clamp(1, 254) as u32) << 23) }
+}
+
+/// The half nearest to a number that is not negative, and at most the maximum of halves.
+fn half(x: f32) -> u16 {
+    // Adding this rounds subnormal halves to their last digit; others lose 13 digits, to even.
+    let bits = if x < HALF_NORMAL {
+        (x + 0.5).to_bits() - 0.5f32.to_bits()
+    } else {
+        let bits = x.min(HALF_MAX).to_bits() - (112 << 23);
+        (bits + 0xfff + (bits >> 13 & 1)) >> 13
+    };
+    bits as u16
+}
+
+/// A half that is neither negative nor infinite.
+#[inline(always)]
+fn from_half(half: u16) -> f32 {
+    // 2¹¹², the difference of the exponents.
+    f32::from_bits(u32::from(half) << 13) * f32::from_bits((112 + 127) << 23)
+}
+
+impl fmt::Debug for Grid {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Grid { name, size, .. } = self;
+        let stored = self.stored_blocks();
+        f.debug_struct("Grid").field("name", name).field("size", size).field("stored", &stored).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Any values from 0 to 1, with a third of them zeros.
+    fn noise(size: [usize; 3]) -> Vec<f32> {
+        let count = size[0] * size[1] * size[2];
+        let word = |i: usize| bilux_math::hash::mix64(i as u64);
+        (0..count)
+            .map(|i| if word(i).is_multiple_of(3) { 0.0 } else { (word(i) >> 40) as f32 / 16_777_216.0 })
+            .collect()
+    }
+
+    fn grid(size: [usize; 3], values: &[f32]) -> Grid {
+        Grid::dense("", size, &Transform::IDENTITY, values).unwrap()
+    }
+
+    #[test]
+    fn halves_are_those_of_the_standard() {
+        let cases = [
+            (0.0, 0),
+            (5.960_464_5e-8, 1),
+            (6.103_515_6e-5, 0x400),
+            (1.0, 0x3c00),
+            (1.000_976_6, 0x3c01),
+            (65_504.0, 0x7bff),
+        ];
+        for (number, bits) in cases {
+            assert_eq!((half(number), from_half(bits)), (bits, number));
+        }
+        assert_eq!(half(1.0 + 1.0 / 2048.0), 0x3c00, "ties go to even");
+        assert!((0..0x7c00u16).all(|bits| half(from_half(bits)) == bits));
+    }
+
+    #[test]
+    fn voxels_are_what_was_given() {
+        let size = [19, 8, 11];
+        let values = noise(size);
+        let grid = grid(size, &values);
+        for (i, at) in all(size).enumerate() {
+            assert!((grid.voxel(at) - values[i]).abs() <= values[i] / 2048.0, "{at:?}");
+        }
+        let huge: Vec<f32> = values.iter().map(|x| x * 1e20).collect();
+        let grid = Grid::dense("", size, &Transform::IDENTITY, &huge).unwrap();
+        assert!((grid.voxel([3, 1, 2]) - huge[2 * 8 * 19 + 19 + 3]).abs() <= 1e17);
+    }
+
+    #[test]
+    fn between_voxels_values_are_linear_and_outside_zero() {
+        let size = [17, 10, 9];
+        // Trilinear interpolation repeats a function that is linear in each coordinate.
+        let f = |p: Vec3| 1.0 + 0.25 * p.x + 0.5 * p.y * p.z;
+        let values: Vec<f32> = all(size).map(|at| f(Vec3::from(at.map(|x| x as f32 + 0.5)))).collect();
+        let place = Transform::scale(Vec3::splat(2.0)).unwrap();
+        let grid = Grid::dense("", size, &place, &values).unwrap();
+        for i in 0..1000 {
+            let unit = |axis: u64| bilux_math::hash::unit_f32(bilux_math::hash::mix64(i * 3 + axis) as u32);
+            let p = Vec3::new(unit(0), unit(1), unit(2)) * Vec3::new(16., 9., 8.) + 0.5;
+            let value = grid.value(p * 2.0);
+            assert!((value - f(p)).abs() < 2e-3 * f(p), "{value} at {p}");
+        }
+        assert_eq!(grid.value(Vec3::new(-0.01, 4.0, 4.0)), 0.0);
+        assert_eq!(grid.value(Vec3::new(34.1, 4.0, 4.0)), 0.0);
+        assert_eq!(grid.value(Vec3::new(0.0, 1.0, 1.0)), grid.voxel([0, 0, 0]));
+        assert_eq!(grid.value(Vec3::splat(f32::NAN)), 0.0);
+    }
+
+    #[test]
+    fn no_value_is_above_its_majorant_and_blocks_cover_the_line() {
+        let size = [21, 30, 9];
+        let grid = grid(size, &noise(size));
+        for i in 0..300u64 {
+            let unit = |axis: u64| bilux_math::hash::unit_f32(bilux_math::hash::mix64(i * 6 + axis) as u32);
+            let from = Vec3::new(unit(0), unit(1), unit(2)) * 40.0 - 5.0;
+            let mut to = Vec3::new(unit(3), unit(4), unit(5)) * 40.0 - 5.0;
+            if i % 4 == 0 {
+                to.x = from.x;
+            }
+            let line = grid.line(from, (to - from) * 0.1);
+            let (mut last, mut length) = (None, 0.0);
+            grid.for_each_block(&line, 10.0, |begin, end, majorant| {
+                assert!(last.is_none_or(|last| last == begin) && begin <= end, "no gaps");
+                last = Some(end);
+                length += end - begin;
+                for part in 0..=20 {
+                    let value = grid.at(&line, begin + (end - begin) * part as f32 / 20.0);
+                    assert!(value <= majorant * 1.000_001, "{value} above {majorant}");
+                }
+                true
+            });
+            let inside = (0..4000).filter(|k| {
+                let p = from + (to - from) * (*k as f32 + 0.5) / 4000.0;
+                p.cmpge(Vec3::ZERO).all() && p.cmple(Vec3::new(21., 30., 9.)).all()
+            });
+            assert!((length - inside.count() as f32 / 400.0).abs() < 0.01, "{length}");
+        }
+    }
+
+    #[test]
+    fn zeros_take_no_space() {
+        let at = |[x, y, z]: [usize; 3]| [x, y, z] == [3, 4, 5];
+        let grid = Grid::new("", [1000; 3], &Transform::IDENTITY, |block, values| {
+            values[0] = f32::from(u8::from(at(block)));
+            at(block)
+        });
+        let grid = grid.unwrap();
+        assert_eq!((grid.stored_blocks(), grid.maximum()), (1, 1.0));
+        assert_eq!((grid.voxel([24, 32, 40]), grid.voxel([25, 32, 40])), (1.0, 0.0));
+        assert!(grid.bytes() < 17_000_000);
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused() {
+        let none = |size| Grid::dense("", size, &Transform::IDENTITY, &[]).unwrap_err();
+        assert_eq!(none([0, 1, 1]), GridError::Size(0, 1, 1));
+        assert!(matches!(none([1 << 16, 1 << 16, 1 << 16]), GridError::Size(..)));
+        assert!(matches!(none([usize::MAX; 3]), GridError::Size(..)));
+        assert_eq!(none([2, 1, 1]), GridError::Count { wanted: 2, found: 0 });
+        for bad in [-1.0, f32::NAN, f32::INFINITY] {
+            let grid = Grid::dense("", [2, 1, 1], &Transform::IDENTITY, &[0.0, bad]);
+            assert_eq!(grid.unwrap_err(), GridError::Value(1, 0, 0));
+        }
+    }
+}
