@@ -112,6 +112,7 @@ pub fn values(kind: ParameterKind) -> String {
         ParameterKind::ColourTexture { min, max } => format!("colour {min} to {max}, or a texture"),
         ParameterKind::NumberTexture { min, max } => format!("{min} to {max}, or a texture"),
         ParameterKind::Texture => "texture".to_owned(),
+        ParameterKind::Grid => "grid".to_owned(),
         ParameterKind::Stops { min, max } => format!("[position, colour {min} to {max}], several"),
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),

@@ -43,6 +43,8 @@ pub enum ParameterKind {
     },
     /// A texture of numbers; none by default.
     Texture,
+    /// A grid of numbers in space; none by default.
+    Grid,
     /// Colours of a gradient, each channel within the bounds: a list of `[position, colour]`.
     Stops {
         /// Minimum channel.

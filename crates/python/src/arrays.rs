@@ -37,7 +37,7 @@ pub(crate) fn shape_of(array: &Bound<'_, PyUntypedArray>) -> String {
 }
 
 /// The numbers as 32-bit floats, row by row, whatever the layout of the array.
-fn floats(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<f32>> {
+pub(crate) fn floats(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<f32>> {
     if let Ok(singles) = array.extract::<PyReadonlyArrayDyn<'_, f32>>() {
         let view = singles.as_array();
         return Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[f32]>::to_vec));

@@ -10,6 +10,7 @@ mod encoded;
 mod ending;
 mod errors;
 mod forks;
+mod grid;
 mod hits;
 mod inspect;
 mod keyframes;
@@ -46,6 +47,8 @@ mod _bilux {
     use crate::accel::Accel;
     #[pymodule_export]
     use crate::encoded::Encoded;
+    #[pymodule_export]
+    use crate::grid::Grid;
     #[pymodule_export]
     use crate::inspect::{replay, strategies};
     #[pymodule_export]

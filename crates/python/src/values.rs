@@ -1,5 +1,6 @@
 //! Python's values as parameters of a scene, and back.
 
+use crate::grid::Grid;
 use crate::texture::Texture;
 use bilux::scene::{Parameters, SceneBuilder, Value};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
@@ -53,6 +54,9 @@ pub(crate) fn keywords(settings: &Bound<'_, PyDict>) -> PyResult<Parameters> {
 pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn Resolve) -> PyResult<Value> {
     if let Ok(texture) = argument.cast::<Texture>() {
         return Ok(Value::Texture(resolve.texture(texture.get())));
+    }
+    if let Ok(grid) = argument.cast::<Grid>() {
+        return Ok(Value::Grid(grid.get().0.clone()));
     }
     if let Ok(material) = argument.cast::<crate::spec::Spec>() {
         return Ok(Value::Material(resolve.material(material)?));
@@ -117,6 +121,7 @@ fn object<'py>(py: Python<'py>, value: &Value, scene: &SceneBuilder) -> PyResult
             Some(texture) => Bound::new(py, Texture::of(texture.clone()))?.into_any(),
             None => py.None().into_bound(py),
         },
+        Value::Grid(grid) => Bound::new(py, Grid(grid.clone()))?.into_any(),
         Value::Material(index) => match scene.materials.get(*index) {
             Some(spec) => Bound::new(py, crate::spec::Spec::of(py, "materials", spec, scene)?)?.into_any(),
             None => py.None().into_bound(py),

@@ -18,6 +18,7 @@ pub mod error;
 mod footprint;
 pub mod generators;
 pub mod geometry;
+mod grid;
 pub mod inventory;
 mod kept;
 mod light_sample;

@@ -1,79 +1,14 @@
 //! Parameters as written in scene files, and how a row of a table reads them.
 
+mod value;
+
 use crate::error::{SceneError, nearest_name};
+use crate::grid::Grid;
 pub use crate::span::Span;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
-
-/// A value in a scene file.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// True or false.
-    Bool(bool),
-    /// A whole number.
-    Integer(i64),
-    /// Any other number.
-    Number(f64),
-    /// Text.
-    Text(String),
-    /// A list.
-    List(Vec<Value>),
-    /// An index into [`crate::SceneBuilder::textures`], with which readers replace a file name.
-    Texture(usize),
-    /// An index into [`crate::SceneBuilder::materials`], with which readers replace a material's name.
-    Material(usize),
-}
-
-impl Value {
-    /// A colour or a point as a value.
-    pub fn triple(v: [f32; 3]) -> Value {
-        Value::List(v.map(|c| Value::Number(f64::from(c))).to_vec())
-    }
-
-    fn as_number(&self) -> Option<f64> {
-        match *self {
-            Value::Integer(i) => Some(i as f64),
-            Value::Number(x) => Some(x),
-            _ => None,
-        }
-    }
-}
-
-impl From<f32> for Value {
-    fn from(x: f32) -> Value {
-        Value::Number(f64::from(x))
-    }
-}
-impl From<i32> for Value {
-    fn from(i: i32) -> Value {
-        Value::Integer(i64::from(i))
-    }
-}
-impl From<bool> for Value {
-    fn from(b: bool) -> Value {
-        Value::Bool(b)
-    }
-}
-impl From<&str> for Value {
-    fn from(s: &str) -> Value {
-        Value::Text(s.to_owned())
-    }
-}
-impl From<String> for Value {
-    fn from(s: String) -> Value {
-        Value::Text(s)
-    }
-}
-impl From<Rgb> for Value {
-    fn from(c: Rgb) -> Value {
-        Value::triple(c.to_array())
-    }
-}
-impl From<Vec3> for Value {
-    fn from(v: Vec3) -> Value {
-        Value::triple(v.to_array())
-    }
-}
+use std::sync::Arc;
+pub use value::Value;
 
 /// Keys with their values, in the order written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -258,6 +193,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The grid under a key, if there is one.
+    pub fn grid(&self, key: &str) -> Option<Arc<Grid>> {
+        match self.value(key) {
+            Value::Grid(grid) => Some(grid),
+            _ => None,
+        }
+    }
+
     /// The material under a key, as an index; an invalid index if none is given.
     pub fn material(&self, key: &str) -> usize {
         match self.value(key) {
@@ -292,9 +235,11 @@ impl Spec {
 fn parse_default(kind: ParameterKind, text: &str) -> Value {
     match kind {
         ParameterKind::Bool => Value::Bool(text == "true"),
-        ParameterKind::Text | ParameterKind::Texture | ParameterKind::Material | ParameterKind::Choice(_) => {
-            Value::Text(text.to_owned())
-        }
+        ParameterKind::Text
+        | ParameterKind::Texture
+        | ParameterKind::Grid
+        | ParameterKind::Material
+        | ParameterKind::Choice(_) => Value::Text(text.to_owned()),
         _ => {
             let numbers: Vec<Value> =
                 text.split_whitespace().filter_map(|w| w.parse().ok().map(Value::Number)).collect();
@@ -355,6 +300,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             format!("a number from {min} to {max}, or {{ texture = \"FILE\" }}"),
         ),
         ParameterKind::Texture => (matches!(value, Value::Texture(_)), "{ texture = \"FILE\" }".to_owned()),
+        ParameterKind::Grid => (matches!(value, Value::Grid(_)), "{ grid = \"FILE\" }".to_owned()),
         ParameterKind::Stops { min, max } => {
             let is_right = |stops: Vec<(f32, Rgb)>| {
                 let within = |c: f32| number_in(Some(f64::from(c)), min, max);
@@ -396,5 +342,6 @@ fn describe(value: &Value) -> String {
         Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
         Value::Texture(_) => "a texture".to_owned(),
         Value::Material(_) => "a material".to_owned(),
+        Value::Grid(_) => "a grid".to_owned(),
     }
 }

@@ -104,6 +104,21 @@ pub(crate) fn sensitivity(nm: f32) -> Rgb {
     )
 }
 
+/// The colour of a black body at a temperature in kelvin, in Rec. 709, up to a factor that is the same for all; black where that is beyond
+/// the range of numbers. [Planck 1901]
+pub(crate) fn black_body(kelvin: f32) -> Rgb {
+    /// hc/k, in nm K.
+    const SECOND: f32 = 1.438_776_9e7;
+    let part = |step: usize| {
+        let nm = SHORTEST + step as f32 + 0.5;
+        let w = nm / 555.0;
+        let emitted = 1.0 / (w * w * w * w * w * (exp(SECOND / (nm * kelvin)) - 1.0));
+        sensitivity(nm) * emitted
+    };
+    let sum: Rgb = (0..STEPS).map(part).sum();
+    if kelvin > 0.0 && sum.is_finite() { sum.map(|channel| channel.max(0.0)) } else { Rgb::BLACK }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -105,6 +105,12 @@ pub enum RenderError {
          path, bdpt or vcm"
     )]
     Media,
+    /// The integrator does not find light that media emit.
+    #[error(
+        "this scene has a medium that emits light, which this integrator does not find: choose another, such as auto, path, bdpt or \
+         vcm"
+    )]
+    Glow,
     /// A checkpoint was made by a render that did not need something.
     #[error("the checkpoint does not hold {what}: render as before, or begin anew")]
     CheckpointLacks {

@@ -193,7 +193,8 @@ impl Sums {
             if event > 0 {
                 surface = tracer.closest(&ray);
             }
-            let arrived = surface.and_then(|surface| media.closest_from(tracer, &ray, surface));
+            let arrived =
+                surface.and_then(|surface| media.closest_from(tracer, &ray, surface, u64::from(event)));
             let Some((surface, passed)) = arrived else {
                 self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
                 return;

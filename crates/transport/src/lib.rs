@@ -59,6 +59,7 @@ pub mod stop;
 pub mod strategies;
 mod task;
 mod techniques;
+mod through;
 pub mod visible;
 mod walk;
 pub mod window;

@@ -15,7 +15,9 @@ mod nested;
 mod passage;
 
 use crate::interaction::{Interaction, MediumPoint};
+use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
+use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
@@ -77,17 +79,39 @@ impl Media {
 
     /// What the path travels through, as far as it is known.
     #[inline]
-    fn medium(&self, scene: &Scene) -> Medium {
+    fn medium<'s>(&self, scene: &'s Scene) -> Medium<'s> {
         match self.inside {
             NONE => Medium::VACUUM,
             object => scene.material_of(object).medium().unwrap_or(Medium::VACUUM),
         }
     }
 
-    /// Transmittance of what the path travels through, over a distance in metres.
+    /// The part of a ray from this distance on, in metres, through the grids of a medium.
     #[inline]
-    fn transmittance(&self, scene: &Scene, distance: f32) -> Rgb {
-        if self.inside == NONE { Rgb::WHITE } else { self.medium(scene).transmittance(distance) }
+    fn line(&self, scene: &Scene, medium: &Medium, ray: &Ray, begin: f32) -> Option<MediumLine> {
+        if medium.density.is_none() && medium.glow.is_none() {
+            return None;
+        }
+        let direction = Vec3::from(ray.direction).normalize();
+        let origin = Vec3::from(ray.origin) + direction * begin;
+        scene.medium_line(self.inside, medium, [origin, direction], ray.time)
+    }
+
+    /// What lies along a part of a ray, from here up to there in metres, for light that passes.
+    #[inline]
+    fn passed_between(
+        &self,
+        scene: &Scene,
+        ray: &Ray,
+        [begin, end]: [f32; 2],
+        draws: &mut Draws,
+    ) -> FreePath {
+        if self.inside == NONE {
+            return FreePath::CLEAR;
+        }
+        let medium = self.medium(scene);
+        let line = self.line(scene, &medium, ray, begin);
+        medium.passed(line.as_ref(), end - begin, || draws.next_1d())
     }
 
     /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the
@@ -111,20 +135,17 @@ impl Media {
             let surface = self.arrive(tracer, ray, surface);
             let medium = self.medium(scene);
             let length = surface.t - begin;
-            if medium.scatters() {
-                let distance = medium.sample_distance(draw(), draw());
-                if distance < length {
-                    let t = begin + distance;
-                    let p = Vec3::from(ray.origin) + direction * t;
-                    self.overlap.leave();
-                    return travelled.scattered(
-                        &medium,
-                        distance,
-                        MediumPoint { p, t, time: ray.time, phase: medium.phase },
-                    );
-                }
+            let line = self.line(scene, &medium, ray, begin);
+            let flight = medium.walk(line.as_ref(), length, &mut draw);
+            travelled = travelled.lit(flight.emitted);
+            if let Some(MediumEvent { distance, sigma_s }) = flight.event {
+                let t = begin + distance;
+                let p = Vec3::from(ray.origin) + direction * t;
+                self.overlap.leave();
+                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase };
+                return travelled.scattered(flight.path, sigma_s, point);
             }
-            travelled = travelled.passed(medium.free_path(length));
+            travelled = travelled.passed(flight.path);
             if self.overlap.separates(scene, &surface) {
                 return Travelled { arrival: Arrival::Surface(surface), ..travelled };
             }
@@ -136,18 +157,21 @@ impl Media {
     }
 
     /// The first surface along a ray of unit direction that separates two media, and the transmittance up to there, given the
-    /// first surface along the ray. Afterwards these are the media on the side that the ray comes from.
+    /// first surface along the ray: of media that vary an estimate, by random numbers of this seed. Afterwards these are the media on
+    /// the side that the ray comes from.
     #[inline]
     pub(crate) fn closest_from(
         &mut self,
         tracer: &mut Tracer,
         ray: &Ray,
         surface: Surface,
+        seed: u64,
     ) -> Option<(Surface, Rgb)> {
         let scene = tracer.scene;
         let direction = Vec3::from(ray.direction);
         let surface = self.arrive(tracer, ray, surface);
-        let passed = self.transmittance(scene, surface.t);
+        let mut draws = draws_along(ray, seed);
+        let passed = self.passed_between(scene, ray, [0.0, surface.t], &mut draws).transmittance;
         if self.overlap.separates(scene, &surface) {
             return Some((surface, passed));
         }
@@ -156,7 +180,7 @@ impl Media {
             self.cross(scene, &last, direction);
             let surface = tracer.closest(&behind(ray, &last))?;
             let surface = self.arrive(tracer, ray, surface);
-            passed *= self.transmittance(scene, surface.t - last.t);
+            passed *= self.passed_between(scene, ray, [last.t, surface.t], &mut draws).transmittance;
             if self.overlap.separates(scene, &surface) {
                 return Some((surface, passed));
             }
@@ -185,7 +209,8 @@ impl Media {
     /// What lies along a ray that begins in these media and is `distance` metres long; `None` where something blocks it.
     ///
     /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the
-    /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none.
+    /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none. Of media that vary
+    /// it is an estimate, by random numbers of this seed.
     #[inline]
     pub(crate) fn visible(
         &self,
@@ -193,41 +218,41 @@ impl Media {
         ray: &Ray,
         distance: Option<f32>,
         n: Vec3,
+        seed: u64,
     ) -> Option<Passage> {
-        tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance))
+        tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance, seed))
     }
 
-    /// What lies along a ray of this length that nothing blocks, where media have no priorities.
+    /// What lies along a ray of this length that no surface is on.
     #[inline]
-    pub(crate) fn unoccluded(&self, scene: &Scene, distance: Option<f32>) -> Passage {
-        match distance {
-            Some(distance) if self.inside != NONE => {
-                Passage::CLEAR.then(self.medium(scene).free_path(distance))
-            }
-            _ => Passage::CLEAR,
-        }
+    pub(crate) fn unoccluded(&self, scene: &Scene, ray: &Ray, distance: Option<f32>, seed: u64) -> Passage {
+        let Some(distance) = distance else { return Passage::CLEAR };
+        let mut draws = draws_along(ray, seed);
+        Passage::CLEAR.then(self.passed_between(scene, ray, [0.0, distance], &mut draws))
     }
 
     #[inline]
-    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>) -> Option<Passage> {
+    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>, seed: u64) -> Option<Passage> {
         if !tracer.scene.has_nested() {
-            return (!tracer.occluded(ray)).then(|| self.unoccluded(tracer.scene, distance));
+            return (!tracer.occluded(ray)).then(|| self.unoccluded(tracer.scene, ray, distance, seed));
         }
         let (mut media, mut rest, scene) = (*self, *ray, tracer.scene);
-        let direction = Vec3::from(ray.direction);
+        let (mut draws, direction) = (draws_along(ray, seed), Vec3::from(ray.direction));
         let (length, mut begin, mut passed) = (direction.length(), 0.0, Passage::CLEAR);
         while let Some(surface) = tracer.closest(&rest) {
             let surface = media.arrive(tracer, ray, surface);
             if media.overlap.separates(scene, &surface) {
                 return None;
             }
-            passed = passed.then(media.medium(scene).free_path((surface.t - begin) * length));
+            let end = surface.t * length;
+            passed = passed.then(media.passed_between(scene, ray, [begin, end], &mut draws));
             media.cross(scene, &surface, direction);
-            (begin, rest) = (surface.t, behind(&rest, &surface));
+            (begin, rest) = (end, behind(&rest, &surface));
         }
-        let rest =
-            distance.filter(|_| media.inside != NONE).map(|distance| (distance - begin * length).max(0.0));
-        Some(rest.map_or(passed, |rest| passed.then(media.medium(scene).free_path(rest))))
+        let end = distance.map(|distance| distance.max(begin));
+        Some(
+            end.map_or(passed, |end| passed.then(media.passed_between(scene, ray, [begin, end], &mut draws))),
+        )
     }
 
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
@@ -351,4 +376,11 @@ impl Media {
 /// The same ray, from behind a surface that it has hit.
 fn behind(ray: &Ray, surface: &Surface) -> Ray {
     Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
+}
+
+/// Random numbers for what varies along a ray, of this line alone: others of the same sample have another direction.
+#[inline]
+fn draws_along(ray: &Ray, seed: u64) -> Draws {
+    let [x, y, z] = ray.direction.map(|c| u64::from(c.to_bits()));
+    Draws::new(mix64(seed ^ mix64(x ^ y << 32) ^ z << 16))
 }

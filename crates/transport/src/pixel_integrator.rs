@@ -32,6 +32,11 @@ pub trait PixelIntegrator: Send + Sync + 'static {
         true
     }
 
+    /// True if it finds light that media emit.
+    fn sees_glow(&self) -> bool {
+        self.follows_media()
+    }
+
     /// True if it reports each piece of light that a path finds (`Task::find`), so that light can be divided into parts.
     fn reports_light(&self) -> bool {
         false

@@ -101,6 +101,9 @@ pub fn render_from(
     if scene.scatters() && !integrator.follows_media() {
         return Err(RenderError::Media);
     }
+    if scene.has_glowing_media() && !integrator.sees_glow() {
+        return Err(RenderError::Glow);
+    }
     progress.begin(settings.sample_count(integrator));
     let interval = settings.interval.then(|| Interval::new(settings.window())).transpose()?;
     let empty =

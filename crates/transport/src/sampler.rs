@@ -54,6 +54,12 @@ impl PixelSampler {
         point(key(self.stream, self.dimension), self.reversed_index)
     }
 
+    /// A seed for further random numbers, another one after each draw.
+    #[inline]
+    pub(crate) fn seed(&self) -> u64 {
+        self.stream ^ (u64::from(self.reversed_index) << 32 | u64::from(self.dimension))
+    }
+
     /// The state from which [`number`] and [`point`] draw for many paths at once: the stream, and the sample's index
     /// with its bits reversed.
     #[inline]

@@ -1,6 +1,7 @@
 //! Shadow rays of many connections, which are traced together.
 
-use crate::media::{Media, Passage};
+use crate::media::Passage;
+use crate::through::Through;
 use bilux_math::Vec3;
 use bilux_scene::{Ray, Tracer};
 
@@ -10,9 +11,8 @@ pub(crate) struct ShadowRays<T> {
     /// The [normals](bilux_scene::Scene::normal_towards) at their ends; zero where there is no surface.
     normals: Vec<Vec3>,
     contributions: Vec<T>,
-    /// The media at the start of each ray, and its length in metres (`None` to infinity); nothing where no medium changes
-    /// light.
-    media: Vec<(Media, Option<f32>)>,
+    /// The media along each ray; nothing where no medium changes light.
+    media: Vec<Through>,
     occluded: Vec<bool>,
 }
 
@@ -33,7 +33,7 @@ impl<T> ShadowRays<T> {
 
     /// Adds a ray that ends on a surface with the normal `n`. All rays come with their media, or none does.
     #[inline]
-    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<(Media, Option<f32>)>, contribution: T) {
+    pub(crate) fn push(&mut self, ray: Ray, n: Vec3, media: Option<Through>, contribution: T) {
         self.rays.push(ray);
         self.normals.push(n);
         self.media.extend(media);
@@ -51,14 +51,12 @@ impl<T> ShadowRays<T> {
         for (i, contribution) in contributions.iter().enumerate() {
             let passed = match (occluded[i], media.get(i)) {
                 (false, None) => Passage::CLEAR,
-                (false, Some((media, distance))) => media.unoccluded(tracer.scene, *distance),
+                (false, Some(through)) => through.unoccluded(tracer.scene, &rays[i]),
                 // What it hits may separate nothing.
-                (true, Some((media, distance))) if has_nested => {
+                (true, Some(through)) if has_nested => {
                     // Asked again, and counted once.
                     tracer.counters.rays -= 1;
-                    let Some(passed) = media.visible(tracer, &rays[i], *distance, normals[i]) else {
-                        continue;
-                    };
+                    let Some(passed) = through.visible(tracer, &rays[i], normals[i]) else { continue };
                     passed
                 }
                 (true, _) => continue,

@@ -147,6 +147,12 @@ impl SampleState {
         self.sampler.enter(MEDIUM_STREAM + from_light + u64::from(depth));
     }
 
+    /// A seed of further random numbers, which draws none.
+    #[inline]
+    pub(crate) fn seed(&self) -> u64 {
+        self.sampler.seed()
+    }
+
     /// Records light, if that is recorded at all.
     #[inline]
     pub(crate) fn find(&mut self, edges: u32, light: Option<usize>, radiance: Rgb) {

@@ -65,7 +65,7 @@ impl Walk {
     }
 
     /// Travels along its ray to the next event, given the first surface there; `mode` is what it carries. Afterwards its media
-    /// are those on the side that it comes from.
+    /// are those on the side that it comes from. What media emit is what it brings to the start of the path.
     #[inline]
     pub(crate) fn travel(
         &mut self,
@@ -78,8 +78,9 @@ impl Walk {
             sample.enter_medium(self.depth, mode);
         }
         let travelled = self.media.travel(tracer, &self.ray, first, || sample.sampler.next_1d());
+        let emitted = self.beta * travelled.emitted;
         self.beta *= travelled.weight;
-        travelled
+        Travelled { emitted, ..travelled }
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the

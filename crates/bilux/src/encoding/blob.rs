@@ -1,16 +1,18 @@
-//! Blobs: the bytes of meshes and images, by which scenes that share them send them once.
+//! Blobs: the bytes of meshes, grids and images, by which scenes that share them send them once.
 
 use super::code::{Coded, Decoder};
 use super::error::EncodingError;
 use super::hash::{ContentHash, KnownHashes};
 use bilux_math::glam::Vec4;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Mat4, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::Mesh;
+use bilux_scene::media::{Grid, Stored};
 use bilux_scene::texture::{Image, Texels};
 use std::sync::Arc;
 
 /// What a blob begins with.
 const MESH: u8 = b'M';
+const GRID: u8 = b'G';
 const BYTES: u8 = b'B';
 const FLOATS: u8 = b'F';
 
@@ -18,13 +20,16 @@ const FLOATS: u8 = b'F';
 const PIECE: usize = 4096;
 
 static MESHES: KnownHashes<Mesh> = KnownHashes::new();
+static GRIDS: KnownHashes<Grid> = KnownHashes::new();
 static IMAGES: KnownHashes<Image> = KnownHashes::new();
 
-/// A mesh without its name, or the texels of an image. Equal ones have equal bytes.
+/// A mesh or a grid without its name, or the texels of an image. Equal ones have equal bytes.
 #[derive(Clone, Debug)]
 pub enum Blob {
     /// A mesh.
     Mesh(Arc<Mesh>),
+    /// A grid.
+    Grid(Arc<Grid>),
     /// An image.
     Image(Arc<Image>),
 }
@@ -35,6 +40,7 @@ impl Blob {
         let compute = || ContentHash::of_pieces(|write| self.write(write));
         match self {
             Blob::Mesh(mesh) => MESHES.of(mesh, compute),
+            Blob::Grid(grid) => GRIDS.of(grid, compute),
             Blob::Image(image) => IMAGES.of(image, compute),
         }
     }
@@ -49,6 +55,7 @@ impl Blob {
     fn size_estimate(&self) -> usize {
         let content = match self {
             Blob::Mesh(mesh) => mesh.size(),
+            Blob::Grid(grid) => grid.bytes(),
             Blob::Image(image) => image.size(),
         };
         content as usize + 128
@@ -74,6 +81,7 @@ impl Blob {
                 list(write, &mesh.points, |p| [p.to_le_bytes()]);
                 list(write, &mesh.lines, |l| l.map(u32::to_le_bytes));
             }
+            Blob::Grid(grid) => write_grid(grid, write),
             Blob::Image(image) => {
                 let size = |write: &mut dyn FnMut(&[u8])| {
                     write(&(image.width as u64).to_le_bytes());
@@ -106,6 +114,7 @@ impl Blob {
         let blob = Blob::parse(bytes)?;
         match &blob {
             Blob::Mesh(mesh) => MESHES.of(mesh, || hash),
+            Blob::Grid(grid) => GRIDS.of(grid, || hash),
             Blob::Image(image) => IMAGES.of(image, || hash),
         };
         Ok(blob)
@@ -116,8 +125,9 @@ impl Blob {
         let mut from = Decoder::new(bytes);
         let blob = match u8::read(&mut from)? {
             MESH => Blob::Mesh(Arc::new(read_mesh(&mut from)?)),
+            GRID => Blob::Grid(Arc::new(read_grid(&mut from)?)),
             kind @ (BYTES | FLOATS) => Blob::Image(Arc::new(read_image(&mut from, kind)?)),
-            _ => return Err(from.wrong("neither a mesh nor an image")),
+            _ => return Err(from.wrong("no mesh, grid or image")),
         };
         if from.left() > 0 {
             return Err(from.wrong(format!("{} bytes too many", from.left())));
@@ -185,6 +195,36 @@ fn read_mesh(from: &mut Decoder) -> Result<Mesh, EncodingError> {
 
 fn at_most_one(list: Vec<f32>, from: &Decoder) -> Result<Option<f32>, EncodingError> {
     if list.len() > 1 { Err(from.wrong("a mesh has several thresholds")) } else { Ok(list.first().copied()) }
+}
+
+fn write_grid(grid: &Grid, write: &mut dyn FnMut(&[u8])) {
+    write(&[GRID]);
+    grid.size().iter().for_each(|n| write(&(*n as u64).to_le_bytes()));
+    let to_object = grid.to_object();
+    for matrix in [to_object.matrix(), to_object.inverse_matrix()] {
+        matrix.to_cols_array().iter().for_each(|x| write(&x.to_le_bytes()));
+    }
+    let Stored { places, voxels, scale } = grid.stored();
+    write(&scale.to_le_bytes());
+    list(write, places, |place| [place.to_le_bytes()]);
+    // Blocks have an even number of voxels.
+    list(write, voxels.as_chunks::<2>().0, |[a, b]| [(u32::from(*b) << 16 | u32::from(*a)).to_le_bytes()]);
+}
+
+fn read_grid(from: &mut Decoder) -> Result<Grid, EncodingError> {
+    let size = [usize::read(from)?, usize::read(from)?, usize::read(from)?];
+    let mut matrix = || {
+        let numbers = from.take(64)?.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
+        Ok::<_, EncodingError>(Mat4::from_cols_slice(&numbers.collect::<Vec<_>>()))
+    };
+    let to_object = Transform::from_inverses(matrix()?, matrix()?);
+    let scale = f32::from_le_bytes(from.take(4)?.as_chunks::<4>().0[0]);
+    let places = read_list(from, |[n]: [[u8; 4]; 1]| u32::from_le_bytes(n))?;
+    let pairs = read_list(from, |[n]: [[u8; 4]; 1]| u32::from_le_bytes(n))?;
+    let voxels: Vec<u16> = pairs.iter().flat_map(|pair| [*pair as u16, (pair >> 16) as u16]).collect();
+    let to_object = to_object.ok_or_else(|| from.wrong("a grid has no place"))?;
+    let stored = Stored { places: &places, voxels: &voxels, scale };
+    Grid::of_stored(size, &to_object, stored).map_err(|why| from.wrong(why.to_string()))
 }
 
 fn read_image(from: &mut Decoder, kind: u8) -> Result<Image, EncodingError> {

@@ -1,9 +1,10 @@
-//! What an encoded scene refers to by number: names of files, meshes, images and textures, each once.
+//! What an encoded scene refers to by number: names of files, meshes, grids, images and textures, each once.
 
 use super::blob::Blob;
 use super::code::{Coded, Decoder, Encoder};
 use super::error::EncodingError;
 use super::hash::ContentHash;
+use bilux_scene::media::Grid;
 use bilux_scene::texture::Image;
 use bilux_scene::{Mesh, Texture};
 use std::collections::{BTreeMap, HashMap};
@@ -37,6 +38,7 @@ impl<T: Clone + Eq + Hash> Numbered<T> {
 pub(super) struct WrittenTables {
     files: Numbered<Arc<str>>,
     meshes: Numbered<(String, ContentHash)>,
+    grids: Numbered<(String, ContentHash)>,
     images: Numbered<ContentHash>,
     /// Encoded textures.
     textures: Numbered<Vec<u8>>,
@@ -56,6 +58,7 @@ impl WrittenTables {
     pub(super) fn write(self, to: &mut Encoder) -> BTreeMap<ContentHash, Blob> {
         self.files.values.iter().map(|file| file.to_string()).collect::<Vec<_>>().write(to);
         self.meshes.values.write(to);
+        self.grids.values.write(to);
         self.images.values.write(to);
         self.textures.values.len().write(to);
         self.textures.values.iter().for_each(|texture| to.bytes.extend_from_slice(texture));
@@ -78,6 +81,7 @@ impl Encoder {
 pub(super) struct ReadTables {
     files: Vec<Arc<str>>,
     meshes: Vec<Arc<Mesh>>,
+    grids: Vec<Arc<Grid>>,
     images: Vec<Arc<Image>>,
     textures: Vec<Arc<Texture>>,
 }
@@ -100,12 +104,16 @@ impl ReadTables {
         };
         from.tables.files = Vec::<String>::read(from)?.into_iter().map(Into::into).collect();
         for (name, hash) in Vec::<(String, ContentHash)>::read(from)? {
-            let Blob::Mesh(mesh) = blob_of(hash)? else { return Err(from.wrong("an image for a mesh")) };
+            let Blob::Mesh(mesh) = blob_of(hash)? else { return Err(from.wrong("no mesh for a mesh")) };
             let mesh = if name.is_empty() { mesh } else { Arc::new(Mesh { name, ..(*mesh).clone() }) };
             from.tables.meshes.push(mesh);
         }
+        for (name, hash) in Vec::<(String, ContentHash)>::read(from)? {
+            let Blob::Grid(grid) = blob_of(hash)? else { return Err(from.wrong("no grid for a grid")) };
+            from.tables.grids.push(Arc::new((*grid).clone().named(&name)));
+        }
         for hash in Vec::<ContentHash>::read(from)? {
-            let Blob::Image(image) = blob_of(hash)? else { return Err(from.wrong("a mesh for an image")) };
+            let Blob::Image(image) = blob_of(hash)? else { return Err(from.wrong("no image for an image")) };
             from.tables.images.push(image);
         }
         for _ in 0..from.count(1)? {
@@ -145,6 +153,18 @@ impl Coded for Arc<Mesh> {
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
         let index = from.index("mesh", from.tables.meshes.len())?;
         Ok(from.tables.meshes[index].clone())
+    }
+}
+
+impl Coded for Arc<Grid> {
+    fn write(&self, to: &mut Encoder) {
+        let hash = to.tables.blob(Blob::Grid(self.clone()));
+        let name = if to.only_what_is_seen { String::new() } else { self.name().to_owned() };
+        to.tables.grids.number((name, hash)).write(to);
+    }
+    fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
+        let index = from.index("grid", from.tables.grids.len())?;
+        Ok(from.tables.grids[index].clone())
     }
 }
 

@@ -69,6 +69,7 @@ impl Coded for Value {
             Value::List(values) => tagged(4, &|to| values.write(to)),
             Value::Texture(index) => tagged(5, &|to| index.write(to)),
             Value::Material(index) => tagged(6, &|to| index.write(to)),
+            Value::Grid(grid) => tagged(7, &|to| grid.write(to)),
         }
     }
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
@@ -80,6 +81,7 @@ impl Coded for Value {
             4 => Value::List(from.nested(Coded::read)?),
             5 => Value::Texture(Coded::read(from)?),
             6 => Value::Material(Coded::read(from)?),
+            7 => Value::Grid(Coded::read(from)?),
             tag => return Err(from.wrong(format!("no value has the tag {tag}"))),
         })
     }

@@ -140,6 +140,6 @@ fn text(value: &Value) -> Option<String> {
         Value::List(items) => {
             format!("[{}]", items.iter().map(text).collect::<Option<Vec<_>>>()?.join(", "))
         }
-        Value::Texture(_) | Value::Material(_) => return None,
+        Value::Texture(_) | Value::Material(_) | Value::Grid(_) => return None,
     })
 }

@@ -111,6 +111,7 @@ fn values(kind: ParameterKind) -> Value {
             json!({ "oneOf": [number, texture(&[("channel", channel)]), formula()] })
         }
         ParameterKind::Texture => json!({ "oneOf": [texture(&[]), formula()] }),
+        ParameterKind::Grid => grid(),
         ParameterKind::Stops { min, max } => {
             let stop = json!([{ "type": "number" }, { "oneOf": colour(min, max) }]);
             let stop = json!({ "type": "array", "prefixItems": stop, "minItems": 2, "maxItems": 2 });
@@ -137,6 +138,15 @@ fn texture(extra: &[(&str, Value)]) -> Value {
     json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }
 
+/// Numbers in space, from a file.
+fn grid() -> Value {
+    let properties = json!({
+        "grid": described("string", "a file of grids, relative to this file"),
+        "name": described("string", "the grid of that file"),
+    });
+    json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": ["grid"] })
+}
+
 fn vector() -> Value {
     let numbers = json!({ "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 });
     json!({ "oneOf": [numbers, { "type": "number" }] })
@@ -148,7 +158,7 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
     let numbers: Vec<Value> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     Some(match parameter.kind {
         _ if text.is_empty() => return None,
-        ParameterKind::Texture => return None,
+        ParameterKind::Texture | ParameterKind::Grid => return None,
         ParameterKind::Bool => json!(text == "true"),
         ParameterKind::Choice(_) | ParameterKind::Text | ParameterKind::Material => json!(text),
         _ => match <[Value; 1]>::try_from(numbers) {

@@ -197,6 +197,10 @@ fn value_text(
             Some(texture) => texture_text(texture, scene, writing)?,
             None => return Ok(None),
         },
+        Value::Grid(grid) => {
+            writing.warn(format!("the grid {} cannot be written: it is left out", grid.name()));
+            return Ok(None);
+        }
         Value::Material(index) => match material_names(&scene.materials).get(*index) {
             Some(name) => quoted(name),
             None => return Ok(None),

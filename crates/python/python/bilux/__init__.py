@@ -14,7 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from . import trimesh
-from ._bilux import Accel, Picture, Spec, Texture, __version__, compare, licenses, read_picture
+from ._bilux import Accel, Grid, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
 from ._tables import (
@@ -48,6 +48,7 @@ __all__ = [
     "Entry",
     "Error",
     "FormatError",
+    "Grid",
     "Hits",
     "Interrupted",
     "Mesh",

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
+__all__ = ["Accel", "Encoded", "Gathering", "Grid", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
 
 __version__: str
 
@@ -80,6 +80,24 @@ class Texture:
     def _restored(document: Any, blobs: dict[str, Any]) -> Texture: ...
     @property
     def shape(self) -> tuple[int, int]: ...
+    @property
+    def name(self) -> str: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
+class Grid:
+    def __new__(
+        cls,
+        values: ArrayLike,
+        *,
+        bounds: tuple[Sequence[float], Sequence[float]] = ((0, 0, 0), (1, 1, 1)),
+        name: str = "",
+    ) -> Self: ...
+    @staticmethod
+    def _restored(document: Any, blobs: dict[str, Any]) -> Grid: ...
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
     @property
     def name(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...

@@ -1,6 +1,7 @@
 //! What a material or a light is made from, as a key.
 
 use super::Same;
+use crate::grid::Grid;
 use crate::parameters::{Spec, Value};
 use crate::texture::Texture;
 use std::sync::Arc;
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub(crate) struct SpecKey {
     bytes: Vec<u8>,
     textures: Vec<Same<Texture>>,
+    grids: Vec<Same<Grid>>,
 }
 
 /// Materials that refer to others more deeply than this are not compared.
@@ -22,7 +24,7 @@ impl SpecKey {
     /// The key of a spec in a scene with these textures and materials; `None` where it refers to one that there is
     /// not, or to too many.
     pub(crate) fn of(spec: &Spec, textures: &[Arc<Texture>], materials: &[Spec]) -> Option<SpecKey> {
-        let mut key = SpecKey { bytes: Vec::new(), textures: Vec::new() };
+        let mut key = SpecKey { bytes: Vec::new(), textures: Vec::new(), grids: Vec::new() };
         key.push_spec(spec, textures, materials, 0)?;
         Some(key)
     }
@@ -61,6 +63,7 @@ impl SpecKey {
             Value::List(_) => 4,
             Value::Texture(_) => 5,
             Value::Material(_) => 6,
+            Value::Grid(_) => 7,
         });
         match value {
             Value::Bool(yes) => self.bytes.push(u8::from(*yes)),
@@ -73,6 +76,7 @@ impl SpecKey {
                     self.push_value(value, textures, materials, depth)?;
                 }
             }
+            Value::Grid(grid) => self.grids.push(Same(grid.clone())),
             Value::Texture(index) => self.textures.push(Same(textures.get(*index)?.clone())),
             Value::Material(index) => {
                 self.push_spec(materials.get(*index)?, textures, materials, depth + 1)?;

@@ -143,7 +143,7 @@ struct Glass {
     eta: f32,
     dispersion: f32,
     tint: ColourMap,
-    medium: Medium,
+    medium: Medium<'static>,
     priority: u32,
     thin: bool,
     roughness: Roughness,
@@ -196,7 +196,7 @@ impl Material for Glass {
         (priority > 0 && !thin).then_some(Nested { priority, eta, dispersion })
     }
 
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         (!self.thin).then_some(self.medium)
     }
 }

@@ -4,7 +4,11 @@ use super::dielectric::PRIORITY;
 use super::{ABSORPTION, Material, MaterialEntry, Nested};
 use crate::bsdf::{Bsdf, Dielectric, Lobe};
 use crate::classic::ClassicMaterial;
-use crate::media::{DIAMETER, DRAINE_ALPHA, Medium, PHASE, PHASE_ANISOTROPY, SCATTERING};
+use crate::grid::Grid;
+use crate::media::{
+    DENSITY, DIAMETER, DRAINE_ALPHA, EMISSION, EMISSION_GRID, Glow, Medium, PHASE, PHASE_ANISOTROPY,
+    SCATTERING, TEMPERATURE, TEMPERATURE_SCALE,
+};
 use crate::surface::Surface;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -15,13 +19,27 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         name: "interface",
         summary: "the boundary of fog, smoke or a cloud, which light passes straight through",
         source: "",
-        parameters: &[ABSORPTION, SCATTERING, PHASE, PHASE_ANISOTROPY, DRAINE_ALPHA, DIAMETER, PRIORITY],
+        parameters: &[
+            ABSORPTION,
+            SCATTERING,
+            DENSITY,
+            PHASE,
+            PHASE_ANISOTROPY,
+            DRAINE_ALPHA,
+            DIAMETER,
+            EMISSION,
+            EMISSION_GRID,
+            TEMPERATURE,
+            TEMPERATURE_SCALE,
+            PRIORITY,
+        ],
     },
     build: |reader, _| {
         let medium = Medium::read(reader, reader.colour(ABSORPTION.name))?;
         // Without a priority it would be a surface that others refract against.
         let priority = (reader.integer(PRIORITY.name) as u32).max(1);
-        Ok(Arc::new(Interface { medium, priority }))
+        let (density, glow) = (reader.grid(DENSITY.name), Glow::read(reader));
+        Ok(Arc::new(Interface { medium, density, glow, priority }))
     },
     principled: None,
 };
@@ -31,7 +49,9 @@ const NOTHING: Dielectric =
     Dielectric { eta: 1.0, dispersion: 0.0, tint: Rgb::WHITE, thin: true, film: None };
 
 struct Interface {
-    medium: Medium,
+    medium: Medium<'static>,
+    density: Option<Arc<Grid>>,
+    glow: Option<Glow>,
     priority: u32,
 }
 
@@ -58,7 +78,7 @@ impl Material for Interface {
         true
     }
 
-    fn medium(&self) -> Option<Medium> {
-        Some(self.medium)
+    fn medium(&self) -> Option<Medium<'_>> {
+        Some(Medium { density: self.density.as_deref(), glow: self.glow.as_ref(), ..self.medium })
     }
 }

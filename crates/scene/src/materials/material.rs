@@ -87,7 +87,7 @@ pub trait Material: Send + Sync {
         false
     }
     /// What its inside is filled with; `None` where there is no inside that light enters: behind opaque surfaces and thin walls.
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         None
     }
 }

@@ -136,13 +136,14 @@ impl Material for Mix {
     }
 
     /// The interior does not depend on where light entered: use the denser of the two.
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         let (a, b) = match (self.a.medium(), self.b.medium()) {
             (Some(a), Some(b)) => (a, b),
             (a, b) => return a.or(b),
         };
         let denser = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
         let phase = if a.scatters() { a.phase } else { b.phase };
-        Some(Medium { sigma_a: denser(a.sigma_a, b.sigma_a), sigma_s: denser(a.sigma_s, b.sigma_s), phase })
+        let (sigma_a, sigma_s) = (denser(a.sigma_a, b.sigma_a), denser(a.sigma_s, b.sigma_s));
+        Some(Medium { sigma_a, sigma_s, phase, density: a.density.or(b.density), glow: a.glow.or(b.glow) })
     }
 }

@@ -124,7 +124,7 @@ impl Material for ModifiedMaterial {
         self.material.is_interface()
     }
 
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         self.material.medium()
     }
 }

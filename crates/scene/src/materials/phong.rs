@@ -141,7 +141,7 @@ impl Material for Phong {
         3
     }
 
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         let is_clear = self.kt.texture.is_some() || !self.kt.colour.is_black();
         (is_clear && !self.constants.thin).then_some(Medium::absorbing(self.constants.sigma_a))
     }

@@ -15,12 +15,13 @@ use crate::footprint::FootprintView;
 use crate::geometry::Geometry;
 use crate::lights::Light;
 use crate::materials::Material;
+use crate::media::{Medium, MediumLine};
 use crate::placed::Placed;
 use crate::surface::Surface;
 use crate::texture::mipmaps;
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
-use bilux_math::{Aabb, Rgb, Vec3};
+use bilux_math::{Aabb, Rgb, Transform, Vec3};
 use may_pass::MayPass;
 pub(crate) use mesh_lights::MeshLights;
 pub use parts::SceneLight;
@@ -221,7 +222,30 @@ impl Scene {
         around.map(exit).reduce(f32::max)
     }
 
-    /// True when some medium scatters light.
+    /// The line of a ray through the grids of the medium of an object, if it has any: from a point along a unit vector.
+    #[inline]
+    pub fn medium_line(
+        &self,
+        object: u32,
+        medium: &Medium,
+        [origin, direction]: [Vec3; 2],
+        time: f32,
+    ) -> Option<MediumLine> {
+        // Spheres have no space of their own.
+        let placed = self.parts.geometry.objects().get(object as usize);
+        let to_world = || placed.map_or(Transform::IDENTITY, |placed| placed.motion.at(time));
+        medium.line(to_world, origin, direction)
+    }
+
+    /// True when some medium emits light.
+    pub fn has_glowing_media(&self) -> bool {
+        self.parts
+            .materials
+            .iter()
+            .any(|material| material.medium().is_some_and(|medium| medium.glow.is_some()))
+    }
+
+    /// True when some medium scatters light, or varies: walks have to ask what they meet in it.
     #[inline]
     pub fn scatters(&self) -> bool {
         self.parts.scatters

@@ -115,7 +115,7 @@ impl SceneParts {
         let disperses = materials.iter().any(|material| material.disperses());
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
-        let scatters = media().any(|medium| medium.scatters());
+        let scatters = media().any(|medium| medium.is_walked());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
         SceneParts {
             geometry,

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::photons::Photons;
 use crate::task::Task;
-use crate::techniques::{PerSet, Step, Tally, Technique, TechniqueCounts};
+use crate::techniques::{Contribution, PerSet, Step, Tally, Technique, TechniqueCounts};
 use bilux_scene::Ray;
 
 /// One subpath from each end, and all that they find.
@@ -67,8 +67,11 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         &self.techniques
     }
 
-    fn escape(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>) {
+    fn escape(&self, subpath: &mut Subpath<N>, task: &Task, tally: &mut impl Tally<N>) {
         let technique = Technique::Connected { s: 0, t: subpath.count() };
+        if let Some(glow) = subpath.take_glow(task.sample) {
+            tally.add_sample(technique, &Contribution::only(glow));
+        }
         from_infinity(task, subpath, |hit| {
             tally.add_sample(technique, &hit.by(subpath.walk.seen(task.sample), &subpath.partial))
         });
@@ -86,6 +89,9 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             let density = task.context.camera.density(&subpath.walk.ray, z.at.t());
             z.partial = Partial::of_camera(density * z.arriving, &self.techniques, z.partial.merged);
             subpath.partial = z.partial;
+        }
+        if let Some(glow) = subpath.take_glow(task.sample) {
+            tally.add_sample(Technique::Connected { s: 0, t: z.count() }, &Contribution::only(glow));
         }
         if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo)) {
             let (seen, technique) =

@@ -14,7 +14,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     fn techniques(&self) -> &TechniqueCounts<N>;
 
     /// The subpath leaves the scene.
-    fn escape(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
+    fn escape(&self, subpath: &mut Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
     /// It arrives at a vertex, and collects the light that is emitted there; false where it ends.
     fn arrive(
@@ -53,7 +53,9 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
         let mut subpath = self.leave_camera(ray);
         loop {
             tally.spend(Step::Camera, 1);
-            let Some(mut z) = subpath.next_vertex(task) else { return self.escape(&subpath, task, tally) };
+            let Some(mut z) = subpath.next_vertex(task) else {
+                return self.escape(&mut subpath, task, tally);
+            };
             if !self.arrive(&mut subpath, &mut z, task, tally) {
                 return;
             }

@@ -8,6 +8,7 @@ use crate::photons::Photons;
 use crate::segment::Segment;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
+use crate::through::Through;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, Tracer, TransportMode};
 
@@ -87,7 +88,9 @@ pub(crate) fn to_camera<const N: usize>(
         picked: None,
         in_medium: [y.at.is_in_medium(), false],
     };
-    let segment = Segment { ray, distance: Some(seen.p.distance(y.at.p())), n: Vec3::ZERO, media };
+    let distance = Some(seen.p.distance(y.at.p()));
+    let segment =
+        Segment { ray, n: Vec3::ZERO, through: Through { media, distance, seed: task.sample.seed() } };
     Some((seen.film, Connection { join, segment }))
 }
 
@@ -133,7 +136,8 @@ pub(crate) fn to_light<const N: usize>(
         in_medium: [z.at.is_in_medium(), false],
     };
     let ray = z.at.spawn_to_light(&sample);
-    Some(Connection { join, segment: Segment { ray, distance, n: sample.n_light, media } })
+    let through = Through { media, distance, seed: task.sample.seed() };
+    Some(Connection { join, segment: Segment { ray, n: sample.n_light, through } })
 }
 
 /// Connects a camera vertex and a light vertex (s, t > 1).
@@ -171,7 +175,8 @@ pub(crate) fn to_vertex<const N: usize>(
         picked: None,
         in_medium: [z.at.is_in_medium(), y.at.is_in_medium()],
     };
-    let segment = Segment { ray: spawn_between(&z.at, &y.at), distance: Some(distance2.sqrt()), n, media };
+    let through = Through { media, distance: Some(distance2.sqrt()), seed: task.sample.seed() };
+    let segment = Segment { ray: spawn_between(&z.at, &y.at), n, through };
     Some(Connection { join, segment })
 }
 

@@ -26,7 +26,7 @@ impl LightTracing {
     pub(crate) fn emitted(ray: &Ray, task: &mut Task) -> Rgb {
         let media = Media::at_start(task.tracer, ray);
         let first = task.tracer.closest(ray);
-        emitted_by(first, media, ray, task.tracer)
+        emitted_by(first, media, (ray, task.sample.seed()), task.tracer)
     }
 
     /// Follows one light subpath. `add_splat` receives the points of the film, and the light there.
@@ -43,8 +43,13 @@ impl LightTracing {
 }
 
 /// The light that arrives from the first surface along a camera ray, which starts in these media, or from infinity.
-fn emitted_by(first: Option<Surface>, mut media: Media, ray: &Ray, tracer: &mut Tracer) -> Rgb {
-    match first.and_then(|surface| media.closest_from(tracer, ray, surface)) {
+fn emitted_by(
+    first: Option<Surface>,
+    mut media: Media,
+    (ray, seed): (&Ray, u64),
+    tracer: &mut Tracer,
+) -> Rgb {
+    match first.and_then(|surface| media.closest_from(tracer, ray, surface, seed)) {
         Some((surface, passed)) => passed * tracer.scene.emission(&surface, -Vec3::from(ray.direction)),
         None => tracer.scene.background(ray.direction.into(), 0),
     }
@@ -87,7 +92,7 @@ impl BatchQueue for LightTracingSamples {
             let Some(hit) = sample.is_wanted.then(|| hits.next()).flatten() else { return Rgb::BLACK };
             let first = hit.map(|hit| tracer.surface(&sample.ray, &hit));
             let media = Media::at_start(tracer, &sample.ray);
-            emitted_by(first, media, &sample.ray, tracer)
+            emitted_by(first, media, (&sample.ray, sample.state.seed()), tracer)
         };
         samples.iter().map(light).collect()
     }

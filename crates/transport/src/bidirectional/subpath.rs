@@ -6,7 +6,7 @@ use crate::emission::Start;
 use crate::interaction::Interaction;
 use crate::media::{Media, Travelled};
 use crate::photons::{Photon, PhotonPosition};
-use crate::task::{PathVertex, Task, VertexKind};
+use crate::task::{PathVertex, SampleState, Task, VertexKind};
 use crate::techniques::{PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
@@ -81,6 +81,8 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     origin: u16,
     /// Its last vertex is a point of a medium.
     leaves_medium: bool,
+    /// What media on the way to the next vertex emit, over the density of finding it.
+    glow: Rgb,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
@@ -105,6 +107,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             start: None,
             origin: 0,
             leaves_medium: false,
+            glow: Rgb::BLACK,
             techniques,
         }
     }
@@ -156,7 +159,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         if walk.depth == 0 {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
-        let Travelled { arrival, passage, .. } = walk.travel(Some(first), tracer, sample, self.mode);
+        let Travelled { arrival, passage, emitted, .. } = walk.travel(Some(first), tracer, sample, self.mode);
+        self.glow = emitted;
         let media = walk.media;
         let back = passage.returning(self.leaves_medium);
         let Some(at) = media.interaction(context.scene, &arrival, &sample.wavelength) else {
@@ -196,6 +200,14 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
+    }
+
+    /// The light that media have emitted on the way here, as the colour channels see it; `None` if there is none. No other technique
+    /// finds it.
+    #[inline]
+    pub(super) fn take_glow(&mut self, sample: &SampleState) -> Option<Rgb> {
+        let glow = std::mem::take(&mut self.glow);
+        (!glow.is_black()).then(|| sample.seen(glow, self.walk.is_split))
     }
 
     /// The number of its vertices if it hits an emitter next.

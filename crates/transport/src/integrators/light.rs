@@ -31,6 +31,11 @@ impl PixelIntegrator for LightTracing {
         LightTracing::emitted(ray, task)
     }
 
+    /// No light subpath begins in a medium.
+    fn sees_glow(&self) -> bool {
+        false
+    }
+
     fn light_subpaths(&self) -> Option<&dyn LightSubpaths> {
         Some(self)
     }

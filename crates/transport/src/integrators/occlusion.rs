@@ -4,6 +4,7 @@
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::media::Media;
 use crate::task::Task;
+use crate::through::Through;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Frame, Rgb, Vec3, warp};
 use bilux_scene::Ray;
@@ -41,7 +42,8 @@ impl PixelIntegrator for Occlusion {
         // Boundaries of media are not surfaces.
         let mut media = Media::at_start(task.tracer, ray);
         let first = task.tracer.closest(ray);
-        let Some((surface, _)) = first.and_then(|first| media.closest_from(task.tracer, ray, first)) else {
+        let Some((surface, _)) = first.and_then(|first| media.closest_from(task.tracer, ray, first, 0))
+        else {
             task.sample.note(0, || "leaves the scene".to_owned());
             return Rgb::WHITE;
         };
@@ -52,7 +54,8 @@ impl PixelIntegrator for Occlusion {
             .to_world(warp::sample_cosine_hemisphere(task.sample.sampler.next_2d()));
         let probe = Ray { t_max: self.distance, ..surface.spawn(wi) };
         let media = media.beyond(task.context.scene, &surface, -Vec3::from(ray.direction), wi);
-        let open = media.visible(task.tracer, &probe, None, Vec3::ZERO).is_some();
+        let through = Through { media, distance: None, seed: 0 };
+        let open = through.visible(task.tracer, &probe, Vec3::ZERO).is_some();
         task.sample.note(0, || {
             format!("at {} the direction {wi} is {}", surface.p, if open { "open" } else { "closed" })
         });

@@ -87,7 +87,7 @@ impl CameraSubpath for PhotonGathering<'_> {
     }
 
     /// Lights are seen directly, in mirrors too; photons bring the light that they give to other surfaces.
-    fn escape(&self, subpath: &Subpath, task: &Task, tally: &mut impl Tally<1>) {
+    fn escape(&self, subpath: &mut Subpath, task: &Task, tally: &mut impl Tally<1>) {
         let technique = Technique::Connected { s: 0, t: subpath.count() };
         from_infinity(task, subpath, |hit| {
             tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));

@@ -2,8 +2,8 @@
 
 use crate::interaction::MediumPoint;
 use bilux_math::Rgb;
+use bilux_scene::Surface;
 use bilux_scene::media::FreePath;
-use bilux_scene::{Medium, Surface};
 
 /// A line through media on which nothing blocks light.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +36,8 @@ pub(crate) struct Travelled {
     /// The fraction of light that comes so far and is scattered there, over the density with which the path does.
     pub(crate) weight: Rgb,
     pub(crate) passage: Passage,
+    /// The light that media on the way emit.
+    pub(crate) emitted: Rgb,
 }
 
 impl Passage {
@@ -49,7 +51,7 @@ impl Passage {
         Passage {
             transmittance: self.transmittance * next.transmittance,
             survival: self.survival * next.survival,
-            hazards: [if self.is_first { next.hazard } else { self.hazards[0] }, next.hazard],
+            hazards: [if self.is_first { next.hazards[0] } else { self.hazards[0] }, next.hazards[1]],
             is_first: false,
         }
     }
@@ -70,8 +72,18 @@ impl Passage {
 
 impl Travelled {
     /// At the start.
-    pub(super) const NOWHERE: Travelled =
-        Travelled { arrival: Arrival::Escape, weight: Rgb::WHITE, passage: Passage::CLEAR };
+    pub(super) const NOWHERE: Travelled = Travelled {
+        arrival: Arrival::Escape,
+        weight: Rgb::WHITE,
+        passage: Passage::CLEAR,
+        emitted: Rgb::BLACK,
+    };
+
+    /// With light that the next medium emits.
+    #[inline]
+    pub(super) fn lit(self, emitted: Rgb) -> Travelled {
+        Travelled { emitted: self.emitted + self.weight * emitted, ..self }
+    }
 
     /// Past all of this.
     #[inline]
@@ -81,16 +93,16 @@ impl Travelled {
         Travelled { weight: self.weight * weight, passage: self.passage.then(part), ..self }
     }
 
-    /// To an event of a medium after this distance in it.
+    /// To an event of a medium at the end of this, where its scattering coefficient is `sigma_s`.
     #[inline]
-    pub(super) fn scattered(self, medium: &Medium, distance: f32, point: MediumPoint) -> Travelled {
-        let part = medium.free_path(distance);
-        let density = part.survival * part.hazard;
-        let weight = if density > 0.0 { part.transmittance * medium.sigma_s / density } else { Rgb::BLACK };
+    pub(super) fn scattered(self, part: FreePath, sigma_s: Rgb, point: MediumPoint) -> Travelled {
+        let density = part.survival * part.hazards[1];
+        let weight = if density > 0.0 { part.transmittance * sigma_s / density } else { Rgb::BLACK };
         Travelled {
             arrival: Arrival::Medium(point),
             weight: self.weight * weight,
             passage: self.passage.then(part),
+            ..self
         }
     }
 }

@@ -31,7 +31,7 @@ impl LightConnection {
         }
         sample.note_vertex(depth, || {
             let [origin, direction] = [self.segment.ray.origin, self.segment.ray.direction].map(Vec3::from);
-            let (kind, at) = match self.segment.distance {
+            let (kind, at) = match self.segment.through.distance {
                 None => (VertexKind::DistantLight, direction),
                 Some(_) => (VertexKind::LightSample, origin + direction),
             };

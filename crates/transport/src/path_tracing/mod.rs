@@ -8,6 +8,7 @@ use crate::light_choice::LightChoice;
 use crate::media::{Arrival, Media};
 use crate::segment::Segment;
 use crate::task::{Context, PathVertex, Task, VertexKind};
+use crate::through::Through;
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
@@ -58,6 +59,9 @@ impl PathTracing {
             if let Some((_, pdf)) = &mut path.last {
                 *pdf *= travelled.passage.survival;
             }
+            if !travelled.emitted.is_black() {
+                self.glow(&mut path, travelled.emitted, task);
+            }
             if matches!(travelled.arrival, Arrival::Escape) {
                 self.escape(&mut path, task);
                 return path.light;
@@ -77,6 +81,21 @@ impl PathTracing {
     /// True when light is sampled by both techniques.
     pub(crate) fn is_mis(&self) -> bool {
         self.sampling == Sampling::Mis
+    }
+
+    /// Collects what media on the way have emitted.
+    #[cold]
+    fn glow(&self, path: &mut Path, emitted: Rgb, task: &mut Task) {
+        let light = task.sample.seen(emitted, path.walk.is_split);
+        path.light += light;
+        task.sample.find(path.walk.depth + 1, None, light);
+        task.sample.note_vertex(path.walk.depth, || {
+            let at = Vec3::from(path.walk.ray.origin);
+            (
+                PathVertex { kind: VertexKind::Emitter, at, light },
+                "passes a medium that emits light".to_owned(),
+            )
+        });
     }
 
     /// The end of a path that leaves the scene.
@@ -278,12 +297,12 @@ impl PathTracing {
         }
         let light_pdf = sample.pdf_solid_angle * probability;
         let pdf = (self.sampling == Sampling::Mis && !light.is_delta()).then_some(pdf);
-        let segment = Segment {
-            ray: at.spawn_to_light(&sample),
-            distance: sample.point.map(|point| point.distance(at.p())),
-            n: sample.n_light,
+        let through = Through {
             media: media.towards(task.context.scene, at, wo, sample.wi),
+            distance: sample.point.map(|point| point.distance(at.p())),
+            seed: task.sample.seed(),
         };
+        let segment = Segment { ray: at.spawn_to_light(&sample), n: sample.n_light, through };
         Some(LightConnection { segment, light: scattered_light, light_pdf, pdf })
     }
 

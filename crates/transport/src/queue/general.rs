@@ -65,7 +65,7 @@ impl Paths {
             let mut surface = tracer.surface(&one.path.walk.ray, hit);
             if !is_clear {
                 let walk = &mut one.path.walk;
-                let Some((next, passed)) = walk.media.closest_from(tracer, &walk.ray, surface) else {
+                let Some((next, passed)) = walk.media.closest_from(tracer, &walk.ray, surface, 0) else {
                     let (path, mut task) = one.parts(context, tracer);
                     tracing.escape(path, &mut task);
                     continue;

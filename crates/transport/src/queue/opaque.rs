@@ -141,7 +141,7 @@ impl Paths {
             };
             if !is_clear {
                 let walk = &mut one.path.walk;
-                let arrived = walk.media.closest_from(tracer, &walk.ray, surface);
+                let arrived = walk.media.closest_from(tracer, &walk.ray, surface, 0);
                 walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
             }
             one.begin_event();

@@ -10,6 +10,7 @@ use crate::media::Media;
 use crate::path_tracing::{Path, power_heuristic};
 use crate::sampler::{self, PixelSampler};
 use crate::task::Context;
+use crate::through::Through;
 use bilux_math::Vec3;
 use bilux_scene::surface::{leaving, offset_origin};
 use bilux_scene::{CpuLevel, Primitive, Ray, Scene, Surface};
@@ -208,7 +209,9 @@ impl Paths {
             let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
             let media = (!is_clear).then(|| {
                 let path = &self.paths[v.paths[i] as usize].path;
-                (media(path, i, vec3(&v.light.wi, i)), v.distance(i))
+                // Columns follow no walks through media that vary.
+                let media = media(path, i, vec3(&v.light.wi, i));
+                Through { media, distance: v.distance(i), seed: 0 }
             });
             let n_light = vec3(&v.light.n_light, i);
             self.connections.with(light).push(ray, n_light, media, contribution);

@@ -26,4 +26,5 @@ mod stop;
 mod strategies;
 mod strokes;
 mod visible;
+mod volumes;
 mod work;

@@ -148,7 +148,7 @@ fn survives(medium: &Medium, sigma_t: Rgb) -> Result<(), String> {
         .collect();
     for limit in [0.05, 0.3, 1.0, 3.0, 20.0] {
         let beyond = distances.iter().filter(|distance| **distance > limit).count() as f64 / WALKS as f64;
-        let FreePath { survival, hazard, transmittance } = medium.free_path(limit);
+        let FreePath { survival, hazards: [_, hazard], transmittance } = medium.free_path(limit);
         let wanted = f64::from(survival);
         let error = 5.0 * (wanted * (1.0 - wanted) / WALKS as f64).sqrt() + 1e-6;
         if (beyond - wanted).abs() > error {
@@ -181,6 +181,6 @@ fn distances_between_events_are_those_of_the_medium() {
     let wrong = Medium { sigma_a: Rgb::BLACK, ..medium };
     assert!(survives(&wrong, sigma_a + sigma_s).is_err());
     // What only absorbs has no events.
-    let FreePath { survival, hazard, .. } = Medium::absorbing(sigma_a).free_path(1.0);
+    let FreePath { survival, hazards: [_, hazard], .. } = Medium::absorbing(sigma_a).free_path(1.0);
     assert_eq!((survival, hazard), (1.0, 0.0));
 }

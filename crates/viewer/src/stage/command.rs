@@ -87,6 +87,7 @@ fn text(value: &Value) -> String {
         Value::Text(text) => text.clone(),
         Value::List(list) => list.iter().map(text).collect::<Vec<_>>().join(","),
         Value::Texture(index) | Value::Material(index) => index.to_string(),
+        Value::Grid(grid) => grid.name().to_owned(),
     }
 }
 

@@ -12,6 +12,7 @@ pub(super) fn value_json(value: &bilux::scene::Value) -> Value {
         V::Text(text) => json!(text),
         V::List(list) => list.iter().map(value_json).collect(),
         V::Texture(_) => json!({ "texture": true }),
+        V::Grid(grid) => json!({ "grid": grid.name() }),
         V::Material(index) => json!({ "material": index }),
     }
 }

@@ -321,7 +321,7 @@ impl Material for Principled {
         })
     }
 
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<Medium<'_>> {
         self.is_solid().then_some(Medium::absorbing(self.sigma_a))
     }
 }

@@ -1,30 +1,13 @@
-//! Numbers in space, on a regular lattice: the density of smoke, the temperature of fire.
-//!
-//! Voxels come in blocks of 8³, as in the leaves of OpenVDB, and blocks of zeros are not stored. Each block has a bound, its
-//! majorant, so that paths cross thin parts in long steps. [Woodcock 1965; Museth 2013]
+//! The storage of a grid, and its values.
 
+use super::blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, all, blocks_of, check, voxel_of, within};
+use super::half::{from_half, half, scale_of};
+use super::line::{GridLine, for_each_block};
 use bilux_math::{Transform, Vec3};
 use std::fmt;
 
-/// Voxels along each side of a block.
-pub const BLOCK: usize = 8;
-/// Voxels of a block.
-pub const BLOCK_VOXELS: usize = BLOCK * BLOCK * BLOCK;
-
-/// The values of a block, x varying fastest, then y.
-pub type Block = [f32; BLOCK_VOXELS];
-
 /// Marks a block of zeros.
 const EMPTY: u32 = u32::MAX;
-
-/// The maximum number of voxels along a side: positions in voxels need digits for fractions.
-pub const MAX_SIDE: usize = 1 << 16;
-/// The maximum number of blocks, stored or not: 32 bytes for 8 GiB.
-const MAX_BLOCKS: usize = 1 << 30;
-
-/// Halves are exact from here to their maximum; smaller values lose digits.
-const HALF_NORMAL: f32 = 6.103_515_6e-5;
-const HALF_MAX: f32 = 65_504.0;
 
 /// Numbers, none of them negative, at the centres of voxels, linear in between, and 0 outside.
 #[derive(Clone, PartialEq)]
@@ -41,34 +24,15 @@ pub struct Grid {
     scale: f32,
 }
 
-/// Why there is no such grid.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum GridError {
-    /// A side of no voxels, or of too many.
-    #[error(
-        "a grid of {0} x {1} x {2} voxels: a side has 1 to {MAX_SIDE}, and all together {MAX_BLOCKS} blocks of 8 x 8 x 8"
-    )]
-    Size(usize, usize, usize),
-    /// The wrong number of values.
-    #[error("a grid of {wanted} voxels has {found} values")]
-    Count {
-        /// Voxels.
-        wanted: usize,
-        /// Values.
-        found: usize,
-    },
-    /// A value that is negative or not finite.
-    #[error("the voxel ({0}, {1}, {2}) is negative or not finite")]
-    Value(usize, usize, usize),
-}
-
-/// A straight line through the voxels of a grid.
+/// What a grid holds, as it is stored.
 #[derive(Clone, Copy, Debug)]
-pub struct GridLine {
-    /// Where it begins, in voxels.
-    origin: Vec3,
-    /// Voxels per metre along each axis.
-    direction: Vec3,
+pub struct Stored<'a> {
+    /// For each block, x varying fastest, then y: its place among the stored ones, or `u32::MAX` for zeros.
+    pub places: &'a [u32],
+    /// The halves of the stored blocks, 512 for each.
+    pub voxels: &'a [u16],
+    /// The factor on them.
+    pub scale: f32,
 }
 
 impl Grid {
@@ -134,6 +98,39 @@ impl Grid {
         })
     }
 
+    /// A grid from what another one [stored](Grid::stored).
+    ///
+    /// # Errors
+    /// When these are not the blocks of a grid of this size.
+    pub fn of_stored(size: [usize; 3], to_object: &Transform, stored: Stored) -> Result<Grid, GridError> {
+        let blocks = blocks_of(size)?;
+        let Stored { places, voxels, scale } = stored;
+        let count = places.iter().filter(|place| **place != EMPTY).count();
+        let are_theirs = places.iter().all(|place| *place == EMPTY || (*place as usize) < count);
+        let is_whole =
+            places.len() == blocks.iter().product::<usize>() && voxels.len() == count * BLOCK_VOXELS;
+        // The exponent of halves that are infinite or no numbers; a sign is beyond it.
+        let are_numbers = voxels.iter().all(|half| *half < 0x7c00) && scale.is_finite() && scale > 0.0;
+        if !(is_whole && are_theirs && are_numbers) {
+            return Err(GridError::Stored);
+        }
+        let (places, voxels, majorants) = (places.into(), voxels.into(), Box::default());
+        let (name, to_voxels) = (String::new(), to_object.inverted());
+        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale };
+        grid.majorants = grid.bounds_of_blocks(blocks);
+        Ok(grid)
+    }
+
+    /// What it holds, as it is stored.
+    pub fn stored(&self) -> Stored<'_> {
+        Stored { places: &self.places, voxels: &self.voxels, scale: self.scale }
+    }
+
+    /// The same grid under another name.
+    pub fn named(self, name: &str) -> Grid {
+        Grid { name: name.to_owned(), ..self }
+    }
+
     /// The file that it came from, and the name there.
     pub fn name(&self) -> &str {
         &self.name
@@ -168,13 +165,13 @@ impl Grid {
     #[inline]
     pub fn voxel(&self, [x, y, z]: [usize; 3]) -> f32 {
         let place = self.places[self.block_index([x / BLOCK, y / BLOCK, z / BLOCK])];
-        if place == EMPTY { 0.0 } else { self.stored(place, within(x, y, z)) }
+        if place == EMPTY { 0.0 } else { self.number(place, within(x, y, z)) }
     }
 
     /// The values of a block; `None` for zeros.
     pub fn block(&self, at: [usize; 3]) -> Option<Block> {
         let place = self.places[self.block_index(at)];
-        (place != EMPTY).then(|| std::array::from_fn(|i| self.stored(place, i)))
+        (place != EMPTY).then(|| std::array::from_fn(|i| self.number(place, i)))
     }
 
     /// The line of a ray in an object, whose directions are per metre of the ray.
@@ -230,13 +227,13 @@ impl Grid {
             EMPTY => [0.0; 8],
             place => std::array::from_fn(|i| {
                 let [x, y, z] = pick(i);
-                self.stored(place, within(x, y, z))
+                self.number(place, within(x, y, z))
             }),
         }
     }
 
     #[inline]
-    fn stored(&self, place: u32, index: usize) -> f32 {
+    fn number(&self, place: u32, index: usize) -> f32 {
         from_half(self.voxels[place as usize * BLOCK_VOXELS + index]) * self.scale
     }
 
@@ -268,6 +265,12 @@ impl Grid {
         all(blocks).map(bound).collect()
     }
 
+    /// The same values with other majorants: larger ones, or wrong ones.
+    #[cfg(test)]
+    pub(crate) fn with_majorants_scaled(&self, factor: f32) -> Grid {
+        Grid { majorants: self.majorants.iter().map(|bound| bound * factor).collect(), ..self.clone() }
+    }
+
     /// True where neither a block nor one of its neighbours is stored.
     fn is_empty_around(&self, at: [usize; 3], blocks: [usize; 3]) -> bool {
         let around = |axis: usize| at[axis].saturating_sub(1)..(at[axis] + 2).min(blocks[axis]);
@@ -279,133 +282,10 @@ impl Grid {
     /// `visit` returns false. Beyond the border the value is 0.
     #[inline]
     pub fn for_each_block(&self, line: &GridLine, length: f32, mut visit: impl FnMut(f32, f32, f32) -> bool) {
-        let size = Vec3::from(self.size.map(|n| n as f32));
-        let Some([begin, end]) = inside(line, size, length) else { return };
-        let start = line.origin + line.direction * begin;
-        let blocks = self.size.map(|n| n.div_ceil(BLOCK));
-        let (mut at, mut next, mut step) = ([0; 3], [f32::INFINITY; 3], [0.0; 3]);
-        for axis in 0..3 {
-            let block = (start[axis].max(0.0) / BLOCK as f32) as usize;
-            at[axis] = block.min(blocks[axis] - 1);
-            let towards = line.direction[axis];
-            if towards != 0.0 {
-                let border = (at[axis] + usize::from(towards > 0.0)) * BLOCK;
-                next[axis] = (border as f32 - line.origin[axis]) / towards;
-                step[axis] = BLOCK as f32 / towards.abs();
-            }
-        }
-        let mut t = begin;
-        loop {
-            let axis = if next[0] <= next[1] && next[0] <= next[2] {
-                0
-            } else if next[1] <= next[2] {
-                1
-            } else {
-                2
-            };
-            let leave = next[axis].min(end).max(t);
-            if !visit(t, leave, self.majorants[self.block_index(at)]) || next[axis] >= end {
-                return;
-            }
-            t = leave;
-            next[axis] += step[axis];
-            let beyond = if line.direction[axis] > 0.0 { at[axis] + 1 } else { at[axis].wrapping_sub(1) };
-            if beyond >= blocks[axis] {
-                return;
-            }
-            at[axis] = beyond;
-        }
+        for_each_block(self.size, line, length, |begin, end, block| {
+            visit(begin, end, self.majorants[self.block_index(block)])
+        });
     }
-}
-
-/// The part of a line, up to this length, inside a box from zero; `None` where it passes by.
-#[inline]
-fn inside(line: &GridLine, size: Vec3, length: f32) -> Option<[f32; 2]> {
-    let (mut begin, mut end) = (0.0f32, length);
-    for axis in 0..3 {
-        let (origin, towards) = (line.origin[axis], line.direction[axis]);
-        if towards == 0.0 {
-            if !(0.0..=size[axis]).contains(&origin) {
-                return None;
-            }
-            continue;
-        }
-        let [a, b] = [-origin / towards, (size[axis] - origin) / towards];
-        begin = begin.max(a.min(b));
-        end = end.min(a.max(b));
-    }
-    (begin < end).then_some([begin, end])
-}
-
-/// The number of blocks along each side.
-fn blocks_of(size: [usize; 3]) -> Result<[usize; 3], GridError> {
-    let [x, y, z] = size;
-    let blocks = size.map(|n| n.div_ceil(BLOCK));
-    // At most 2¹³ blocks along each side, so that their product fits.
-    if size.iter().any(|n| !(1..=MAX_SIDE).contains(n)) || blocks.iter().product::<usize>() > MAX_BLOCKS {
-        return Err(GridError::Size(x, y, z));
-    }
-    Ok(blocks)
-}
-
-/// All coordinates below these, x varying fastest.
-fn all([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-    (0..nz).flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
-}
-
-/// The place of a voxel in its block.
-#[inline]
-fn within(x: usize, y: usize, z: usize) -> usize {
-    (z % BLOCK * BLOCK + y % BLOCK) * BLOCK + x % BLOCK
-}
-
-/// The voxel at a place in a block.
-fn voxel_of(block: [usize; 3], index: usize) -> [usize; 3] {
-    let at = [index % BLOCK, index / BLOCK % BLOCK, index / (BLOCK * BLOCK)];
-    [0, 1, 2].map(|axis: usize| block[axis] * BLOCK + at[axis])
-}
-
-/// The largest value of a block; what lies outside of the grid becomes 0.
-fn check(block: &mut Block, at: [usize; 3], size: [usize; 3]) -> Result<f32, GridError> {
-    let mut largest = 0.0f32;
-    for (i, value) in block.iter_mut().enumerate() {
-        let [x, y, z] = voxel_of(at, i);
-        if x >= size[0] || y >= size[1] || z >= size[2] {
-            *value = 0.0;
-        } else if !(value.is_finite() && *value >= 0.0) {
-            return Err(GridError::Value(x, y, z));
-        }
-        largest = largest.max(*value);
-    }
-    Ok(largest)
-}
-
-/// The factor on halves: 1 where they hold values like this maximum well, so that halves of files stay as they are; otherwise a power
-/// of two.
-fn scale_of(largest: f32) -> f32 {
-    let holds = (1024.0 * HALF_NORMAL..=HALF_MAX).contains(&largest) || largest == 0.0;
-    // The exponent of a half's maximum is 15.
-    let exponent = (largest.to_bits() >> 23) as i32 - 127 - 14;
-    if holds { 1.0 } else { f32::from_bits(((exponent + 127).clamp(1, 254) as u32) << 23) }
-}
-
-/// The half nearest to a number that is not negative, and at most the maximum of halves.
-fn half(x: f32) -> u16 {
-    // Adding this rounds subnormal halves to their last digit; others lose 13 digits, to even.
-    let bits = if x < HALF_NORMAL {
-        (x + 0.5).to_bits() - 0.5f32.to_bits()
-    } else {
-        let bits = x.min(HALF_MAX).to_bits() - (112 << 23);
-        (bits + 0xfff + (bits >> 13 & 1)) >> 13
-    };
-    bits as u16
-}
-
-/// A half that is neither negative nor infinite.
-#[inline(always)]
-fn from_half(half: u16) -> f32 {
-    // 2¹¹², the difference of the exponents.
-    f32::from_bits(u32::from(half) << 13) * f32::from_bits((112 + 127) << 23)
 }
 
 impl fmt::Debug for Grid {
@@ -431,23 +311,6 @@ mod tests {
 
     fn grid(size: [usize; 3], values: &[f32]) -> Grid {
         Grid::dense("", size, &Transform::IDENTITY, values).unwrap()
-    }
-
-    #[test]
-    fn halves_are_those_of_the_standard() {
-        let cases = [
-            (0.0, 0),
-            (5.960_464_5e-8, 1),
-            (6.103_515_6e-5, 0x400),
-            (1.0, 0x3c00),
-            (1.000_976_6, 0x3c01),
-            (65_504.0, 0x7bff),
-        ];
-        for (number, bits) in cases {
-            assert_eq!((half(number), from_half(bits)), (bits, number));
-        }
-        assert_eq!(half(1.0 + 1.0 / 2048.0), 0x3c00, "ties go to even");
-        assert!((0..0x7c00u16).all(|bits| half(from_half(bits)) == bits));
     }
 
     #[test]

@@ -1,0 +1,96 @@
+//! Grids of numbers in space, from arrays.
+
+use crate::arrays;
+use crate::encoded::{Encoded, decoded as decoded_scene};
+use bilux::math::{Transform, Vec3};
+use bilux::scene::{SceneBuilder, Spec, Value};
+use numpy::PyUntypedArrayMethods;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::Arc;
+
+/// Numbers in space, such as the density of smoke, for any parameter of a material that takes a grid.
+///
+/// Args:
+///     values: an array (depth, height, width), none of them negative: values[z, y, x]. They are kept as 16-bit floats.
+///     bounds: two opposite corners, (x, y, z) each, of the box in the object that the voxels fill, in metres.
+///     name: a name for messages and written files.
+///
+/// Example:
+///     >>> z, y, x = np.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
+///     >>> ball = bilux.Grid(np.maximum(0, 1 - (x**2 + y**2 + z**2)), bounds=((-1, -1, -1), (1, 1, 1)))
+///     >>> smoke = bilux.materials.interface(scattering=4, density=ball)
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
+
+#[pymethods]
+impl Grid {
+    #[new]
+    #[pyo3(signature = (values, *, bounds = ([0.0; 3], [1.0; 3]), name = ""))]
+    fn new(values: &Bound<'_, PyAny>, bounds: ([f32; 3], [f32; 3]), name: &str) -> PyResult<Grid> {
+        let array = arrays::numbers("values", values)?;
+        let &[depth, height, width] = array.shape() else {
+            let shape = arrays::shape_of(&array);
+            let message = format!("values: its shape is {shape}, but must be (depth, height, width)");
+            return Err(PyValueError::new_err(message));
+        };
+        let size = [width, height, depth];
+        let place = place(bounds, size).ok_or_else(|| {
+            PyValueError::new_err("bounds: the corners of a box are finite, and differ in x, y and z")
+        })?;
+        let grid = bilux::scene::media::Grid::dense(name, size, &place, &arrays::floats(&array)?);
+        let grid = grid.map_err(|why| PyValueError::new_err(format!("values: {why}")))?;
+        Ok(Grid(Arc::new(grid)))
+    }
+
+    /// Its voxels along z, y and x.
+    #[getter]
+    fn shape(&self) -> (usize, usize, usize) {
+        let [width, height, depth] = self.0.size();
+        (depth, height, width)
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Grid>().is_ok_and(|other| Arc::ptr_eq(&self.0, &other.get().0))
+    }
+
+    fn __hash__(&self) -> usize {
+        Arc::as_ptr(&self.0) as usize
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, mut alone) = (slf.py(), SceneBuilder::default());
+        alone.materials.push(Spec::new("", "interface").with("density", slf.get().0.clone()));
+        let encoded = Encoded::of(py, &alone)?;
+        let restore = slf.get_type().getattr("_restored")?;
+        (restore, (encoded.document(py), encoded.blobs(py)?)).into_pyobject(py)
+    }
+
+    #[staticmethod]
+    fn _restored(document: &Bound<'_, PyAny>, blobs: &Bound<'_, PyDict>) -> PyResult<Grid> {
+        let scene = decoded_scene(document, blobs)?;
+        match scene.materials.first().and_then(|spec| spec.parameters.find("density")) {
+            Some((Value::Grid(grid), _)) => Ok(Grid(grid.clone())),
+            _ => Err(PyValueError::new_err("this is no pickle of a grid")),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y, z] = self.0.size();
+        format!("<bilux.Grid '{}', {x} x {y} x {z} voxels>", self.0.name())
+    }
+}
+
+/// From voxels to the box between two corners.
+fn place((a, b): ([f32; 3], [f32; 3]), size: [usize; 3]) -> Option<Transform> {
+    let (min, max) = (Vec3::from(a).min(b.into()), Vec3::from(a).max(b.into()));
+    let voxel = (max - min) / Vec3::from(size.map(|n| n.max(1) as f32));
+    Some(Transform::scale(voxel)?.then(&Transform::translate(min)?))
+}

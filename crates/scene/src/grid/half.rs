@@ -1,0 +1,55 @@
+//! Numbers of 16 bits, without a sign: IEEE 754's binary16.
+
+/// Halves are exact from here to their maximum; smaller values lose digits.
+const HALF_NORMAL: f32 = 6.103_515_6e-5;
+const HALF_MAX: f32 = 65_504.0;
+
+/// The factor on halves: 1 where they hold values like this maximum well, so that halves of files stay as they are; otherwise a power
+/// of two.
+pub(super) fn scale_of(largest: f32) -> f32 {
+    let holds = (1024.0 * HALF_NORMAL..=HALF_MAX).contains(&largest) || largest == 0.0;
+    // The exponent of a half's maximum is 15.
+    let exponent = (largest.to_bits() >> 23) as i32 - 127 - 14;
+    if holds { 1.0 } else { f32::from_bits(((exponent + 127).clamp(1, 254) as u32) << 23) }
+}
+
+/// The half nearest to a number that is not negative, and at most the maximum of halves.
+pub(super) fn half(x: f32) -> u16 {
+    // Adding this rounds subnormal halves to their last digit; others lose 13 digits, to even.
+    let bits = if x < HALF_NORMAL {
+        (x + 0.5).to_bits() - 0.5f32.to_bits()
+    } else {
+        let bits = x.min(HALF_MAX).to_bits() - (112 << 23);
+        (bits + 0xfff + (bits >> 13 & 1)) >> 13
+    };
+    bits as u16
+}
+
+/// A half that is neither negative nor infinite.
+#[inline(always)]
+pub(super) fn from_half(half: u16) -> f32 {
+    // 2¹¹², the difference of the exponents.
+    f32::from_bits(u32::from(half) << 13) * f32::from_bits((112 + 127) << 23)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_are_those_of_the_standard() {
+        let cases = [
+            (0.0, 0),
+            (5.960_464_5e-8, 1),
+            (6.103_515_6e-5, 0x400),
+            (1.0, 0x3c00),
+            (1.000_976_6, 0x3c01),
+            (65_504.0, 0x7bff),
+        ];
+        for (number, bits) in cases {
+            assert_eq!((half(number), from_half(bits)), (bits, number));
+        }
+        assert_eq!(half(1.0 + 1.0 / 2048.0), 0x3c00, "ties go to even");
+        assert!((0..0x7c00u16).all(|bits| half(from_half(bits)) == bits));
+    }
+}

@@ -1,0 +1,82 @@
+//! Values in scene files.
+
+use crate::grid::Grid;
+use bilux_math::{Rgb, Vec3};
+use std::sync::Arc;
+
+/// A value in a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// True or false.
+    Bool(bool),
+    /// A whole number.
+    Integer(i64),
+    /// Any other number.
+    Number(f64),
+    /// Text.
+    Text(String),
+    /// A list.
+    List(Vec<Value>),
+    /// An index into [`crate::SceneBuilder::textures`], with which readers replace a file name.
+    Texture(usize),
+    /// An index into [`crate::SceneBuilder::materials`], with which readers replace a material's name.
+    Material(usize),
+    /// A grid of numbers in space.
+    Grid(Arc<Grid>),
+}
+
+impl Value {
+    /// A colour or a point as a value.
+    pub fn triple(v: [f32; 3]) -> Value {
+        Value::List(v.map(|c| Value::Number(f64::from(c))).to_vec())
+    }
+
+    pub(super) fn as_number(&self) -> Option<f64> {
+        match *self {
+            Value::Integer(i) => Some(i as f64),
+            Value::Number(x) => Some(x),
+            _ => None,
+        }
+    }
+}
+
+impl From<f32> for Value {
+    fn from(x: f32) -> Value {
+        Value::Number(f64::from(x))
+    }
+}
+impl From<i32> for Value {
+    fn from(i: i32) -> Value {
+        Value::Integer(i64::from(i))
+    }
+}
+impl From<bool> for Value {
+    fn from(b: bool) -> Value {
+        Value::Bool(b)
+    }
+}
+impl From<Arc<Grid>> for Value {
+    fn from(grid: Arc<Grid>) -> Value {
+        Value::Grid(grid)
+    }
+}
+impl From<&str> for Value {
+    fn from(s: &str) -> Value {
+        Value::Text(s.to_owned())
+    }
+}
+impl From<String> for Value {
+    fn from(s: String) -> Value {
+        Value::Text(s)
+    }
+}
+impl From<Rgb> for Value {
+    fn from(c: Rgb) -> Value {
+        Value::triple(c.to_array())
+    }
+}
+impl From<Vec3> for Value {
+    fn from(v: Vec3) -> Value {
+        Value::triple(v.to_array())
+    }
+}

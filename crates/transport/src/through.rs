@@ -1,0 +1,32 @@
+//! The media along a line between two points.
+
+use crate::media::{Media, Passage};
+use bilux_math::Vec3;
+use bilux_scene::{Ray, Scene, Tracer};
+
+/// What tells, with a ray, which media it leads through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Through {
+    /// The media at its start.
+    pub(crate) media: Media,
+    /// Its length in metres; `None` to what is infinitely far away: beyond the last surface nothing absorbs, since the
+    /// boundary of what does would have blocked the ray.
+    pub(crate) distance: Option<f32>,
+    /// The seed of the random numbers that estimate what passes media that vary.
+    pub(crate) seed: u64,
+}
+
+impl Through {
+    /// What lies along a ray; `None` where something blocks it. `n` is the [normal](Scene::normal_towards) of the surface that
+    /// the ray ends on at parameter 1; zero where there is none.
+    #[inline]
+    pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, n: Vec3) -> Option<Passage> {
+        self.media.visible(tracer, ray, self.distance, n, self.seed)
+    }
+
+    /// What lies along a ray that no surface is on.
+    #[inline]
+    pub(crate) fn unoccluded(&self, scene: &Scene, ray: &Ray) -> Passage {
+        self.media.unoccluded(scene, ray, self.distance, self.seed)
+    }
+}
