@@ -15,6 +15,7 @@ mod error;
 mod float;
 mod formats;
 mod gltf;
+mod grids;
 mod images;
 mod indexed_faces;
 mod las;
@@ -34,6 +35,7 @@ mod stl;
 mod strokes;
 mod text;
 mod values;
+mod vdb;
 mod writing;
 mod xyz;
 
@@ -41,5 +43,6 @@ pub use error::FormatError;
 pub use formats::{
     SCENE_FORMATS, SceneFormatEntry, check_not_read, format_named, format_of_path, read, read_bytes, write,
 };
+pub use grids::{GridOfFile, read_grids};
 pub use native::{SHAPES, ShapeEntry, overlay, toml_schema};
 pub use options::{Glass, ReadOptions, WriteOptions};

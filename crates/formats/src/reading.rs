@@ -7,6 +7,7 @@ use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
 use bilux_pictures::Limits;
+use bilux_scene::media::Grid;
 use bilux_scene::texture::{Channel, Image};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -56,10 +57,13 @@ pub(crate) struct Reading<'o> {
     pub(crate) working_folder: Option<PathBuf>,
     /// By file, layer and meaning.
     textures: HashMap<(PathBuf, Option<String>, Texels), Arc<Texture>>,
+    /// By file and name.
+    pub(crate) grids: HashMap<(PathBuf, String), Arc<Grid>>,
+    /// The bytes of textures and grids.
     texture_bytes: u64,
-    /// The part of these bytes that is in [`Reading::textures`].
+    /// The part of these bytes that is in [`Reading::textures`] or [`Reading::grids`].
     kept_bytes: u64,
-    /// What was wrong with the texels of pictures.
+    /// What was wrong with the texels of pictures and the voxels of grids.
     picture_faults: Vec<Warning>,
     /// Scenes inserted into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
@@ -96,6 +100,7 @@ impl<'o> Reading<'o> {
             root,
             working_folder: None,
             textures: HashMap::new(),
+            grids: HashMap::new(),
             texture_bytes: 0,
             kept_bytes: 0,
             picture_faults: Vec::new(),
@@ -180,10 +185,27 @@ impl<'o> Reading<'o> {
         Ok(image)
     }
 
+    /// Charges memory for a grid, for good.
+    pub(crate) fn charge_grid(&mut self, grid: &Grid, file: &str) -> Result<(), FormatError> {
+        self.budget.take_bytes(grid.bytes(), file)?;
+        self.texture_bytes += grid.bytes();
+        Ok(())
+    }
+
+    /// Counts a grid as one that the next read finds again.
+    pub(crate) fn keep(&mut self, grid: &Grid) {
+        self.kept_bytes += grid.bytes();
+    }
+
     /// Notes what is wrong with a picture that could be read.
     pub(crate) fn note_picture_faults(&mut self, name: &str, warnings: &[String], at: &Span) {
+        self.note_faults(&format!("the texture '{name}'"), warnings, at);
+    }
+
+    /// Notes what is wrong with something that could be read.
+    pub(crate) fn note_faults(&mut self, what_it_is: &str, warnings: &[String], at: &Span) {
         for what in warnings {
-            let message = format!("the texture '{name}': {what}");
+            let message = format!("{what_it_is}: {what}");
             let fault = Warning { message, at: at.clone() };
             // A file that is read twice, for its digits, may have its pictures decoded twice.
             if !self.picture_faults.contains(&fault) {

@@ -18,6 +18,7 @@ mod gltf_nodes;
 mod gltf_packed;
 mod gltf_validated;
 mod gltf_written;
+mod grids;
 mod hostile;
 mod left_out;
 mod materials_of_exporters;

@@ -1,0 +1,244 @@
+//! Files of numbers in space: the density of smoke and the like. The table is [`GRID_FORMATS`].
+
+mod bytes;
+mod npy;
+mod sparse;
+mod vol;
+
+pub(crate) use bytes::Bytes;
+pub(crate) use sparse::{LeafMask, LeafValues, Placed, Sparse};
+
+use crate::budget::Budget;
+use crate::reading::{Reading, Source};
+use crate::text::whole_file;
+use crate::vdb;
+use crate::{FormatError, ReadOptions};
+use bilux_math::{Aabb, Transform, Vec3};
+use bilux_scene::media::{Grid, MAX_SIDE};
+use bilux_scene::{Span, UpHint};
+use std::path::Path;
+use std::sync::Arc;
+
+/// All formats of grids.
+pub(crate) const GRID_FORMATS: &[GridFormat] = &[vdb::OPEN, vdb::NANO, npy::FORMAT, vol::FORMAT];
+
+/// A row of [`GRID_FORMATS`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GridFormat {
+    /// True if the bytes look like this format.
+    pub(crate) sniff: fn(&[u8]) -> bool,
+    /// What is in a file.
+    pub(crate) list: fn(&Source) -> Result<Catalogue, FormatError>,
+    /// Reads a grid of the catalogue.
+    pub(crate) read: fn(&Source, &Listed, &mut Budget) -> Result<Volume, FormatError>,
+}
+
+/// The grids of a file.
+#[derive(Debug)]
+pub(crate) struct Catalogue {
+    pub(crate) grids: Vec<Listed>,
+    /// The up axis, if the file tells what wrote it.
+    #[allow(dead_code, reason = "grids as models come next")]
+    pub(crate) up: Option<UpHint>,
+}
+
+/// A grid of a file that is not read yet.
+#[derive(Clone, Debug)]
+pub(crate) struct Listed {
+    /// Its name in the file; empty in formats without names.
+    pub(crate) name: String,
+    /// Which of the file's grids it is.
+    pub(crate) index: usize,
+    /// Why it cannot be a density, as the rest of a sentence about it.
+    pub(crate) refused: Option<String>,
+}
+
+/// A grid that has been read.
+#[derive(Debug)]
+pub(crate) struct Volume {
+    pub(crate) grid: Grid,
+    /// Where its values may differ from 0, in voxels.
+    pub(crate) bounds: Aabb,
+    pub(crate) faults: Faults,
+}
+
+/// A grid of a file, as [`read_grids`] gives it.
+#[derive(Debug)]
+pub struct GridOfFile {
+    /// Its name in the file; that of the file in formats without names.
+    pub name: String,
+    /// The grid, or why it cannot be a density.
+    pub grid: Result<Grid, String>,
+    /// Where values may differ from 0, in voxels of the grid.
+    pub bounds: Aabb,
+    /// What is wrong with its numbers.
+    pub warnings: Vec<String>,
+}
+
+/// Reads all grids of a file in memory: OpenVDB, NanoVDB, `.npy` or Mitsuba's `.vol`; `name` is what messages call it.
+///
+/// # Errors
+/// When the file is in no such format or broken, or takes more memory than allowed.
+pub fn read_grids(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Vec<GridOfFile>, FormatError> {
+    let mut reading = Reading::new(options, None);
+    let source = Source { bytes, name: &Arc::from(name), folder: None };
+    let format = format_of(&source)?;
+    let grids = (format.list)(&source)?.grids.into_iter().map(|listed| {
+        let name = if listed.name.is_empty() { source.stem() } else { listed.name.clone() };
+        if let Some(why) = listed.refused {
+            return Ok(GridOfFile { name, grid: Err(why), bounds: Aabb::EMPTY, warnings: Vec::new() });
+        }
+        let Volume { grid, bounds, faults } = reading.volume(format, &source, &listed)?;
+        Ok(GridOfFile { name, grid: Ok(grid), bounds, warnings: faults.sentences() })
+    });
+    grids.collect()
+}
+
+/// How many numbers could not be densities.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Faults {
+    negative: u64,
+    not_finite: u64,
+    /// The value of all that the file does not list, if it is not 0.
+    pub(crate) background: f32,
+}
+
+impl Faults {
+    /// The nearest density.
+    #[inline]
+    pub(crate) fn density(&mut self, value: f32) -> f32 {
+        if value >= 0.0 && value < f32::INFINITY {
+            return value;
+        }
+        *(if value.is_finite() { &mut self.negative } else { &mut self.not_finite }) += 1;
+        0.0
+    }
+
+    /// A sentence for each kind.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        if self.negative > 0 {
+            all.push(format!(
+                "{} voxels are negative, which a density cannot be, and are taken as 0",
+                self.negative
+            ));
+        }
+        if self.not_finite > 0 {
+            all.push(format!("{} voxels are not finite numbers, and are taken as 0", self.not_finite));
+        }
+        if self.background != 0.0 {
+            all.push(format!("everything outside its voxels is {}, and is taken as 0", self.background));
+        }
+        all
+    }
+}
+
+impl Catalogue {
+    /// The grid with this name, or if that is empty `density`, or else the only or first one that can be a density.
+    pub(crate) fn named(&self, name: &str, file: &str) -> Result<&Listed, String> {
+        let usable = || self.grids.iter().filter(|grid| grid.refused.is_none());
+        let found = if name.is_empty() {
+            usable().find(|grid| grid.name == "density").or_else(|| usable().next()).or(self.grids.first())
+        } else {
+            self.grids.iter().find(|grid| grid.name == name || grid.name.is_empty())
+        };
+        match found {
+            Some(Listed { name, refused: Some(why), .. }) => {
+                Err(format!("the grid '{name}' of '{file}' {why}"))
+            }
+            Some(grid) => Ok(grid),
+            None if self.grids.is_empty() => Err(format!("the file '{file}' has no grids")),
+            None => {
+                let names: Vec<&str> = usable().map(|grid| &*grid.name).collect();
+                Err(format!("the file '{file}' has no grid '{name}', but {}", names.join(", ")))
+            }
+        }
+    }
+}
+
+/// The format of a file of grids.
+pub(crate) fn format_of(source: &Source) -> Result<&'static GridFormat, FormatError> {
+    GRID_FORMATS.iter().find(|row| (row.sniff)(source.bytes)).ok_or_else(|| {
+        let message = "this is no file of grids: known are OpenVDB (.vdb), NanoVDB (.nvdb), numpy's .npy and Mitsuba's .vol";
+        FormatError::malformed(message, whole_file(source.name))
+    })
+}
+
+/// Makes a grid of one number for each voxel, of which `value` gives the place in the file; it fills a box.
+pub(crate) fn dense(
+    source: &Source,
+    size: [usize; 3],
+    bounds: &Aabb,
+    budget: &mut Budget,
+    mut value: impl FnMut(usize, usize, usize) -> f32,
+) -> Result<Volume, FormatError> {
+    let fail = |message: String| FormatError::malformed(message, whole_file(source.name));
+    let [x, y, z] = size;
+    if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
+        return Err(fail(format!("{x} x {y} x {z} voxels: each side has 1 to {MAX_SIDE}")));
+    }
+    // The numbers, and blocks as floats in a list that grows by doubling, and as halves.
+    let voxels = (x as u64).saturating_mul(y as u64).saturating_mul(z as u64);
+    budget.take_bytes(voxels.saturating_mul(4 + 8 + 2), source.name)?;
+    let extent = bounds.extent() / Vec3::from(size.map(|side| side as f32));
+    let to_file = Transform::scale(extent).zip(Transform::translate(bounds.min));
+    let to_file = to_file.map(|(scale, shift)| scale.then(&shift));
+    let to_file =
+        to_file.ok_or_else(|| fail("the box of its voxels has no volume, or is not finite".to_owned()))?;
+    let mut faults = Faults::default();
+    let mut values = Vec::with_capacity(x * y * z);
+    for z in 0..z {
+        for y in 0..y {
+            values.extend((0..x).map(|x| faults.density(value(x, y, z))));
+        }
+    }
+    let grid =
+        Grid::dense(&source.stem(), size, &to_file, &values).map_err(|error| fail(error.to_string()))?;
+    let bounds = Aabb { min: Vec3::ZERO, max: Vec3::from(size.map(|side| side as f32)) };
+    Ok(Volume { grid, bounds, faults })
+}
+
+impl Reading<'_> {
+    #[allow(dead_code, reason = "densities of media come next")]
+    /// A grid of a file that a scene refers to, read only once; an empty name asks for the density.
+    pub(crate) fn grid(
+        &mut self,
+        folder: Option<&Path>,
+        (file, name): (&str, &str),
+        at: &Span,
+    ) -> Result<Arc<Grid>, FormatError> {
+        let path = self.locate(folder, file, at)?;
+        let key = (path.clone(), name.to_owned());
+        if let Some(grid) = self.grids.get(&key) {
+            return Ok(grid.clone());
+        }
+        let bytes = self.load(&path)?;
+        let shown: Arc<str> = path.display().to_string().into();
+        let source = Source { bytes: &bytes, name: &shown, folder: None };
+        let format = format_of(&source)?;
+        let catalogue = (format.list)(&source)?;
+        let listed =
+            catalogue.named(name, file).map_err(|message| FormatError::malformed(message, at.clone()))?;
+        let volume = self.volume(format, &source, listed)?;
+        self.note_faults(&format!("the grid '{}' of '{file}'", listed.name), &volume.faults.sentences(), at);
+        self.release(bytes);
+        let grid = Arc::new(volume.grid);
+        self.keep(&grid);
+        self.grids.insert(key, grid.clone());
+        Ok(grid)
+    }
+
+    /// Reads one of the grids of a file, and charges it for good.
+    pub(crate) fn volume(
+        &mut self,
+        format: &GridFormat,
+        source: &Source,
+        listed: &Listed,
+    ) -> Result<Volume, FormatError> {
+        let before = self.budget.spent();
+        let volume = (format.read)(source, listed, &mut self.budget)?;
+        self.budget.release(self.budget.spent() - before);
+        self.charge_grid(&volume.grid, source.name)?;
+        Ok(volume)
+    }
+}

@@ -1,0 +1,73 @@
+//! Arrays of numpy, with the indices [z][y][x]. [Kern 2007]
+
+use super::{Bytes, Catalogue, GridFormat, Listed, Volume, dense};
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::reading::Source;
+use bilux_math::{Aabb, Vec3};
+
+/// The first bytes; the version follows.
+pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";
+
+pub(super) const FORMAT: GridFormat = GridFormat { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+
+/// Number types, their bytes, and their values.
+const TYPES: &[(&str, usize, fn(&[u8]) -> f32)] = &[
+    ("<f4", 4, |b| f32::from_le_bytes(std::array::from_fn(|i| b[i]))),
+    (">f4", 4, |b| f32::from_be_bytes(std::array::from_fn(|i| b[i]))),
+    ("<f8", 8, |b| f64::from_le_bytes(std::array::from_fn(|i| b[i])) as f32),
+    (">f8", 8, |b| f64::from_be_bytes(std::array::from_fn(|i| b[i])) as f32),
+    ("<f2", 2, |b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()),
+    ("|u1", 1, |b| f32::from(b[0]) / 255.0),
+];
+
+fn list(_: &Source) -> Result<Catalogue, FormatError> {
+    Ok(Catalogue { grids: vec![Listed { name: String::new(), index: 0, refused: None }], up: None })
+}
+
+fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
+    let mut bytes = Bytes::new(source.bytes, source.name);
+    bytes.take(SIGNATURE.len())?;
+    let version = bytes.u8()?;
+    bytes.u8()?;
+    let length = if version == 1 { usize::from(bytes.u16()?) } else { bytes.u32()? as usize };
+    let header = bytes.take(length)?;
+    let header = String::from_utf8_lossy(header);
+    let kind = entry(&header, "descr").and_then(|text| text.split(['\'', '"']).nth(1)).unwrap_or_default();
+    let Some(&(_, width, number)) = TYPES.iter().find(|(name, ..)| *name == kind) else {
+        let known: Vec<&str> = TYPES.iter().map(|(name, ..)| *name).collect();
+        let message =
+            format!("its numbers have the type '{kind}', but only {} can be read", known.join(", "));
+        return Err(bytes.fail(message));
+    };
+    let is_fortran = entry(&header, "fortran_order").is_some_and(|text| text.starts_with("True"));
+    let Some([nz, ny, nx]) = entry(&header, "shape").and_then(shape) else {
+        return Err(bytes.fail("a grid is an array with three indices, [z][y][x]"));
+    };
+    let count = [nx, ny, nz].iter().fold(width, |count: usize, side| count.saturating_mul(*side));
+    let values = bytes.take(count)?;
+    let longest = nx.max(ny).max(nz).max(1) as f32;
+    let sides = Vec3::from([nx, ny, nz].map(|side| side as f32)) / longest;
+    dense(source, [nx, ny, nz], &Aabb { min: Vec3::ZERO, max: sides }, budget, |x, y, z| {
+        // In Fortran's order the first index varies fastest.
+        let at = if is_fortran { (x * ny + y) * nz + z } else { (z * ny + y) * nx + x };
+        number(&values[at * width..])
+    })
+}
+
+/// What follows a key of the header, which is a dictionary as Python writes it.
+fn entry<'h>(header: &'h str, key: &str) -> Option<&'h str> {
+    let (_, rest) = header.split_once(&format!("'{key}'"))?;
+    Some(rest.trim_start().strip_prefix(':')?.trim_start())
+}
+
+/// The lengths along three axes, after which there may be one of a single channel.
+fn shape(text: &str) -> Option<[usize; 3]> {
+    let (inner, _) = text.strip_prefix('(')?.split_once(')')?;
+    let sides = inner.split(',').map(str::trim).filter(|side| !side.is_empty());
+    let sides: Vec<usize> = sides.map(str::parse).collect::<Result<_, _>>().ok()?;
+    match sides[..] {
+        [z, y, x] | [z, y, x, 1] => Some([z, y, x]),
+        _ => None,
+    }
+}

@@ -1,0 +1,61 @@
+//! Mitsuba's `.vol`: a number for each voxel of a box. [Jakob 2022]
+
+use super::{Bytes, Catalogue, GridFormat, Listed, Volume, dense};
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::reading::Source;
+use bilux_math::{Aabb, Vec3};
+
+/// The first bytes, of which the last is the version.
+pub(crate) const SIGNATURE: &[u8] = b"VOL\x03";
+
+/// The number types of values.
+const FLOAT32: i32 = 1;
+const FLOAT16: i32 = 2;
+const UINT8: i32 = 3;
+
+pub(super) const FORMAT: GridFormat = GridFormat { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+
+fn list(source: &Source) -> Result<Catalogue, FormatError> {
+    let mut bytes = Bytes::new(source.bytes, source.name);
+    bytes.take(SIGNATURE.len() + 16)?;
+    let channels = bytes.i32()?;
+    let refused = (channels != 1)
+        .then(|| format!("has {channels} channels, but a density is one number for each voxel"));
+    Ok(Catalogue { grids: vec![Listed { name: String::new(), index: 0, refused }], up: None })
+}
+
+fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
+    let mut bytes = Bytes::new(source.bytes, source.name);
+    bytes.take(SIGNATURE.len())?;
+    let kind = bytes.i32()?;
+    let size = bytes.i32s()?.map(|side| usize::try_from(side).unwrap_or(0));
+    bytes.take(4)?;
+    let mut corners = [0.0; 6];
+    for number in &mut corners {
+        *number = bytes.f32()?;
+    }
+    let width = match kind {
+        FLOAT32 => 4,
+        FLOAT16 => 2,
+        UINT8 => 1,
+        _ => return Err(bytes.fail(format!("its numbers have the type {kind}, but only 1 to 3 are known"))),
+    };
+    let wanted = size.iter().fold(width, |count: usize, side| count.saturating_mul(*side));
+    let values = bytes.take(wanted)?;
+    let [a, b] = [0, 3].map(|i| Vec3::from_slice(&corners[i..]));
+    // A file without a box fills the unit cube, as in Mitsuba.
+    let bounds = if a.is_finite() && b.is_finite() && (b - a).min_element() > 0.0 {
+        Aabb { min: a, max: b }
+    } else {
+        Aabb { min: Vec3::ZERO, max: Vec3::ONE }
+    };
+    dense(source, size, &bounds, budget, |x, y, z| {
+        let at = (z * size[1] + y) * size[0] + x;
+        match kind {
+            FLOAT32 => f32::from_le_bytes(std::array::from_fn(|i| values[4 * at + i])),
+            FLOAT16 => half::f16::from_le_bytes([values[2 * at], values[2 * at + 1]]).to_f32(),
+            _ => f32::from(values[at]) / 255.0,
+        }
+    })
+}
