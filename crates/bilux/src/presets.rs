@@ -4,7 +4,7 @@ use crate::Error;
 use bilux_formats::{FormatError, ReadOptions};
 use bilux_pictures::Limits;
 pub use bilux_scene::presets::{
-    Ground, PRESETS, PresetEntry, Studio, add_missing, apply, frame, set_upright, shadow_catcher,
+    Ground, PRESETS, PresetEntry, Studio, add_fog, add_missing, apply, frame, set_upright, shadow_catcher,
 };
 use bilux_scene::{SceneBuilder, Span, Spec, Value, Warning};
 use std::path::Path;

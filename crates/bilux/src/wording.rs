@@ -110,6 +110,7 @@ mod tests {
             ("for example with --orbit 206.5,-17.8", "for example with orbit=(206.5, -17.8)"),
             ("picture: --orbit 26.5,17.8 uses it", "picture: orbit=(26.5, 17.8) uses it"),
             ("leave --ground out", "leave ground out"),
+            ("leave out --fog or --background", "leave out fog or background"),
             ("as intervals (--aov interval), the other", "as intervals (aov=[\"interval\"]), the other"),
             ("depends on --accel", "depends on accel"),
             ("its surroundings (--env) or", "its surroundings (scene.surround(…)) or"),

@@ -67,7 +67,7 @@ pub fn explain(arguments: &Explain) -> anyhow::Result<Parameters> {
 type Flag = (&'static str, &'static str, Option<Value>);
 
 /// The settings of the camera and the studio.
-fn studio(studio: &StudioArguments) -> [Flag; 9] {
+fn studio(studio: &StudioArguments) -> [Flag; 10] {
     let text = |t: &Option<String>| t.clone().map(Value::Text);
     let number = |n: Option<f32>| n.map(Value::from);
     [
@@ -79,6 +79,7 @@ fn studio(studio: &StudioArguments) -> [Flag; 9] {
         ("front", "--front", text(&studio.front)),
         ("focal", "--focal", number(studio.focal)),
         ("ground", "--ground", text(&studio.ground)),
+        ("fog", "--fog", number(studio.fog)),
         ("background", "--background", text(&studio.background())),
     ]
 }

@@ -1,7 +1,7 @@
 //! The options for the studio around a model.
 
 use crate::settings_from::{change_of, from_flag};
-use crate::values::{parse_focal, parse_zoom};
+use crate::values::{parse_focal, parse_metres, parse_zoom};
 use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
@@ -54,6 +54,9 @@ pub struct StudioArguments {
     /// backdrop, if the file has neither camera nor lights]
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
+    /// Put fog around everything, in which people see this many metres far
+    #[arg(long, value_name = "METRES", value_parser = parse_metres, help_heading = help::STUDIO)]
+    pub fog: Option<f32>,
     /// Change a parameter of a material, a light or a camera, named by its name or by its number from 0, such as
     /// light:0:intensity=5 or material:Paint:base_color=0.8,0,0
     #[arg(long = "change", value_name = "PART:NAME:KEY=VALUE", help_heading = help::WHAT)]

@@ -80,6 +80,11 @@ pub fn parse_focal(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())
 }
 
+/// Parses a distance in metres.
+pub fn parse_metres(text: &str) -> Result<f32, String> {
+    text.parse().map_err(|_| "write a distance in metres, such as 20".to_owned())
+}
+
 /// Parses a factor of magnification.
 pub fn parse_zoom(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a factor, such as 2".to_owned())

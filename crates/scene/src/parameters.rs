@@ -70,6 +70,11 @@ impl Spec {
         }
     }
 
+    /// The three numbers under a key, if there are any.
+    pub fn vector(&self, key: &str) -> Option<Vec3> {
+        self.parameters.find(key).and_then(|(value, _)| triple(value)).map(Vec3::from)
+    }
+
     /// The value under a key, or a default.
     pub fn value_or(&self, key: &str, default: impl Into<Value>) -> Value {
         self.parameters.find(key).map_or_else(|| default.into(), |(value, _)| value.clone())

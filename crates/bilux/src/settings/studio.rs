@@ -43,6 +43,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         up,
         front,
         ground: Ground::from_name(&reader.text("ground")),
+        fog: Some(reader.number("fog")).filter(|visibility| *visibility > 0.0),
         orbit,
         turn: None,
         focal: reader.is_given("focal").then(|| reader.number("focal")),

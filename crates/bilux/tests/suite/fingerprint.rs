@@ -167,6 +167,7 @@ const SETTINGS: &[(&str, &str, Effect)] = &[
     ("look_at", "0,0.5,0", Changes),
     ("zoom", "2", Changes),
     ("ground", "none", Changes),
+    ("fog", "20", Changes),
     ("orbit", "40,10", Changes),
     ("up", "z", Changes),
     ("front", "x", Changes),

@@ -152,6 +152,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         front: _,
         focal: _,
         ground: _,
+        fog: _,
     } = &a.studio;
     let options = [
         ("--preset", said(preset.as_ref())),

@@ -6,6 +6,7 @@ mod sparse;
 mod vol;
 
 pub(crate) use bytes::Bytes;
+pub(crate) use npy::write as npy_of;
 pub(crate) use sparse::{LeafMask, LeafValues, Placed, Sparse};
 
 use crate::budget::Budget;
@@ -199,7 +200,6 @@ pub(crate) fn dense(
 }
 
 impl Reading<'_> {
-    #[allow(dead_code, reason = "densities of media come next")]
     /// A grid of a file that a scene refers to, read only once; an empty name asks for the density.
     pub(crate) fn grid(
         &mut self,

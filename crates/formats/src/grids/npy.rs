@@ -5,6 +5,7 @@ use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Source;
 use bilux_math::{Aabb, Vec3};
+use bilux_scene::media::Grid;
 
 /// The first bytes; the version follows.
 pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";
@@ -53,6 +54,31 @@ fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, Form
         let at = if is_fortran { (x * ny + y) * nz + z } else { (z * ny + y) * nx + x };
         number(&values[at * width..])
     })
+}
+
+/// The file of a grid: halves where these are its numbers, otherwise floats.
+pub(crate) fn write(grid: &Grid) -> Vec<u8> {
+    let ([nx, ny, nz], are_halves) = (grid.size(), grid.stored().scale == 1.0);
+    let kind = if are_halves { "<f2" } else { "<f4" };
+    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({nz}, {ny}, {nx}), }}");
+    // The numbers begin at a multiple of 64 bytes, and a line ends before them.
+    let length = (SIGNATURE.len() + 4 + header.len() + 1).next_multiple_of(64) - SIGNATURE.len() - 4;
+    let mut bytes = SIGNATURE.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(format!("{header:<width$}\n", width = length - 1).bytes());
+    for z in 0..nz {
+        for y in 0..ny {
+            for value in (0..nx).map(|x| grid.voxel([x, y, z])) {
+                if are_halves {
+                    bytes.extend(half::f16::from_f32(value).to_le_bytes());
+                } else {
+                    bytes.extend(value.to_le_bytes());
+                }
+            }
+        }
+    }
+    bytes
 }
 
 /// What follows a key of the header, which is a dictionary as Python writes it.

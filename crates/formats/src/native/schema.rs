@@ -140,9 +140,14 @@ fn texture(extra: &[(&str, Value)]) -> Value {
 
 /// Numbers in space, from a file.
 fn grid() -> Value {
+    let place = json!({
+        "type": "array", "items": { "type": "number" }, "minItems": 12, "maxItems": 12,
+        "description": "where it is in the object: the steps of a voxel along x, y and z, and the corner of the first one",
+    });
     let properties = json!({
         "grid": described("string", "a file of grids, relative to this file"),
         "name": described("string", "the grid of that file"),
+        "place": place,
     });
     json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": ["grid"] })
 }

@@ -6,8 +6,11 @@ use super::pictures::{PICTURE, placed};
 use super::scene::Native;
 use crate::FormatError;
 use crate::reading::Texels;
+use bilux_math::glam::DVec4;
 use bilux_math::registry::{Entry, ParameterKind};
+use bilux_math::{DMat4, Transform};
 use bilux_scene::cameras::CameraSpec;
+use bilux_scene::media::Grid;
 use bilux_scene::texture::Channel;
 use bilux_scene::{
     CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, TEXTURES, Texture, Value,
@@ -103,9 +106,23 @@ impl Native<'_, '_> {
         part: &Part,
     ) -> Result<Option<Value>, FormatError> {
         let TomlValue::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
+        if kind == Some(ParameterKind::Grid) {
+            return self.grid(key, table, part).map(|grid| Some(Value::Grid(grid)));
+        }
         let Some(texture) = self.texture(key, kind, Texels::Colours, table, part)? else { return Ok(None) };
         self.scene.textures.push(texture);
         Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
+    }
+
+    /// Reads a grid of a file.
+    fn grid(&mut self, key: &str, table: &Table, part: &Part) -> Result<Arc<Grid>, FormatError> {
+        table.check_keys(&format!("the grid of '{key}'"), ["grid", "name", "place"].into_iter())?;
+        let file = table.find("grid").ok_or_else(|| missing("grid (a file)", table))?;
+        let name = table.text("name")?.unwrap_or_default();
+        let grid = self.reading.grid(part.folder.as_deref(), (file.text("grid")?, name), &file.at)?;
+        let Some(item) = table.find("place") else { return Ok(grid) };
+        let place = place(item).ok_or_else(|| item.wrong("place", PLACE))?;
+        Ok(Arc::new(Grid::clone(&grid).placed(&place)))
     }
 
     /// Reads a texture for a parameter of this kind. If the kind does not determine colours or numbers, `around`
@@ -194,6 +211,24 @@ impl Native<'_, '_> {
         }
         Ok(Arc::new(Texture::by_formula(spec, parts, holds != Texels::Colours)?))
     }
+}
+
+/// What the key `place` of a grid is.
+const PLACE: &str =
+    "12 numbers: the steps of a voxel along x, y and z in the object, and the corner of the first one";
+
+fn place(item: &Item) -> Option<Transform> {
+    let Ok(Value::List(list)) = plain_value("place", item) else { return None };
+    let number = |value: &Value| match value {
+        Value::Integer(i) => Some(*i as f64),
+        Value::Number(x) => Some(*x),
+        _ => None,
+    };
+    let numbers: Vec<f64> = list.iter().map(number).collect::<Option<_>>()?;
+    let [x, y, z, w]: [[f64; 3]; 4] =
+        numbers.as_chunks().0.try_into().ok().filter(|_| numbers.len() == 12)?;
+    let column = |[x, y, z]: [f64; 3], w: f64| DVec4::new(x, y, z, w);
+    Transform::from_matrix(DMat4::from_cols(column(x, 0.0), column(y, 0.0), column(z, 0.0), column(w, 1.0)))
 }
 
 /// The channels that can provide a number.

@@ -198,8 +198,11 @@ fn value_text(
             None => return Ok(None),
         },
         Value::Grid(grid) => {
-            writing.warn(format!("the grid {} cannot be written: it is left out", grid.name()));
-            return Ok(None);
+            let Some(name) = writing.grid_file(grid) else { return Ok(None) };
+            let matrix = *grid.to_object().matrix();
+            let place = [matrix.x_axis, matrix.y_axis, matrix.z_axis, matrix.w_axis];
+            let place = place.map(|column| column.truncate().to_array());
+            format!("{{ grid = {}, place = {} }}", quoted(&name), list(place.as_flattened()))
         }
         Value::Material(index) => match material_names(&scene.materials).get(*index) {
             Some(name) => quoted(name),

@@ -4,10 +4,12 @@ use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, SHAPES, WriteOptions, read, toml_schema, write};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::transcendental::sin_cos;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{SceneBuilder, Value};
+use bilux_scene::media::Grid;
+use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads the first of these files in a folder of their own.
 fn read_files(files: &[(&str, &str)]) -> Result<SceneBuilder, FormatError> {
@@ -667,4 +669,32 @@ fn materials_are_mixed_by_name_in_any_order() {
     let glowing = parts.replace("\"diffuse\"", "\"diffuse\"\nemission = 1");
     let glows = refusal(&format!("{mix}{glowing}"));
     assert!(glows.contains("'a' emits light"), "{glows}");
+}
+
+/// A grid in a scene that is written and read again has the same numbers in the same place.
+#[test]
+fn grids_are_written_beside_the_scene() {
+    let turned = Transform::rotate(Vec3::new(1.0, 2.0, 3.0), 0.7).unwrap();
+    let turned = turned.then(&Transform::translate(Vec3::new(0.5, -4.0, 2.0)).unwrap());
+    for factor in [1.0, 1e9] {
+        let values: Vec<f32> = (0..60).map(|i| (i % 7) as f32 * factor).collect();
+        let grid = Arc::new(Grid::dense("smoke", [3, 4, 5], &turned, &values).unwrap());
+        let mut scene = SceneBuilder::default();
+        let spec = Spec::new("smoke", "interface").with("scattering", 2.0f32);
+        let smoke = scene.add_material(spec.with("density", grid.clone()).with("temperature", grid.clone()));
+        scene.objects.push(Object::new("box", Arc::new(Mesh::quad(Vec3::ZERO, Vec3::X, Vec3::Y)), smoke));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        write(&path, &scene, &WriteOptions::default()).unwrap();
+        let files = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(files, 3, "the scene, its meshes and one grid");
+        let back = read(&path, &ReadOptions::default()).unwrap();
+        for key in ["density", "temperature"] {
+            let Some((Value::Grid(found), _)) = back.materials[0].parameters.find(key) else {
+                panic!("{key}")
+            };
+            assert_eq!(found.stored().voxels, grid.stored().voxels);
+            assert_eq!((found.size(), found.to_object()), (grid.size(), grid.to_object()));
+        }
+    }
 }

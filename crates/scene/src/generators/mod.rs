@@ -56,6 +56,8 @@ pub const GENERATORS: &[GeneratorEntry] = &[
     gallery::door_ajar::ENTRY,
     gallery::many_lights::ENTRY,
     gallery::fog::ENTRY,
+    gallery::cloud::ENTRY,
+    gallery::campfire::ENTRY,
 ];
 
 /// Makes the scene that a spec describes.

@@ -126,6 +126,11 @@ impl Grid {
         Stored { places: &self.places, voxels: &self.voxels, scale: self.scale }
     }
 
+    /// The same voxels elsewhere: `to_object` maps their coordinates.
+    pub fn placed(self, to_object: &Transform) -> Grid {
+        Grid { to_voxels: to_object.inverted(), ..self }
+    }
+
     /// The same grid under another name.
     pub fn named(self, name: &str) -> Grid {
         Grid { name: name.to_owned(), ..self }

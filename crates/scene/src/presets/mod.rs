@@ -4,10 +4,12 @@
 //! scene lacks to be visible at all.
 
 mod course;
+mod fog;
 mod paper;
 mod stroke_widths;
 mod studio;
 
+pub use fog::add_fog;
 pub use stroke_widths::set_stroke_widths;
 pub use studio::{
     Ground, Studio, add_missing, added_lights, complete, frame, has_own_light, is_unlit, may_be_lit,

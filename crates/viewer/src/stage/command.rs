@@ -16,6 +16,7 @@ const OPTIONS: &[(&str, &str)] = &[
     ("front", "--front"),
     ("focal", "--focal"),
     ("ground", "--ground"),
+    ("fog", "--fog"),
     ("background", "--background"),
     ("time", "--at"),
     ("exposure", "--exposure"),

@@ -1,8 +1,10 @@
-//! Nine small scenes that look good, each difficult for light transport in a different way. Each scene has its own
+//! Small scenes that look good, each difficult for light transport in a different way. Each scene has its own
 //! file and is composed for a 4:3 image; `bilux bench render` measures on them.
 
 pub(super) mod bidirectional;
+pub(super) mod campfire;
 pub(super) mod caustics;
+pub(super) mod cloud;
 pub(super) mod daylight;
 pub(super) mod door_ajar;
 pub(super) mod fog;
@@ -10,6 +12,7 @@ pub(super) mod indirect;
 pub(super) mod lampshades;
 pub(super) mod many_lights;
 pub(super) mod pool;
+mod puffs;
 mod tiles;
 
 use super::parts::{between, joined, sharp};

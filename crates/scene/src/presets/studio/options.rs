@@ -29,6 +29,8 @@ impl Ground {
 pub struct Studio {
     /// The ground below the model.
     pub ground: Option<Ground>,
+    /// How far people see in the fog around everything, in metres, if there is any.
+    pub fog: Option<f32>,
     /// The view direction: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
     /// The part of a full turn by which the camera has moved to the right, around a model that is framed for the whole
