@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The largest number of voxels of a grid that is written: 1 GiB of halves.
-const MOST_VOXELS: usize = 1 << 29;
+const MAX_VOXELS: usize = 1 << 29;
 
 /// The files of a scene under construction.
 pub(crate) struct Writing<'o> {
@@ -90,9 +90,9 @@ impl<'o> Writing<'o> {
             return Some(name.clone());
         }
         let voxels: usize = grid.size().iter().product();
-        if voxels > MOST_VOXELS {
+        if voxels > MAX_VOXELS {
             self.warn(format!(
-                "the grid '{}' has {voxels} voxels, and at most {MOST_VOXELS} are written: it is left out",
+                "the grid '{}' has {voxels} voxels, and at most {MAX_VOXELS} are written: it is left out",
                 grid.name()
             ));
             return None;

@@ -120,9 +120,7 @@ impl Job {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::replace_backdrop(&mut completed, nothing);
         }
-        if let Some(visibility) = studio.fog {
-            crate::presets::add_fog(&mut completed, visibility);
-        }
+        crate::presets::add_fog(&mut completed, studio.fog);
         let size = [settings.width, settings.height];
         bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let accel = accel_of(&completed);

@@ -59,7 +59,13 @@ pub(super) fn background(reader: &Reader) -> Result<Background, Error> {
         );
         SceneError::invalid(message, reader.span("background"))
     };
-    Ok(Background::parse(&text).ok_or_else(wrong)?)
+    let background = Background::parse(&text).ok_or_else(wrong)?;
+    if background.is_cut_out() && reader.number("fog") > 0.0 {
+        let message =
+            "fog fills the picture, and nothing can be cut out of it: leave out --fog or --background";
+        return Err(SceneError::invalid(message, reader.span("fog")).into());
+    }
+    Ok(background)
 }
 
 #[cfg(test)]

@@ -80,14 +80,7 @@ pub const RENDER: Entry = Entry {
         ),
         number("zoom", "magnify the picture by this factor", "", 1e-3, 1e3, "1"),
         choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"),
-        number(
-            "fog",
-            "put fog around everything, in which people see this far; 0 is none",
-            "m",
-            0.0,
-            1e6,
-            "0",
-        ),
+        number("fog", "fog around everything, and how far one sees in it; 0 is none", "m", 0.0, 1e6, "0"),
         text(
             "orbit",
             "the position of the studio's camera: degrees to the right of the model's front and degrees above it, as \
@@ -304,11 +297,6 @@ impl Settings {
         let (width, height) = parse_size(&reader.text("size"))
             .ok_or_else(|| SceneError::invalid(size_error(&reader.text("size")), reader.span("size")))?;
         let (stop, background) = (stop(&reader), background(&reader)?);
-        if background.is_cut_out() && reader.number("fog") > 0.0 {
-            let message =
-                "fog fills the picture, and nothing can be cut out of it: leave out --fog or --background";
-            return Err(SceneError::invalid(message, reader.span("fog")).into());
-        }
         let spp = match reader.integer("spp") {
             0 if stop.is_any() => MAX_SPP,
             0 => integrator.default_spp,

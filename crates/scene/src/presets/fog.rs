@@ -13,8 +13,9 @@ const VISIBILITY: f32 = 3.912;
 /// it.
 const HEIGHT: f32 = 0.25;
 
-/// Fills a scene with fog in which people see this many metres far. It reaches as far beyond the objects and cameras.
-pub fn add_fog(scene: &mut SceneBuilder, visibility: f32) {
+/// Fills a scene with fog in which people see this many metres far, if it is given. It reaches as far beyond the objects and cameras.
+pub fn add_fog(scene: &mut SceneBuilder, visibility: Option<f32>) {
+    let Some(visibility) = visibility else { return };
     let positions = scene.cameras.iter().filter_map(|camera| camera.spec.vector("position"));
     let around = positions.fold(scene.bounds(0.0), |bounds, p| bounds.union(Aabb { min: p, max: p }));
     let around = if around.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { around };
@@ -44,7 +45,9 @@ mod tests {
         scene.objects.push(Object::new("box", Arc::new(cuboid(ball)), grey));
         let spec = Spec::new("", "perspective").with("position", Vec3::new(0.0, 2.0, 7.0));
         scene.cameras.push(CameraSpec { spec, keyframes: Vec::new() });
-        add_fog(&mut scene, 20.0);
+        add_fog(&mut scene, None);
+        assert_eq!(scene.objects.len(), 1);
+        add_fog(&mut scene, Some(20.0));
         let bounds = scene.bounds(0.0);
         assert_eq!((bounds.min, bounds.max), (Vec3::new(-21.0, -6.0, -21.0), Vec3::new(21.0, 7.0, 27.0)));
         let built = scene.build(&AccelChoice::default(), [0.0; 2], 1.0).unwrap();
