@@ -82,11 +82,8 @@ impl Report {
         *last = Instant::now();
         let (percent, left) =
             remaining(samples, self.total.load(Ordering::Relaxed), self.begun.elapsed().as_secs_f64());
-        output::eprint(format_args!(
-            "{}: {percent:.0}%, {:.2} Mrays/s, {left:.0} s left",
-            self.label,
-            self.rate() / 1e6
-        ));
+        let left = left.map_or_else(String::new, |left| format!(", {left:.0} s left"));
+        output::eprint(format_args!("{}: {percent:.0}%, {:.2} Mrays/s{left}", self.label, self.rate() / 1e6));
     }
 }
 
@@ -114,10 +111,14 @@ impl Progress for Report {
     }
 }
 
-/// Percent done and seconds left. Where noise ends a render, the total is an estimate, and may turn out to be too low.
-fn remaining(samples: u64, total: u64, seconds: f64) -> (f64, f64) {
+/// Too small a share of the work to tell how long the rest takes.
+const TOO_LITTLE: f64 = 0.01;
+
+/// Percent done and seconds left, if these can be told. Where noise ends a render, the total is an estimate: much too high at first, and
+/// it may turn out to be too low.
+fn remaining(samples: u64, total: u64, seconds: f64) -> (f64, Option<f64>) {
     let share = (samples as f64 / total.max(1) as f64).min(1.0);
-    (share * 100.0, seconds * (1.0 - share) / share.max(1e-9))
+    (share * 100.0, (share >= TOO_LITTLE).then(|| seconds * (1.0 - share) / share))
 }
 
 #[cfg(test)]
@@ -126,9 +127,10 @@ mod tests {
 
     #[test]
     fn an_estimate_that_was_too_low_is_never_exceeded() {
-        assert_eq!(remaining(25, 100, 5.0), (25.0, 15.0));
-        assert_eq!(remaining(102, 100, 5.0), (100.0, 0.0));
-        assert!(remaining(102, 100, 5.0).1.is_sign_positive(), "no -0 s are left");
-        assert_eq!(remaining(0, 0, 5.0).0, 0.0);
+        assert_eq!(remaining(25, 100, 5.0), (25.0, Some(15.0)));
+        assert_eq!(remaining(102, 100, 5.0), (100.0, Some(0.0)));
+        assert!(remaining(102, 100, 5.0).1.is_some_and(f64::is_sign_positive), "no -0 s are left");
+        assert_eq!(remaining(0, 0, 5.0), (0.0, None));
+        assert_eq!(remaining(1, 1_000_000, 2.0).1, None, "nobody knows yet");
     }
 }

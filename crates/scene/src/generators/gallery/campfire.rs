@@ -22,7 +22,7 @@ const LOGS: u32 = 5;
 const FLAME: f32 = 0.95;
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(0.4);
+    let mut stage = Stage::new(1.1);
     let soil = stage.diffuse("soil", [0.11, 0.085, 0.06]);
     stage.put("ground", shapes::floor(Vec3::ZERO, 30.0), soil);
     stones(&mut stage);
@@ -47,11 +47,11 @@ fn build() -> SceneBuilder {
     stage.light(
         Spec::new("night", "environment")
             .with("radiance", 1.0f32)
-            .with("zenith", Rgb::new(0.006, 0.01, 0.025))
-            .with("horizon", Rgb::new(0.012, 0.015, 0.03))
+            .with("zenith", Rgb::new(0.009, 0.017, 0.042))
+            .with("horizon", Rgb::new(0.022, 0.026, 0.048))
             .with("ground", Rgb::grey(0.003)),
     );
-    stage.seen([0.9, 1.0, 3.4], [0.0, 0.68, 0.0], 36.0)
+    stage.seen([0.9, 0.95, 3.1], [0.0, 0.6, 0.0], 36.0)
 }
 
 /// Tongues that sway more the higher they are, from 0 to a little above 1.

@@ -1,4 +1,4 @@
-//! A small cumulus in the evening: light that is scattered a hundred times, in droplets.
+//! A small cumulus in the evening: light that is scattered a hundred times.
 
 use super::super::{GeneratorEntry, shapes};
 use super::puffs::{clouds, grid, rise};
@@ -28,7 +28,8 @@ const BILLOWS: &[([f32; 3], f32)] = &[
 const BASE: f32 = 262.0;
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(-0.6);
+    let mut stage = Stage::new(-1.3);
+    stage.deep(400);
     let earth = stage.diffuse("fields", [0.07, 0.08, 0.035]);
     stage.put("plain", shapes::floor(Vec3::ZERO, 30_000.0), earth);
     let bounds = Aabb { min: Vec3::new(-280.0, 240.0, -150.0), max: Vec3::new(280.0, 540.0, 150.0) };
@@ -39,22 +40,22 @@ fn build() -> SceneBuilder {
         rise(torn, 0.02, 0.3) * rise(p.y, BASE - 12.0, BASE + 18.0)
     });
     let cloud = Spec::new("cloud", "interface")
-        .with("scattering", 0.09f32)
-        .with("phase", "droplets")
-        .with("droplet_diameter", 12.0f32)
+        .with("scattering", 0.12f32)
+        // Sharper forward peaks, as those of droplets, would need more samples.
+        .with("scattering_anisotropy", 0.8f32)
         .with("density", droplets);
     let cloud = stage.material(cloud);
     stage.put("cloud", shapes::cuboid(bounds), cloud);
     stage.light(
         Spec::new("sun", "directional")
-            .with("direction", Vec3::new(-0.72, -0.3, -0.52))
-            .with("irradiance", Rgb::new(6.2, 4.4, 2.6)),
+            .with("direction", Vec3::new(-0.8, -0.35, -0.3))
+            .with("irradiance", Rgb::new(20.0, 14.0, 8.5)),
     );
     stage.light(
         Spec::new("sky", "environment")
             .with("radiance", 1.0f32)
-            .with("zenith", Rgb::new(0.13, 0.24, 0.55))
-            .with("horizon", Rgb::new(0.75, 0.62, 0.55))
+            .with("zenith", Rgb::new(0.07, 0.15, 0.42))
+            .with("horizon", Rgb::new(0.55, 0.55, 0.62))
             .with("ground", Rgb::new(0.12, 0.11, 0.09)),
     );
     stage.seen([60.0, 120.0, 900.0], [0.0, 305.0, 0.0], 33.0)
