@@ -1,6 +1,7 @@
 //! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
 //! to merge with. [Jensen 1996; Georgiev 2012]
 
+use crate::limits::MAX_DEPTH;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
@@ -57,21 +58,41 @@ impl Merging {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonPosition {
     pub(crate) p: Vec3,
-    /// Twice the number of scattering events before it, plus one where the subpath carries a single wavelength.
+    /// Scattering events before it, in bits: 10 for those on surfaces, 5 for those in media, and one that is set where the
+    /// subpath carries a single wavelength.
     pub(crate) steps: u16,
     /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
 }
 
+/// The number of events in media that a photon can count.
+const MOST_IN_MEDIA: u32 = 31;
+
+// The events on surfaces fit into their bits.
+const _: () = assert!(MAX_DEPTH < 1 << 10);
+
 impl PhotonPosition {
-    pub(crate) fn new(p: Vec3, depth: u32, is_split: bool, origin: u16) -> PhotonPosition {
-        PhotonPosition { p, steps: (depth << 1) as u16 | u16::from(is_split), origin }
+    pub(crate) fn new(
+        p: Vec3,
+        on_surfaces: u32,
+        in_media: u32,
+        is_split: bool,
+        origin: u16,
+    ) -> PhotonPosition {
+        let steps = (on_surfaces << 6 | in_media.min(MOST_IN_MEDIA) << 1) as u16 | u16::from(is_split);
+        PhotonPosition { p, steps, origin }
     }
 
-    /// Scattering events before it.
+    /// Scattering events on surfaces before it.
+    #[inline]
+    pub(crate) fn on_surfaces(&self) -> u32 {
+        u32::from(self.steps >> 6)
+    }
+
+    /// Scattering events before it, of which it knows up to 31 in media: no one tells longer paths apart.
     #[inline]
     pub(crate) fn depth(&self) -> u32 {
-        u32::from(self.steps >> 1)
+        self.on_surfaces() + (u32::from(self.steps >> 1) & MOST_IN_MEDIA)
     }
 
     /// True where the subpath up to here carries a single wavelength.
@@ -207,7 +228,7 @@ mod tests {
 
     fn photons(count: u64, radius: f32, is_flat: bool) -> Photons {
         let photon = |i| {
-            let position = PhotonPosition::new(point(i, is_flat), 0, false, i as u16);
+            let position = PhotonPosition::new(point(i, is_flat), 0, 0, false, i as u16);
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
             (position, Photon { wo, n_geom, beta: Rgb::WHITE, connected: PerSet::ZERO, d_vc: PerSet::ZERO })
         };

@@ -22,7 +22,7 @@ pub struct Context<'a> {
     pub emission: Emission,
     /// The photons of this iteration's light subpaths, where subpaths are merged.
     pub photons: Option<&'a Photons>,
-    /// Maximum number of scattering events after the camera; 0 is emission only.
+    /// Maximum number of scattering events on surfaces after the camera; 0 is emission only.
     pub max_depth: u32,
 }
 

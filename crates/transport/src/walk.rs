@@ -1,6 +1,7 @@
 //! A random walk: what every path has while it grows, from whichever end.
 
 use crate::interaction::Interaction;
+use crate::limits::Events;
 use crate::media::{Media, Travelled};
 use crate::task::SampleState;
 use bilux_math::{Rgb, Vec3};
@@ -12,6 +13,8 @@ pub(crate) struct Walk {
     pub(crate) ray: Ray,
     /// Scattering events so far.
     pub(crate) depth: u32,
+    /// Those of them in media: all, and those since the last surface.
+    in_media: [u32; 2],
     /// Throughput: the weight of all events, over their density.
     pub(crate) beta: Rgb,
     /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
@@ -28,13 +31,29 @@ impl Walk {
     /// One with only its first ray.
     #[inline]
     pub(crate) fn new(ray: &Ray, beta: Rgb, media: Media) -> Walk {
-        Walk { ray: *ray, depth: 0, beta, eta_scale: 1.0, specular: true, is_split: false, media }
+        Walk {
+            ray: *ray,
+            depth: 0,
+            in_media: [0; 2],
+            beta,
+            eta_scale: 1.0,
+            specular: true,
+            is_split: false,
+            media,
+        }
     }
 
     /// Its throughput as the colour channels see it, up to here.
     #[inline]
     pub(crate) fn seen(&self, sample: &SampleState) -> Rgb {
         sample.seen(self.beta, self.is_split)
+    }
+
+    /// Its events so far, as far as they limit it.
+    #[inline]
+    pub(crate) fn events(&self) -> Events {
+        let [in_media, in_row] = self.in_media;
+        Events { on_surfaces: self.depth - in_media, in_row }
     }
 
     /// The unit direction to where it comes from.
@@ -56,6 +75,10 @@ impl Walk {
     ) {
         self.beta *= sample.weight;
         self.depth += 1;
+        self.in_media = match self.in_media {
+            [all, in_row] if at.is_in_medium() => [all + 1, in_row + 1],
+            [all, _] => [all, 0],
+        };
         self.specular &= sample.is_delta;
         if mode == TransportMode::Radiance {
             self.eta_scale *= sample.eta * sample.eta;
@@ -84,7 +107,7 @@ impl Walk {
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the
-    /// beginning. [Arvo 1990]
+    /// beginning. In a medium, whatever has lost nothing goes on: a walk through milk has thousands of events. [Arvo 1990]
     #[inline]
     pub(crate) fn survives(&mut self, free: u32, full: f32, u: impl FnOnce() -> f32) -> bool {
         if self.beta.is_black() {
@@ -93,7 +116,9 @@ impl Walk {
         if self.depth <= free {
             return true;
         }
-        let survival = survival(self.beta, full, self.eta_scale);
+        let [_, in_row] = self.in_media;
+        let most = if in_row > 0 { 1.0 } else { MOST };
+        let survival = survival(self.beta, full, self.eta_scale, most);
         if u() < survival {
             self.beta = self.beta / survival;
             return true;
@@ -103,8 +128,11 @@ impl Walk {
     }
 }
 
-/// The probability of surviving Russian roulette.
+/// The highest probability of surviving an event on a surface: between mirrors that lose nothing, walks must end too.
+pub(crate) const MOST: f32 = 0.95;
+
+/// The probability of surviving Russian roulette, at `most` this.
 #[inline(always)]
-pub(crate) fn survival(beta: Rgb, full: f32, eta_scale: f32) -> f32 {
-    (beta.max_channel() / full * eta_scale).min(0.95)
+pub(crate) fn survival(beta: Rgb, full: f32, eta_scale: f32, most: f32) -> f32 {
+    (beta.max_channel() / full * eta_scale).min(most)
 }

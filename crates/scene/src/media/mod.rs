@@ -7,6 +7,7 @@
 mod glow;
 mod medium;
 mod phases;
+pub mod slab;
 mod tracking;
 
 pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE, Stored};

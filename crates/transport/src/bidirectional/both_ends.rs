@@ -99,7 +99,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
             tally.add_sample(technique, &found);
         }
-        if z.depth >= task.context.max_depth {
+        if !z.events().are_within(task.context.max_depth) {
             return false;
         }
         task.sample.sampler.enter(u64::from(z.depth) + 1);
@@ -115,20 +115,21 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         task: &mut Task,
         mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
     ) {
-        let is_delta = z.at.is_delta();
+        let is_open = z.is_open();
         let u = task.sample.sampler.next_1d();
         for index in task.context.lights.sample(u) {
             let u = task.sample.sampler.next_2d();
-            if !is_delta {
+            if is_open {
                 let connection = to_light(task, z, index, u, &self.techniques);
                 visit(task, Step::Picked, connection);
             }
         }
-        if is_delta || !self.connects() {
+        if !is_open || !self.connects() {
             return;
         }
         let max_depth = task.context.max_depth;
-        for y in light_path.filter(|y| z.depth + y.depth + 2 <= max_depth) {
+        let is_short = |y: &&Vertex<N>| z.events().joined(y.events()).are_within(max_depth);
+        for y in light_path.filter(is_short) {
             let connection = to_vertex(task, z, y, &self.techniques);
             visit(task, Step::Connected, connection);
         }

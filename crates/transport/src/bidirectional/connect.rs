@@ -3,6 +3,7 @@
 use super::subpath::{Vertex, count};
 use crate::emission::light_number;
 use crate::interaction::Interaction;
+use crate::limits::MAX_CONNECTED_ROW;
 use crate::media::Passage;
 use crate::photons::Photons;
 use crate::segment::Segment;
@@ -140,13 +141,17 @@ pub(crate) fn to_light<const N: usize>(
     Some(Connection { join, segment: Segment { ray, n: sample.n_light, through } })
 }
 
-/// Connects a camera vertex and a light vertex (s, t > 1).
+/// Connects a camera vertex and a light vertex (s, t > 1); not two points of a medium between which walks have many events.
 pub(crate) fn to_vertex<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
     y: &Vertex<N>,
     techniques: &TechniqueCounts<N>,
 ) -> Option<Connection<N>> {
+    let in_medium = [z.at.is_in_medium(), y.at.is_in_medium()];
+    if in_medium == [true; 2] && z.events().joined(y.events()).in_row > MAX_CONNECTED_ROW {
+        return None;
+    }
     let between = y.at.p() - z.at.p();
     let distance2 = between.length_squared();
     let direction = between.try_normalize()?;
@@ -173,7 +178,7 @@ pub(crate) fn to_vertex<const N: usize>(
         found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
         others: [from_camera, from_light],
         picked: None,
-        in_medium: [z.at.is_in_medium(), y.at.is_in_medium()],
+        in_medium,
     };
     let through = Through { media, distance: Some(distance2.sqrt()), seed: task.sample.seed() };
     let segment = Segment { ray: spawn_between(&z.at, &y.at), n, through };
@@ -191,7 +196,8 @@ pub(crate) fn merged<const N: usize>(
     let facing = bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(surface.p, |position, y| {
         // Merge only on the same surface, not with the other side of a sheet or around a corner.
-        if z.depth + position.depth() + 1 > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
+        let on_surfaces = z.events().on_surfaces + position.on_surfaces();
+        if on_surfaces > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };

@@ -22,7 +22,8 @@ impl SampleState {
     }
 }
 
-/// Traces a light subpath: every vertex, in order, except those that scatter into single directions only.
+/// Traces a light subpath: every vertex, in order, except those that scatter into single directions only, and of long walks
+/// through media those that are not to be connected.
 pub(crate) fn light_vertices<const N: usize>(
     task: &mut Task,
     time: f32,
@@ -32,8 +33,11 @@ pub(crate) fn light_vertices<const N: usize>(
     let mut vertices = Vec::new();
     let Some(mut subpath) = begin_at_light(task, time, techniques) else { return vertices };
     while let Some(vertex) = subpath.next_vertex(task) {
+        if !vertex.events().are_within(task.context.max_depth) {
+            break;
+        }
         let goes_on = goes_on(&mut subpath, &vertex, roulette_depth, task);
-        if !vertex.at.is_delta() {
+        if vertex.is_open() {
             vertices.push(vertex);
         }
         if !goes_on {
@@ -50,8 +54,9 @@ fn goes_on<const N: usize>(
     roulette_depth: u32,
     task: &mut Task,
 ) -> bool {
-    // The last event of the longest path is on the camera's side.
-    if vertex.depth + 1 >= task.context.max_depth {
+    // One more event has to come; it may be in a medium.
+    let Context { scene, max_depth, .. } = task.context;
+    if vertex.events().on_surfaces >= *max_depth && !scene.scatters() {
         return false;
     }
     task.sample.sampler.enter(LIGHT_STREAM + 1 + u64::from(vertex.depth));
@@ -175,11 +180,13 @@ impl<const N: usize> LightPaths<N> {
                 let before = self.vertices.len();
                 self.vertices.extend(subpath.vertex_before(surface, &mut task));
                 let Some(vertex) = self.vertices.get(before) else { continue };
-                self.next.extend(goes_on(subpath, vertex, roulette_depth, &mut task).then_some(i));
-                if vertex.at.is_delta() {
-                    self.vertices.truncate(before);
-                } else {
+                let exists = vertex.events().are_within(context.max_depth);
+                let goes_on = exists && goes_on(subpath, vertex, roulette_depth, &mut task);
+                self.next.extend(goes_on.then_some(i));
+                if exists && vertex.is_open() {
                     self.samples.push(i);
+                } else {
+                    self.vertices.truncate(before);
                 }
             }
             std::mem::swap(&mut self.active, &mut self.next);

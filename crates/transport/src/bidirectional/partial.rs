@@ -1,5 +1,6 @@
 //! What a subpath carries along for the weights of its techniques.
 
+use crate::limits::MAX_CONNECTED_ROW;
 use crate::techniques::{PerSet, TechniqueCounts};
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
@@ -15,6 +16,8 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) merged: PerSet<N>,
     /// dVC: what connections and merging count together, summed over the steps before.
     pub(crate) d_vc: PerSet<N>,
+    /// In a medium, the part of it that counts however many events there follow one another: [`Partial::in_row`].
+    pub(crate) settled: PerSet<N>,
     /// The part of it that does not count if an emitter is hit next, since light subpaths leave direct light to others.
     pub(crate) except_direct: PerSet<N>,
 }
@@ -36,6 +39,7 @@ impl<const N: usize> Partial<N> {
         splatted: PerSet::ZERO,
         merged: PerSet::ZERO,
         d_vc: PerSet::ZERO,
+        settled: PerSet::ZERO,
         except_direct: PerSet::ZERO,
     };
 
@@ -62,18 +66,32 @@ impl<const N: usize> Partial<N> {
         self.merged = merged;
     }
 
+    /// After arriving at the event of this number in a row in media, counted from 1; `leaves_medium` unless it is the first.
+    ///
+    /// Two points of a medium are connected only in short rows, so what counts is known where a row ends, or becomes too long.
+    #[inline]
+    pub(super) fn in_row(&mut self, number: u32) {
+        if number == 1 {
+            self.settled = self.d_vc;
+        } else if number > MAX_CONNECTED_ROW {
+            (self.d_vc, self.connected) = (self.settled, PerSet::ZERO);
+        }
+    }
+
     /// Goes along an edge; where it ends infinitely far away, densities stay over solid angle, and `distance2` is 1.
     #[inline]
     pub(super) fn pass(&mut self, distance2: f32, edge: Edge) {
         self.d_vcm *= distance2 / edge.forward;
         let ratio = edge.back / edge.forward;
         self.d_vc = self.d_vc * ratio;
+        self.settled = self.settled * ratio;
         self.except_direct = self.except_direct * ratio;
     }
 
     /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `counts` is
-    /// false where light subpaths do not look for what would be direct light here.
-    pub(super) fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool) {
+    /// false where light subpaths do not look for what would be direct light here; `row` is the number of events in a row in
+    /// media, up to this one.
+    pub(super) fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool, row: u32) {
         match pdfs {
             None => {
                 self.d_vcm = 0.0;
@@ -82,6 +100,11 @@ impl<const N: usize> Partial<N> {
             }
             Some((pdf, pdf_back)) => {
                 let here = (self.merged + self.splatted) * (cos / pdf);
+                if row > 0 {
+                    let connected = if row == 1 { self.connected } else { PerSet::ZERO };
+                    let settled = (self.settled + self.except_direct) * pdf_back + connected;
+                    self.settled = settled * (cos / pdf) + if counts { here } else { PerSet::ZERO };
+                }
                 self.d_vc = ((self.d_vc + self.except_direct) * pdf_back + self.connected) * (cos / pdf);
                 self.except_direct = PerSet::ZERO;
                 if counts {

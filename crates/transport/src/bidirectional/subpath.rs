@@ -4,6 +4,7 @@ use super::Partial;
 use super::partial::Edge;
 use crate::emission::Start;
 use crate::interaction::Interaction;
+use crate::limits::Events;
 use crate::media::{Media, Travelled};
 use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, SampleState, Task, VertexKind};
@@ -22,6 +23,10 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
+    /// The same and this one, as far as they limit paths.
+    events: Events,
+    /// Whether it is among those that are connected at all.
+    is_kept: bool,
     /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
     /// The subpath carries a single wavelength, whatever is here.
@@ -38,6 +43,16 @@ impl<const N: usize> Vertex<N> {
         count(self.depth)
     }
 
+    /// Events up to and including this one, as far as they limit paths.
+    pub(crate) fn events(&self) -> Events {
+        self.events
+    }
+
+    /// True where it can be connected.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_kept && !self.at.is_delta()
+    }
+
     /// True where a path through here carries a single wavelength.
     pub(super) fn is_split(&self) -> bool {
         self.came_split || self.at.splits()
@@ -46,7 +61,9 @@ impl<const N: usize> Vertex<N> {
     /// The photon that is stored for merging; `None` in a medium.
     pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
         let surface = self.at.surface()?;
-        let position = PhotonPosition::new(surface.p, self.depth, self.came_split, self.origin);
+        let on_surfaces = self.events.on_surfaces - 1;
+        let in_media = self.depth - on_surfaces;
+        let position = PhotonPosition::new(surface.p, on_surfaces, in_media, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, surface.n_geom, self.beta);
         Some((
             position,
@@ -64,6 +81,13 @@ impl<const N: usize> Vertex<N> {
 /// the one on the light or at the camera.
 pub(crate) fn count(depth: u32) -> u32 {
     depth + 2
+}
+
+/// The fraction of the vertices of light subpaths that are kept for connections, at this number of an event in a row in media: all of
+/// the first, then fewer and fewer, which count for more. Some walks through milk have ten thousand events.
+fn kept_share(number: u32) -> f32 {
+    const ALL: u32 = 64;
+    if number <= ALL { 1.0 } else { ALL as f32 / number as f32 }
 }
 
 /// A subpath on its way to the next vertex.
@@ -178,11 +202,31 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if at.is_in_medium() { PerSet::ZERO } else { merged };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
+        let events = self.walk.events().and(at.is_in_medium());
+        self.partial.in_row(events.in_row);
         self.by_area = false;
         self.leaves_medium = at.is_in_medium();
         let Subpath { walk: Walk { beta, depth, is_split, .. }, partial, origin, .. } = *self;
+        let share = match self.mode {
+            TransportMode::Importance => kept_share(events.in_row),
+            TransportMode::Radiance => 1.0,
+        };
+        let is_kept = share == 1.0 || sample.sampler.next_1d() < share;
+        let beta = beta / share;
         let arriving = edge.forward;
-        Some(Vertex { at, wo, beta, partial, depth, origin, came_split: is_split, media, arriving })
+        Some(Vertex {
+            at,
+            wo,
+            beta,
+            partial,
+            depth,
+            events,
+            is_kept,
+            origin,
+            came_split: is_split,
+            media,
+            arriving,
+        })
     }
 
     /// Continues from a vertex; false when the subpath ends there.
@@ -196,7 +240,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         let counts = self.techniques.direct || self.mode == TransportMode::Importance;
-        self.partial.leave(cos, pdfs, counts);
+        self.partial.leave(cos, pdfs, counts, vertex.events.in_row);
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)

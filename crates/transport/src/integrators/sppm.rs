@@ -106,7 +106,7 @@ impl CameraSubpath for PhotonGathering<'_> {
             tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         }
         task.sample.sampler.enter(u64::from(z.depth) + 1);
-        z.depth < task.context.max_depth
+        z.events().are_within(task.context.max_depth)
     }
 
     fn merge(&self, z: &Vertex, task: &Task, tally: &mut impl Tally<1>) {

@@ -122,7 +122,8 @@ impl PathTracing {
         if let Arrival::Surface(surface) = arrival {
             self.collect(path, surface, task);
         }
-        if path.walk.depth >= task.context.max_depth {
+        let events = path.walk.events().and(matches!(arrival, Arrival::Medium(_)));
+        if !events.are_within(task.context.max_depth) {
             return None;
         }
         task.sample.sampler.enter(u64::from(path.walk.depth) + 1);

@@ -7,7 +7,7 @@ use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3
 use super::paths::{Paths, QueuedPath};
 use super::vertices::{NO_PATH, Vertices};
 use crate::path_tracing::{Path, PathTracing};
-use crate::walk::survival;
+use crate::walk::{MOST, survival};
 use bilux_math::Vec3;
 use bilux_scene::CpuLevel;
 use bilux_scene::surface::offset_origin;
@@ -171,7 +171,7 @@ impl Stage for Survive<'_> {
         let Survive { v: Vertices { u, .. }, next } = self;
         for i in 0..LANES {
             let beta = rgb(&next.beta, i);
-            let survival = survival(beta, 1.0, next.eta_scale.0[i]);
+            let survival = survival(beta, 1.0, next.eta_scale.0[i], MOST);
             let (plays, survives) = (next.plays.0[i] != 0.0, u[0].0[i] < survival);
             let scaled = beta / survival;
             let of = |c: f32, scaled: f32| if plays & survives { scaled } else { c };

@@ -1,14 +1,19 @@
 //! Media that scatter, against closed forms and against numbers of discrete ordinates: slabs, light in fog, furnaces; and the same mean
 //! by every integrator.
 
-use crate::common::statistics::{assert_like_path, assert_like_path_in_turn, assert_unlike_path, estimate};
-use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot, sky, without_mirrors};
+use crate::common::statistics::{
+    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, blocks_of_depth,
+    estimate,
+};
+use crate::common::{
+    ball, built, diffuse, effort, floor, integrator, look, put, quad, shoot, sky, without_mirrors,
+};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::{Scene, SceneBuilder, Spec};
-use bilux_transport::{RenderError, RenderSettings, Silent, integrators, render};
+use bilux_transport::{LightDivision, RenderError, RenderSettings, Silent, integrators, light_parts, render};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -121,6 +126,15 @@ fn airlight(sigma_s: f64, sigma_t: f64, half: f64) -> f64 {
     sigma_s / (4.0 * PI) * (0..STEPS).map(at).sum::<f64>() * step
 }
 
+/// The mean over a picture of light that scatters at most once, in green, and its standard error.
+fn mean_of_direct_light(scene: &Scene, name: &str, spp: u32) -> (f64, f64) {
+    let (camera, settings) = (&*scene.cameras()[0].1, RenderSettings::new(64, 64, spp));
+    let division = LightDivision { by_events: true, ..LightDivision::default() };
+    let parts = light_parts(scene, camera, &*integrator(name), &settings, &division, &Silent);
+    let [direct, _] = parts.unwrap().unwrap().by_events.unwrap();
+    estimate(&direct.to_rgb().iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
+}
+
 #[test]
 fn light_in_fog_is_what_the_closed_form_says() {
     // Numbers from outside for the integral itself.
@@ -135,7 +149,7 @@ fn light_in_fog_is_what_the_closed_form_says() {
         let scene = built(&builder);
         let wanted = airlight(f64::from(sigma_s), f64::from(sigma_t), 5.0);
         for name in ["path", "bdpt", "vcm"] {
-            let found = mean(&scene, name, 1, 64, effort(16, 256));
+            let found = mean_of_direct_light(&scene, name, effort(16, 256));
             assert_is(&format!("{name}, {sigma_s} of {sigma_t}"), found, wanted, 0.02 * wanted);
         }
     }
@@ -197,6 +211,53 @@ fn fog_looks_the_same_from_both_ends() {
     for (turn, light) in lights.into_iter().enumerate() {
         let name = light.kind.clone();
         assert_like_path_in_turn(turn, &name, &built(&foggy(light, fog())), &["bdpt", "light", "vcm"]);
+    }
+}
+
+/// Events in fog do not count against the depth, and all integrators agree on which paths there are.
+#[test]
+fn paths_of_limited_depth_are_the_same_from_both_ends() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let thick = medium(0.1f32, Rgb::new(1.2, 0.8, 0.4)).with("scattering_anisotropy", 0.2f32);
+    let scene = built(&foggy(panel, thick));
+    for max_depth in 1..=3 {
+        let path = blocks_of_depth(&scene, &*integrator("path"), 0, max_depth);
+        let names = ["bdpt", "light", "vcm"];
+        let short = max_depth as usize - 1;
+        for name in &names[effort(short..short + 1, 0..3)] {
+            let p = agreement(&path, &blocks_of_depth(&scene, &*integrator(name), 100, max_depth));
+            assert!(p > UNLIKELY, "path and {name} to a depth of {max_depth}: p = {p}");
+        }
+    }
+}
+
+/// Without any event there is only emission, in fog too.
+#[test]
+fn nothing_scatters_at_depth_zero() {
+    let light = Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)).with("intensity", 4.0f32);
+    let scene = built(&foggy(light, fog()));
+    for name in ["path", "light", "bdpt", "vcm"] {
+        assert_eq!(mean(&scene, name, 0, 16, 4), (0.0, 0.0), "{name}");
+    }
+}
+
+/// A ball in which light scatters hundreds of times, and which absorbs nothing, is white at the usual depth.
+#[test]
+fn long_walks_through_milk_do_not_end_early() {
+    let milk = Spec::new("", "dielectric").with("eta", 1.3f32).with("scattering", 15.0f32);
+    for (material, names) in [(medium(0.0f32, 30.0f32), &["path", "vcm"]), (milk, &["path", "bdpt"])] {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), material);
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 20.0);
+        let scene = built(&builder);
+        for name in names {
+            let settings = RenderSettings::new(24, 24, effort(4, 64));
+            let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
+            let (mean, error) = estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>());
+            assert!(error < 0.04, "{name}: {mean} ± {error}");
+            assert!((mean - 1.0).abs() < 3.5 * error + 2e-3, "{name}: {mean} ± {error}");
+        }
     }
 }
 

@@ -259,4 +259,7 @@ fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
         let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, Some(FOG[0] + FOG[1]));
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }
+    // Few paths have so many points in a row.
+    let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], Flaw::Row, Some(FOG[0] + FOG[1]));
+    assert!(wrong > 20, "only {wrong} of {compared} weights know that rows are long");
 }

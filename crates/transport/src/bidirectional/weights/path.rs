@@ -2,6 +2,7 @@
 
 use super::PANEL_AREA;
 use crate::interaction::Interaction;
+use crate::limits::MAX_CONNECTED_ROW;
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
 use bilux_math::transcendental::exp_f64;
@@ -57,6 +58,8 @@ pub(super) enum Flaw {
     Survival,
     /// Points of a medium have a density per area.
     Hazard,
+    /// Two points of a medium are connected in long rows too.
+    Row,
 }
 
 impl Path {
@@ -87,7 +90,9 @@ impl Path {
                 (_, 1) => splats,
                 _ => connections,
             };
-            if s == 0 || (is_open(s - 1) && is_open(s)) {
+            let is_short =
+                |s: usize| flaw == Flaw::Row || s < 2 || t < 2 || self.row_at(s) <= MAX_CONNECTED_ROW;
+            if s == 0 || (is_open(s - 1) && is_open(s) && is_short(s)) {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
@@ -101,6 +106,18 @@ impl Path {
             all.push(((true, i + 1), copies * light[i + 1] * camera[count + 2 - i]));
         }
         all
+    }
+
+    /// The number of points in a row in media around the edge that connects `s` vertices from the light with the rest; 0 where one
+    /// of its ends is on a surface.
+    fn row_at(&self, s: usize) -> u32 {
+        let is_in_medium = |node: &&PathVertex| node.at.is_in_medium();
+        let (before, behind) = self.nodes.split_at(s - 1);
+        let rows = [
+            before.iter().rev().take_while(is_in_medium).count(),
+            behind.iter().take_while(is_in_medium).count(),
+        ];
+        if rows.contains(&0) { 0 } else { rows.iter().sum::<usize>() as u32 }
     }
 
     /// The rounding error that a weight may have.

@@ -34,9 +34,19 @@ pub fn welch(a: &[f64], b: &[f64]) -> f64 {
 
 /// Block means (2 × 2 blocks, three channels) of pictures with different seeds: `[block][picture]`.
 pub fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) -> Vec<Vec<f64>> {
+    blocks_of_depth(scene, integrator, first_seed, 6)
+}
+
+/// The same of paths with at most this many events on surfaces.
+pub fn blocks_of_depth(
+    scene: &Scene,
+    integrator: &dyn PixelIntegrator,
+    first_seed: u64,
+    max_depth: u32,
+) -> Vec<Vec<f64>> {
     let mut blocks = vec![Vec::new(); 12];
     for seed in first_seed..first_seed + 12 {
-        let settings = RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 16, 32) };
+        let settings = RenderSettings { seed, max_depth, ..RenderSettings::new(16, 16, 32) };
         let film = shoot(scene, integrator, &settings).film;
         let mut sums = vec![0.0; 12];
         for (i, pixel) in film.to_rgb().into_iter().enumerate() {
