@@ -66,7 +66,7 @@ pub(crate) struct PhotonPosition {
 }
 
 /// The number of events in media that a photon can count.
-const MOST_IN_MEDIA: u32 = 31;
+const MAX_IN_MEDIA: u32 = 31;
 
 // The events on surfaces fit into their bits.
 const _: () = assert!(MAX_DEPTH < 1 << 10);
@@ -79,7 +79,7 @@ impl PhotonPosition {
         is_split: bool,
         origin: u16,
     ) -> PhotonPosition {
-        let steps = (on_surfaces << 6 | in_media.min(MOST_IN_MEDIA) << 1) as u16 | u16::from(is_split);
+        let steps = (on_surfaces << 6 | in_media.min(MAX_IN_MEDIA) << 1) as u16 | u16::from(is_split);
         PhotonPosition { p, steps, origin }
     }
 
@@ -92,7 +92,7 @@ impl PhotonPosition {
     /// Scattering events before it, of which it knows up to 31 in media: no one tells longer paths apart.
     #[inline]
     pub(crate) fn depth(&self) -> u32 {
-        self.on_surfaces() + (u32::from(self.steps >> 1) & MOST_IN_MEDIA)
+        self.on_surfaces() + (u32::from(self.steps >> 1) & MAX_IN_MEDIA)
     }
 
     /// True where the subpath up to here carries a single wavelength.
