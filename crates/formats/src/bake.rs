@@ -8,6 +8,25 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 
+/// The same scene without media that have no surface, in formats that cannot hold them: as objects they would be opaque boxes.
+pub(crate) fn without_media<'a>(
+    scene: &'a SceneBuilder,
+    capabilities: &[&str],
+    writing: &mut Writing,
+) -> Cow<'a, SceneBuilder> {
+    let is_medium =
+        |material: usize| scene.materials.get(material).is_some_and(|spec| spec.kind == "interface");
+    if capabilities.contains(&"media") || !scene.objects.iter().any(|object| is_medium(object.material)) {
+        return Cow::Borrowed(scene);
+    }
+    let mut kept = scene.clone();
+    kept.objects.retain(|object| !is_medium(object.material));
+    for object in scene.objects.iter().filter(|object| is_medium(object.material)) {
+        writing.warn(format!("the format cannot store fog and smoke: '{}' is left out", name_of(object)));
+    }
+    Cow::Owned(kept)
+}
+
 /// Replaces procedural textures by images if the format does not support them.
 pub(crate) fn with_pictures<'a>(
     scene: &'a SceneBuilder,

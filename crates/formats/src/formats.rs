@@ -1,6 +1,6 @@
 //! The table of formats, and reading and writing with it.
 
-use crate::bake::{warn_of_vertices, with_pictures};
+use crate::bake::{warn_of_vertices, with_pictures, without_media};
 use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
 use crate::text::{is_marked, plain, plain_size, whole_file};
@@ -218,6 +218,7 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
             ));
         }
         warn_of_vertices(scene, &mut writing);
+        let scene = &*without_media(scene, row.capabilities, &mut writing);
         let scene = with_pictures(scene, row.capabilities, &mut writing);
         let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;

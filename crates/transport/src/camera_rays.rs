@@ -118,7 +118,9 @@ impl<'a> CameraRays<'a> {
         let sampler = PixelSampler::new(seed, x, y, number);
         let disperses = self.context.scene.disperses();
         let wavelength = if disperses { self.wavelength(seed, &sampler, number) } else { Wavelength::D };
-        SampleState::new(sampler, wavelength)
+        let is_coloured = self.context.scene.has_coloured_distances();
+        let channel = if is_coloured { channel_of(&sampler, number) } else { 0 };
+        SampleState { channel, ..SampleState::new(sampler, wavelength) }
     }
 
     /// The rays as those of a pinhole, if there is nothing else to them: neither a lens, nor motion, nor wavelengths, nor a
@@ -174,6 +176,17 @@ impl<'a> CameraRays<'a> {
         let film = on_film(settings, x, y, offset + Vec2::splat(anchor));
         CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
     }
+}
+
+/// The channel of a sample's distances in media: in a pixel all in turn, beginning anywhere.
+#[cold]
+fn channel_of(sampler: &PixelSampler, number: u32) -> u8 {
+    const STREAM: u64 = 0x6368_616e;
+    // What is the same for all samples of a pixel.
+    let mut first = sampler.first();
+    first.enter(STREAM);
+    let offset = (first.next_1d() * 3.0) as u32;
+    ((offset + number % 3) % 3) as u8
 }
 
 /// The point of the film (0..=1 on both axes) at a place in a pixel.

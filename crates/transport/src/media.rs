@@ -17,7 +17,7 @@ mod passage;
 use crate::interaction::{Interaction, MediumPoint};
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine};
+use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
@@ -33,11 +33,13 @@ pub(crate) struct Media {
     overlap: Overlap,
     /// The object whose medium the path travels through, as far as it is known.
     inside: u32,
+    /// The channel whose distances walks have here.
+    pub(crate) channel: u8,
 }
 
 impl Media {
     /// No media.
-    pub(crate) const AIR: Media = Media { overlap: Overlap::NOTHING, inside: NONE };
+    pub(crate) const AIR: Media = Media { overlap: Overlap::NOTHING, inside: NONE, channel: 0 };
 
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
@@ -111,12 +113,12 @@ impl Media {
         }
         let medium = self.medium(scene);
         let line = self.line(scene, &medium, ray, begin);
-        medium.passed(line.as_ref(), end - begin, || draws.next_1d())
+        medium.passed(line.as_ref(), end - begin, usize::from(self.channel), || draws.next_1d())
     }
 
     /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the
     /// first surface that separates two media. `first` is the first surface along the ray. Afterwards these are the media on
-    /// the side that the ray comes from.
+    /// the side that the ray comes from. `odds` are those of walks in each channel so far.
     ///
     /// Beyond the last surface nothing happens: the boundary of what scatters would have been met.
     #[inline]
@@ -125,6 +127,7 @@ impl Media {
         tracer: &mut Tracer,
         ray: &Ray,
         first: Option<Surface>,
+        odds: Rgb,
         mut draw: impl FnMut() -> f32,
     ) -> Travelled {
         let scene = tracer.scene;
@@ -136,14 +139,15 @@ impl Media {
             let medium = self.medium(scene);
             let length = surface.t - begin;
             let line = self.line(scene, &medium, ray, begin);
-            let flight = medium.walk(line.as_ref(), length, &mut draw);
+            let channel = WalkChannel { index: usize::from(self.channel), odds: odds * travelled.odds };
+            let flight = medium.walk(line.as_ref(), length, channel, &mut draw);
             travelled = travelled.lit(flight.emitted);
-            if let Some(MediumEvent { distance, sigma_s }) = flight.event {
+            if let Some(MediumEvent { distance, sigma_s, sigma_t }) = flight.event {
                 let t = begin + distance;
                 let p = Vec3::from(ray.origin) + direction * t;
                 self.overlap.leave();
                 let point = MediumPoint { p, t, time: ray.time, phase: medium.phase };
-                return travelled.scattered(flight.path, sigma_s, point);
+                return travelled.scattered(flight.path, [sigma_s, sigma_t], point);
             }
             travelled = travelled.passed(flight.path);
             if self.overlap.separates(scene, &surface) {

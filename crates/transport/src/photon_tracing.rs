@@ -3,7 +3,7 @@
 use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
-use crate::photons::{Merging, Photon, PhotonPosition, Photons};
+use crate::photons::{Merging, Photon, PhotonPosition, PhotonWalk, Photons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
 use crate::techniques::{Contribution, LightPathVisitor, Tally, TechniqueCounts};
@@ -65,11 +65,12 @@ impl<const N: usize> Photons<N> {
             .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
-        let techniques =
-            techniques(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
+        // A camera subpath is merged with the light subpaths of its channel, one in three.
+        let merged = if scene.has_coloured_distances() { followed as f32 / 3.0 } else { followed as f32 };
+        let techniques = techniques(merging.area(scene, iteration) * merged, followed as f32 / pixels as f32);
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
-            let mut photons = Vec::new();
+            let (mut photons, mut walks) = (Vec::new(), Vec::new());
             let mut tally = visitor.map(O::tally);
             let places: Vec<(u32, u32)> =
                 (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
@@ -92,18 +93,27 @@ impl<const N: usize> Photons<N> {
                     paths.connect_to_camera(&mut samples, context, &mut tracer, &techniques, add);
                 }
                 let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
-                let vertices = (0..samples.len()).flat_map(|i| paths.of(i));
-                photons.extend(vertices.filter(is_kept).filter_map(Vertex::photon));
+                let is_coloured = scene.has_coloured_distances();
+                for (i, sample) in samples.iter().enumerate() {
+                    let vertices = || paths.of(i).filter(is_kept);
+                    photons.extend(vertices().filter_map(Vertex::photon));
+                    if is_coloured {
+                        let channel = sample.state.channel;
+                        let on_surface = vertices().filter(|vertex| !vertex.at.is_in_medium());
+                        walks.extend(on_surface.map(|vertex| PhotonWalk { odds: vertex.odds, channel }));
+                    }
+                }
             }
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);
             }
-            (photons, tracer.counters)
+            ((photons, walks), tracer.counters)
         };
-        let (parts, counters): (Vec<Vec<(PhotonPosition, Photon<N>)>>, Vec<Counters>) =
+        let (parts, counters): (Vec<(Vec<(PhotonPosition, Photon<N>)>, Vec<PhotonWalk>)>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
+        let (parts, walks): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(parts.concat(), radius, techniques), counted)
+        (Photons::new(parts.concat(), &walks.concat(), radius, techniques), counted)
     }
 }

@@ -114,6 +114,15 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) d_vc: PerSet<N>,
 }
 
+/// What a photon knows of the channels of distances in media.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PhotonWalk {
+    /// [`crate::walk::Walk::odds`].
+    pub(crate) odds: Rgb,
+    /// The channel of its sample's distances. It is merged with camera subpaths of the same channel.
+    pub(crate) channel: u8,
+}
+
 /// All photons of an iteration, in a grid whose cells are as wide as the discs that merge.
 ///
 /// Cells that are adjacent along the x axis are adjacent in memory.
@@ -123,14 +132,17 @@ pub struct Photons<const N: usize = 1> {
     techniques: TechniqueCounts<N>,
     positions: Vec<PhotonPosition>,
     photons: Vec<Photon<N>>,
+    /// What each photon knows of the channels, where distances in media are not the same in all of them.
+    walks: Vec<PhotonWalk>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
     starts: Vec<u32>,
 }
 
 impl<const N: usize> Photons<N> {
-    /// Sorts the photons by cell; within a cell they keep the order in which they are given.
+    /// Sorts the photons by cell, and their walks, if they have any; within a cell they keep the order in which they are given.
     pub(crate) fn new(
         given: Vec<(PhotonPosition, Photon<N>)>,
+        walks: &[PhotonWalk],
         radius: f32,
         techniques: TechniqueCounts<N>,
     ) -> Photons<N> {
@@ -154,7 +166,9 @@ impl<const N: usize> Photons<N> {
         starts.rotate_right(1);
         starts[0] = 0;
         let (positions, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
-        Photons { radius, techniques, positions, photons, starts }
+        let walks =
+            if walks.is_empty() { Vec::new() } else { order.iter().map(|&i| walks[i as usize]).collect() };
+        Photons { radius, techniques, positions, photons, walks, starts }
     }
 
     /// All techniques of this iteration.
@@ -162,9 +176,13 @@ impl<const N: usize> Photons<N> {
         &self.techniques
     }
 
-    /// Calls `visit` with every photon within the radius of a point.
+    /// Calls `visit` with every photon within the radius of a point, and its walk, if photons have any.
     #[inline]
-    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&PhotonPosition, &Photon<N>)) {
+    pub(crate) fn around(
+        &self,
+        p: Vec3,
+        mut visit: impl FnMut(&PhotonPosition, &Photon<N>, Option<&PhotonWalk>),
+    ) {
         let mask = self.starts.len() as u32 - 2;
         // Cells are two radii wide: photons in range lie in the point's own cell or in the nearer neighbour on each
         // axis.
@@ -182,11 +200,13 @@ impl<const N: usize> Photons<N> {
         let is_shared = share_buckets(&buckets, mask);
         let radius2 = self.radius * self.radius;
         for (i, range) in ranges.into_iter().enumerate() {
-            for (position, photon) in self.positions[range.clone()].iter().zip(&self.photons[range]) {
+            let first = range.start;
+            let photons = self.positions[range.clone()].iter().zip(&self.photons[range]);
+            for (i_photon, (position, photon)) in photons.enumerate() {
                 if position.p.distance_squared(p) <= radius2
                     && (!is_shared || cell(position.p, self.radius) == corner(i))
                 {
-                    visit(position, photon);
+                    visit(position, photon, self.walks.get(first + i_photon));
                 }
             }
         }
@@ -232,7 +252,7 @@ mod tests {
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
             (position, Photon { wo, n_geom, beta: Rgb::WHITE, connected: PerSet::ZERO, d_vc: PerSet::ZERO })
         };
-        Photons::new((0..count).map(photon).collect(), radius, TechniqueCounts::CAMERA)
+        Photons::new((0..count).map(photon).collect(), &[], radius, TechniqueCounts::CAMERA)
     }
 
     #[test]
@@ -245,7 +265,7 @@ mod tests {
                 let photons = photons(count, radius, is_flat);
                 for at in (0..300).map(|i| point(1 << 32 | i, is_flat)) {
                     let mut found = Vec::new();
-                    photons.around(at, |position, _| found.push(u64::from(position.origin)));
+                    photons.around(at, |position, _, _| found.push(u64::from(position.origin)));
                     found.sort_unstable();
                     let is_near = |i: &u64| point(*i, is_flat).distance_squared(at) <= radius * radius;
                     assert!(found.into_iter().eq((0..count).filter(is_near)), "{count} {radius} {at}");

@@ -27,6 +27,11 @@ impl PixelSampler {
         PixelSampler { pixel, reversed_index: index.reverse_bits(), stream: pixel, dimension: 0 }
     }
 
+    /// The numbers of the pixel's first sample.
+    pub(crate) fn first(&self) -> PixelSampler {
+        PixelSampler { reversed_index: 0, ..self.clone() }
+    }
+
     /// Skips this many numbers or points that are not needed: what follows is the same as if they had been generated.
     #[inline]
     pub fn skip(&mut self, draws: u32) {

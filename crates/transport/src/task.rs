@@ -33,6 +33,8 @@ pub struct SampleState {
     pub sampler: PixelSampler,
     /// The wavelength of its paths, wherever they begin.
     pub wavelength: Wavelength,
+    /// The channel whose distances its paths have in media, wherever they begin.
+    pub(crate) channel: u8,
     /// Vertices that its paths have reached so far. Queues do not count them.
     pub vertices: u32,
     /// What is recorded of it, if anything is.
@@ -130,7 +132,7 @@ const MEDIUM_STREAM: u64 = 3 << 32;
 impl SampleState {
     /// A sample that has drawn nothing yet.
     pub fn new(sampler: PixelSampler, wavelength: Wavelength) -> SampleState {
-        SampleState { sampler, wavelength, vertices: 0, record: None }
+        SampleState { sampler, wavelength, channel: 0, vertices: 0, record: None }
     }
 
     /// The light of a whole path as the colour channels see it: once a surface has [split](bilux_scene::Bsdf::splits)

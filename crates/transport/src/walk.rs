@@ -5,6 +5,7 @@ use crate::limits::Events;
 use crate::media::{Media, Travelled};
 use crate::task::SampleState;
 use bilux_math::{Rgb, Vec3};
+use bilux_scene::media::mean;
 use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
 
 /// A path on its way to its next vertex.
@@ -15,8 +16,10 @@ pub(crate) struct Walk {
     pub(crate) depth: u32,
     /// Those of them in media: all, and those since the last surface.
     in_media: [u32; 2],
-    /// Throughput: the weight of all events, over their density.
+    /// Throughput: the weight of all events, over their mean density of walks in all channels.
     pub(crate) beta: Rgb,
+    /// The densities of walks in each channel over their mean.
+    pub(crate) odds: Rgb,
     /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
     pub(crate) eta_scale: f32,
     /// True while all events have been delta events: what only the camera sees may still be visible.
@@ -35,6 +38,7 @@ impl Walk {
             ray: *ray,
             depth: 0,
             in_media: [0; 2],
+            odds: Rgb::WHITE,
             beta,
             eta_scale: 1.0,
             specular: true,
@@ -97,12 +101,19 @@ impl Walk {
         sample: &mut SampleState,
         mode: TransportMode,
     ) -> Travelled {
-        if tracer.scene.scatters() {
+        let scatters = tracer.scene.scatters();
+        if scatters {
             sample.enter_medium(self.depth, mode);
+            self.media.channel = sample.channel;
         }
-        let travelled = self.media.travel(tracer, &self.ray, first, || sample.sampler.next_1d());
+        let travelled = self.media.travel(tracer, &self.ray, first, self.odds, || sample.sampler.next_1d());
         let emitted = self.beta * travelled.emitted;
         self.beta *= travelled.weight;
+        if scatters {
+            let odds = self.odds * travelled.odds;
+            let all = mean(odds);
+            (self.beta, self.odds) = (self.beta / all, odds / all);
+        }
         Travelled { emitted, ..travelled }
     }
 

@@ -127,6 +127,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.fuzz(node, draft)?;
         self.film(node, draft)?;
         self.diffuse_transmission(node, draft)?;
+        self.scatter(node, draft)?;
         if let Some(unlit) = node.extension("KHR_materials_unlit") {
             self.unlit(unlit, draft);
         }
@@ -151,7 +152,8 @@ impl<'d> Gltf<'d, '_, '_> {
 
     /// The back faces of transmissive surfaces are always visible, since light travels inside.
     fn sides(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
-        let is_whole = draft.spec.parameters.find("transmission_weight").is_none();
+        let has = |key| draft.spec.parameters.find(key).is_some();
+        let is_whole = !has("transmission_weight") && !has("transmission_scatter");
         if is_whole && !node.switch("doubleSided")? {
             draft.set("visible_sides", "front", node.at());
             if draft.spec.parameters.find("emission").is_some() {

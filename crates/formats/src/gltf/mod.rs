@@ -25,6 +25,7 @@ mod prefetch;
 mod primitive;
 mod reader;
 mod remapped;
+mod scatter;
 mod skin;
 mod soundness;
 mod tangents;

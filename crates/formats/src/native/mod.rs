@@ -40,6 +40,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "transforms",
         "motion",
         "materials",
+        "media",
         "textures",
         "procedural textures",
         "lights",

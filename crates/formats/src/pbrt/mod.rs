@@ -44,6 +44,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "transforms",
         "motion",
         "materials",
+        "media",
         "textures",
         "moved textures",
         "lights",

@@ -11,7 +11,7 @@ use bilux_pictures::{Picture, WriteOptions, write_bytes};
 use bilux_scene::{AccelChoice, Ray, Scene, SceneBuilder, Surface, Tracer, TransportMode, Value};
 use std::f64::consts::{PI, TAU};
 
-fn read(text: &str) -> SceneBuilder {
+pub(crate) fn read(text: &str) -> SceneBuilder {
     read_text("gltf", text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
@@ -28,7 +28,7 @@ fn picture(width: usize, texels: &[[u8; 3]]) -> String {
 ///
 /// In the first set, v grows downwards, as in glTF; the second set rotates the texture by a quarter turn to the
 /// right.
-struct Square {
+pub(crate) struct Square {
     /// The handedness: w of its tangents.
     hand: f32,
     /// Additional properties of its node, beginning with a comma.
@@ -39,11 +39,11 @@ struct Square {
 }
 
 impl Square {
-    fn of(material: &str, more: &str) -> Square {
+    pub(crate) fn of(material: &str, more: &str) -> Square {
         Square { hand: 1.0, node: "", material: material.to_owned(), more: more.to_owned() }
     }
 
-    fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let mut parts = Parts::default();
         parts.floats("VEC3", 3, &[-1., -1., 0., 1., -1., 0., 1., 1., 0., -1., 1., 0.]);
         parts.floats("VEC3", 3, &[0., 0., 1.].repeat(4));

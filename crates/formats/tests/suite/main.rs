@@ -16,6 +16,7 @@ mod gltf_motion;
 mod gltf_nodes;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
 mod gltf_packed;
+mod gltf_scattering;
 mod gltf_validated;
 mod gltf_written;
 mod grids;

@@ -533,6 +533,34 @@ fn glass_disperses_by_its_name_or_its_spectrum() {
     }
 }
 
+/// Below a surface light is scattered by coefficients, measured or given, or so that it has a colour.
+#[test]
+fn subsurface_is_a_medium_below_a_surface() {
+    let spec = |parameters: &str| material(&format!("Material \"subsurface\" {parameters}"));
+    let near = |found: Rgb, wanted: [f32; 3]| {
+        assert!(
+            (0..3).all(|c| (found[c] - wanted[c]).abs() < 1e-4 * wanted[c].max(1e-3)),
+            "{found:?}, not {wanted:?}"
+        );
+    };
+    let marble =
+        spec("\"string name\" \"Marble\" \"float scale\" 10 \"float eta\" 1.5 \"float roughness\" 0.09");
+    assert_eq!(marble.kind, "dielectric");
+    near(colour(&marble, "scattering"), [21.9, 26.2, 30.0]);
+    near(colour(&marble, "absorption"), [0.021, 0.041, 0.071]);
+    assert!(number(&marble, "roughness") > 0.0);
+    let given = spec("\"rgb sigma_s\" [1 2 3] \"rgb sigma_a\" [0.1 0.2 0.3] \"float g\" 0.7");
+    near(colour(&given, "scattering"), [1.0, 2.0, 3.0]);
+    assert!((number(&given, "scattering_anisotropy") - 0.7).abs() < 1e-6);
+    assert!((number(&given, "eta") - 1.33).abs() < 1e-6);
+    let skin = spec("\"rgb reflectance\" [0.8 0.5 0.4] \"rgb mfp\" [0.01 0.005 0.002]");
+    assert_eq!(skin.kind, "principled");
+    near(colour(&skin, "subsurface_color"), [0.8, 0.5, 0.4]);
+    near(colour(&skin, "subsurface_radius_scale"), [1.0, 0.5, 0.2]);
+    assert!((number(&skin, "subsurface_radius") - 0.01).abs() < 1e-6);
+    assert_eq!(number(&skin, "subsurface_weight"), 1.0);
+}
+
 #[test]
 fn unsupported_features_give_warnings() {
     for (text, wanted) in [
@@ -541,7 +569,10 @@ fn unsupported_features_give_warnings() {
             "scene.pbrt:2:14: 'raduis' of the shape 'disk' is not used; did you mean 'radius'?",
         ),
         ("Material \"hair\" Shape \"sphere\"", "hair is shown as opaque glossy fibres"),
-        ("Material \"subsurface\" Shape \"sphere\"", "not supported: the surface is diffuse"),
+        (
+            "Material \"subsurface\" \"string name\" \"Wood\" Shape \"sphere\"",
+            "the measured medium 'Wood' is not known",
+        ),
         (
             "Material \"coateddiffuse\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"",
             "refracted with the index at 587.6 nm",

@@ -58,6 +58,7 @@ pub const GENERATORS: &[GeneratorEntry] = &[
     gallery::fog::ENTRY,
     gallery::cloud::ENTRY,
     gallery::campfire::ENTRY,
+    gallery::jade::ENTRY,
 ];
 
 /// Makes the scene that a spec describes.

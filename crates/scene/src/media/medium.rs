@@ -38,6 +38,8 @@ pub struct FreePath {
     pub transmittance: Rgb,
     /// The probability that a walk comes this far without an event.
     pub survival: f32,
+    /// The same for a walk in each channel.
+    pub survivals: Rgb,
     /// The density of an event per metre, where a walk came this far: at the beginning of the line, by a walk from its end, and at its
     /// end.
     pub hazards: [f32; 2],
@@ -45,7 +47,8 @@ pub struct FreePath {
 
 impl FreePath {
     /// Through nothing.
-    pub const CLEAR: FreePath = FreePath { transmittance: Rgb::WHITE, survival: 1.0, hazards: [0.0; 2] };
+    pub const CLEAR: FreePath =
+        FreePath { transmittance: Rgb::WHITE, survival: 1.0, survivals: Rgb::WHITE, hazards: [0.0; 2] };
 }
 
 impl Medium<'_> {
@@ -90,6 +93,12 @@ impl Medium<'_> {
         !self.sigma_s.is_black()
     }
 
+    /// True when it scatters, and walks in different channels have different distances.
+    pub fn has_coloured_distances(&self) -> bool {
+        let sigma_t = self.sigma_t();
+        self.scatters() && (sigma_t.r != sigma_t.g || sigma_t.g != sigma_t.b)
+    }
+
     /// True when a walk through it has events, or only sampling tells what it absorbs or emits.
     #[inline]
     pub fn is_walked(&self) -> bool {
@@ -116,37 +125,36 @@ impl Medium<'_> {
         })
     }
 
-    /// The distance to the next event, where it is the same everywhere, in metres, where a channel is
-    /// chosen by `u_channel`; infinite where nothing happens in that channel.
+    /// The distance to the next event of a walk in a channel, where it is the same everywhere, in metres; infinite where nothing
+    /// happens there.
     #[inline]
-    pub fn sample_distance(&self, u_channel: f32, u: f32) -> f32 {
-        let channel = ((u_channel * 3.0) as usize).min(2);
+    pub fn sample_distance(&self, channel: usize, u: f32) -> f32 {
         // Of a channel without extinction this is infinite; 0 over 0 cannot be.
         thickness(u) / self.sigma_t()[channel]
     }
 
-    /// What a walk meets over a distance, where it is the same everywhere: densities are means over the channels that [`Medium::sample_distance`] chooses from.
+    /// What a walk in a channel meets over a distance, where it is the same everywhere.
     ///
     /// Where nothing is scattered there are no events: a walk passes for certain, and carries less.
     #[inline]
-    pub fn free_path(&self, distance: f32) -> FreePath {
+    pub fn free_path(&self, distance: f32, channel: usize) -> FreePath {
         let sigma_t = self.sigma_t();
         let transmittance = beer(sigma_t, distance);
         if !self.scatters() {
             return FreePath { transmittance, ..FreePath::CLEAR };
         }
-        let survival = mean(transmittance);
-        let density = mean(sigma_t * transmittance);
-        // Beyond the range of numbers the clearest channel is all that is left.
-        let clearest = sigma_t.r.min(sigma_t.g).min(sigma_t.b);
-        let hazard = if survival > 0.0 { density / survival } else { clearest };
-        FreePath { transmittance, survival, hazards: [hazard; 2] }
+        FreePath {
+            transmittance,
+            survival: transmittance[channel],
+            survivals: transmittance,
+            hazards: [sigma_t[channel]; 2],
+        }
     }
 }
 
-/// The mean over the channels, of which a walk chooses one.
+/// The mean over the channels.
 #[inline]
-pub(super) fn mean(colour: Rgb) -> f32 {
+pub fn mean(colour: Rgb) -> f32 {
     (colour.r + colour.g + colour.b) * (1.0 / 3.0)
 }
 

@@ -1,7 +1,7 @@
 //! Media: what fills the inside of an object, and absorbs and scatters light there: the same everywhere, or as dense as a
 //! [`Grid`] says. How they scatter, the phase function, is one of [`PHASES`].
 //!
-//! Coefficients are per metre and per channel. Where a channel is chosen, all channels are as likely, wherever a path comes from: so a
+//! Coefficients are per metre and per channel. All distances of a path are those of one channel, which its sample has chosen: so a
 //! density does not depend on the path so far, and is the same for the same line from both ends.
 
 mod glow;
@@ -14,10 +14,10 @@ pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX
 pub(crate) use glow::{EMISSION, EMISSION_GRID, TEMPERATURE, TEMPERATURE_SCALE};
 pub use glow::{Glow, GlowLine};
 pub(crate) use medium::{DENSITY, SCATTERING};
-pub use medium::{FreePath, Medium, MediumLine, beer};
+pub use medium::{FreePath, Medium, MediumLine, beer, mean};
 pub use phases::{
     Draine, Droplets, HenyeyGreenstein, PHASES, Phase, PhaseEntry, PhaseSample, Rayleigh, read_phase,
 };
-pub use tracking::{Draws, Flight, MediumEvent};
+pub use tracking::{Draws, Flight, MediumEvent, WalkChannel};
 
 pub(crate) use phases::{ANISOTROPY as PHASE_ANISOTROPY, DIAMETER, DRAINE_ALPHA, KIND as PHASE};

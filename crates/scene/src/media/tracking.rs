@@ -7,7 +7,7 @@
 //! the same density from both ends of a line, and by a connection along it. So all that weights need is the product of the
 //! probabilities that the collisions met were null: R, which is also the estimate of the transmittance. [Miller 2019]
 
-use super::medium::{FreePath, Medium, MediumLine, mean, thickness};
+use super::medium::{FreePath, Medium, MediumLine, beer, mean, thickness};
 use crate::grid::{Grid, GridLine};
 use bilux_math::Rgb;
 use bilux_math::hash::{mix64, unit_f32};
@@ -23,6 +23,15 @@ pub struct Flight {
     pub emitted: Rgb,
 }
 
+/// The channel whose distances a walk has.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkChannel {
+    /// Its index.
+    pub index: usize,
+    /// How likely walks in each channel have come this far, over the mean.
+    pub odds: Rgb,
+}
+
 /// An event of a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumEvent {
@@ -30,6 +39,8 @@ pub struct MediumEvent {
     pub distance: f32,
     /// The scattering coefficient there, per metre.
     pub sigma_s: Rgb,
+    /// The extinction coefficient there, likewise.
+    pub sigma_t: Rgb,
 }
 
 /// Where less than this passes, an estimate goes on with a probability of 1 over `ONE_OF`.
@@ -58,27 +69,49 @@ impl Draws {
 impl Medium<'_> {
     /// Follows a walk along a line of this length in metres; `line` is the same in the voxels of its grids, if it has any.
     #[inline]
-    pub fn walk(&self, line: Option<&MediumLine>, length: f32, mut draw: impl FnMut() -> f32) -> Flight {
+    pub fn walk(
+        &self,
+        line: Option<&MediumLine>,
+        length: f32,
+        channel: WalkChannel,
+        mut draw: impl FnMut() -> f32,
+    ) -> Flight {
         if let (Some(grid), Some(line)) = (self.density, line) {
-            return self.walk_in_grid(grid, line, length, draw);
+            return self.walk_in_grid(grid, line, (length, channel), draw);
         }
+        let WalkChannel { index, odds } = channel;
         let event = if self.scatters() {
-            let distance = self.sample_distance(draw(), draw());
-            (distance < length).then_some(MediumEvent { distance, sigma_s: self.sigma_s })
+            let distance = self.sample_distance(index, draw());
+            (distance < length).then_some(MediumEvent {
+                distance,
+                sigma_s: self.sigma_s,
+                sigma_t: self.sigma_t(),
+            })
         } else {
             None
         };
-        let path = self.free_path(event.map_or(length, |event| event.distance));
-        let emitted = if self.glow.is_some() { self.emitted(line, length, draw) } else { Rgb::BLACK };
+        let path = self.free_path(event.map_or(length, |event| event.distance), index);
+        let emitted = match self.glow {
+            Some(_) => self.emitted(line, length, draw) / mean(odds),
+            None => Rgb::BLACK,
+        };
         Flight { path, event, emitted }
     }
 
     /// What lies along a line of this length in metres, for light that passes; in a grid an estimate of it.
     #[inline]
-    pub fn passed(&self, line: Option<&MediumLine>, length: f32, draw: impl FnMut() -> f32) -> FreePath {
+    pub fn passed(
+        &self,
+        line: Option<&MediumLine>,
+        length: f32,
+        channel: usize,
+        draw: impl FnMut() -> f32,
+    ) -> FreePath {
         match (self.density, line) {
-            (Some(grid), Some(line)) => self.passed_in_grid(grid, line, length, draw, |_, _, _| {}),
-            _ => self.free_path(length),
+            (Some(grid), Some(line)) => {
+                self.passed_in_grid(grid, line, (length, channel), draw, |_, _, _| {})
+            }
+            _ => self.free_path(length, channel),
         }
     }
 
@@ -89,7 +122,7 @@ impl Medium<'_> {
         let Some(glow) = self.glow else { return Rgb::BLACK };
         let line = line.and_then(|line| line.glow.as_ref());
         let Some((grid, along)) = glow.grid().zip(line.and_then(|line| line.through_grid())) else {
-            let absorbed = Rgb::WHITE - self.free_path(length).transmittance;
+            let absorbed = Rgb::WHITE - beer(self.sigma_t(), length);
             let share = |sigma_a: f32, sigma_t: f32, absorbed: f32| {
                 if sigma_t > 0.0 { sigma_a / sigma_t * absorbed } else { 0.0 }
             };
@@ -101,57 +134,59 @@ impl Medium<'_> {
         grid.for_each_block(along, length, |begin, end, majorant| {
             if majorant > 0.0 {
                 let t = begin + (end - begin) * draw();
-                sum += glow.at(line, t) * self.sigma_a * self.free_path(t).transmittance * (end - begin);
+                sum += glow.at(line, t) * self.sigma_a * beer(self.sigma_t(), t) * (end - begin);
             }
             true
         });
         sum
     }
 
-    /// Delta tracking. A channel is chosen, and whether a collision is real is decided by its extinction; the majorant is the
-    /// same for all channels, so that all of them meet the same collisions.
+    /// Delta tracking. Whether a collision is real is decided by the extinction in the walk's channel; the majorant is the same for
+    /// all channels, so that all of them meet the same collisions.
     fn walk_in_grid(
         &self,
         grid: &Grid,
         line: &MediumLine,
-        length: f32,
+        (length, channel): (f32, WalkChannel),
         mut draw: impl FnMut() -> f32,
     ) -> Flight {
+        let WalkChannel { index, odds } = channel;
         let Some(along) = &line.density else {
             return Flight { path: FreePath::CLEAR, event: None, emitted: Rgb::BLACK };
         };
         let mut emitted = Rgb::BLACK;
         if !self.scatters() {
-            let path = self.passed_in_grid(grid, line, length, draw, |t, fraction, passed| {
-                emitted += self.emitted_at(line, t) * fraction * passed;
+            let path = self.passed_in_grid(grid, line, (length, index), draw, |t, fraction, passed| {
+                emitted += self.emitted_at(line, t) * fraction * (passed / mean(odds));
             });
             return Flight { path, event: None, emitted };
         }
-        let channel = ((draw() * 3.0) as usize).min(2);
         let sigma_t = self.sigma_t();
         let (mut passed, mut event) = (Rgb::WHITE, None);
         self.collide(grid, along, length, &mut draw, |draw, t, fraction| {
             if self.glow.is_some() {
-                emitted += self.emitted_at(line, t) * fraction * (passed / mean(passed));
+                emitted += self.emitted_at(line, t) * fraction * (passed / mean(odds * passed));
             }
-            if draw() < fraction[channel] {
+            if draw() < fraction[index] {
                 event = Some(t);
                 return false;
             }
             passed *= Rgb::WHITE - fraction;
             true
         });
-        let survival = mean(passed);
-        let hazard_at = |t: f32| mean(passed * sigma_t) * grid.at(along, t) / survival;
+        let hazard_at = |t: f32| sigma_t[index] * grid.at(along, t);
         let path = |end: f32| FreePath {
             transmittance: passed,
-            survival,
+            survival: passed[index],
+            survivals: passed,
             hazards: [hazard_at(0.0), hazard_at(end)],
         };
         match event {
             Some(distance) => {
-                let sigma_s = self.sigma_s * grid.at(along, distance);
-                Flight { path: path(distance), event: Some(MediumEvent { distance, sigma_s }), emitted }
+                let density = grid.at(along, distance);
+                let event =
+                    MediumEvent { distance, sigma_s: self.sigma_s * density, sigma_t: sigma_t * density };
+                Flight { path: path(distance), event: Some(event), emitted }
             }
             None => Flight { path: path(length), event: None, emitted },
         }
@@ -173,7 +208,7 @@ impl Medium<'_> {
         &self,
         grid: &Grid,
         line: &MediumLine,
-        length: f32,
+        (length, channel): (f32, usize),
         mut draw: impl FnMut() -> f32,
         mut at_collision: impl FnMut(f32, Rgb, Rgb),
     ) -> FreePath {
@@ -191,10 +226,10 @@ impl Medium<'_> {
         if !self.scatters() {
             return FreePath { transmittance, ..FreePath::CLEAR };
         }
-        let survival = mean(passed);
-        let density = mean(passed * self.sigma_t());
-        let hazard_at = |t: f32| if survival > 0.0 { density * grid.at(along, t) / survival } else { 0.0 };
-        FreePath { transmittance, survival, hazards: [hazard_at(0.0), hazard_at(length)] }
+        let sigma_t = self.sigma_t()[channel];
+        let hazard_at = |t: f32| sigma_t * grid.at(along, t);
+        let hazards = [hazard_at(0.0), hazard_at(length)];
+        FreePath { transmittance, survival: passed[channel], survivals: passed, hazards }
     }
 
     /// Visits collisions along a line, as often as the majorant says: their distance, and the probability, for each channel,
@@ -265,6 +300,11 @@ mod tests {
         medium.line(|| Transform::IDENTITY, FROM, Vec3::Z).unwrap()
     }
 
+    /// Each channel in turn, at the beginning of a walk.
+    fn in_turn(i: usize) -> WalkChannel {
+        WalkChannel { index: i % 3, odds: Rgb::WHITE }
+    }
+
     /// The integral of the density along the line, by the midpoint rule.
     fn integral(grid: &Grid, length: f64) -> f64 {
         const STEPS: u32 = 20_000;
@@ -281,11 +321,12 @@ mod tests {
         let along = medium_line(&medium);
         let (mut ratio, mut walked) = ([[0.0f64; 2]; 3], [[0.0f64; 2]; 3]);
         let mut draws = Draws::new(7);
-        for _ in 0..WALKS {
-            let passed = medium.passed(Some(&along), length, || draws.next_1d());
-            let flight = medium.walk(Some(&along), length, || draws.next_1d());
+        for i in 0..WALKS {
+            let channel = in_turn(i as usize);
+            let passed = medium.passed(Some(&along), length, channel.index, || draws.next_1d());
+            let flight = medium.walk(Some(&along), length, channel, || draws.next_1d());
             for channel in 0..3 {
-                let weight = flight.path.transmittance[channel] / flight.path.survival;
+                let weight = flight.path.transmittance[channel] / mean(flight.path.survivals);
                 let walked_here = if flight.event.is_none() { weight } else { 0.0 };
                 for (sums, value) in [(&mut ratio, passed.transmittance[channel]), (&mut walked, walked_here)]
                 {
@@ -330,8 +371,8 @@ mod tests {
         let medium = Medium { sigma_s: Rgb::grey(0.2), density: Some(&grid), ..Medium::VACUUM };
         let (mut draws, along) = (Draws::new(3), medium_line(&medium));
         let (mut events, mut sum) = (0, 0.0);
-        for _ in 0..2000 {
-            let flight = medium.walk(Some(&along), 15.0, || draws.next_1d());
+        for i in 0..2000 {
+            let flight = medium.walk(Some(&along), 15.0, in_turn(i), || draws.next_1d());
             let end = flight.event.map_or(15.0, |event| event.distance);
             let [back, on] = flight.path.hazards;
             assert!((back - 0.2 * grid.at(&line(&grid), 0.0)).abs() < 1e-6);
@@ -372,8 +413,9 @@ mod tests {
             let along = medium.line(|| Transform::IDENTITY, FROM, Vec3::Z);
             let mut draws = Draws::new(11);
             let (mut sums, mut squares) = ([0.0f64; 3], [0.0f64; 3]);
-            for _ in 0..WALKS {
-                let emitted = medium.walk(along.as_ref(), 15.0, || draws.next_1d()).emitted;
+            for i in 0..WALKS {
+                let channel = in_turn(i as usize);
+                let emitted = medium.walk(along.as_ref(), 15.0, channel, || draws.next_1d()).emitted;
                 for c in 0..3 {
                     sums[c] += f64::from(emitted[c]);
                     squares[c] += f64::from(emitted[c] * emitted[c]);

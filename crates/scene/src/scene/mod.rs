@@ -245,6 +245,12 @@ impl Scene {
             .any(|material| material.medium().is_some_and(|medium| medium.glow.is_some()))
     }
 
+    /// True when some medium scatters light, and distances in it are not the same in all channels.
+    #[inline]
+    pub fn has_coloured_distances(&self) -> bool {
+        self.parts.has_coloured_distances
+    }
+
     /// True when some medium scatters light, or varies: walks have to ask what they meet in it.
     #[inline]
     pub fn scatters(&self) -> bool {

@@ -55,6 +55,7 @@ pub(crate) struct SceneParts {
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
     pub(super) scatters: bool,
+    pub(super) has_coloured_distances: bool,
     /// For each object of triangles.
     pub(super) shading: Vec<ObjectShading>,
 }
@@ -116,6 +117,7 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
+        let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
         SceneParts {
             geometry,
@@ -135,6 +137,7 @@ impl SceneParts {
             disperses,
             absorbs,
             scatters,
+            has_coloured_distances,
             shading,
         }
     }

@@ -10,7 +10,8 @@ use crate::segment::Segment;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
 use crate::through::Through;
-use bilux_math::{Vec2, Vec3, warp};
+use bilux_math::{Rgb, Vec2, Vec3, warp};
+use bilux_scene::media::mean;
 use bilux_scene::{Ray, Tracer, TransportMode};
 
 /// A connection, before it is known what lies between its ends.
@@ -31,6 +32,8 @@ pub(crate) struct Join<const N: usize = 1> {
     picked: Option<f32>,
     /// Whether each end is a point of a medium.
     in_medium: [bool; 2],
+    /// The odds of both subpaths together.
+    odds: Rgb,
 }
 
 impl<const N: usize> Connection<N> {
@@ -51,7 +54,7 @@ impl<const N: usize> Join<N> {
         let back = back * passage.returning(leaves_medium);
         let picked = self.picked.map(|picked| picked * on_by);
         Contribution {
-            light: self.found.light * passage.transmittance,
+            light: self.found.light * passage.share(self.odds),
             others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back,
             power_factor: picked.map_or(1.0, power_factor),
             ..self.found
@@ -88,6 +91,7 @@ pub(crate) fn to_camera<const N: usize>(
         others: [PerSet::ZERO, others],
         picked: None,
         in_medium: [y.at.is_in_medium(), false],
+        odds: y.odds,
     };
     let distance = Some(seen.p.distance(y.at.p()));
     let segment =
@@ -135,6 +139,7 @@ pub(crate) fn to_light<const N: usize>(
         others: [PerSet::ZERO, from_light],
         picked: Some(ratio),
         in_medium: [z.at.is_in_medium(), false],
+        odds: z.odds,
     };
     let ray = z.at.spawn_to_light(&sample);
     let through = Through { media, distance, seed: task.sample.seed() };
@@ -179,6 +184,7 @@ pub(crate) fn to_vertex<const N: usize>(
         others: [from_camera, from_light],
         picked: None,
         in_medium,
+        odds: z.odds * y.odds,
     };
     let through = Through { media, distance: Some(distance2.sqrt()), seed: task.sample.seed() };
     let segment = Segment { ray: spawn_between(&z.at, &y.at), n, through };
@@ -194,8 +200,11 @@ pub(crate) fn merged<const N: usize>(
 ) {
     let Interaction::Surface(surface, bsdf) = &z.at else { return };
     let facing = bsdf.facing(z.wo, TransportMode::Radiance);
-    photons.around(surface.p, |position, y| {
+    photons.around(surface.p, |position, y, walk| {
         // Merge only on the same surface, not with the other side of a sheet or around a corner.
+        if walk.is_some_and(|walk| walk.channel != task.sample.channel) {
+            return;
+        }
         let on_surfaces = z.events().on_surfaces + position.on_surfaces();
         if on_surfaces > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
@@ -208,6 +217,7 @@ pub(crate) fn merged<const N: usize>(
         let others = y.connected + y.d_vc * pdf + z.partial.before(back);
         let light =
             task.sample.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || position.is_split());
+        let light = walk.map_or(light, |walk| light / mean(z.odds * walk.odds));
         let technique = Technique::Merged { s: count(position.depth()), t: z.count() };
         let own = photons.techniques().eta;
         visit(technique, &Contribution { own, others, origin: position.origin, ..Contribution::only(light) });

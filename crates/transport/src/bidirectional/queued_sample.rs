@@ -7,7 +7,7 @@ use bilux_scene::Ray;
 pub(crate) struct QueuedSample {
     /// From the camera.
     pub(crate) ray: Ray,
-    pub(super) state: SampleState,
+    pub(crate) state: SampleState,
     /// Its camera subpath is traced.
     pub(crate) is_wanted: bool,
 }

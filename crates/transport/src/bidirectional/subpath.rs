@@ -20,6 +20,8 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) wo: Vec3,
     /// Throughput: what arrives, over the density of having come here.
     pub(crate) beta: Rgb,
+    /// The densities of walks in each channel over their mean.
+    pub(crate) odds: Rgb,
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
@@ -206,7 +208,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.partial.in_row(events.in_row);
         self.by_area = false;
         self.leaves_medium = at.is_in_medium();
-        let Subpath { walk: Walk { beta, depth, is_split, .. }, partial, origin, .. } = *self;
+        let Subpath { walk: Walk { beta, odds, depth, is_split, .. }, partial, origin, .. } = *self;
         let share = match self.mode {
             TransportMode::Importance => kept_share(events.in_row),
             TransportMode::Radiance => 1.0,
@@ -218,6 +220,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             at,
             wo,
             beta,
+            odds,
             partial,
             depth,
             events,

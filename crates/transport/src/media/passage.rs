@@ -3,7 +3,7 @@
 use crate::interaction::MediumPoint;
 use bilux_math::Rgb;
 use bilux_scene::Surface;
-use bilux_scene::media::FreePath;
+use bilux_scene::media::{FreePath, mean};
 
 /// A line through media on which nothing blocks light.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,8 @@ pub(crate) struct Passage {
     pub(crate) transmittance: Rgb,
     /// The probability that a walk along it, in either direction, has no event on the way.
     pub(crate) survival: f32,
+    /// The same for a walk in each channel.
+    pub(crate) survivals: Rgb,
     /// The densities of an event at its start, by a walk from its end, and at its end, by a walk from its start; per metre,
     /// where the walk comes so far.
     pub(crate) hazards: [f32; 2],
@@ -35,6 +37,8 @@ pub(crate) struct Travelled {
     pub(crate) arrival: Arrival,
     /// The fraction of light that comes so far and is scattered there, over the density with which the path does.
     pub(crate) weight: Rgb,
+    /// The densities of walks in each channel, over that of this one.
+    pub(crate) odds: Rgb,
     pub(crate) passage: Passage,
     /// The light that media on the way emit.
     pub(crate) emitted: Rgb,
@@ -42,8 +46,13 @@ pub(crate) struct Travelled {
 
 impl Passage {
     /// Through nothing.
-    pub(crate) const CLEAR: Passage =
-        Passage { transmittance: Rgb::WHITE, survival: 1.0, hazards: [0.0; 2], is_first: true };
+    pub(crate) const CLEAR: Passage = Passage {
+        transmittance: Rgb::WHITE,
+        survival: 1.0,
+        survivals: Rgb::WHITE,
+        hazards: [0.0; 2],
+        is_first: true,
+    };
 
     /// The same line, continued by this.
     #[inline]
@@ -51,8 +60,21 @@ impl Passage {
         Passage {
             transmittance: self.transmittance * next.transmittance,
             survival: self.survival * next.survival,
+            survivals: self.survivals * next.survivals,
             hazards: [if self.is_first { next.hazards[0] } else { self.hazards[0] }, next.hazards[1]],
             is_first: false,
+        }
+    }
+
+    /// The fraction of light that passes, as part of a path whose walks have these odds in each channel: over the mean density of
+    /// all channels rather than that of its own.
+    #[inline]
+    pub(crate) fn share(&self, odds: Rgb) -> Rgb {
+        // Where numbers run out nothing passes.
+        if self.survival > 0.0 {
+            self.transmittance * (self.survival / mean(odds * self.survivals))
+        } else {
+            Rgb::BLACK
         }
     }
 
@@ -75,6 +97,7 @@ impl Travelled {
     pub(super) const NOWHERE: Travelled = Travelled {
         arrival: Arrival::Escape,
         weight: Rgb::WHITE,
+        odds: Rgb::WHITE,
         passage: Passage::CLEAR,
         emitted: Rgb::BLACK,
     };
@@ -89,18 +112,35 @@ impl Travelled {
     #[inline]
     pub(super) fn passed(self, part: FreePath) -> Travelled {
         // Where numbers run out the path carries nothing.
-        let weight = if part.survival > 0.0 { part.transmittance / part.survival } else { Rgb::BLACK };
-        Travelled { weight: self.weight * weight, passage: self.passage.then(part), ..self }
+        let (weight, odds) = match part.survival > 0.0 {
+            true => (part.transmittance / part.survival, part.survivals / part.survival),
+            false => (Rgb::BLACK, Rgb::WHITE),
+        };
+        Travelled {
+            weight: self.weight * weight,
+            odds: self.odds * odds,
+            passage: self.passage.then(part),
+            ..self
+        }
     }
 
-    /// To an event of a medium at the end of this, where its scattering coefficient is `sigma_s`.
+    /// To an event of a medium at the end of this, where its scattering coefficient and its extinction are these.
     #[inline]
-    pub(super) fn scattered(self, part: FreePath, sigma_s: Rgb, point: MediumPoint) -> Travelled {
+    pub(super) fn scattered(
+        self,
+        part: FreePath,
+        [sigma_s, sigma_t]: [Rgb; 2],
+        point: MediumPoint,
+    ) -> Travelled {
         let density = part.survival * part.hazards[1];
-        let weight = if density > 0.0 { part.transmittance * sigma_s / density } else { Rgb::BLACK };
+        let (weight, odds) = match density > 0.0 {
+            true => (part.transmittance * sigma_s / density, part.survivals * sigma_t / density),
+            false => (Rgb::BLACK, Rgb::WHITE),
+        };
         Travelled {
             arrival: Arrival::Medium(point),
             weight: self.weight * weight,
+            odds: self.odds * odds,
             passage: self.passage.then(part),
             ..self
         }

@@ -13,6 +13,8 @@ pub(super) struct LightConnection {
     /// The densities over solid angle of sampling the light, and of scattering towards it where the path could also find it so.
     pub(super) light_pdf: f32,
     pub(super) pdf: Option<f32>,
+    /// The odds of the path so far: [`crate::walk::Walk::odds`].
+    pub(super) odds: Rgb,
 }
 
 impl LightConnection {
@@ -21,7 +23,7 @@ impl LightConnection {
     pub(super) fn trace(&self, tracer: &mut Tracer) -> Rgb {
         let Some(passage) = self.segment.passage(tracer) else { return Rgb::BLACK };
         let weight = self.pdf.map_or(1.0, |pdf| power_heuristic(self.light_pdf, pdf * passage.survival));
-        self.light * (weight / self.light_pdf) * passage.transmittance
+        self.light * (weight / self.light_pdf) * passage.share(self.odds)
     }
 
     /// Records the connection, if it brings light to the sample.

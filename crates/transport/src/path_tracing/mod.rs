@@ -29,6 +29,8 @@ struct Vertex<'a> {
     wo: Vec3,
     /// The media on the side of `wo`.
     media: &'a Media,
+    /// [`Walk::odds`].
+    odds: Rgb,
 }
 
 /// How light is sampled where both techniques could find it.
@@ -109,7 +111,7 @@ impl PathTracing {
     fn interact(&self, path: &mut Path, arrival: &Arrival, task: &mut Task) -> bool {
         let wo = path.walk.wo();
         let Some(at) = self.arrive(path, arrival, task) else { return false };
-        let from = Vertex { at: &at, wo, media: &path.walk.media };
+        let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds };
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
         self.scatter(path, &at, task)
@@ -282,7 +284,7 @@ impl PathTracing {
 
     /// Samples one light; `None` if it brings nothing.
     fn connection(&self, task: &mut Task, index: usize, from: &Vertex) -> Option<LightConnection> {
-        let Vertex { at, wo, media } = *from;
+        let Vertex { at, wo, media, odds } = *from;
         let probability = task.context.lights.probability(index);
         let light = &task.context.scene.lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
@@ -304,7 +306,7 @@ impl PathTracing {
             seed: task.sample.seed(),
         };
         let segment = Segment { ray: at.spawn_to_light(&sample), n: sample.n_light, through };
-        Some(LightConnection { segment, light: scattered_light, light_pdf, pdf })
+        Some(LightConnection { segment, light: scattered_light, light_pdf, pdf, odds })
     }
 
     /// MIS weight of light that BSDF sampling has found and light sampling could have found.

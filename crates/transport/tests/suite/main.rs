@@ -22,6 +22,7 @@ mod queue;
 mod random_numbers;
 mod scattering;
 mod sides;
+mod skin;
 mod stop;
 mod strategies;
 mod strokes;

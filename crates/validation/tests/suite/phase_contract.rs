@@ -138,17 +138,18 @@ fn mistakes_in_phase_functions_are_noticed() {
 }
 
 /// The part of walks that come beyond each of some distances, by sampling, against what the medium says of itself.
-fn survives(medium: &Medium, sigma_t: Rgb) -> Result<(), String> {
+fn survives(medium: &Medium, sigma_t: Rgb, channel: usize) -> Result<(), String> {
     const WALKS: u64 = 200_000;
     let distances: Vec<f32> = (0..WALKS)
         .map(|i| {
-            let (channel, u) = uniforms(3, i);
+            let (_, u) = uniforms(3, i);
             medium.sample_distance(channel, u.x)
         })
         .collect();
     for limit in [0.05, 0.3, 1.0, 3.0, 20.0] {
         let beyond = distances.iter().filter(|distance| **distance > limit).count() as f64 / WALKS as f64;
-        let FreePath { survival, hazards: [_, hazard], transmittance } = medium.free_path(limit);
+        let FreePath { survival, hazards: [_, hazard], transmittance, survivals } =
+            medium.free_path(limit, channel);
         let wanted = f64::from(survival);
         let error = 5.0 * (wanted * (1.0 - wanted) / WALKS as f64).sqrt() + 1e-6;
         if (beyond - wanted).abs() > error {
@@ -156,8 +157,9 @@ fn survives(medium: &Medium, sigma_t: Rgb) -> Result<(), String> {
         }
         // The density is the derivative of the survival.
         let step = 1e-3 * limit;
-        let slope =
-            f64::from(medium.free_path(limit - step).survival - medium.free_path(limit + step).survival);
+        let survival_at = |distance| medium.free_path(distance, channel).survival;
+        let slope = f64::from(survival_at(limit - step) - survival_at(limit + step));
+        assert_eq!(survivals[channel], survival);
         let density = f64::from(survival * hazard);
         if (slope / f64::from(2.0 * step) - density).abs() > 2e-3 * density + 1e-4 {
             return Err(format!("the density at {limit} is {density}"));
@@ -176,11 +178,13 @@ fn survives(medium: &Medium, sigma_t: Rgb) -> Result<(), String> {
 fn distances_between_events_are_those_of_the_medium() {
     let (sigma_a, sigma_s) = (Rgb::new(0.1, 0.0, 2.0), Rgb::new(0.4, 0.0, 1.0));
     let medium = Medium { sigma_a, sigma_s, ..Medium::VACUUM };
-    assert_eq!(survives(&medium, sigma_a + sigma_s), Ok(()));
+    for channel in 0..3 {
+        assert_eq!(survives(&medium, sigma_a + sigma_s, channel), Ok(()));
+    }
     // Scattering in place of extinction.
     let wrong = Medium { sigma_a: Rgb::BLACK, ..medium };
-    assert!(survives(&wrong, sigma_a + sigma_s).is_err());
+    assert!(survives(&wrong, sigma_a + sigma_s, 2).is_err());
     // What only absorbs has no events.
-    let FreePath { survival, hazards: [_, hazard], .. } = Medium::absorbing(sigma_a).free_path(1.0);
+    let FreePath { survival, hazards: [_, hazard], .. } = Medium::absorbing(sigma_a).free_path(1.0, 0);
     assert_eq!((survival, hazard), (1.0, 0.0));
 }

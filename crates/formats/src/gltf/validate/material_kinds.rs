@@ -140,3 +140,24 @@ pub(super) const VOLUME: Kind = kind(
         may("attenuationColor", COLOUR),
     ],
 );
+
+pub(super) const SCATTER: Kind = kind(
+    "scattering extensions",
+    &[
+        may("scatterStrengthFactor", UNIT),
+        texture("scatterStrengthTexture"),
+        may("multiscatterColorFactor", COLOUR),
+        texture("multiscatterColorTexture"),
+        may("scatterAnisotropy", Number(Range::SIGNED_UNIT)),
+    ],
+);
+
+/// The name of the colour changed while it was a draft.
+pub(super) const VOLUME_SCATTER: Kind = kind(
+    "volume scattering extensions",
+    &[
+        may("multiscatterColor", COLOUR),
+        may("multiscatterColorFactor", COLOUR),
+        may("scatterAnisotropy", Number(Range::SIGNED_UNIT)),
+    ],
+);

@@ -6,7 +6,7 @@ use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
 use super::super::texture_or_value::{SpectrumType, TextureOrValue};
 use super::plain::{CONDUCTOR, INTERFACE, Metal, extinction_of};
-use super::roughness::{Keys, OWN, PRINCIPLED};
+use super::roughness::{Keys, OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
@@ -108,49 +108,61 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     Ok(Some(spec))
 }
 
-/// Subsurface scattering, approximated by a diffuse surface with the colour that it has from a distance.
+/// Light is scattered below a dielectric surface: by coefficients, in `dielectric`, or so that it has a colour, in `principled`.
 pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let what = "subsurface scattering is not supported: the surface is diffuse, with the same colour";
-    pbrt.oddities.note(what, || list.at.clone());
-    let asymmetry = list.finite("g", 0.0)?.clamp(-0.99, 0.99);
-    for name in ["mfp", "scale"] {
-        list.has(name);
-    }
-    let named = list.text("name")?.and_then(measured);
-    let scattering =
-        pbrt.texture_or_value(list, "sigma_s", SpectrumType::Number)?.map(|source| source.mean());
-    let absorption =
-        pbrt.texture_or_value(list, "sigma_a", SpectrumType::Number)?.map(|source| source.mean());
-    let multiple_scattering_colour = |[scattering, absorption]: [Rgb; 2], g: f32| {
-        let channel = |c: usize| {
-            let reduced = scattering[c] * (1.0 - g);
-            multiple_scattering_albedo(reduced / (reduced + absorption[c]).max(f32::MIN_POSITIVE))
-        };
-        TextureOrValue::Colour(Rgb::new(channel(0), channel(1), channel(2)))
-    };
-    let colour = match (
-        named,
-        scattering.zip(absorption),
-        pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?,
-    ) {
-        (Some(known), ..) => multiple_scattering_colour(known, 0.0),
-        (None, Some((scattering, absorption)), _) => {
-            multiple_scattering_colour([scattering, absorption], asymmetry)
-        }
-        (None, None, Some(reflectance)) => reflectance,
-        _ => multiple_scattering_colour([Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)], 0.0),
-    };
+    let anisotropy = list.finite("g", 0.0)?.clamp(-0.99, 0.99);
+    let scale = list.finite("scale", 1.0)?.max(0.0);
     let index = pbrt.index(list, "eta")?.unwrap_or(1.33);
-    let mut spec = Spec::new("", "principled").with("specular_ior", pbrt.clamped_index(index, list).max(1.0));
-    pbrt.set(&mut spec, "base_color", colour, list.at.clone());
-    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PRINCIPLED)?;
+    let index = pbrt.clamped_index(index, list).max(1.0);
+    let named = match list.text("name")? {
+        Some(name) if measured(name).is_none() => {
+            let what = format!("the measured medium '{name}' is not known and is ignored");
+            pbrt.oddities.note(&what, || list.place("name"));
+            None
+        }
+        name => name.and_then(measured),
+    };
+    let scattering = pbrt.even(list, "sigma_s")?;
+    let absorption = pbrt.even(list, "sigma_a")?;
+    let mfp = pbrt.even(list, "mfp")?.unwrap_or(Rgb::WHITE).map(|length| length.max(0.0));
+    let reflectance = pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?;
+    if let (None, None, Some(reflectance)) = (named, scattering.zip(absorption), reflectance) {
+        let longest = mfp.max_channel();
+        let mut spec = Spec::new("", "principled")
+            .with("specular_ior", index)
+            .with("subsurface_weight", 1.0f32)
+            .with("subsurface_radius", longest.min(1e6))
+            .with("subsurface_radius_scale", mfp * (1.0 / longest.max(f32::MIN_POSITIVE)))
+            .with("subsurface_scatter_anisotropy", anisotropy);
+        pbrt.set(&mut spec, "subsurface_color", reflectance, list.place("reflectance"));
+        pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PRINCIPLED)?;
+        return Ok(Some(spec));
+    }
+    // What is measured is scattering as if it were even; milk is the default.
+    let [scattering, absorption] = match (named, scattering.zip(absorption)) {
+        (Some(known), _) => known,
+        (None, Some((scattering, absorption))) => [scattering, absorption],
+        (None, None) => [Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)],
+    };
+    let mut spec = Spec::new("", "dielectric")
+        .with("eta", index)
+        .with("absorption", (absorption * scale).clamp(0.0, 1e6))
+        .with("scattering", (scattering * scale).clamp(0.0, 1e6))
+        .with("scattering_anisotropy", if named.is_some() { 0.0 } else { anisotropy });
+    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
     Ok(Some(spec))
 }
 
-/// The reflectance of a semi-infinite medium with this single-scattering albedo. [Hulst 1980; Kulla 2017]
-fn multiple_scattering_albedo(albedo: f32) -> f32 {
-    let s = (1.0 - albedo.clamp(0.0, 1.0)).sqrt();
-    ((1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)).clamp(0.0, 1.0)
+impl Pbrt<'_, '_> {
+    /// A property of an inside, which is the same everywhere.
+    fn even(&mut self, list: &ParameterList, name: &'static str) -> Result<Option<Rgb>, FormatError> {
+        let source = self.texture_or_value(list, name, SpectrumType::Number)?;
+        if let Some(TextureOrValue::Picture(_)) = &source {
+            let what = "a texture of what is inside is replaced by its mean";
+            self.oddities.note(what, || list.place(name));
+        }
+        Ok(source.map(|source| source.mean()))
+    }
 }
 
 #[cfg(test)]
@@ -162,10 +174,5 @@ mod tests {
         // [Egan 1973]: 0.596 for an index of 1.5.
         assert!((reflected_inside(1.5) - 0.596).abs() < 2e-3, "{}", reflected_inside(1.5));
         assert!(reflected_inside(1.0).abs() < 1e-4);
-    }
-
-    #[test]
-    fn white_and_black_stay_white_and_black_from_afar() {
-        assert_eq!((multiple_scattering_albedo(1.0), multiple_scattering_albedo(0.0)), (1.0, 0.0));
     }
 }

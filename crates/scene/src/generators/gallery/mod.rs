@@ -9,6 +9,7 @@ pub(super) mod daylight;
 pub(super) mod door_ajar;
 pub(super) mod fog;
 pub(super) mod indirect;
+pub(super) mod jade;
 pub(super) mod lampshades;
 pub(super) mod many_lights;
 pub(super) mod pool;

@@ -51,7 +51,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
 };
 
 /// The statue, closed, sunk slightly into y = 0 so that it stands firmly, with smooth normals.
-fn statue(detail: u32) -> Mesh {
+pub(super) fn statue(detail: u32) -> Mesh {
     let dragon = Dragon::new();
     let bounds = dragon.bounds();
     let side = bounds.extent().y / detail as f32;

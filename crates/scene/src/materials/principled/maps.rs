@@ -2,7 +2,8 @@
 
 use super::super::normal_map::{self, NormalMap};
 use super::super::{MaterialInputs, colour_map, number_map};
-use super::point::Point;
+use super::inside::Inside;
+use super::point::{Point, Subsurface};
 use crate::bsdf::{OpaqueBaseInputs, ThinFilm, is_rough};
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -24,6 +25,10 @@ pub(super) struct Maps {
     pub(super) rotation: NumberMap,
     pub(super) transmission_weight: NumberMap,
     pub(super) transmission_color: ColourMap,
+    pub(super) subsurface_weight: NumberMap,
+    pub(super) subsurface_color: ColourMap,
+    /// Mean cosine; of a thin wall, it says how much is transmitted.
+    pub(super) subsurface_anisotropy: f32,
     /// True if transmission_color tints the surface rather than the interior.
     pub(super) tints_surface: bool,
     pub(super) thin: bool,
@@ -69,6 +74,9 @@ impl Maps {
             rotation: number("anisotropy_rotation")?,
             transmission_weight,
             transmission_color: colour("transmission_color")?,
+            subsurface_weight: number("subsurface_weight")?,
+            subsurface_color: colour("subsurface_color")?,
+            subsurface_anisotropy: reader.number("subsurface_scatter_anisotropy"),
             tints_surface: reader.number("transmission_depth") == 0.0 || reader.bool("thin_walled"),
             thin: reader.bool("thin_walled"),
             dispersion: scale / reader.number("transmission_dispersion_abbe_number"),
@@ -94,6 +102,7 @@ impl Maps {
             &self.base_color,
             &self.specular_color,
             &self.transmission_color,
+            &self.subsurface_color,
             &self.coat_color,
             &self.fuzz_color,
             &self.passing_color,
@@ -107,6 +116,7 @@ impl Maps {
             &self.anisotropy,
             &self.rotation,
             &self.transmission_weight,
+            &self.subsurface_weight,
             &self.coat_weight,
             &self.coat_roughness,
             &self.coat_ior,
@@ -137,6 +147,7 @@ impl Maps {
     fn are_bare(&self) -> bool {
         let absent = [
             &self.transmission_weight,
+            &self.subsurface_weight,
             &self.coat_weight,
             &self.fuzz_weight,
             &self.passing,
@@ -165,7 +176,7 @@ impl Maps {
         NumberMap::two_at([&self.base_metalness, &self.specular_roughness], self.is_packed, uv)
     }
 
-    pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {
+    pub(super) fn at(&self, uv: impl Into<Patch>, inside: &Inside) -> Point {
         let uv = uv.into();
         let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
         Point {
@@ -184,6 +195,8 @@ impl Maps {
             } else {
                 Rgb::WHITE
             },
+            subsurface: self.subsurface_at(uv, inside),
+            body_ior: if inside.is_body { inside.ior } else { self.specular_ior.at(uv) },
             thin: self.thin,
             dispersion: self.dispersion,
             coat: self.coat_weight.at(uv),
@@ -201,6 +214,25 @@ impl Maps {
                 thickness: self.film_thickness.at(uv) * 1e3,
                 eta: self.film_ior.at(uv),
             },
+        }
+    }
+}
+
+impl Maps {
+    /// What is scattered below the surface at a point.
+    fn subsurface_at(&self, uv: Patch, inside: &Inside) -> Subsurface {
+        if !is_there(&self.subsurface_weight) {
+            return Subsurface::None;
+        }
+        let weight = self.subsurface_weight.at(uv);
+        let colour = self.subsurface_color.at(uv).clamp(0.0, 1.0);
+        match inside.is_body {
+            true => Subsurface::Body { weight, colour, entering: inside.entering(colour) },
+            // Without a mean free path it is a diffuse surface; a thin wall is one on both sides.
+            false => {
+                let passed = if self.thin { 0.5 * (1.0 + self.subsurface_anisotropy) } else { 0.0 };
+                Subsurface::Sheet { weight, reflected: colour * (1.0 - passed), passed: colour * passed }
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 //! The base scatters diffusely, or is metal; at the surface, microfacets reflect by Fresnel's equations. The diffuse
 //! part loses exactly what they reflect, so that a white surface loses no light. [OpenPBR 1.1; Kulla 2017]
 
+mod inside;
 mod maps;
 mod point;
 
@@ -18,8 +19,9 @@ use crate::error::SceneError;
 use crate::media::Medium;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::transcendental::{atan, ln};
+use bilux_math::transcendental::atan;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
+use inside::Inside;
 use maps::{Maps, is_there};
 use point::Point;
 use std::sync::Arc;
@@ -73,6 +75,17 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 default: "0",
             },
             Parameter {
+                name: "transmission_scatter",
+                summary: "scattering inside, per transmission_depth: milky glass, juice, murky water; ignored without a depth",
+                unit: "",
+                kind: ParameterKind::Colour { min: 0.0, max: 1e3 },
+                default: "0",
+            },
+            anisotropy(
+                "transmission_scatter_anisotropy",
+                "mean cosine of scattering inside: 0 is even, 0.9 nearly straight on, negative back",
+            ),
+            Parameter {
                 name: "transmission_dispersion_scale",
                 summary: "scale of the dispersion that transmission_dispersion_abbe_number gives",
                 unit: "",
@@ -86,6 +99,35 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::Number { min: 1.0, max: 1e4 },
                 default: "20",
             },
+            number(
+                "subsurface_weight",
+                "fraction of the opaque part that lets light in and scatters it below the surface: skin, wax, milk, marble",
+                1.0,
+                "0",
+            ),
+            reflectance(
+                "subsurface_color",
+                "colour that a thick body of it has, seen straight on, between its highlights",
+                "0.8",
+            ),
+            Parameter {
+                name: "subsurface_radius",
+                summary: "how far light travels inside, on average, before it is scattered; 0 is a diffuse surface",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e6 },
+                default: "1",
+            },
+            Parameter {
+                name: "subsurface_radius_scale",
+                summary: "factor on subsurface_radius for red, green and blue",
+                unit: "",
+                kind: ParameterKind::Colour { min: 0.0, max: 1.0 },
+                default: "1 0.5 0.25",
+            },
+            anisotropy(
+                "subsurface_scatter_anisotropy",
+                "mean cosine of scattering below the surface; of thin walls, from -1, all reflected, to 1, all transmitted",
+            ),
             Parameter { name: "thin_walled", ..THIN },
             PRIORITY,
             number("coat_weight", "weight of the clear coat", 1.0, "0"),
@@ -129,35 +171,25 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, inputs| {
         let maps = Maps::read(reader, inputs)?;
+        let inside = Inside::read(reader, &maps)?;
         let is_opaque_base = maps.are_of_opaque_base();
         let even = maps.are_constant().then(|| {
             let inputs = maps.opaque_base_at(Vec2::ZERO, Rgb::WHITE);
             match is_opaque_base {
                 true => opaque_base([Vec3::Z; 2], &inputs),
-                false => Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()),
+                false => Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO, &inside).lobes()),
             }
         });
-        let depth = reader.number("transmission_depth");
-        let is_deep = !maps.tints_surface;
-        if is_deep && maps.transmission_color.texture.is_some() {
-            let message = "with a transmission_depth, transmission_color belongs to the inside, which cannot have a texture: \
-                 use a colour";
-            return Err(SceneError::invalid(message, reader.span("transmission_color")));
-        }
-        if is_there(&maps.transmission_weight) && !maps.thin && reader.text("visible_sides") == "front" {
+        let is_solid = inside.medium.is_some();
+        if is_solid && reader.text("visible_sides") == "front" {
             let message = "a transmissive material is visible from both sides: remove visible_sides";
             return Err(SceneError::invalid(message, reader.span("visible_sides")));
         }
-        let sigma_a = if is_deep && is_there(&maps.transmission_weight) {
-            maps.transmission_color.colour.map(|c| -ln(c.clamp(DARKEST, 1.0)) / depth)
-        } else {
-            Rgb::BLACK
-        };
         Ok(Arc::new(Principled {
             maps,
             even,
             is_opaque_base,
-            sigma_a,
+            inside,
             priority: reader.integer("priority") as u32,
         }))
     },
@@ -169,8 +201,9 @@ fn opaque_base([n_shade, n_geom]: [Vec3; 2], inputs: &OpaqueBaseInputs) -> Bsdf 
     Bsdf::of(n_shade, n_geom, Lobe::OpaqueBase(OpaqueBase::new(inputs)))
 }
 
-/// The minimum transmission colour: a smaller one would need an absorption beyond the range of numbers.
-const DARKEST: f32 = 1e-6;
+const fn anisotropy(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: -1.0, max: 1.0 }, default: "0" }
+}
 
 const fn index(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     let kind = ParameterKind::NumberTexture { min: 1.0, max: 10.0 };
@@ -189,19 +222,14 @@ struct Principled {
     even: Option<Bsdf>,
     /// Nothing is above the opaque base.
     is_opaque_base: bool,
-    sigma_a: Rgb,
+    inside: Inside,
     priority: u32,
 }
 
 impl Principled {
-    /// True when light enters an inside.
-    fn is_solid(&self) -> bool {
-        !self.maps.thin && is_there(&self.maps.transmission_weight)
-    }
-
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
-        let point = self.maps.at(surface.uvs());
+        let point = self.maps.at(surface.uvs(), &self.inside);
         // The rotation is from u towards v, whichever side of u that is on.
         let rotation = point.rotation * surface.handedness;
         Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), rotation, ..point }
@@ -279,7 +307,8 @@ impl Material for Principled {
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let point = self.point(surface);
         let alpha = point.roughness * point.roughness;
-        let (kd, kt) = (point.base_color * point.opaque(), point.passed * point.clear());
+        let opaque = point.base_color * point.opaque() + point.body_color() * point.body();
+        let (kd, kt) = (opaque, point.passed * point.clear());
         let amplitude = (point.ior - 1.0) / (point.ior + 1.0);
         let glass = point.specular_color * (amplitude * amplitude * (1.0 - point.metalness));
         let ks = (point.base_color * point.metalness + glass) * point.specular_weight;
@@ -291,7 +320,7 @@ impl Material for Principled {
             exponent: (2.0 / (alpha * alpha) - 2.0).min(500.0),
             reflectivity: 1.0,
             eta: point.ior,
-            sigma_a: self.sigma_a,
+            sigma_a: if kt.is_black() { Rgb::BLACK } else { self.inside.absorbed },
             thin: point.thin,
             gloss: atan(alpha),
             translucency: atan(alpha),
@@ -304,7 +333,7 @@ impl Material for Principled {
     }
 
     fn max_lobes(&self) -> usize {
-        2 + usize::from(is_there(&self.maps.transmission_weight))
+        2 + usize::from(is_there(&self.maps.transmission_weight) || self.inside.is_body)
             + usize::from(is_there(&self.maps.coat_weight))
             + usize::from(is_there(&self.maps.fuzz_weight))
     }
@@ -314,14 +343,14 @@ impl Material for Principled {
     }
 
     fn nested(&self) -> Option<Nested> {
-        (self.is_solid() && self.priority > 0).then_some(Nested {
+        (self.inside.medium.is_some() && self.priority > 0).then_some(Nested {
             priority: self.priority,
-            eta: self.maps.specular_ior.number,
+            eta: self.inside.ior,
             dispersion: self.maps.dispersion,
         })
     }
 
     fn medium(&self) -> Option<Medium<'_>> {
-        self.is_solid().then_some(Medium::absorbing(self.sigma_a))
+        self.inside.medium
     }
 }

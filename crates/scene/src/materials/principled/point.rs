@@ -20,6 +20,9 @@ pub(super) struct Point {
     pub(super) rotation: f32,
     pub(super) transmission: f32,
     pub(super) passed: Rgb,
+    pub(super) subsurface: Subsurface,
+    /// The index of the boundary that light enters through.
+    pub(super) body_ior: f32,
     pub(super) thin: bool,
     pub(super) dispersion: f32,
     pub(super) coat: f32,
@@ -37,6 +40,24 @@ pub(super) struct Point {
     pub(super) film: ThinFilm,
 }
 
+/// What the opaque part scatters below its surface, at a point.
+#[derive(Clone, Copy)]
+pub(super) enum Subsurface {
+    None,
+    /// A medium scatters it; light that enters or leaves has the factor `entering`.
+    Body {
+        weight: f32,
+        colour: Rgb,
+        entering: Rgb,
+    },
+    /// At once, to both sides.
+    Sheet {
+        weight: f32,
+        reflected: Rgb,
+        passed: Rgb,
+    },
+}
+
 /// Fuzz, coat, boundary, base, clear part.
 type Lobes = [Option<Lobe>; 5];
 
@@ -46,7 +67,8 @@ impl Point {
         let (fuzz, bloom) = self.fuzz_and_cover();
         let (coat, cover) = self.coat_and_cover(bloom);
         let tint = Rgb::WHITE.lerp(self.coat_color, self.coat);
-        let (opaque, clear) = (tint * self.opaque(), tint * self.clear());
+        let (opaque, clear) = (tint * self.opaque(), tint * (self.clear() + self.body()));
+        let into = self.passed * (tint * self.clear()) + self.entering() * (tint * self.body());
         let eta = self.eta();
         let glass = if eta > 1.0 { self.specular_color * opaque } else { Rgb::BLACK };
         let metal = Fresnel::tinted(self.base_color * self.specular_weight, self.specular_color);
@@ -55,8 +77,7 @@ impl Point {
             let gloss = MicrofacetReflection::new(ggx, eta, glass, metal, metal_weight, cover);
             Lobe::MicrofacetReflection(if self.film.weight > 0.0 { gloss.below(self.film) } else { gloss })
         });
-        let (albedo, passing) =
-            (self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing);
+        let [albedo, passing] = self.diffuse(opaque);
         let is_bare = eta <= 1.0 && cover.is_none() && passing.is_black() && self.base_roughness == 0.0;
         let base = (!albedo.is_black() || !passing.is_black()).then(|| {
             if is_bare {
@@ -72,17 +93,50 @@ impl Point {
             })
         });
         let clear = (!clear.is_black()).then(|| {
-            let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
-            let clear =
-                CoatedDielectric::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover);
+            let (reflected, index) = (self.specular_color * clear, (self.body_ior, self.dispersion));
+            let clear = CoatedDielectric::new(index, ggx, self.thin, reflected, into, cover);
             Lobe::CoatedDielectric(if self.film.weight > 0.0 { clear.below(self.film) } else { clear })
         });
         [fuzz, coat, gloss, base, clear]
     }
 
-    /// The fraction of the surface that is neither metal nor clear.
+    /// The fraction of the surface that is neither metal nor clear, and scatters where it is.
     pub(super) fn opaque(&self) -> f32 {
+        self.covered() - self.body()
+    }
+
+    /// The fraction of the surface that is neither metal nor clear.
+    fn covered(&self) -> f32 {
         (1.0 - self.metalness) * (1.0 - self.transmission)
+    }
+
+    /// The fraction of the surface below which a medium scatters light.
+    pub(super) fn body(&self) -> f32 {
+        match self.subsurface {
+            Subsurface::Body { weight, .. } => self.covered() * weight,
+            _ => 0.0,
+        }
+    }
+
+    /// The colour of that medium.
+    pub(super) fn body_color(&self) -> Rgb {
+        if let Subsurface::Body { colour, .. } = self.subsurface { colour } else { Rgb::BLACK }
+    }
+
+    fn entering(&self) -> Rgb {
+        if let Subsurface::Body { entering, .. } = self.subsurface { entering } else { Rgb::BLACK }
+    }
+
+    /// What the opaque part reflects and transmits diffusely.
+    fn diffuse(&self, opaque: Rgb) -> [Rgb; 2] {
+        let base =
+            [self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing];
+        match self.subsurface {
+            Subsurface::Sheet { weight, reflected, passed } => {
+                [base[0].lerp(reflected * opaque, weight), base[1].lerp(passed * opaque, weight)]
+            }
+            _ => base,
+        }
     }
 
     pub(super) fn clear(&self) -> f32 {
@@ -122,12 +176,12 @@ impl Point {
 
     /// How much of the coat and fuzz is visible from below: a viewer inside the clear part sees neither.
     fn outside(&self) -> f32 {
-        if self.thin { 1.0 } else { 1.0 - self.clear() }
+        if self.thin { 1.0 } else { 1.0 - self.clear() - self.body() }
     }
 }
 
 /// The index of a boundary that reflects `weight` times as much at normal incidence. [OpenPBR 1.1, eq. 27]
-fn weakened(eta: f32, weight: f32) -> f32 {
+pub(super) fn weakened(eta: f32, weight: f32) -> f32 {
     let amplitude = weight.sqrt() * (eta - 1.0) / (eta + 1.0);
     (1.0 + amplitude) / (1.0 - amplitude)
 }

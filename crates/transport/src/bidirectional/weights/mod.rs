@@ -43,6 +43,11 @@ struct Verdict {
 }
 
 impl Verdict {
+    /// The extinction coefficient of the fog in the channel of a sample.
+    fn fog_of(&self, task: &Task) -> Option<f32> {
+        self.fog.map(|fog| fog[usize::from(task.sample.channel)])
+    }
+
     fn look(&mut self, task: &Task, found: &Contribution, key: (bool, usize), path: &Path) {
         let all = path.densities(task, &self.techniques, self.flaw);
         let sum: f64 = all.iter().map(|(_, density)| density).sum();

@@ -6,7 +6,7 @@ use crate::limits::MAX_CONNECTED_ROW;
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
 use bilux_math::transcendental::exp_f64;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Vec2, Vec3};
 use bilux_scene::TransportMode;
 
 /// A vertex between the light and the camera, in both directions as the code has evaluated it.
@@ -38,8 +38,8 @@ pub(super) struct Path {
     pub(super) nodes: Vec<PathVertex>,
     /// The density of camera rays at the last vertex, over the area perpendicular to them.
     pub(super) camera_density: f32,
-    /// The extinction coefficient of the fog that fills the scene.
-    pub(super) fog: Option<Rgb>,
+    /// The extinction coefficient, in the sample's channel, of the fog that fills the scene.
+    pub(super) fog: Option<f32>,
 }
 
 /// A factor that is left out of the densities, or a mistake in them.
@@ -223,20 +223,17 @@ impl Path {
         if node.at.is_in_medium() { 1.0 } else { cosine(n, direction, flaw) }
     }
 
-    /// The probability of coming to a surface over this distance through the fog, or the density per metre of an event there:
-    /// means over the channels.
+    /// The probability of coming to a surface over this distance through the fog, or the density per metre of an event there.
     fn passing(&self, node: &PathVertex, distance: f32, flaw: Flaw) -> f64 {
         let Some(fog) = self.fog.filter(|_| node.at.is_in_medium() && flaw != Flaw::Hazard) else {
             return self.survival(distance, flaw);
         };
-        let channel = |sigma: f32| f64::from(sigma) * exp_f64(-f64::from(sigma) * f64::from(distance));
-        fog.to_array().map(channel).iter().sum::<f64>() / 3.0
+        f64::from(fog) * exp_f64(-f64::from(fog) * f64::from(distance))
     }
 
     fn survival(&self, distance: f32, flaw: Flaw) -> f64 {
         let Some(fog) = self.fog.filter(|_| flaw != Flaw::Survival) else { return 1.0 };
-        let channel = |sigma: f32| exp_f64(-f64::from(sigma) * f64::from(distance));
-        fog.to_array().map(channel).iter().sum::<f64>() / 3.0
+        exp_f64(-f64::from(fog) * f64::from(distance))
     }
 }
 

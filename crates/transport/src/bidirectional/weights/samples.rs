@@ -6,7 +6,7 @@ use crate::bidirectional::connect::{to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
 use crate::photons::Photons;
-use crate::photons::{Photon, PhotonPosition};
+use crate::photons::{Photon, PhotonPosition, PhotonWalk};
 use crate::task::Task;
 use crate::techniques::*;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -46,7 +46,7 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
         let lens = if task.context.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
         let seen = task.context.camera.connect(vertex.at.p(), lens, vertex.at.time()).unwrap();
         let nodes = y.nodes(i, true, seen.wi, false);
-        let path = Path { start, nodes, camera_density: seen.density, fog: verdict.fog };
+        let path = Path { start, nodes, camera_density: seen.density, fog: verdict.fog_of(task) };
         verdict.look(task, &found, (false, i + 2), &path);
     }
 }
@@ -59,7 +59,7 @@ fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
         let index = task.context.scene.light_index_of(surface.object).unwrap();
         let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
         let nodes = z.nodes(i - 1, false, -vertex.wo, z.is_delta[i - 1]);
-        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
         verdict.look(task, &found, (false, 0), &path);
     }
     let (Some(subpath), Some(last)) = (&z.left, z.vertices.len().checked_sub(1)) else { return };
@@ -75,7 +75,7 @@ fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
             start: Start { index, p: None, cos: 1.0 },
             nodes,
             camera_density: z.camera_density,
-            fog: verdict.fog,
+            fog: verdict.fog_of(task),
         };
         verdict.look(task, &found, (false, 0), &path);
     }
@@ -92,7 +92,7 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
             let sample = light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
             let start = Start { index, p: sample.point, cos: sample.cos() };
             let nodes = z.nodes(i, false, sample.wi, false);
-            let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
+            let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
             verdict.look(task, &found, (false, 1), &path);
         }
     }
@@ -111,7 +111,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         let direction = (light_end.at.p() - camera_end.at.p()).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));
-        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
         verdict.look(task, &found, (false, b + 2), &path);
     }
     if techniques.eta == PerSet::ZERO {
@@ -127,14 +127,19 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         };
         let position = PhotonPosition { p: surface.p, ..position };
         let photon = Photon { n_geom: surface.n_geom, ..photon };
-        let photons = Photons::new(vec![(position, photon)], 1.0, *techniques);
+        let photons = Photons::new(
+            vec![(position, photon)],
+            &[PhotonWalk { odds: light_end.odds, channel: task.sample.channel }],
+            1.0,
+            *techniques,
+        );
         // One vertex replaces both: it scatters as it does at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();
         let behind = nodes.len();
         nodes.extend(z.nodes(a, false, light_end.wo, false));
         nodes[behind].from_light = shared.from_light;
-        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog };
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
         merged(task, &photons, camera_end, |_, found| {
             verdict.look(task, found, (true, b + 2), &path);
         });
