@@ -291,8 +291,8 @@ fn fog_that_is_thicker_or_turned_is_noticed() {
         let fog = medium(Rgb::new(0.01, 0.02, 0.05), Rgb::new(0.2, 0.3, 0.12) * density);
         fog.with("scattering_anisotropy", anisotropy)
     };
-    let right = built(&foggy(panel(), fog(1.0, 0.5)));
-    for wrong in [fog(2.0, 0.5), fog(1.0, -0.5)] {
+    let right = built(&foggy(panel(), fog(1.0, 0.7)));
+    for wrong in [fog(3.0, 0.7), fog(1.0, -0.7)] {
         assert_unlike_path(&right, &built(&foggy(panel(), wrong)), &["path", "bdpt"]);
     }
 }

@@ -1,11 +1,11 @@
 //! What is inside: the medium that light enters below the surface.
 
 use super::maps::{Maps, is_there};
-use super::point::weakened;
+use super::point::{Point, Subsurface, weakened};
 use crate::error::SceneError;
 use crate::media::{HenyeyGreenstein, Medium, Phase, slab};
 use crate::parameters::Reader;
-use crate::texture::{ColourMap, NumberMap};
+use crate::texture::{ColourMap, NumberMap, Patch};
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 
@@ -53,9 +53,28 @@ impl Inside {
         Ok(Inside { medium, is_body, reference, ior, absorbed: clear.sigma[0] })
     }
 
+    /// All parameters at a point.
+    pub(super) fn point(&self, maps: &Maps, uv: impl Into<Patch>) -> Point {
+        let uv = uv.into();
+        let point = maps.at(uv);
+        if !is_there(&maps.subsurface_weight) {
+            return point;
+        }
+        let weight = maps.subsurface_weight.at(uv);
+        let colour = maps.subsurface_color.at(uv).clamp(0.0, 1.0);
+        if self.is_body {
+            let subsurface = Subsurface::Body { weight, colour, entering: self.entering(colour) };
+            return Point { subsurface, body_ior: self.ior, ..point };
+        }
+        // Without a mean free path it is a diffuse surface; a thin wall is one on both sides.
+        let passed = if maps.thin { 0.5 * (1.0 + maps.subsurface_anisotropy) } else { 0.0 };
+        let [reflected, passed] = [colour * (1.0 - passed), colour * passed];
+        Point { subsurface: Subsurface::Sheet { weight, reflected, passed }, ..point }
+    }
+
     /// The factor on light that enters or leaves where the colour is this. Light that does both at one place has the colour, and each
     /// of the two has it from either end. It is at most 1.
-    pub(super) fn entering(&self, colour: Rgb) -> Rgb {
+    fn entering(&self, colour: Rgb) -> Rgb {
         let ratio = |colour: f32, reference: f32| {
             if reference > 0.0 { (colour / reference).min(1.0).sqrt() } else { 1.0 }
         };

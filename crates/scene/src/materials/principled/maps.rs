@@ -2,7 +2,6 @@
 
 use super::super::normal_map::{self, NormalMap};
 use super::super::{MaterialInputs, colour_map, number_map};
-use super::inside::Inside;
 use super::point::{Point, Subsurface};
 use crate::bsdf::{OpaqueBaseInputs, ThinFilm, is_rough};
 use crate::error::SceneError;
@@ -176,7 +175,8 @@ impl Maps {
         NumberMap::two_at([&self.base_metalness, &self.specular_roughness], self.is_packed, uv)
     }
 
-    pub(super) fn at(&self, uv: impl Into<Patch>, inside: &Inside) -> Point {
+    /// All but what is scattered below the surface.
+    pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {
         let uv = uv.into();
         let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
         Point {
@@ -195,8 +195,8 @@ impl Maps {
             } else {
                 Rgb::WHITE
             },
-            subsurface: self.subsurface_at(uv, inside),
-            body_ior: if inside.is_body { inside.ior } else { self.specular_ior.at(uv) },
+            subsurface: Subsurface::None,
+            body_ior: self.specular_ior.at(uv),
             thin: self.thin,
             dispersion: self.dispersion,
             coat: self.coat_weight.at(uv),
@@ -214,25 +214,6 @@ impl Maps {
                 thickness: self.film_thickness.at(uv) * 1e3,
                 eta: self.film_ior.at(uv),
             },
-        }
-    }
-}
-
-impl Maps {
-    /// What is scattered below the surface at a point.
-    fn subsurface_at(&self, uv: Patch, inside: &Inside) -> Subsurface {
-        if !is_there(&self.subsurface_weight) {
-            return Subsurface::None;
-        }
-        let weight = self.subsurface_weight.at(uv);
-        let colour = self.subsurface_color.at(uv).clamp(0.0, 1.0);
-        match inside.is_body {
-            true => Subsurface::Body { weight, colour, entering: inside.entering(colour) },
-            // Without a mean free path it is a diffuse surface; a thin wall is one on both sides.
-            false => {
-                let passed = if self.thin { 0.5 * (1.0 + self.subsurface_anisotropy) } else { 0.0 };
-                Subsurface::Sheet { weight, reflected: colour * (1.0 - passed), passed: colour * passed }
-            }
         }
     }
 }

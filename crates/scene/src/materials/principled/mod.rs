@@ -177,7 +177,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             let inputs = maps.opaque_base_at(Vec2::ZERO, Rgb::WHITE);
             match is_opaque_base {
                 true => opaque_base([Vec3::Z; 2], &inputs),
-                false => Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO, &inside).lobes()),
+                false => Bsdf::new(Vec3::Z, Vec3::Z, inside.point(&maps, Vec2::ZERO).lobes()),
             }
         });
         let is_solid = inside.medium.is_some();
@@ -229,7 +229,7 @@ struct Principled {
 impl Principled {
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
-        let point = self.maps.at(surface.uvs(), &self.inside);
+        let point = self.inside.point(&self.maps, surface.uvs());
         // The rotation is from u towards v, whichever side of u that is on.
         let rotation = point.rotation * surface.handedness;
         Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), rotation, ..point }

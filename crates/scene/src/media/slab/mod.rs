@@ -260,7 +260,8 @@ mod tests {
     fn nothing_is_lost_where_nothing_absorbs() {
         for (thickness, anisotropy, eta) in [(f64::INFINITY, 0.5, 1.4), (3.0, 0.9, 1.0), (0.01, -0.5, 2.4)] {
             let light = of(1.0, thickness, anisotropy, eta, 8);
-            assert!((light.at_surface + light.from_inside + light.passed - 1.0).abs() < 2e-6, "{light:?}");
+            // Forty doublings round often.
+            assert!((light.at_surface + light.from_inside + light.passed - 1.0).abs() < 1e-5, "{light:?}");
         }
     }
 }

@@ -260,7 +260,8 @@ fn every_mis_weight_matches_its_definition_in_fog() {
 #[test]
 fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
     let scene = foggy(&["rect"]);
-    for flaw in [Flaw::Survival, Flaw::Hazard, Flaw::Cosine, Flaw::Distance] {
+    // The density of events per metre is the same factor at each point of fog, whichever technique finds it.
+    for flaw in [Flaw::Survival, Flaw::Cosine, Flaw::Distance] {
         let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, Some(FOG[0] + FOG[1]));
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }

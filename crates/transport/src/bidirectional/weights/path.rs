@@ -56,8 +56,6 @@ pub(super) enum Flaw {
     Reverse,
     /// The probability of coming so far is left out.
     Survival,
-    /// Points of a medium have a density per area.
-    Hazard,
     /// Two points of a medium are connected in long rows too.
     Row,
 }
@@ -225,7 +223,7 @@ impl Path {
 
     /// The probability of coming to a surface over this distance through the fog, or the density per metre of an event there.
     fn passing(&self, node: &PathVertex, distance: f32, flaw: Flaw) -> f64 {
-        let Some(fog) = self.fog.filter(|_| node.at.is_in_medium() && flaw != Flaw::Hazard) else {
+        let Some(fog) = self.fog.filter(|_| node.at.is_in_medium()) else {
             return self.survival(distance, flaw);
         };
         f64::from(fog) * exp_f64(-f64::from(fog) * f64::from(distance))
