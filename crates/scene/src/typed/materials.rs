@@ -175,6 +175,8 @@ typed! {
         absorption: bilux_math::Rgb,
         /// Scattering coefficient inside: 1 over the mean distance that light travels before it is scattered (1/m); default `0`.
         scattering: bilux_math::Rgb,
+        /// Factor on absorption and scattering inside, from a grid: smoke, a cloud; default `none`.
+        density: impl Into<crate::Value>,
         /// The directions that the inside scatters into: by one number (henyey-greenstein), as air (rayleigh), as dust (draine), or as fog, by the size of its droplets: `henyey-greenstein`, `rayleigh`, `draine`, `droplets`; default `henyey-greenstein`.
         phase: &str,
         /// The mean cosine by which henyey-greenstein and draine scatter: 0 is even, 0.9 nearly straight on, negative back; default `0`.
@@ -183,6 +185,14 @@ typed! {
         draine_alpha: f32,
         /// The diameter of droplets: 5 to 15 in clouds, 10 to 20 in fog, 50 in mist (µm); default `15`.
         droplet_diameter: f32,
+        /// Radiance of the inside where it is too thick to see through; it emits this times its absorption per metre: fire (W/(m² sr)); default `0`.
+        medium_emission: bilux_math::Rgb,
+        /// Factor on medium_emission, from a grid; default `none`.
+        medium_emission_grid: impl Into<crate::Value>,
+        /// Grid of temperatures: the inside emits as a black body, medium_emission where it is hottest; default `none`.
+        temperature: impl Into<crate::Value>,
+        /// Kelvins for each unit of the temperature grid (K); default `1`.
+        temperature_scale: f32,
         /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
         priority: i32,
     }
@@ -212,10 +222,24 @@ typed! {
         transmission_color: impl Into<crate::Value>,
         /// Distance inside after which light has transmission_color; 0 tints it at the surface (m); default `0`.
         transmission_depth: f32,
+        /// Scattering inside, per transmission_depth: milky glass, juice, murky water; ignored without a depth; default `0`.
+        transmission_scatter: bilux_math::Rgb,
+        /// Mean cosine of scattering inside: 0 is even, 0.9 nearly straight on, negative back; default `0`.
+        transmission_scatter_anisotropy: f32,
         /// Scale of the dispersion that transmission_dispersion_abbe_number gives; default `0`.
         transmission_dispersion_scale: f32,
         /// Abbe number; lower values disperse more: 64 for window glass, 36 for flint glass; default `20`.
         transmission_dispersion_abbe_number: f32,
+        /// Fraction of the opaque part that lets light in and scatters it below the surface: skin, wax, milk, marble; default `0`.
+        subsurface_weight: impl Into<crate::Value>,
+        /// Colour that a thick body of it has, seen straight on, between its highlights; default `0.8`.
+        subsurface_color: impl Into<crate::Value>,
+        /// How far light travels inside, on average, before it is scattered; 0 is a diffuse surface (m); default `1`.
+        subsurface_radius: f32,
+        /// Factor on subsurface_radius for red, green and blue; default `1 0.5 0.25`.
+        subsurface_radius_scale: bilux_math::Rgb,
+        /// Mean cosine of scattering below the surface; of thin walls, from -1, all reflected, to 1, all transmitted; default `0`.
+        subsurface_scatter_anisotropy: f32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin_walled: bool,
         /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.

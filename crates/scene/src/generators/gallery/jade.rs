@@ -25,17 +25,17 @@ fn build() -> SceneBuilder {
             .with("specular_roughness", 0.35f32),
     );
     stage.put("table", shapes::floor(Vec3::ZERO, 9.0), slate);
-    let jade = stage.below("jade", [0.42, 0.78, 0.5], 0.006, [0.5, 1.0, 0.6], [1.62, 0.25]);
+    let jade = stage.below("jade", [0.42, 0.78, 0.5], 0.004, [1.62, 0.25]);
     let mut dragon = statue(48);
     dragon.positions.iter_mut().for_each(|p| *p *= 0.17);
     stage.put("dragon", dragon, jade);
-    let wax = stage.below("wax", [0.95, 0.88, 0.74], 0.004, [1.0, 0.65, 0.4], [1.44, 0.4]);
+    let wax = stage.below("wax", [0.95, 0.88, 0.74], 0.004, [1.44, 0.4]);
     stage.put("candle", moved(&candle(), CANDLE), wax);
     let soot = stage.diffuse("soot", [0.03, 0.03, 0.03]);
     stage.put("wick", moved(&wick(), CANDLE), soot);
     let flame = stage.glowing("flame", [220.0, 105.0, 28.0]);
     stage.put("flame", moved(&fire(), CANDLE), flame);
-    let marble = stage.below("marble", [0.86, 0.83, 0.8], 0.004, [1.0, 0.9, 0.8], [1.5, 0.2]);
+    let marble = stage.below("marble", [0.86, 0.83, 0.8], 0.004, [1.5, 0.2]);
     stage.put("egg", moved(&egg(), [0.165, 0.0, 0.07]), marble);
     stage.panel("window", [-0.1, 0.9, -0.78], [[0.9, 0.0, 0.0], [0.0, 0.36, 0.3]], [7.5, 8.0, 9.0]);
     stage.light(Spec::new("room", "environment").with("radiance", Rgb::new(0.02, 0.024, 0.035)));
@@ -43,21 +43,14 @@ fn build() -> SceneBuilder {
 }
 
 impl Stage {
-    /// A body of this colour, with the mean free path in metres and its scale, the refractive index and the roughness.
-    fn below(
-        &mut self,
-        name: &str,
-        colour: [f32; 3],
-        radius: f32,
-        scale: [f32; 3],
-        [ior, roughness]: [f32; 2],
-    ) -> usize {
+    /// A body of this colour, with the mean free path in metres, the refractive index and the roughness.
+    fn below(&mut self, name: &str, colour: [f32; 3], radius: f32, [ior, roughness]: [f32; 2]) -> usize {
         self.material(
             Spec::new(name, "principled")
                 .with("subsurface_weight", 1.0f32)
                 .with("subsurface_color", Rgb::from_array(colour))
                 .with("subsurface_radius", radius)
-                .with("subsurface_radius_scale", Rgb::from_array(scale))
+                .with("subsurface_radius_scale", Rgb::WHITE)
                 .with("specular_ior", ior)
                 .with("specular_roughness", roughness),
         )
