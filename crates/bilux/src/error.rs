@@ -53,9 +53,11 @@ pub enum Error {
 
 /// What to make smaller: whatever takes the most memory.
 fn smaller(needed: &Memory) -> &'static str {
-    let Memory { meshes, textures, levels, trees, picture } = *needed;
-    if picture >= (meshes + trees).max(textures + levels) {
+    let Memory { meshes, textures, levels, grids, trees, picture } = *needed;
+    if picture >= (meshes + trees).max(textures + levels).max(grids) {
         "make the picture smaller"
+    } else if grids > (meshes + trees).max(textures + levels) {
+        "make the grids coarser"
     } else if textures + levels > meshes + trees {
         "make the textures smaller"
     } else {

@@ -27,8 +27,10 @@ pub struct Memory {
     pub meshes: u64,
     /// Textures as they are stored, each image counted once.
     pub textures: u64,
-    /// Their coarser mipmap levels, if the render makes them.
+    /// The textures' coarser mipmap levels, if the render makes them.
     pub levels: u64,
+    /// Grids as they are stored, each counted once.
+    pub grids: u64,
     /// The acceleration structures.
     pub trees: u64,
     /// The picture while it is rendered.
@@ -53,6 +55,7 @@ impl Memory {
         let new_images = scene.textures.iter().filter(|texture| images.insert(Arc::as_ptr(&texture.image)));
         all.textures = new_images.map(|texture| texture.image.size()).sum();
         all.levels = all.textures / 3;
+        all.grids = scene.grids().iter().map(|grid| grid.bytes()).sum();
         all
     }
 
@@ -64,8 +67,8 @@ impl Memory {
 
     /// The sum of all parts.
     pub fn total(&self) -> u64 {
-        let Memory { meshes, textures, levels, trees, picture } = *self;
-        [meshes, textures, levels, trees, picture].into_iter().fold(0, u64::saturating_add)
+        let Memory { meshes, textures, levels, grids, trees, picture } = *self;
+        [meshes, textures, levels, grids, trees, picture].into_iter().fold(0, u64::saturating_add)
     }
 }
 

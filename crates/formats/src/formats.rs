@@ -5,7 +5,9 @@ use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
+use crate::{
+    FormatError, ReadOptions, WriteOptions, asc, gltf, grids, las, native, obj, off, pbrt, ply, stl, xyz,
+};
 use bilux_math::DVec3;
 use bilux_math::registry::Entry;
 use bilux_pictures::{ForeignFormat, PICTURE_FORMATS, foreign_format};
@@ -27,6 +29,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     off::ENTRY,
     las::ENTRY,
     xyz::ENTRY,
+    grids::ENTRY,
     native::ENTRY,
 ];
 

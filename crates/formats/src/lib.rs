@@ -43,6 +43,6 @@ pub use error::FormatError;
 pub use formats::{
     SCENE_FORMATS, SceneFormatEntry, check_not_read, format_named, format_of_path, read, read_bytes, write,
 };
-pub use grids::{GridOfFile, read_grids};
+pub use grids::{GridOfFile, read_grid, read_grids};
 pub use native::{SHAPES, ShapeEntry, overlay, toml_schema};
 pub use options::{Glass, ReadOptions, WriteOptions};

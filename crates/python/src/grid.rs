@@ -2,8 +2,13 @@
 
 use crate::arrays;
 use crate::encoded::{Encoded, decoded as decoded_scene};
+use crate::ending::without_gil;
+use crate::errors::{exception, warn};
+use crate::memory;
+use crate::source::Source;
+use bilux::formats::ReadOptions;
 use bilux::math::{Transform, Vec3};
-use bilux::scene::{SceneBuilder, Spec, Value};
+use bilux::scene::{SceneBuilder, Span, Spec, Value, Warning};
 use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -41,6 +46,35 @@ impl Grid {
         })?;
         let grid = bilux::scene::media::Grid::dense(name, size, &place, &arrays::floats(&array)?);
         let grid = grid.map_err(|why| PyValueError::new_err(format!("values: {why}")))?;
+        Ok(Grid(Arc::new(grid)))
+    }
+
+    /// Reads a grid from a file of OpenVDB, NanoVDB, numpy (.npy) or Mitsuba (.vol), in the place that the file says.
+    ///
+    /// Args:
+    ///     file: a path, bytes, or a file open for reading bytes.
+    ///     name: which of its grids; by default 'density', or else the first that can be one.
+    ///
+    /// Raises:
+    ///     FormatError: If the file is in no such format or broken, or has no such grid.
+    ///
+    /// Example:
+    ///     >>> smoke = bilux.materials.interface(scattering=20, density=bilux.Grid.read("smoke.vdb"))  # doctest: +SKIP
+    #[staticmethod]
+    #[pyo3(signature = (file, *, name = ""))]
+    fn read(file: &Bound<'_, PyAny>, name: &str) -> PyResult<Grid> {
+        let py = file.py();
+        let options = ReadOptions::default();
+        let max_memory = memory::within_limits(options.max_memory);
+        let options = ReadOptions { max_memory, ..options };
+        let source = Source::of("file", file, max_memory)?.opened(py, max_memory)?;
+        let (bytes, shown) = (source.bytes(), source.name());
+        let read = without_gil(py, || bilux::formats::read_grid(bytes, &shown, name, &options));
+        let found = read.map_err(exception)?;
+        let at = || Span { file: shown.as_str().into(), line: 0, column: 0 };
+        let warnings = found.warnings.into_iter().map(|message| Warning { message, at: at() });
+        warn(py, &warnings.collect::<Vec<_>>())?;
+        let grid = found.grid.map_err(PyValueError::new_err)?;
         Ok(Grid(Arc::new(grid)))
     }
 

@@ -289,3 +289,17 @@ def test_textures_of_numbers_are_not_decoded(tmp_path):
     curve = 1.055 * 0.5 ** (1 / 2.4) - 0.055
     np.testing.assert_allclose(light[0][4, 4], 0.5, rtol=0.1)
     np.testing.assert_allclose(light[1][4, 4], curve, rtol=0.1)
+
+
+def test_grids_are_read_from_files_and_bytes(tmp_path):
+    values = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
+    np.save(tmp_path / "smoke.npy", values)
+    for file in (tmp_path / "smoke.npy", (tmp_path / "smoke.npy").read_bytes()):
+        grid = bilux.Grid.read(file)
+        assert grid.shape == values.shape
+        bilux.materials.interface(scattering=2, density=grid)
+    with pytest.raises(bilux.FormatError, match="no file of grids"):
+        bilux.Grid.read(b"nothing")
+    np.save(tmp_path / "negative.npy", values - 1)
+    with pytest.warns(match="1 voxels are negative"):
+        bilux.Grid.read(tmp_path / "negative.npy")

@@ -8,12 +8,13 @@ use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
 use crate::footprint;
 use crate::geometry::{Geometry, Placed};
+use crate::grid::Grid;
 use crate::inventory::Inventory;
 use crate::kept::MeshPool;
 use crate::lights::{self, BuiltLight};
 use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
-use crate::parameters::{Parameters, Span, Spec};
+use crate::parameters::{Parameters, Span, Spec, Value};
 use crate::scene::{Scene, SceneLight, SceneParts};
 use crate::sides::Sides;
 use crate::spheres::PlacedSphere;
@@ -112,6 +113,19 @@ impl SceneBuilder {
     /// Adds a warning.
     pub fn warn(&mut self, message: impl Into<String>, at: Span) {
         self.warnings.push(Warning { message: message.into(), at });
+    }
+
+    /// The grids of its materials, each once.
+    pub fn grids(&self) -> Vec<&Arc<Grid>> {
+        let mut grids: Vec<&Arc<Grid>> = Vec::new();
+        for (_, value, _) in self.materials.iter().flat_map(|spec| &spec.parameters.0) {
+            if let Value::Grid(grid) = value
+                && !grids.iter().any(|known| Arc::ptr_eq(known, grid))
+            {
+                grids.push(grid);
+            }
+        }
+        grids
     }
 
     /// The bounding box of all objects at a time in seconds, without lights.

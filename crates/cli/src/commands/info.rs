@@ -7,6 +7,7 @@ use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
+use bilux::scene::media::{BLOCK_VOXELS, Grid};
 use bilux::scene::{Mesh, SceneBuilder, Texture};
 use serde_json::json;
 use std::collections::HashSet;
@@ -66,6 +67,10 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         "textures": scene.textures.iter().map(|t| json!({
             "name": t.name, "width": t.width(), "height": t.height(), "bytes": t.image.size(),
         })).collect::<Vec<_>>(),
+        "grids": scene.grids().iter().map(|grid| json!({
+            "name": grid.name(), "size": grid.size(), "stored_voxels": stored_voxels(grid), "maximum": grid.maximum(),
+            "bytes": grid.bytes(),
+        })).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| json!({ "name": l.name, "kind": l.kind })).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|c| json!({
             "name": c.spec.name, "kind": c.spec.kind, "keyframes": c.keyframes.len(),
@@ -77,6 +82,7 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         "skins": scene.inventory.skins,
         "memory": {
             "meshes": memory.meshes, "textures": memory.textures, "coarser_textures_at_most": memory.levels,
+            "grids": memory.grids,
             "trees_at_most": memory.trees,
         },
         "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -97,7 +103,7 @@ fn as_text(scene: &SceneBuilder) -> String {
          bounds     {:?} to {:?}, {} x {} x {} {}\n\
          materials  {}\n\
          textures   {}\n\
-         lights     {}\n\
+         {}lights     {}\n\
          cameras    {}\n\
          memory     {}{}",
         strokes(scene),
@@ -115,6 +121,7 @@ fn as_text(scene: &SceneBuilder) -> String {
         unit(scene),
         names(scene.materials.iter().map(spec).collect()),
         names(scene.textures.iter().map(|t| texture(t)).collect()),
+        grids(scene),
         names(scene.lights.iter().map(spec).collect()),
         names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
         memory(&Memory::of_scene(scene)),
@@ -146,11 +153,31 @@ fn strokes(scene: &SceneBuilder) -> String {
     }
 }
 
+/// The voxels of the blocks that are stored.
+fn stored_voxels(grid: &Grid) -> usize {
+    grid.stored_blocks() * BLOCK_VOXELS
+}
+
+/// The grids, on a line of their own; nothing if there are none.
+fn grids(scene: &SceneBuilder) -> String {
+    let text = |grid: &&Arc<Grid>| {
+        let [x, y, z] = grid.size();
+        let (stored, most) = (stored_voxels(grid), grid.maximum());
+        format!("{} ({x}x{y}x{z}, {stored} voxels stored, at most {most})", grid.name())
+    };
+    let all: Vec<String> = scene.grids().iter().map(text).collect();
+    if all.is_empty() { String::new() } else { format!("grids      {}\n", all.join(", ")) }
+}
+
 /// The memory that the scene holds, and what rendering adds.
 fn memory(memory: &Memory) -> String {
     let mega = |bytes: u64| bytes as f64 / 1e6;
+    let grids = match memory.grids {
+        0 => String::new(),
+        grids => format!(", {:.1} MB of grids", mega(grids)),
+    };
     format!(
-        "{:.1} MB of meshes, {:.1} MB of textures; at most {:.1} MB more to render, not counting the picture",
+        "{:.1} MB of meshes, {:.1} MB of textures{grids}; at most {:.1} MB more to render, not counting the picture",
         mega(memory.meshes),
         mega(memory.textures),
         mega(memory.levels + memory.trees),

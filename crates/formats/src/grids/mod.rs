@@ -1,11 +1,13 @@
 //! Files of numbers in space: the density of smoke and the like. The table is [`GRID_FORMATS`].
 
 mod bytes;
+mod model;
 mod npy;
 mod sparse;
 mod vol;
 
 pub(crate) use bytes::Bytes;
+pub(crate) use model::ENTRY;
 pub(crate) use npy::write as npy_of;
 pub(crate) use sparse::{LeafMask, LeafValues, Placed, Sparse};
 
@@ -39,7 +41,6 @@ pub(crate) struct GridFormat {
 pub(crate) struct Catalogue {
     pub(crate) grids: Vec<Listed>,
     /// The up axis, if the file tells what wrote it.
-    #[allow(dead_code, reason = "grids as models come next")]
     pub(crate) up: Option<UpHint>,
 }
 
@@ -76,23 +77,34 @@ pub struct GridOfFile {
     pub warnings: Vec<String>,
 }
 
-/// Reads all grids of a file in memory: OpenVDB, NanoVDB, `.npy` or Mitsuba's `.vol`; `name` is what messages call it.
+/// Reads all grids of a file in memory: OpenVDB, NanoVDB, `.npy` or Mitsuba's `.vol`; `file` is what messages call it.
 ///
 /// # Errors
 /// When the file is in no such format or broken, or takes more memory than allowed.
-pub fn read_grids(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Vec<GridOfFile>, FormatError> {
+pub fn read_grids(bytes: &[u8], file: &str, options: &ReadOptions) -> Result<Vec<GridOfFile>, FormatError> {
     let mut reading = Reading::new(options, None);
-    let source = Source { bytes, name: &Arc::from(name), folder: None };
+    let source = Source { bytes, name: &Arc::from(file), folder: None };
     let format = format_of(&source)?;
-    let grids = (format.list)(&source)?.grids.into_iter().map(|listed| {
-        let name = if listed.name.is_empty() { source.stem() } else { listed.name.clone() };
-        if let Some(why) = listed.refused {
-            return Ok(GridOfFile { name, grid: Err(why), bounds: Aabb::EMPTY, warnings: Vec::new() });
-        }
-        let Volume { grid, bounds, faults } = reading.volume(format, &source, &listed)?;
-        Ok(GridOfFile { name, grid: Ok(grid), bounds, warnings: faults.sentences() })
-    });
-    grids.collect()
+    let grids = (format.list)(&source)?.grids.into_iter();
+    grids.map(|listed| reading.grid_of_file(format, &source, listed)).collect()
+}
+
+/// Reads the grid with a name from a file in memory; if the name is empty, `density` or else the first that can be one.
+///
+/// # Errors
+/// As [`read_grids`], and when there is no such grid.
+pub fn read_grid(
+    bytes: &[u8],
+    file: &str,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<GridOfFile, FormatError> {
+    let source = Source { bytes, name: &Arc::from(file), folder: None };
+    let format = format_of(&source)?;
+    let catalogue = (format.list)(&source)?;
+    let listed = catalogue.named(name, file);
+    let listed = listed.map_err(|message| FormatError::malformed(message, whole_file(source.name)))?;
+    Reading::new(options, None).grid_of_file(format, &source, listed.clone())
 }
 
 /// How many numbers could not be densities.
@@ -108,7 +120,7 @@ impl Faults {
     /// The nearest density.
     #[inline]
     pub(crate) fn density(&mut self, value: f32) -> f32 {
-        if value >= 0.0 && value < f32::INFINITY {
+        if (0.0..f32::INFINITY).contains(&value) {
             return value;
         }
         *(if value.is_finite() { &mut self.negative } else { &mut self.not_finite }) += 1;
@@ -226,6 +238,21 @@ impl Reading<'_> {
         self.keep(&grid);
         self.grids.insert(key, grid.clone());
         Ok(grid)
+    }
+
+    /// Reads one of the grids of a file, unless it cannot be a density.
+    fn grid_of_file(
+        &mut self,
+        format: &GridFormat,
+        source: &Source,
+        listed: Listed,
+    ) -> Result<GridOfFile, FormatError> {
+        let name = if listed.name.is_empty() { source.stem() } else { listed.name.clone() };
+        if let Some(why) = listed.refused {
+            return Ok(GridOfFile { name, grid: Err(why), bounds: Aabb::EMPTY, warnings: Vec::new() });
+        }
+        let Volume { grid, bounds, faults } = self.volume(format, source, &listed)?;
+        Ok(GridOfFile { name, grid: Ok(grid), bounds, warnings: faults.sentences() })
     }
 
     /// Reads one of the grids of a file, and charges it for good.

@@ -12,8 +12,11 @@ pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";
 
 pub(super) const FORMAT: GridFormat = GridFormat { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
 
+/// Turns the bytes of a number into a value.
+type Value = fn(&[u8]) -> f32;
+
 /// Number types, their bytes, and their values.
-const TYPES: &[(&str, usize, fn(&[u8]) -> f32)] = &[
+const TYPES: &[(&str, usize, Value)] = &[
     ("<f4", 4, |b| f32::from_le_bytes(std::array::from_fn(|i| b[i]))),
     (">f4", 4, |b| f32::from_be_bytes(std::array::from_fn(|i| b[i]))),
     ("<f8", 8, |b| f64::from_le_bytes(std::array::from_fn(|i| b[i])) as f32),

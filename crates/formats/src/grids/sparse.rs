@@ -72,10 +72,8 @@ impl Sparse {
     ) -> Result<(), FormatError> {
         let Some([low, high]) = extent(mask) else { return Ok(()) };
         let origin = self.origin(origin, SIDE, file)?;
-        for axis in 0..3 {
-            self.low[axis] = self.low[axis].min(origin[axis] + low[axis]);
-            self.high[axis] = self.high[axis].max(origin[axis] + high[axis]);
-        }
+        let place = |at: [i64; 3]| [0, 1, 2].map(|axis: usize| origin[axis] + at[axis]);
+        self.reach(place(low), place(high));
         self.add(Part { origin, content: Content::Leaf(at) }, 1, file, budget)
     }
 
@@ -89,12 +87,15 @@ impl Sparse {
         budget: &mut Budget,
     ) -> Result<(), FormatError> {
         let origin = self.origin(origin, side, file)?;
-        for axis in 0..3 {
-            self.low[axis] = self.low[axis].min(origin[axis]);
-            self.high[axis] = self.high[axis].max(origin[axis] + side - 1);
-        }
+        self.reach(origin, origin.map(|begin| begin + side - 1));
         let blocks = (side / SIDE) as u64;
         self.add(Part { origin, content: Content::Tile(side, value) }, blocks * blocks * blocks, file, budget)
+    }
+
+    /// Counts voxels as having values.
+    fn reach(&mut self, low: [i64; 3], high: [i64; 3]) {
+        self.low = [0, 1, 2].map(|axis: usize| self.low[axis].min(low[axis]));
+        self.high = [0, 1, 2].map(|axis: usize| self.high[axis].max(high[axis]));
     }
 
     fn origin(&self, origin: [i32; 3], side: i64, file: &Source) -> Result<[i64; 3], FormatError> {

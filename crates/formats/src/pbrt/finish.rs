@@ -16,8 +16,9 @@ use std::sync::Arc;
 /// Results that pieces with the same attributes share.
 #[derive(Default)]
 pub(super) struct ResolvedAttributes {
-    /// Keyed by the surface attributes and the bits of a radiance that depends on the shape.
-    materials: HashMap<(SurfaceAttributes, [u32; 3]), Option<usize>>,
+    /// Keyed by the surface attributes, the bits of a radiance that depends on the shape, and those of its matrix if it is filled
+    /// from a grid, which has a place of its own.
+    materials: HashMap<(SurfaceAttributes, [u32; 3], [u64; 16]), Option<usize>>,
     glows: HashMap<usize, AreaEmission>,
     /// Emissive meshes by address: the original, and the same with corners that agree with its normals.
     fronted: HashMap<*const Mesh, [Arc<Mesh>; 2]>,
@@ -72,8 +73,10 @@ impl Pbrt<'_, '_> {
         };
         let radiance =
             glow.as_ref().map(|glow| glow.radiance_of(area(&mesh, &matrices[0]) / f64::from(piece.shapes)));
-        let Some(material) = self.modified_material(piece, glow.as_ref(), radiance, resolved_attributes)?
-        else {
+        let to_world = used.map_or(matrices[0], |used| used.matrices[0] * matrices[0]);
+        let glow_and_radiance = (glow.as_ref(), radiance);
+        let material = self.modified_material(piece, glow_and_radiance, &to_world, resolved_attributes)?;
+        let Some(material) = material else {
             return Ok(());
         };
         let Some(motion) = self.motion_within(used, &matrices, at) else { return Ok(()) };
@@ -158,8 +161,8 @@ impl Pbrt<'_, '_> {
     fn modified_material(
         &mut self,
         piece: &Piece,
-        glow: Option<&AreaEmission>,
-        radiance: Option<TextureOrValue>,
+        (glow, radiance): (Option<&AreaEmission>, Option<TextureOrValue>),
+        to_world: &DMat4,
         resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<Option<usize>, FormatError> {
         let attributes = &piece.attributes;
@@ -169,12 +172,15 @@ impl Pbrt<'_, '_> {
             None => [0; 3],
         };
         // In an object instance nothing emits, so its material differs.
-        let key =
-            (SurfaceAttributes { area_light: glow.and(attributes.area_light), ..attributes.clone() }, bits);
+        let medium = self.medium_of(&attributes.media[0], &piece.at)?;
+        let varies = medium.density.is_some() || medium.emission_grid.is_some();
+        let place = if varies { to_world.to_cols_array().map(f64::to_bits) } else { [0; 16] };
+        let area_light = glow.and(attributes.area_light);
+        let key = (SurfaceAttributes { area_light, ..attributes.clone() }, bits, place);
         if let Some(known) = resolved_attributes.materials.get(&key) {
             return Ok(*known);
         }
-        let made = self.finished_material(piece, glow, radiance)?;
+        let made = self.finished_material(piece, glow, radiance, to_world)?;
         let index = made.map(|spec| self.scene.add_material(spec));
         resolved_attributes.materials.insert(key, index);
         Ok(index)
@@ -185,6 +191,7 @@ impl Pbrt<'_, '_> {
         piece: &Piece,
         glow: Option<&AreaEmission>,
         radiance: Option<TextureOrValue>,
+        to_world: &DMat4,
     ) -> Result<Option<Spec>, FormatError> {
         let [inside, outside] = &piece.attributes.media;
         let medium = self.medium_of(inside, &piece.at)?;
@@ -201,13 +208,7 @@ impl Pbrt<'_, '_> {
             None => Spec::new("interface", "interface"),
         };
         if !medium.is_clear() {
-            if spec.kind == "interface" || spec.kind == "dielectric" && spec.parameters.find("thin").is_none()
-            {
-                medium.fill(&mut spec);
-            } else {
-                let what = "a medium inside is supported only in dielectrics and interfaces";
-                self.oddities.note(what, || piece.at.clone());
-            }
+            self.fill(&mut spec, &medium, to_world, piece)?;
         }
         if let (Some(glow), Some(radiance)) = (glow, radiance)
             && spec.kind != "interface"

@@ -1,23 +1,29 @@
-//! Participating media that are the same everywhere.
+//! Participating media: the same everywhere, or as dense as a grid says.
 
+use super::grid_media::Density;
 use super::parameters::ParameterList;
-use super::reader::Pbrt;
+use super::reader::{Pbrt, Piece};
 use super::texture_or_value::SpectrumType;
 use super::unknown;
 use crate::FormatError;
-use bilux_math::Rgb;
-use bilux_scene::{Span, Spec};
+use bilux_math::{DMat4, Rgb};
+use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
 /// The supported properties of a medium.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Medium {
-    /// Absorption per unit of length.
+    /// Absorption per unit of length; where a grid varies it, where that is 1.
     pub(super) absorption: Rgb,
     /// Scattering per unit of length.
     pub(super) scattering: Rgb,
     /// The mean cosine of Henyey and Greenstein's phase function.
     pub(super) anisotropy: f32,
+    /// The factor on both.
+    pub(super) density: Option<Density>,
+    /// The radiance of a thick layer, and a factor on it.
+    pub(super) emission: Rgb,
+    pub(super) emission_grid: Option<Density>,
 }
 
 impl Medium {
@@ -32,6 +38,9 @@ impl Medium {
         if !self.scattering.is_black() {
             spec.parameters.set("scattering", self.scattering.clamp(0.0, 1e6));
             spec.parameters.set("scattering_anisotropy", self.anisotropy.clamp(-0.99, 0.99));
+        }
+        if !self.emission.is_black() {
+            spec.parameters.set("medium_emission", self.emission.clamp(0.0, 1e9));
         }
     }
 }
@@ -62,12 +71,63 @@ impl Pbrt<'_, '_> {
     /// Defines a medium.
     pub(super) fn add_medium(&mut self, name: String, list: &ParameterList) -> Result<(), FormatError> {
         let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
-        if kind != "homogeneous" {
-            let what = format!("a medium of type '{kind}' is not supported");
-            self.oddities.note(&what, || list.at.clone());
-            self.media.insert(name.into(), Medium::default());
-            return Ok(());
+        let scale = list.finite("scale", 1.0)?;
+        let anisotropy = list.finite("g", 0.0)?;
+        let ([absorption, scattering], density) = match kind.as_str() {
+            "homogeneous" => (self.coefficients(list)?, None),
+            "uniformgrid" => (self.coefficients(list)?, Some(self.uniform_grid(&name, "density", list)?)),
+            "nanovdb" => (self.coefficients(list)?, self.nanovdb(list)?),
+            "rgbgrid" => {
+                let (coefficients, density) = self.rgb_grid(&name, list)?;
+                (coefficients, Some(density))
+            }
+            _ => {
+                let what = format!("a medium of type '{kind}' is not supported");
+                self.oddities.note(&what, || list.at.clone());
+                self.media.insert(name.into(), Medium::default());
+                return Ok(());
+            }
+        };
+        let (emission, emission_grid) = self.medium_emission(&name, &kind, list)?;
+        list.report_unused(&mut self.oddities);
+        let (absorption, scattering) = (absorption * scale, scattering * scale);
+        let medium = Medium { absorption, scattering, anisotropy, density, emission, emission_grid };
+        self.media.insert(name.into(), medium);
+        Ok(())
+    }
+
+    /// The radiance of a medium, and the grid that varies it.
+    fn medium_emission(
+        &mut self,
+        name: &str,
+        kind: &str,
+        list: &ParameterList,
+    ) -> Result<(Rgb, Option<Density>), FormatError> {
+        for about_temperature in ["temperaturescale", "temperatureoffset", "temperaturecutoff", "LeScale"] {
+            list.has(about_temperature);
         }
+        if list.has("temperature") {
+            let what = "emission by the temperature of a medium is not supported";
+            self.oddities.note(what, || list.place("temperature"));
+        }
+        if kind == "rgbgrid" && list.has("Le") {
+            self.oddities
+                .note("emission by a medium of type 'rgbgrid' is not supported", || list.place("Le"));
+        }
+        if kind == "rgbgrid" || kind == "nanovdb" {
+            list.has("Lescale");
+            return Ok((Rgb::BLACK, None));
+        }
+        let radiance = self.spectrum(list, "Le", SpectrumType::Light)?.unwrap_or(Rgb::BLACK);
+        if kind == "uniformgrid" && list.has("Lescale") {
+            let grid = self.uniform_grid(name, "Lescale", list)?;
+            return Ok((radiance, Some(grid)));
+        }
+        Ok((radiance * list.finite("Lescale", 1.0)?, None))
+    }
+
+    /// Absorption and scattering of a medium, without its scale.
+    fn coefficients(&mut self, list: &ParameterList) -> Result<[Rgb; 2], FormatError> {
         let preset = list.text("preset")?;
         let preset = match preset.map(|name| (name, measured(name))) {
             Some((name, None)) => {
@@ -78,27 +138,13 @@ impl Pbrt<'_, '_> {
             Some((_, known)) => known,
             None => None,
         };
-        let [scattering, absorption] = preset.map_or([None; 2], |known| known.map(Some));
-        let absorption = match absorption {
-            Some(absorption) => absorption,
-            None => self.spectrum(list, "sigma_a", SpectrumType::Number)?.unwrap_or(Rgb::WHITE),
-        };
-        let scattering = match scattering {
-            Some(scattering) => scattering,
-            None => self.spectrum(list, "sigma_s", SpectrumType::Number)?.unwrap_or(Rgb::WHITE),
-        };
-        let anisotropy = list.finite("g", 0.0)?;
-        if list.has("Le") {
-            self.oddities.note("emission by a medium is not supported", || list.place("Le"));
-            list.has("Lescale");
+        if let Some([scattering, absorption]) = preset {
+            return Ok([absorption, scattering]);
         }
-        let scale = list.finite("scale", 1.0)?;
-        list.report_unused(&mut self.oddities);
-        self.media.insert(
-            name.into(),
-            Medium { absorption: absorption * scale, scattering: scattering * scale, anisotropy },
-        );
-        Ok(())
+        let mut given = |name| -> Result<Rgb, FormatError> {
+            Ok(self.spectrum(list, name, SpectrumType::Number)?.unwrap_or(Rgb::WHITE))
+        };
+        Ok([given("sigma_a")?, given("sigma_s")?])
     }
 
     /// The medium on one side of a surface; an error if it is not defined.
@@ -107,11 +153,41 @@ impl Pbrt<'_, '_> {
             return Ok(Medium::default());
         }
         match self.media.get(name) {
-            Some(medium) => Ok(*medium),
+            Some(medium) => Ok(medium.clone()),
             None => {
                 let names = self.media.keys().map(|name| &**name);
                 Err(unknown("medium", name, names, at))
             }
         }
+    }
+
+    /// Fills a material with a medium.
+    pub(super) fn fill(
+        &mut self,
+        spec: &mut Spec,
+        medium: &Medium,
+        to_world: &DMat4,
+        piece: &Piece,
+    ) -> Result<(), FormatError> {
+        let is_interface = spec.kind == "interface";
+        let is_solid_glass = spec.kind == "dielectric" && spec.parameters.find("thin").is_none();
+        if !is_interface && !is_solid_glass {
+            let what = "a medium inside is supported only in dielectrics and interfaces";
+            self.oddities.note(what, || piece.at.clone());
+            return Ok(());
+        }
+        if !is_interface && (medium.density.is_some() || !medium.emission.is_black()) {
+            let what = "a medium that varies or emits light is supported only in interfaces";
+            self.oddities.note(what, || piece.at.clone());
+            return Ok(());
+        }
+        medium.fill(spec);
+        for (key, grid) in [("density", &medium.density), ("medium_emission_grid", &medium.emission_grid)] {
+            let Some(grid) = grid else { continue };
+            if let Some(grid) = self.grid_in(grid, to_world, &piece.at)? {
+                spec.parameters.set(key, Value::Grid(grid));
+            }
+        }
+        Ok(())
     }
 }

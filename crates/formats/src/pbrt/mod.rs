@@ -5,6 +5,7 @@ mod colours;
 mod directives;
 mod environment;
 mod finish;
+mod grid_media;
 mod gzip;
 mod lexer;
 mod lights;

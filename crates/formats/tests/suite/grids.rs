@@ -1,6 +1,6 @@
 //! Files of grids: OpenVDB, NanoVDB, `.npy` and `.vol`, byte by byte as their formats say, and broken.
 
-use bilux_formats::{GridOfFile, ReadOptions, read_grids};
+use bilux_formats::{GridOfFile, ReadOptions, read_grid, read_grids};
 use bilux_math::{Aabb, Vec3};
 use bilux_scene::media::Grid;
 use flate2::Compression;
@@ -412,7 +412,15 @@ fn tiles_are_filled_and_a_file_has_several_grids() {
     };
     let velocity = Tree { name: "velocity".into(), kind: "Tree_vec3s_5_4_3", ..Tree::of(leaves.clone()) };
     let surface = Tree { name: "surface".into(), class: "level set", ..Tree::of(leaves) };
-    let all = grids(&file("", &[with_tiles, velocity, instance, surface]));
+    let bytes = file("", &[with_tiles, velocity, instance, surface]);
+    let named = |name: &str| read_grid(&bytes, "smoke.vdb", name, &ReadOptions::default());
+    assert_eq!(
+        (named("").unwrap().name, named("copy").unwrap().name),
+        ("fuel".to_owned(), "copy".to_owned())
+    );
+    let none = named("flame").unwrap_err().to_string();
+    assert!(none.contains("smoke.vdb") && none.contains("has no grid 'flame', but fuel, copy"), "{none}");
+    let all = grids(&bytes);
     let names: Vec<&str> = all.iter().map(|grid| &*grid.name).collect();
     assert_eq!(names, ["fuel", "velocity", "copy", "surface"]);
     assert!(all[1].grid.as_ref().unwrap_err().contains("has the type 'vec3s'"));

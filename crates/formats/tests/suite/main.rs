@@ -20,6 +20,7 @@ mod gltf_scattering;
 mod gltf_validated;
 mod gltf_written;
 mod grids;
+mod grids_in_scenes;
 mod hostile;
 mod left_out;
 mod materials_of_exporters;

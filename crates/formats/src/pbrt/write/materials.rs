@@ -24,6 +24,7 @@ fn inside(spec: &Spec) -> Medium {
         absorption: colour(spec, "absorption").unwrap_or(Rgb::BLACK),
         scattering: colour(spec, "scattering").unwrap_or(Rgb::BLACK),
         anisotropy: number(spec, "scattering_anisotropy").unwrap_or(0.0),
+        ..Medium::default()
     }
 }
 
@@ -54,7 +55,10 @@ impl Document<'_> {
                 self.glass(spec, "eta", "thin", ["roughness", "anisotropy", "rotation"], writing)?
             }
             "interface" => {
-                medium = inside(spec);
+                // Without its grid it would be a block of fog.
+                if spec.parameters.find("density").is_none() {
+                    medium = inside(spec);
+                }
                 " \"string type\" \"interface\"".to_owned()
             }
             "principled" => return self.principled(spec, writing),

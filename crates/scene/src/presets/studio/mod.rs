@@ -192,7 +192,8 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out:
     if ground == Ground::None || scene.objects.is_empty() || framing.is_below() {
         return;
     }
-    let colour = if drawings::is_pale(scene) { Rgb::grey(0.05) } else { Rgb::new(0.72, 0.71, 0.70) };
+    let is_pale = drawings::is_pale(scene) || is_white_smoke(scene);
+    let colour = if is_pale { Rgb::grey(0.05) } else { Rgb::new(0.72, 0.71, 0.70) };
     let paper = Spec::new(GROUND, "diffuse").with("reflectance", colour);
     let (material, mesh) = match ground {
         Ground::Mirror => {
@@ -204,6 +205,18 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out:
     };
     let material = scene.add_material(material);
     scene.objects.push(Object::new(GROUND, Arc::new(mesh), material));
+}
+
+/// True for a scene of nothing but smoke that scatters more light than it absorbs, which nobody would see on paper.
+fn is_white_smoke(scene: &SceneBuilder) -> bool {
+    let is_smoke = |object: &Object| {
+        let material = scene.materials.get(object.material).filter(|material| material.kind == "interface");
+        material.is_some_and(|material| {
+            let of = |key: &str| material.colour(key).map_or(0.0, |colour| colour.luminance());
+            of("scattering") > of("absorption")
+        })
+    };
+    !scene.objects.is_empty() && scene.objects.iter().all(is_smoke)
 }
 
 /// The index of the object that catches the shadow in a scene completed for an image without surroundings.

@@ -1,0 +1,147 @@
+//! Media whose density a grid gives: in the file itself, or in a file of NanoVDB.
+
+use super::parameters::ParameterList;
+use super::reader::Pbrt;
+use crate::FormatError;
+use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
+use bilux_scene::Span;
+use bilux_scene::media::Grid;
+use std::sync::Arc;
+
+/// A grid, and the place of its medium in the world.
+#[derive(Clone, Debug)]
+pub(super) struct Density {
+    grid: Arc<Grid>,
+    to_world: DMat4,
+}
+
+impl Density {
+    /// True if it is in the same place as a shape with this matrix.
+    fn is_placed_as(&self, shape_to_world: &DMat4) -> bool {
+        self.to_world == *shape_to_world
+    }
+}
+
+impl Pbrt<'_, '_> {
+    /// A grid of numbers in the list.
+    pub(super) fn uniform_grid(
+        &mut self,
+        name: &str,
+        key: &'static str,
+        list: &ParameterList,
+    ) -> Result<Density, FormatError> {
+        let numbers = list.numbers(key)?;
+        self.in_box(name, key, numbers.len(), |i| numbers[i], list)
+    }
+
+    /// A grid of the colours of absorption and scattering: the luminance of both is the density, and their means are its colours.
+    pub(super) fn rgb_grid(
+        &mut self,
+        name: &str,
+        list: &ParameterList,
+    ) -> Result<([Rgb; 2], Density), FormatError> {
+        let [absorption, scattering] = [list.triples("sigma_a")?, list.triples("sigma_s")?];
+        let count = absorption.len().max(scattering.len());
+        let of = |all: &[Vec3], i: usize| {
+            if all.is_empty() { Vec3::ONE } else { all.get(i).copied().unwrap_or(Vec3::ZERO) }
+        };
+        let luminance =
+            |i: usize| Rgb::from_array((of(&absorption, i) + of(&scattering, i)).to_array()).luminance();
+        if [&absorption, &scattering].iter().any(|all| !all.is_empty() && all.len() != count) {
+            let message = "'sigma_a' and 'sigma_s' have different numbers of colours";
+            return Err(FormatError::malformed(message, list.place("sigma_s")));
+        }
+        let sum = |all: &[Vec3]| (0..count).map(|i| of(all, i).as_dvec3()).sum::<DVec3>();
+        let total: f64 = (0..count).map(|i| f64::from(luminance(i))).sum();
+        let mean = |all: &[Vec3]| {
+            let mean = if total > 0.0 { sum(all) / total } else { DVec3::ZERO };
+            Rgb::from_array(mean.as_vec3().to_array())
+        };
+        let what = "the colours of a medium of type 'rgbgrid' are the same everywhere here, and only its density varies";
+        self.oddities.note(what, || list.at.clone());
+        let density = self.in_box(name, "sigma_s", count, luminance, list)?;
+        Ok(([mean(&absorption), mean(&scattering)], density))
+    }
+
+    /// A grid of numbers that fills the box of a medium. Towards the border they fade to 0 within a voxel, as in pbrt.
+    fn in_box(
+        &mut self,
+        name: &str,
+        key: &str,
+        count: usize,
+        value: impl Fn(usize) -> f32,
+        list: &ParameterList,
+    ) -> Result<Density, FormatError> {
+        let mut size = [0usize; 3];
+        for (side, key) in size.iter_mut().zip(["nx", "ny", "nz"]) {
+            *side = usize::try_from(list.integer(key)?.unwrap_or(1)).unwrap_or(0);
+        }
+        let [nx, ny, nz] = size;
+        let fail = |message: String| FormatError::malformed(message, list.place(key));
+        if nx.checked_mul(ny).and_then(|n| n.checked_mul(nz)) != Some(count) || count == 0 {
+            return Err(fail(format!(
+                "'{key}' has {count} values, but 'nx', 'ny' and 'nz' are {nx}, {ny} and {nz}"
+            )));
+        }
+        let (from, to) = (list.triple("p0", Vec3::ZERO)?, list.triple("p1", Vec3::ONE)?);
+        let voxel = (to - from) / Vec3::from(size.map(|side| side as f32));
+        let place = Transform::scale(voxel).zip(Transform::translate(from - voxel));
+        let Some(to_medium) = place.map(|(scale, shift)| scale.then(&shift)) else {
+            return Err(fail(format!("the box of a medium from {from} to {to} has no volume")));
+        };
+        let padded = size.map(|side| side + 2);
+        let file = &*list.at.file;
+        // Numbers, and blocks as floats in a list that grows by doubling, and as halves.
+        let bytes = padded.iter().fold(4 + 8 + 2, |bytes: u64, side| bytes.saturating_mul(*side as u64));
+        self.reading.budget.take_bytes(bytes, file)?;
+        let mut values = vec![0.0; padded.iter().product()];
+        let mut faults = 0;
+        for i in 0..count {
+            let [x, y, z] = [i % nx, i / nx % ny, i / (nx * ny)];
+            let density = value(i);
+            let is_sound = density >= 0.0 && density.is_finite();
+            faults += usize::from(!is_sound);
+            let at = ((z + 1) * padded[1] + y + 1) * padded[0] + x + 1;
+            values[at] = if is_sound { density } else { 0.0 };
+        }
+        if faults > 0 {
+            let what = "numbers of a grid that are negative or not finite are taken as 0";
+            self.oddities.note(what, || list.place(key));
+        }
+        let grid = Grid::dense(name, padded, &to_medium, &values).map_err(|error| fail(error.to_string()))?;
+        self.reading.budget.release(bytes);
+        self.reading.charge_grid(&grid, file)?;
+        Ok(Density { grid: Arc::new(grid), to_world: self.state.matrices[0] })
+    }
+
+    /// A grid of a file; `None`, with a warning, if that cannot be read.
+    pub(super) fn nanovdb(&mut self, list: &ParameterList) -> Result<Option<Density>, FormatError> {
+        let Some(file) = list.text("filename")? else {
+            return Err(FormatError::malformed(
+                "a medium of type 'nanovdb' needs a 'filename'",
+                list.at.clone(),
+            ));
+        };
+        let grid = self.reading.grid(self.folder.as_deref(), (file, "density"), &list.place("filename"))?;
+        Ok(Some(Density { grid, to_world: self.state.matrices[0] }))
+    }
+
+    /// A grid in the space of a shape, whose medium has a place of its own in the world; `None` for a shape
+    /// without extent.
+    pub(super) fn grid_in(
+        &mut self,
+        density: &Density,
+        shape_to_world: &DMat4,
+        at: &Span,
+    ) -> Result<Option<Arc<Grid>>, FormatError> {
+        if density.is_placed_as(shape_to_world) {
+            return Ok(Some(density.grid.clone()));
+        }
+        let to_medium = density.grid.to_object().matrix().as_dmat4();
+        let to_shape = shape_to_world.inverse() * density.to_world * to_medium;
+        let Some(to_shape) = Transform::from_matrix(to_shape) else { return Ok(None) };
+        let grid = Grid::clone(&density.grid).placed(&to_shape);
+        self.reading.charge_grid(&grid, &at.file)?;
+        Ok(Some(Arc::new(grid)))
+    }
+}
