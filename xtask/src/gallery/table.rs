@@ -34,7 +34,7 @@ pub(super) const PICTURES: &[Picture] = &[
         "--size 640x480 --spp 256 --denoise=builtin",
     ),
     picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
-    picture("jade.jpg", BuiltIn("jade.toml"), "-i bdpt --size 400x300 --spp 96 --denoise=builtin"),
+    picture("jade.jpg", BuiltIn("jade.toml"), "-i bdpt --size 400x300 --spp 72 --denoise=builtin"),
     picture("fog.jpg", BuiltIn("fog.toml"), "-i bdpt --size 400x300 --spp 96 --denoise=builtin"),
     // Models with default settings.
     picture("models/anisotropy.png", Model("gltf/AnisotropyStrengthTest"), ""),
