@@ -23,6 +23,9 @@ pub(crate) fn iterations(
     samples.clone().step_by(step as usize).map(move |first| first..end.min(first + step))
 }
 
+/// The photons of a tile, and their walks.
+type OfTile<const N: usize> = (Vec<(PhotonPosition, Photon<N>)>, Vec<PhotonWalk>);
+
 impl Photons {
     /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
     /// their light subpaths goes to `splats`.
@@ -109,7 +112,7 @@ impl<const N: usize> Photons<N> {
             }
             ((photons, walks), tracer.counters)
         };
-        let (parts, counters): (Vec<(Vec<(PhotonPosition, Photon<N>)>, Vec<PhotonWalk>)>, Vec<Counters>) =
+        let (parts, counters): (Vec<OfTile<N>>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
         let (parts, walks): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
         let mut counted = Counters::default();

@@ -85,6 +85,7 @@ impl Sub for &Matrix {
 
 impl Mul for &Matrix {
     type Output = Matrix;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "a product of matrices is made of sums")]
     fn mul(self, other: &Matrix) -> Matrix {
         let side = self.side;
         let mut values = vec![0.0; side * side];
