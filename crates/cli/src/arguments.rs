@@ -235,7 +235,7 @@ pub struct Render {
     /// Change any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
     pub set: Vec<String>,
-    /// The maximum number of bounces off and through surfaces; those in fog and milk do not count; 0 shows only emitters [default: 16, or 8 with --fast]
+    /// The maximum number of bounces; those inside milk and skin do not count; 0 shows only emitters [default: 16, or 8 with --fast]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::LIGHT)]
     pub max_depth: Option<u32>,
     /// How `cast`, `whitted` and `cook` compute highlights: from the halfway vector of the paper's Equation 1, or from

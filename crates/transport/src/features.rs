@@ -193,13 +193,13 @@ impl Sums {
             if event > 0 {
                 surface = tracer.closest(&ray);
             }
-            let arrived =
-                surface.and_then(|surface| media.closest_from(tracer, &ray, surface, u64::from(event)));
-            let Some((surface, passed)) = arrived else {
+            let arrived = surface.map(|surface| media.closest_from(tracer, &ray, surface, u64::from(event)));
+            let (arrived, passed) = arrived.unwrap_or((None, Rgb::WHITE));
+            beta *= passed;
+            let Some(surface) = arrived else {
                 self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
                 return;
             };
-            beta *= passed;
             if event == 0 {
                 self.depth += surface.t;
                 self.hits += 1;

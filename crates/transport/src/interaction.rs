@@ -28,6 +28,8 @@ pub(crate) struct MediumPoint {
     /// Time of the ray, in seconds.
     pub(crate) time: f32,
     pub(crate) phase: Phase,
+    /// Its medium is behind a surface, as in skin and milk, and not fog: such events do not count against the depth.
+    pub(crate) is_inside: bool,
 }
 
 impl Interaction {
@@ -53,6 +55,12 @@ impl Interaction {
     #[inline]
     pub(crate) fn is_in_medium(&self) -> bool {
         matches!(self, Interaction::Medium(_))
+    }
+
+    /// True for a point of a medium behind a surface: [`MediumPoint::is_inside`].
+    #[inline]
+    pub(crate) fn is_inside(&self) -> bool {
+        matches!(self, Interaction::Medium(MediumPoint { is_inside: true, .. }))
     }
 
     /// The point.

@@ -3,43 +3,43 @@
 /// Default number of scattering events after the camera.
 pub const DEFAULT_MAX_DEPTH: u32 = 16;
 
-/// Maximum number of events in media from one surface of a path to the next, and before the first and after the last. Of light
+/// Maximum number of events in media behind surfaces, one after the other, from one surface of a path to the next, and before the first and after the last. Of light
 /// in white milk without end, less than one part in a hundred goes on for longer.
 pub const MAX_MEDIUM_EVENTS: u32 = 1 << 16;
 
-/// Maximum number of events in media, one after the other, between which two subpaths are connected. Walks through milk have
+/// Maximum number of events in media behind surfaces, one after the other, between which two subpaths are connected. Walks through milk have
 /// thousands: whatever joins them finds hardly more than walks find by themselves, and takes the square of the time.
 pub(crate) const MAX_CONNECTED_ROW: u32 = if cfg!(test) { 3 } else { 16 };
 
-/// What limits a path: its events on surfaces, and those in media since the last surface.
+/// What limits a path: its events on surfaces and in fog, and those in skin, milk and the like since the last surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Events {
-    pub(crate) on_surfaces: u32,
+    pub(crate) counted: u32,
     pub(crate) in_row: u32,
 }
 
 impl Events {
-    /// With another one.
+    /// With another one, which may be behind a surface.
     #[inline]
-    pub(crate) fn and(self, is_in_medium: bool) -> Events {
-        match is_in_medium {
+    pub(crate) fn and(self, is_inside: bool) -> Events {
+        match is_inside {
             true => Events { in_row: self.in_row + 1, ..self },
-            false => Events { on_surfaces: self.on_surfaces + 1, in_row: 0 },
+            false => Events { counted: self.counted + 1, in_row: 0 },
         }
     }
 
     /// Of a path that connects the ends of two.
     #[inline]
     pub(crate) fn joined(self, other: Events) -> Events {
-        Events { on_surfaces: self.on_surfaces + other.on_surfaces, in_row: self.in_row + other.in_row }
+        Events { counted: self.counted + other.counted, in_row: self.in_row + other.in_row }
     }
 
-    /// Whether paths of this depth have them: only events on surfaces count against it. Without any, there is nothing but
+    /// Whether paths of this depth have them: events behind surfaces do not count against it. Without any, there is nothing but
     /// emission.
     #[inline]
     pub(crate) fn are_within(self, max_depth: u32) -> bool {
         let most_in_row = if max_depth > 0 { MAX_MEDIUM_EVENTS } else { 0 };
-        self.on_surfaces <= max_depth && self.in_row <= most_in_row
+        self.counted <= max_depth && self.in_row <= most_in_row
     }
 }
 

@@ -146,7 +146,8 @@ impl Media {
                 let t = begin + distance;
                 let p = Vec3::from(ray.origin) + direction * t;
                 self.overlap.leave();
-                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase };
+                let is_inside = !scene.material_of(self.inside).is_interface();
+                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase, is_inside };
                 return travelled.scattered(flight.path, [sigma_s, sigma_t], point);
             }
             travelled = travelled.passed(flight.path);
@@ -160,8 +161,8 @@ impl Media {
         travelled
     }
 
-    /// The first surface along a ray of unit direction that separates two media, and the transmittance up to there, given the
-    /// first surface along the ray: of media that vary an estimate, by random numbers of this seed. Afterwards these are the media on
+    /// The first surface along a ray of unit direction that separates two media, if there is one, and the transmittance up to there or
+    /// beyond all media, given the first surface along the ray: of media that vary an estimate, by random numbers of this seed. Afterwards these are the media on
     /// the side that the ray comes from.
     #[inline]
     pub(crate) fn closest_from(
@@ -170,23 +171,23 @@ impl Media {
         ray: &Ray,
         surface: Surface,
         seed: u64,
-    ) -> Option<(Surface, Rgb)> {
+    ) -> (Option<Surface>, Rgb) {
         let scene = tracer.scene;
         let direction = Vec3::from(ray.direction);
         let surface = self.arrive(tracer, ray, surface);
         let mut draws = draws_along(ray, seed);
         let passed = self.passed_between(scene, ray, [0.0, surface.t], &mut draws).transmittance;
         if self.overlap.separates(scene, &surface) {
-            return Some((surface, passed));
+            return (Some(surface), passed);
         }
         let (mut last, mut passed) = (surface, passed);
         loop {
             self.cross(scene, &last, direction);
-            let surface = tracer.closest(&behind(ray, &last))?;
+            let Some(surface) = tracer.closest(&behind(ray, &last)) else { return (None, passed) };
             let surface = self.arrive(tracer, ray, surface);
             passed *= self.passed_between(scene, ray, [last.t, surface.t], &mut draws).transmittance;
             if self.overlap.separates(scene, &surface) {
-                return Some((surface, passed));
+                return (Some(surface), passed);
             }
             last = surface;
         }

@@ -58,41 +58,35 @@ impl Merging {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonPosition {
     pub(crate) p: Vec3,
-    /// Scattering events before it, in bits: 10 for those on surfaces, 5 for those in media, and one that is set where the
+    /// Scattering events before it, in bits: 10 for those that count against the depth, 5 for the others, and one that is set where the
     /// subpath carries a single wavelength.
     pub(crate) steps: u16,
     /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
 }
 
-/// The number of events in media that a photon can count.
-const MAX_IN_MEDIA: u32 = 31;
+/// The number of events that do not count against the depth that a photon knows of.
+const MAX_UNCOUNTED: u32 = 31;
 
-// The events on surfaces fit into their bits.
+// Those that count fit into their bits.
 const _: () = assert!(MAX_DEPTH < 1 << 10);
 
 impl PhotonPosition {
-    pub(crate) fn new(
-        p: Vec3,
-        on_surfaces: u32,
-        in_media: u32,
-        is_split: bool,
-        origin: u16,
-    ) -> PhotonPosition {
-        let steps = (on_surfaces << 6 | in_media.min(MAX_IN_MEDIA) << 1) as u16 | u16::from(is_split);
+    pub(crate) fn new(p: Vec3, counted: u32, uncounted: u32, is_split: bool, origin: u16) -> PhotonPosition {
+        let steps = (counted << 6 | uncounted.min(MAX_UNCOUNTED) << 1) as u16 | u16::from(is_split);
         PhotonPosition { p, steps, origin }
     }
 
-    /// Scattering events on surfaces before it.
+    /// Scattering events before it that count against the depth.
     #[inline]
-    pub(crate) fn on_surfaces(&self) -> u32 {
+    pub(crate) fn counted(&self) -> u32 {
         u32::from(self.steps >> 6)
     }
 
-    /// Scattering events before it, of which it knows up to 31 in media: no one tells longer paths apart.
+    /// Scattering events before it, of which it knows up to 31 that do not count: no one tells longer paths apart.
     #[inline]
     pub(crate) fn depth(&self) -> u32 {
-        self.on_surfaces() + (u32::from(self.steps >> 1) & MAX_IN_MEDIA)
+        self.counted() + (u32::from(self.steps >> 1) & MAX_UNCOUNTED)
     }
 
     /// True where the subpath up to here carries a single wavelength.

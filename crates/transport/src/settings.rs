@@ -28,7 +28,7 @@ pub struct RenderSettings {
     pub seed: u64,
     /// Number of threads; 0 for one per core.
     pub threads: usize,
-    /// Maximum number of scattering events on surfaces after the camera; those in media do not count. 0 is emission only.
+    /// Maximum number of scattering events after the camera; those inside skin, milk and the like do not count. 0 is emission only.
     pub max_depth: u32,
     /// Where in a pixel its central sample lies.
     pub pixel_anchor: PixelAnchor,

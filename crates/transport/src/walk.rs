@@ -14,8 +14,8 @@ pub(crate) struct Walk {
     pub(crate) ray: Ray,
     /// Scattering events so far.
     pub(crate) depth: u32,
-    /// Those of them in media: all, and those since the last surface.
-    in_media: [u32; 2],
+    /// Those of them in media behind surfaces: all, and those in a row up to here.
+    inside: [u32; 2],
     /// Throughput: the weight of all events, over their mean density of walks in all channels.
     pub(crate) beta: Rgb,
     /// The densities of walks in each channel over their mean.
@@ -37,7 +37,7 @@ impl Walk {
         Walk {
             ray: *ray,
             depth: 0,
-            in_media: [0; 2],
+            inside: [0; 2],
             odds: Rgb::WHITE,
             beta,
             eta_scale: 1.0,
@@ -56,8 +56,8 @@ impl Walk {
     /// Its events so far, as far as they limit it.
     #[inline]
     pub(crate) fn events(&self) -> Events {
-        let [in_media, in_row] = self.in_media;
-        Events { on_surfaces: self.depth - in_media, in_row }
+        let [inside, in_row] = self.inside;
+        Events { counted: self.depth - inside, in_row }
     }
 
     /// The unit direction to where it comes from.
@@ -79,8 +79,8 @@ impl Walk {
     ) {
         self.beta *= sample.weight;
         self.depth += 1;
-        self.in_media = match self.in_media {
-            [all, in_row] if at.is_in_medium() => [all + 1, in_row + 1],
+        self.inside = match self.inside {
+            [all, in_row] if at.is_inside() => [all + 1, in_row + 1],
             [all, _] => [all, 0],
         };
         self.specular &= sample.is_delta;
@@ -118,7 +118,7 @@ impl Walk {
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the
-    /// beginning. In a medium, whatever has lost nothing goes on: a walk through milk has thousands of events. [Arvo 1990]
+    /// beginning. Behind a surface, whatever has lost nothing goes on: a walk through milk has thousands of events. [Arvo 1990]
     #[inline]
     pub(crate) fn survives(&mut self, free: u32, full: f32, u: impl FnOnce() -> f32) -> bool {
         if self.beta.is_black() {
@@ -127,7 +127,7 @@ impl Walk {
         if self.depth <= free {
             return true;
         }
-        let [_, in_row] = self.in_media;
+        let [_, in_row] = self.inside;
         let most = if in_row > 0 { 1.0 } else { MOST };
         let survival = survival(self.beta, full, self.eta_scale, most);
         if u() < survival {

@@ -61,7 +61,7 @@ pub const RENDER: Entry = Entry {
         ),
         integer(
             "max_depth",
-            "maximum number of scattering events on surfaces after the camera; those in media do not count; 0 is emission only",
+            "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only",
             0,
             10_000,
             "16",
@@ -212,7 +212,7 @@ pub struct Settings {
     pub stop: Stop,
     /// The seed of the random numbers.
     pub seed: u64,
-    /// The maximum number of scattering events on surfaces after the camera.
+    /// The maximum number of scattering events after the camera; those inside skin and milk do not count.
     pub max_depth: u32,
     /// The number of threads; 0 for all cores.
     pub threads: usize,

@@ -154,7 +154,8 @@ pub(crate) fn to_vertex<const N: usize>(
     techniques: &TechniqueCounts<N>,
 ) -> Option<Connection<N>> {
     let in_medium = [z.at.is_in_medium(), y.at.is_in_medium()];
-    if in_medium == [true; 2] && z.events().joined(y.events()).in_row > MAX_CONNECTED_ROW {
+    let is_inside = z.at.is_inside() && y.at.is_inside();
+    if is_inside && z.events().joined(y.events()).in_row > MAX_CONNECTED_ROW {
         return None;
     }
     let between = y.at.p() - z.at.p();
@@ -205,8 +206,8 @@ pub(crate) fn merged<const N: usize>(
         if walk.is_some_and(|walk| walk.channel != task.sample.channel) {
             return;
         }
-        let on_surfaces = z.events().on_surfaces + position.on_surfaces();
-        if on_surfaces > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
+        let counted = z.events().counted + position.counted();
+        if counted > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };

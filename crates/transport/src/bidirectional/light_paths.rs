@@ -54,9 +54,9 @@ fn goes_on<const N: usize>(
     roulette_depth: u32,
     task: &mut Task,
 ) -> bool {
-    // One more event has to come; it may be in a medium.
+    // One more event has to come; it may be one that does not count.
     let Context { scene, max_depth, .. } = task.context;
-    if vertex.events().on_surfaces >= *max_depth && !scene.scatters() {
+    if vertex.events().counted >= *max_depth && !scene.scatters() {
         return false;
     }
     task.sample.sampler.enter(LIGHT_STREAM + 1 + u64::from(vertex.depth));

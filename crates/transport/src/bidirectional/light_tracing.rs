@@ -49,10 +49,13 @@ fn emitted_by(
     (ray, seed): (&Ray, u64),
     tracer: &mut Tracer,
 ) -> Rgb {
-    match first.and_then(|surface| media.closest_from(tracer, ray, surface, seed)) {
-        Some((surface, passed)) => passed * tracer.scene.emission(&surface, -Vec3::from(ray.direction)),
+    let arrived = first.map(|surface| media.closest_from(tracer, ray, surface, seed));
+    let (surface, passed) = arrived.unwrap_or((None, Rgb::WHITE));
+    let light = match surface {
+        Some(surface) => tracer.scene.emission(&surface, -Vec3::from(ray.direction)),
         None => tracer.scene.background(ray.direction.into(), 0),
-    }
+    };
+    passed * light
 }
 
 /// Samples of light tracing.

@@ -63,9 +63,9 @@ impl<const N: usize> Vertex<N> {
     /// The photon that is stored for merging; `None` in a medium.
     pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
         let surface = self.at.surface()?;
-        let on_surfaces = self.events.on_surfaces - 1;
-        let in_media = self.depth - on_surfaces;
-        let position = PhotonPosition::new(surface.p, on_surfaces, in_media, self.came_split, self.origin);
+        let counted = self.events.counted - 1;
+        let uncounted = self.depth - counted;
+        let position = PhotonPosition::new(surface.p, counted, uncounted, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, surface.n_geom, self.beta);
         Some((
             position,
@@ -204,7 +204,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if at.is_in_medium() { PerSet::ZERO } else { merged };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
-        let events = self.walk.events().and(at.is_in_medium());
+        let events = self.walk.events().and(at.is_inside());
         self.partial.in_row(events.in_row);
         self.by_area = false;
         self.leaves_medium = at.is_in_medium();

@@ -42,8 +42,7 @@ impl PixelIntegrator for Occlusion {
         // Boundaries of media are not surfaces.
         let mut media = Media::at_start(task.tracer, ray);
         let first = task.tracer.closest(ray);
-        let Some((surface, _)) = first.and_then(|first| media.closest_from(task.tracer, ray, first, 0))
-        else {
+        let Some(surface) = first.and_then(|first| media.closest_from(task.tracer, ray, first, 0).0) else {
             task.sample.note(0, || "leaves the scene".to_owned());
             return Rgb::WHITE;
         };

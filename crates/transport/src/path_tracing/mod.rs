@@ -124,7 +124,7 @@ impl PathTracing {
         if let Arrival::Surface(surface) = arrival {
             self.collect(path, surface, task);
         }
-        let events = path.walk.events().and(matches!(arrival, Arrival::Medium(_)));
+        let events = path.walk.events().and(matches!(arrival, Arrival::Medium(point) if point.is_inside));
         if !events.are_within(task.context.max_depth) {
             return None;
         }

@@ -92,8 +92,8 @@ impl Paths {
                     let reflectance = context.scene.material(&surface).lambertian_reflectance(&surface);
                     if !is_clear && !faces_away(surface.n_shade, surface.n_geom, wo) {
                         let walk = &mut one.path.walk;
-                        let arrived = walk.media.closest_from(tracer, &walk.ray, surface, 0);
-                        walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
+                        let (_, passed) = walk.media.closest_from(tracer, &walk.ray, surface, 0);
+                        walk.beta *= passed;
                     }
                     d.others.push((i, [surface.p, surface.p_error, surface.n_geom], surface.n_shade));
                     reflectance

@@ -65,13 +65,14 @@ impl Paths {
             let mut surface = tracer.surface(&one.path.walk.ray, hit);
             if !is_clear {
                 let walk = &mut one.path.walk;
-                let Some((next, passed)) = walk.media.closest_from(tracer, &walk.ray, surface, 0) else {
+                let (next, passed) = walk.media.closest_from(tracer, &walk.ray, surface, 0);
+                walk.beta *= passed;
+                let Some(next) = next else {
                     let (path, mut task) = one.parts(context, tracer);
                     tracing.escape(path, &mut task);
                     continue;
                 };
                 surface = next;
-                walk.beta *= passed;
             }
             let wo = one.path.walk.wo();
             let (path, mut task) = one.parts(context, tracer);

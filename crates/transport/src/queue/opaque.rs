@@ -11,7 +11,7 @@ use super::vertices::{Point, Vertices};
 use crate::path_tracing::PathTracing;
 use crate::task::Context;
 use bilux_accel::Hit;
-use bilux_math::{Frame, Rgb, Vec2};
+use bilux_math::{Frame, Vec2};
 use bilux_scene::Tracer;
 use bilux_scene::bsdf::{AlbedoTable, OpaqueBaseAlbedos, OpaqueBaseForWo, OpaqueBaseInputs, faces_away};
 
@@ -141,8 +141,8 @@ impl Paths {
             };
             if !is_clear {
                 let walk = &mut one.path.walk;
-                let arrived = walk.media.closest_from(tracer, &walk.ray, surface, 0);
-                walk.beta *= arrived.map_or(Rgb::BLACK, |(_, passed)| passed);
+                let (_, passed) = walk.media.closest_from(tracer, &walk.ray, surface, 0);
+                walk.beta *= passed;
             }
             one.begin_event();
             let (path, mut task) = one.parts(context, tracer);

@@ -2,7 +2,7 @@
 //! the surfaces and the camera. Beer's law attenuates every edge of a path, whichever technique found it.
 
 use crate::common::statistics::{UNLIKELY, agreement, blocks};
-use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot};
+use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot, sky};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::generators::shapes::cuboid;
@@ -130,4 +130,27 @@ fn connections_are_attenuated_like_traced_rays() {
     assert!(agreement(&followed, &wrong) < UNLIKELY);
     let unhindered = blocks(&indirect(Rgb::BLACK, true), &*integrator("path scattering"), 800);
     assert!(unhindered[11].iter().sum::<f64>() > 4.0 * followed[11].iter().sum::<f64>());
+}
+
+/// The boundary of what absorbs and has no surface absorbs what comes from the sky behind it too.
+#[test]
+fn the_sky_is_seen_through_what_absorbs() {
+    let mut builder = SceneBuilder::default();
+    let smoke = Spec::new("", "interface").with("absorption", 2.0f32);
+    put(
+        &mut builder,
+        "smoke",
+        Arc::new(cuboid(Aabb { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) })),
+        smoke,
+    );
+    sky(&mut builder, 1.0);
+    look(&mut builder, Vec3::Z * 100.0, Vec3::ZERO, 0.1);
+    let scene = built(&builder);
+    let wanted = bilux_math::transcendental::exp(-2.0);
+    for name in ["path", "light", "bdpt", "sppm", "vcm", "auto"] {
+        let film = shoot(&scene, &*integrator(name), &RenderSettings::new(4, 4, 4)).film;
+        for pixel in film.to_rgb() {
+            assert!((pixel.g - wanted).abs() < 2e-3, "{name}: {} for {wanted}", pixel.g);
+        }
+    }
 }

@@ -218,12 +218,15 @@ fn fog_looks_the_same_from_both_ends() {
     }
 }
 
-/// Events in fog do not count against the depth, and all integrators agree on which paths there are.
+/// Events in fog count against the depth, those in milk do not, and all integrators agree on which paths there are.
 #[test]
 fn paths_of_limited_depth_are_the_same_from_both_ends() {
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
     let thick = medium(0.1f32, Rgb::new(1.2, 0.8, 0.4)).with("scattering_anisotropy", 0.2f32);
-    let scene = built(&foggy(panel, thick));
+    let mut builder = foggy(panel, thick);
+    let milk = Spec::new("", "dielectric").with("eta", 1.2f32).with("scattering", Rgb::new(6.0, 4.0, 2.0));
+    put(&mut builder, "milk", ball(Vec3::new(0.0, 0.5, 1.6), 0.4, 10, true), milk.with("roughness", 0.3f32));
+    let scene = built(&builder);
     for max_depth in 1..=3 {
         let path = blocks_of_depth(&scene, &*integrator("path"), 0, max_depth);
         let names = ["bdpt", "light", "vcm"];
@@ -245,18 +248,37 @@ fn nothing_scatters_at_depth_zero() {
     }
 }
 
+/// Light that comes to the camera straight out of fog has scattered once; behind a surface it may have scattered any number of times.
+#[test]
+fn depth_counts_fog() {
+    let (fog, glass) = (medium(0.0f32, 2.0f32), Spec::new("", "dielectric").with("eta", 1.0f32));
+    let mean_to = |material: &Spec, max_depth: u32| {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), material.clone());
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 20.0);
+        mean(&built(&builder), "path", max_depth, 24, 16).0
+    };
+    // A ray through the ball's middle meets two events on average.
+    assert!(mean_to(&fog, 1) < 0.75 && mean_to(&fog, 100) > 0.97);
+    // Light goes in and out of glass by two events.
+    let milk = glass.with("scattering", 2.0f32);
+    assert!(mean_to(&milk, 2) > 0.97, "{}", mean_to(&milk, 2));
+}
+
 /// A ball in which light scatters hundreds of times, and which absorbs nothing, is white at the usual depth.
 #[test]
 fn long_walks_through_milk_do_not_end_early() {
     let milk = Spec::new("", "dielectric").with("eta", 1.3f32).with("scattering", 15.0f32);
-    for (material, names) in [(medium(0.0f32, 30.0f32), &["path", "vcm"]), (milk, &["path", "bdpt"])] {
+    let matched = Spec::new("", "dielectric").with("eta", 1.0f32).with("scattering", 30.0f32);
+    for (material, names) in [(matched, &["path", "vcm"]), (milk, &["path", "bdpt"])] {
         let mut builder = SceneBuilder::default();
         put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), material);
         sky(&mut builder, 1.0);
         look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 20.0);
         let scene = built(&builder);
         for name in names {
-            let settings = RenderSettings::new(24, 24, effort(4, 64));
+            let settings = RenderSettings::new(24, 24, effort(8, 64));
             let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
             let (mean, error) = estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>());
             assert!(error < 0.04, "{name}: {mean} ± {error}");

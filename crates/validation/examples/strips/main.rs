@@ -50,6 +50,7 @@ fn main() -> Result<(), Failure> {
     let lights = LIGHTS.iter().map(|row| (Table::Lights, row.entry));
     let files = tempfile::tempdir()?;
     write_textures(files.path())?;
+    write_grids(files.path())?;
     for (table, entry) in materials.chain(textures).chain(lights) {
         for parameter in entry.parameters {
             let path = format!("{}/{}-{}.jpg", folder(table), entry.name, parameter.name);
@@ -123,6 +124,27 @@ fn rendered(text: &str, table: Table, spp: i64, files: &Path) -> Result<Picture,
     };
     let curve = if table == Table::Textures { "none" } else { "neutral" };
     Ok(to_display(&light, 0.0, tone_map(curve)?)?)
+}
+
+/// Grids of 32³ voxels: puffs, and a heat that falls with the height, in kelvin.
+fn write_grids(folder: &Path) -> Result<(), Failure> {
+    const SIDE: usize = 32;
+    let wave = |i: usize| bilux_math::transcendental::sin((i as f32 + 0.5) * 0.55);
+    let puffs = |[x, y, z]: [usize; 3]| (2.5 * wave(x) * wave(y) * wave(z)).max(0.0);
+    let heat = |[_, y, _]: [usize; 3]| 2200.0 - 1200.0 * y as f32 / SIDE as f32;
+    let write = |name: &str, value: &dyn Fn([usize; 3]) -> f32| {
+        let header =
+            format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({SIDE}, {SIDE}, {SIDE}), }}");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend(118u16.to_le_bytes());
+        bytes.extend(format!("{header:<117}\n").bytes());
+        for i in 0..SIDE * SIDE * SIDE {
+            bytes.extend(value([i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)]).to_le_bytes());
+        }
+        fs::write(folder.join(name), bytes)
+    };
+    write("smoke.npy", &puffs)?;
+    Ok(write("heat.npy", &heat)?)
 }
 
 /// A normal map of round bumps, and a sky with a sun.

@@ -115,6 +115,10 @@ material = \"shown\"
 ";
 
 const NORMALS: &str = "{ texture = \"bumps.png\", u_scale = 8, v_scale = 4 }";
+/// Grids that fill the ball.
+const SMOKE: &str =
+    "{ grid = \"smoke.npy\", place = [0.0625, 0, 0, 0, 0.0625, 0, 0, 0, 0.0625, -1, -1, -1] }";
+const HEAT: &str = "{ grid = \"heat.npy\", place = [0.0625, 0, 0, 0, 0.0625, 0, 0, 0, 0.0625, -1, -1, -1] }";
 const SKY: &str = "{ texture = \"sky.hdr\" }";
 
 /// The scene with one value of a parameter.
@@ -132,6 +136,8 @@ pub(crate) fn scene(table: Table, kind: &str, parameter: &str, value: &str, show
             let value = match value {
                 "map" => NORMALS,
                 "sky" => SKY,
+                "smoke" => SMOKE,
+                "heat" => HEAT,
                 value => value,
             };
             // Writing into a text cannot fail.

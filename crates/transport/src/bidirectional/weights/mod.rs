@@ -102,11 +102,12 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
 /// How much of each channel the fog absorbs and scatters, per metre.
 const FOG: [Rgb; 2] = [Rgb::new(0.02, 0.05, 0.01), Rgb::new(0.25, 0.15, 0.1)];
 
-/// The same bodies in fog, with mirrors in place of glass, so that fog fills every edge.
+/// The same bodies inside a ball of what scatters, with mirrors in place of glass, so that fog fills every edge.
 fn foggy(lights: &[&str]) -> Scene {
     let mut builder = filled(lights, cameras()[0].clone(), &Spec::new("", "mirror"));
-    let fog = Spec::new("", "interface").with("absorption", FOG[0]).with("scattering", FOG[1]);
-    let fog = fog.with("scattering_anisotropy", 0.4f32);
+    // Inside a surface, so that rows of events have a limit.
+    let fog = Spec::new("", "dielectric").with("eta", 1.0f32).with("scattering_anisotropy", 0.4f32);
+    let fog = fog.with("absorption", FOG[0]).with("scattering", FOG[1]);
     shapes::put(&mut builder, "fog", shapes::ball(Vec3::ZERO, 9.0, 8, false), fog);
     shapes::built(&builder)
 }

@@ -109,12 +109,10 @@ impl Path {
     /// The number of points in a row in media around the edge that connects `s` vertices from the light with the rest; 0 where one
     /// of its ends is on a surface.
     fn row_at(&self, s: usize) -> u32 {
-        let is_in_medium = |node: &&PathVertex| node.at.is_in_medium();
+        let is_inside = |node: &&PathVertex| node.at.is_inside();
         let (before, behind) = self.nodes.split_at(s - 1);
-        let rows = [
-            before.iter().rev().take_while(is_in_medium).count(),
-            behind.iter().take_while(is_in_medium).count(),
-        ];
+        let rows =
+            [before.iter().rev().take_while(is_inside).count(), behind.iter().take_while(is_inside).count()];
         if rows.contains(&0) { 0 } else { rows.iter().sum::<usize>() as u32 }
     }
 
