@@ -35,6 +35,8 @@ pub(super) const PICTURES: &[Picture] = &[
     ),
     picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
     picture("jade.jpg", BuiltIn("jade.toml"), "-i bdpt --size 400x300 --spp 72 --denoise=builtin"),
+    picture("campfire.jpg", BuiltIn("campfire.toml"), "-i path --size 400x300 --spp 256 --denoise=builtin"),
+    picture("cloud.jpg", BuiltIn("cloud.toml"), "-i path --size 400x300 --spp 128 --denoise=builtin"),
     picture("fog.jpg", BuiltIn("fog.toml"), "-i bdpt --size 400x300 --spp 96 --denoise=builtin"),
     // Models with default settings.
     picture("models/anisotropy.png", Model("gltf/AnisotropyStrengthTest"), ""),

@@ -37,7 +37,7 @@ use tables::ReadTables;
 const MAGIC: [u8; 12] = *b"bilux scene\n";
 
 /// The version of the form of documents and blobs; others are refused.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// The bytes of a hash.
 const HASH: usize = 32;
