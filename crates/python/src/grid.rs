@@ -19,7 +19,8 @@ use std::sync::Arc;
 ///
 /// Args:
 ///     values: an array (depth, height, width), none of them negative: values[z, y, x]. They are kept as 16-bit floats.
-///     bounds: two opposite corners, (x, y, z) each, of the box in the object that the voxels fill, in metres.
+///     bounds: two opposite corners, (x, y, z) each, of the box in the object that the voxels fill, in metres. If it is not given,
+///         voxels are cubes, begin at the origin, and the longest side is 1.
 ///     name: a name for messages and written files.
 ///
 /// Example:
@@ -32,8 +33,8 @@ pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
 #[pymethods]
 impl Grid {
     #[new]
-    #[pyo3(signature = (values, *, bounds = ([0.0; 3], [1.0; 3]), name = ""))]
-    fn new(values: &Bound<'_, PyAny>, bounds: ([f32; 3], [f32; 3]), name: &str) -> PyResult<Grid> {
+    #[pyo3(signature = (values, *, bounds = None, name = ""))]
+    fn new(values: &Bound<'_, PyAny>, bounds: Option<([f32; 3], [f32; 3])>, name: &str) -> PyResult<Grid> {
         let array = arrays::numbers("values", values)?;
         let &[depth, height, width] = array.shape() else {
             let shape = arrays::shape_of(&array);
@@ -41,7 +42,7 @@ impl Grid {
             return Err(PyValueError::new_err(message));
         };
         let size = [width, height, depth];
-        let place = place(bounds, size).ok_or_else(|| {
+        let place = place(bounds.unwrap_or_else(|| cubes(size)), size).ok_or_else(|| {
             PyValueError::new_err("bounds: the corners of a box are finite, and differ in x, y and z")
         })?;
         let grid = bilux::scene::media::Grid::dense(name, size, &place, &arrays::floats(&array)?);
@@ -127,4 +128,10 @@ fn place((a, b): ([f32; 3], [f32; 3]), size: [usize; 3]) -> Option<Transform> {
     let (min, max) = (Vec3::from(a).min(b.into()), Vec3::from(a).max(b.into()));
     let voxel = (max - min) / Vec3::from(size.map(|n| n.max(1) as f32));
     Some(Transform::scale(voxel)?.then(&Transform::translate(min)?))
+}
+
+/// The box of voxels that are cubes: from the origin, its longest side 1.
+fn cubes(size: [usize; 3]) -> ([f32; 3], [f32; 3]) {
+    let longest = size.into_iter().max().unwrap_or(1).max(1) as f32;
+    ([0.0; 3], size.map(|side| side.max(1) as f32 / longest))
 }

@@ -91,7 +91,7 @@ class Grid:
         cls,
         values: ArrayLike,
         *,
-        bounds: tuple[Sequence[float], Sequence[float]] = ((0, 0, 0), (1, 1, 1)),
+        bounds: tuple[Sequence[float], Sequence[float]] | None = None,
         name: str = "",
     ) -> Self: ...
     @staticmethod
