@@ -55,7 +55,7 @@ pub struct StudioArguments {
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
     /// Put fog around everything, in which people see this many metres far
-    #[arg(long, value_name = "METRES", value_parser = parse_metres, help_heading = help::STUDIO)]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = parse_metres, help_heading = help::STUDIO)]
     pub fog: Option<f32>,
     /// Change a parameter of a material, a light or a camera, named by its name or by its number from 0, such as
     /// light:0:intensity=5 or material:Paint:base_color=0.8,0,0

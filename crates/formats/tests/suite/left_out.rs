@@ -3,7 +3,8 @@
 
 use bilux_formats::{WriteOptions, write};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Transform, Vec3};
+use bilux_scene::media::Grid;
 use bilux_scene::{LIGHTS, MATERIALS, Mesh, Object, SceneBuilder, Spec, Texture, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -70,6 +71,10 @@ fn others(parameter: &Parameter) -> Vec<Value> {
             words.iter().filter(|word| **word != parameter.default).map(|word| Value::from(*word)).collect()
         }
         ParameterKind::Texture => vec![Value::Texture(0)],
+        ParameterKind::Grid => {
+            let grid = Grid::dense("smoke", [2, 1, 1], &Transform::IDENTITY, &[0.0, 1.0]).unwrap();
+            vec![Value::from(Arc::new(grid))]
+        }
         ParameterKind::Vector => vec![Value::from(Vec3::new(3.0, 2.0, 1.0))],
         _ => Vec::new(),
     }

@@ -202,10 +202,11 @@ pub(crate) fn merged<const N: usize>(
     let Interaction::Surface(surface, bsdf) = &z.at else { return };
     let facing = bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(surface.p, |position, y, walk| {
-        // Merge only on the same surface, not with the other side of a sheet or around a corner.
+        // Densities are those of one channel.
         if walk.is_some_and(|walk| walk.channel != task.sample.channel) {
             return;
         }
+        // Merge only on the same surface, not with the other side of a sheet or around a corner.
         let counted = z.events().counted + position.counted();
         if counted > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
             return;

@@ -1,7 +1,8 @@
 //! Media whose density a grid gives: slabs of layers, furnaces, and the same mean by every integrator.
 
 use crate::common::statistics::{
-    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, blocks, estimate,
+    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
+    blocks, estimate,
 };
 use crate::common::{built, diffuse, effort, floor, look, put, shoot, sky, without_mirrors};
 use bilux_math::hash::{mix64, unit_f32};
@@ -119,14 +120,7 @@ fn white_smoke_vanishes_in_a_furnace() {
     look(&mut builder, Vec3::new(2.0, 1.5, 4.0), Vec3::ZERO, 30.0);
     let scene = built(&builder);
     for name in ["path", "bdpt", "vcm", "auto"] {
-        let integrator = integrators::build(&Spec::new("", name)).unwrap();
-        let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(24, 24, effort(16, 256)) };
-        let pixels = shoot(&scene, &*integrator, &settings).film.to_rgb();
-        for channel in 0..3 {
-            let values: Vec<f64> = pixels.iter().map(|pixel| f64::from(pixel[channel])).collect();
-            let (mean, error) = estimate(&values);
-            assert!((mean - 1.0).abs() < 3.5 * error + 1e-4, "{name}: {mean} ± {error}");
-        }
+        assert_vanishes("smoke", &scene, name);
     }
 }
 
@@ -258,14 +252,7 @@ fn everything_in_an_oven_looks_the_same() {
         look(&mut builder, Vec3::new(2.0, 1.5, 4.0), Vec3::ZERO, 30.0);
         let scene = built(&builder);
         for name in ["path", "bdpt", "vcm"] {
-            let integrator = integrators::build(&Spec::new("", name)).unwrap();
-            let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(24, 24, effort(16, 256)) };
-            let pixels = shoot(&scene, &*integrator, &settings).film.to_rgb();
-            for channel in 0..3 {
-                let values: Vec<f64> = pixels.iter().map(|pixel| f64::from(pixel[channel])).collect();
-                let (mean, error) = estimate(&values);
-                assert!((mean - 1.0).abs() < 3.5 * error + 1e-4, "{name}: {mean} ± {error}");
-            }
+            assert_vanishes("smoke", &scene, name);
         }
     }
 }

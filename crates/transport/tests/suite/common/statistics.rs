@@ -104,3 +104,13 @@ pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
         assert!(p < UNLIKELY, "{other} passes: p = {p}");
     }
 }
+
+/// Fails unless an integrator finds that a scene in light of 1 from everywhere is as bright everywhere.
+pub fn assert_vanishes(what: &str, scene: &Scene, name: &str) {
+    let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(24, 24, effort(16, 256)) };
+    let pixels = shoot(scene, &*integrator(name), &settings).film.to_rgb();
+    for of in 0..3 {
+        let (mean, error) = estimate(&channel(&pixels, of));
+        assert!((mean - 1.0).abs() < 3.5 * error + 1e-4, "{what}, {name}: {mean} ± {error}");
+    }
+}
