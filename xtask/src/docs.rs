@@ -51,8 +51,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     }
     say(&format!("writing the pages in {FOLDER} from the tables"));
     write(&pages()?)?;
-    say("writing the types of materials and lights in crates/scene/src/typed");
-    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "typed::every_material"];
+    say("writing the types of materials and lights, and the settings of requests");
+    let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "typed::every_"];
     output(cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
     say("writing the documentation of the libraries to target/doc");
     library()

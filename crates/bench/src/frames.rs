@@ -67,7 +67,7 @@ fn kept(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Er
     let mut job = Job::new(scene, settings)?;
     let mut pictures = Vec::new();
     for frame in 0..FRAMES {
-        job.at_time(frame as f32 / job.settings().fps);
+        job = job.at_time(frame as f32 / job.settings().fps);
         pictures.push(bits(&job)?);
     }
     Ok(pictures)
@@ -77,8 +77,8 @@ fn kept(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Er
 fn rebuilt(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Error> {
     let mut pictures = Vec::new();
     for frame in 0..FRAMES {
-        let mut job = Job::new(scene, settings)?;
-        job.at_time(frame as f32 / job.settings().fps);
+        let job = Job::new(scene, settings)?;
+        let job = job.at_time(frame as f32 / job.settings().fps);
         pictures.push(bits(&job)?);
     }
     Ok(pictures)

@@ -46,7 +46,7 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
         for round in 0..options.repeats.max(1) {
             for competitor in &mut competitors {
                 // A loop over all triangles takes long enough for a single timing.
-                if round == 0 || !competitor.is_loop() {
+                if round == 0 || !competitor.is_loop {
                     progress(&format!("{count} teapots by {}, round {}", competitor.accel, round + 1));
                     competitor.time_round()?;
                 }
@@ -88,6 +88,7 @@ fn settings(accel: &str, size: (u32, u32)) -> Parameters {
 struct Competitor {
     accel: String,
     job: Job,
+    is_loop: bool,
     build_seconds: f64,
     seconds: Vec<f64>,
     outcome: Option<Outcome>,
@@ -96,18 +97,14 @@ struct Competitor {
 impl Competitor {
     fn new(scene: &SceneBuilder, accel: &str, options: &Options) -> Result<Competitor, Error> {
         let (build_seconds, job) = timed(|| Job::new(scene, &settings(accel, options.size_or((512, 512)))))?;
-        Ok(Competitor { accel: accel.to_owned(), job, build_seconds, seconds: Vec::new(), outcome: None })
-    }
-
-    /// True if counting costs nothing, so that one run provides both time and counts.
-    fn is_loop(&self) -> bool {
-        self.accel.starts_with("brute")
+        // Where counting costs nothing, one run provides both time and counts.
+        let is_loop = accel.starts_with("brute");
+        let job = if is_loop { job.counting_work() } else { job };
+        let accel = accel.to_owned();
+        Ok(Competitor { accel, job, is_loop, build_seconds, seconds: Vec::new(), outcome: None })
     }
 
     fn time_round(&mut self) -> Result<(), Error> {
-        if self.is_loop() {
-            self.job.count_work();
-        }
         let (seconds, outcome) = timed(|| self.job.render(&Quiet))?;
         self.seconds.push(seconds);
         self.outcome = Some(outcome);
@@ -115,12 +112,9 @@ impl Competitor {
     }
 
     fn row(mut self, count: u32, scene: &SceneBuilder) -> Result<Row, Error> {
-        let outcome = match self.outcome.take().filter(|_| self.is_loop()) {
+        let outcome = match self.outcome.take().filter(|_| self.is_loop) {
             Some(counted) => counted,
-            None => {
-                self.job.count_work();
-                self.job.render(&Quiet)?
-            }
+            None => self.job.counting_work().render(&Quiet)?,
         };
         let trees = self.job.scene().geometry().instances();
         let bytes: usize = trees.iter().map(|tree| tree.accelerator.memory_bytes()).sum();

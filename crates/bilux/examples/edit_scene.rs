@@ -12,10 +12,7 @@ use std::time::Duration;
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = bilux::generate(&Spec::new("", "cornell"))?;
-    let mut settings = Parameters::default();
-    settings.set("size", "160x120");
-    settings.set("spp", 64);
-    let mut session = Session::new(scene, &settings)?;
+    let mut session = Session::new(scene, JobRequest::new().size(160, 120).spp(64))?;
     for frame in 1..=3 {
         let lifted = Transform::translate(Vec3::Y * 0.05 * frame as f32).ok_or("a finite translation")?;
         session.apply(Edit::Place(0, Motion::still(lifted)))?;

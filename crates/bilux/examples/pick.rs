@@ -10,7 +10,7 @@ use bilux::scene::{CameraSample, Tracer};
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = bilux::generate(&Spec::new("", "cornell"))?;
-    let job = Job::new(&scene, &Parameters::default())?;
+    let job = Job::new(&scene, JobRequest::new())?;
     let (_, camera) = job.scene().cameras().first().ok_or("the scene has a camera")?;
     let mut tracer = Tracer::new(job.scene(), false);
     let mut names = Vec::new();

@@ -21,11 +21,8 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera = Spec::new("eye", "perspective").with("position", Vec3::new(0.0, 2.0, 6.0));
     scene.cameras.push(CameraSpec::new(camera.with("look_at", Vec3::Y)));
 
-    let mut settings = Parameters::default();
-    settings.set("integrator", "path");
-    settings.set("size", "48x32");
-    settings.set("spp", 8);
-    let picture = Job::new(&scene, &settings)?.render(&Quiet)?.picture()?;
+    let request = JobRequest::new().integrator("path").size(48, 32).spp(8);
+    let picture = Job::new(&scene, request)?.render(&Quiet)?.picture()?;
     let bytes = picture.to_rgba8().ok_or("a rendered picture has colours")?;
     let brightest = bytes.chunks(4).map(|pixel| pixel[1]).max();
     println!(

@@ -1,10 +1,11 @@
 //! Layers for compositors that are made once the picture is there: what is visible where, and the light in parts.
 
+use crate::job::Subject;
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_pictures::cryptomatte::Cryptomatte;
-use bilux_scene::SceneBuilder;
+use bilux_scene::{Scene, SceneBuilder};
 use bilux_transport::aovs::Aov;
 use bilux_transport::visible::{Moment, Ranks, Wanted};
 use bilux_transport::{Film, LightDivision, Progress, RenderSettings, Stop, Visible, light_parts};
@@ -34,11 +35,6 @@ impl ExtraLayers {
 }
 
 impl Job {
-    /// Sets the next frame of a scene whose meshes move, for the layer of motion. Other movement is known without it.
-    pub fn moves_to(&mut self, next: Job) {
-        self.next_pose = Some(Box::new(next));
-    }
-
     /// Checks, before any work, that the layers can be made.
     ///
     /// # Errors
@@ -51,7 +47,7 @@ impl Job {
             )));
         }
         let Some(aov) = wanted.iter().find(|aov| aov.is_light()) else { return Ok(()) };
-        if !self.integrator.has_light_parts() {
+        if !self.integrator().has_light_parts() {
             let others: Vec<&str> = bilux_transport::integrators::with_light_parts().collect();
             return Err(Error::Settings(format!(
                 "the integrator '{}' cannot divide its light into parts ({}): choose one of {}",
@@ -60,7 +56,7 @@ impl Job {
                 others.join(", ")
             )));
         }
-        let groups = LightGroups::of(self).names.len();
+        let groups = LightGroups::of(self.scene()).names.len();
         if wanted.contains(&Aov::Groups) && groups > MAX_GROUPS {
             return Err(Error::Settings(format!(
                 "the scene has {groups} groups of lights, and each takes a picture of its own; the maximum is \
@@ -122,7 +118,7 @@ impl Job {
         progress: &dyn Progress,
     ) -> Result<bool, Error> {
         let with_accel = wanted.iter().any(|aov| aov.is_accel_work());
-        let (scene, camera) = (&self.scene, &*self.camera);
+        let (scene, camera) = (self.scene(), self.camera());
         let work = bilux_transport::work(scene, camera, self.renders(), settings, with_accel, progress)?;
         let Some(work) = work else { return Ok(false) };
         for (aov, samples) in [
@@ -149,10 +145,10 @@ impl Job {
         let mut mattes: Vec<(Cryptomatte, Vec<u32>)> = Vec::new();
         for aov in wanted.iter().filter(|aov| aov.is_matte()) {
             let mut matte = Cryptomatte::new(aov.layer().unwrap_or_default());
-            let ids = self.names(*aov).iter().map(|name| matte.add(name)).collect();
+            let ids = self.subject.names(*aov).iter().map(|name| matte.add(name)).collect();
             mattes.push((matte, ids));
         }
-        let next = self.next_pose.as_deref().unwrap_or(self);
+        let next = self.subject.next_pose.as_deref().unwrap_or(&self.subject);
         let time = self.settings.time + 1.0 / self.settings.fps;
         let moment = Moment { scene: &next.scene, camera: &*next.camera, time };
         let what = Wanted {
@@ -161,7 +157,7 @@ impl Job {
             motion: wanted.contains(&Aov::Motion).then_some(moment),
             ids: mattes.iter().map(|(_, ids)| ids.clone()).collect(),
         };
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, self.renders());
+        let (scene, camera, integrator) = (self.scene(), self.camera(), self.renders());
         let samples = settings.spp;
         let seen = bilux_transport::visible(scene, camera, integrator, settings, (&what, samples), progress)?;
         let Some(seen) = seen else { return Ok(false) };
@@ -184,12 +180,12 @@ impl Job {
         self.check_layers(wanted)?;
         let by_events = wanted.contains(&Aov::Direct) || wanted.contains(&Aov::Indirect);
         let mut division = LightDivision { by_events, ..LightDivision::default() };
-        let groups = LightGroups::of(self);
+        let groups = LightGroups::of(self.scene());
         if wanted.contains(&Aov::Groups) {
             division.groups.clone_from(&groups.of_lights);
             division.group_count = groups.names.len() as u32;
         }
-        let (scene, camera) = (&self.scene, &*self.camera);
+        let (scene, camera) = (self.scene(), self.camera());
         let parts = light_parts(scene, camera, self.renders(), settings, &division, progress)?;
         let Some(parts) = parts else { return Ok(false) };
         let mut push = |layer: &str, film: &Film| -> Result<(), Error> {
@@ -217,19 +213,20 @@ impl Job {
         }
         Ok(true)
     }
+}
 
+impl Subject {
     /// What each object and each sphere of the scene is called in a matte.
     fn names(&self, aov: Aov) -> Vec<String> {
         let geometry = self.scene.geometry();
         let count = geometry.objects().len() + geometry.spheres().len();
-        let objects =
-            (0..count as u32).map(|object| match self.completed_scene().objects.get(object as usize) {
-                Some(_) => object_name(self.completed_scene(), object as usize),
-                None => match self.scene.light_of(object).map(|light| &*light.name) {
-                    None | Some("") => "light".to_owned(),
-                    Some(name) => name.to_owned(),
-                },
-            });
+        let objects = (0..count as u32).map(|object| match self.source.objects.get(object as usize) {
+            Some(_) => object_name(&self.source, object as usize),
+            None => match self.scene.light_of(object).map(|light| &*light.name) {
+                None | Some("") => "light".to_owned(),
+                Some(name) => name.to_owned(),
+            },
+        });
         match aov {
             Aov::CryptoMaterial => {
                 (0..count as u32).map(|i| self.material_name(geometry.material_of(i))).collect()
@@ -248,7 +245,7 @@ impl Job {
     }
 
     fn material_name(&self, material: u32) -> String {
-        match self.completed_scene().materials.get(material as usize).map(|spec| &*spec.name) {
+        match self.source.materials.get(material as usize).map(|spec| &*spec.name) {
             None => "light".to_owned(),
             Some("") => format!("material {material}"),
             Some(name) => name.to_owned(),
@@ -290,8 +287,7 @@ struct LightGroups {
 }
 
 impl LightGroups {
-    fn of(job: &Job) -> LightGroups {
-        let scene = &job.scene;
+    fn of(scene: &Scene) -> LightGroups {
         let (mut of_lights, mut names) = (Vec::new(), Vec::<String>::new());
         let mut known: HashMap<&str, u32> = HashMap::new();
         for (i, light) in scene.lights().iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Why a scene is easy or hard to render, by what a few thousand rays find out: which strategies `auto` prefers and why,
 //! where light has to pass on its way, and what would help.
 
+use crate::job::Subject;
 use crate::{Error, Job};
 use bilux_math::{Frame, Vec2, Vec3, warp};
 use bilux_scene::{CameraSample, ClassicMaterial, Ray, Surface, Tracer};
@@ -73,18 +74,20 @@ impl Job {
     /// As [`Job::render`].
     pub fn explain(&self) -> Result<Explanation, Error> {
         let choice = self.plan()?.map(|plan| plan.choice.clone());
-        let measures = self.measures();
+        let measures = self.subject.measures();
         let findings = findings(&measures, choice.as_ref());
         Ok(Explanation { choice, measures, findings })
     }
+}
 
+impl Subject {
     fn measures(&self) -> Measures {
-        let scene = self.scene();
+        let scene = &*self.scene;
         let mut tracer = Tracer::new(scene, false);
         let (mut seen, mut transparent, mut backs, mut open) = (0u32, 0u32, 0u32, 0u32);
         for (x, y) in (0..GRID * GRID).map(|i| (i % GRID, i / GRID)) {
             let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / GRID as f32;
-            let ray = self.camera().ray(&CameraSample { film, lens: Vec2::ZERO, time: scene.shutter()[0] });
+            let ray = self.camera.ray(&CameraSample { film, lens: Vec2::ZERO, time: scene.shutter()[0] });
             let ray = scene.from_camera(ray);
             let Some(surface) = tracer.closest(&ray) else { continue };
             let material = scene.material(&surface).classic(&surface);
@@ -108,7 +111,7 @@ impl Job {
             }
         }
         onto_glass.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-        let textures = &self.completed_scene().textures;
+        let textures = &self.source.textures;
         let is_huge = |size: usize| size > HUGE_TEXTURE;
         Measures {
             surfaces: share(seen, GRID * GRID),
@@ -135,7 +138,7 @@ impl Job {
         light: &dyn bilux_scene::lights::Light,
         index: u32,
     ) -> f32 {
-        let scene = self.scene();
+        let scene = &*self.scene;
         let (bounds, time) = (scene.bounds(), scene.shutter()[0]);
         let (mut all, mut glass) = (0.0, 0.0);
         for i in 0..LIGHT_RAYS {

@@ -1,6 +1,7 @@
 //! What is derived from a render besides its light: layers, and the denoised picture.
 
-use crate::{Error, Job, Outcome};
+use crate::settings::Settings;
+use crate::{Denoised, Error, Job, JobRequest, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, Task, denoiser, repainted};
 use bilux_pictures::{Picture, PictureError};
@@ -8,57 +9,61 @@ use bilux_transport::aovs::Aov;
 use bilux_transport::{Film, push_variance};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// The value of the setting `denoise` that lets the kind of picture decide.
 const FOR_DISPLAY: &str = "display";
-/// The layers that guide denoisers.
-const FOR_DENOISERS: [Aov; 2] = [Aov::Guides, Aov::Variance];
+
+impl JobRequest {
+    /// The denoiser that the picture is to have, if any: the one that the setting `denoise` names, or, if the setting leaves
+    /// it open, the best one for pictures for a display that noise or time ends.
+    pub(crate) fn denoiser_name<'a>(&self, settings: &'a Settings) -> Option<&'a str> {
+        let is_open = settings.denoise == FOR_DISPLAY;
+        match self.denoised {
+            Denoised::No => None,
+            _ if settings.denoise == "off" => None,
+            Denoised::ForDisplay if is_open => settings.stop.is_any().then_some("auto"),
+            Denoised::IfAsked if is_open => None,
+            Denoised::IfAsked | Denoised::ForDisplay => Some(&settings.denoise),
+        }
+    }
+}
 
 impl Job {
-    /// From now on, loads no third-party library and looks for no file that might be one. A library that
-    /// [`preload`](bilux_pictures::denoise::preload) has already loaded is still used.
-    pub fn sandbox(&mut self) {
-        self.sandboxed = true;
-    }
-
-    /// Keeps the layers in `wanted`: albedo, normals, depth, ids, guides and variance ([`Outcome::layered`]). This changes no
-    /// sample.
-    pub fn with_layers(&mut self, wanted: &[Aov]) {
-        self.features |= wanted.iter().any(|aov| aov.is_feature() || *aov == Aov::Guides);
-        self.render.batch_means |= wanted.contains(&Aov::Variance);
-        self.render.ids |= wanted.contains(&Aov::Ids);
-    }
-
-    /// Chooses what denoises the picture, if anything does: the denoiser that the setting `denoise` names, or, if the
-    /// setting leaves it open, the best one for pictures for a display that noise or time ends. A fixed number of
-    /// samples always gives the same bytes, unless denoising is asked for. If a denoiser is chosen, the job keeps the
-    /// layers that guide it.
+    /// What denoises the picture, if anything does ([`JobRequest::denoised`]).
     ///
     /// # Errors
     /// If the denoiser that was asked for is not available.
-    pub fn denoiser(&mut self, for_display: bool) -> Result<Option<DenoiserChoice>, Error> {
-        let name = match self.settings.denoise.as_str() {
-            "off" => return Ok(None),
-            FOR_DISPLAY if !for_display || !self.render.stop.is_any() => return Ok(None),
-            FOR_DISPLAY => "auto",
-            name => name,
-        };
-        let task = Task {
-            size: (self.render.width as usize, self.render.height as usize),
-            threads: self.settings.threads,
-            // Any more of it is better spent on samples.
-            time: self.render.stop.time_limit.map(|limit| limit / 4),
-            sandboxed: self.sandboxed,
-        };
-        let chosen = denoiser(name, &task)?;
-        self.with_layers(&FOR_DENOISERS);
-        self.denoising = chosen.time;
-        Ok(Some(chosen))
+    pub fn denoiser(&self) -> Result<Option<&Arc<DenoiserChoice>>, Error> {
+        if let (None, Some(name)) = (self.known.denoiser.get(), self.request.denoiser_name(&self.settings)) {
+            let task = Task {
+                size: (self.render.width as usize, self.render.height as usize),
+                threads: self.settings.threads,
+                // Any more of it is better spent on samples.
+                time: self.render.stop.time_limit.map(|limit| limit / 4),
+                sandboxed: self.request.sandboxed,
+            };
+            // Another thread may have been faster, with the same result.
+            let _ = self.known.denoiser.set(Some(Arc::new(denoiser(name, &task)?)));
+        }
+        Ok(self.known.denoiser.get().and_then(Option::as_ref))
+    }
+
+    /// The time set aside for denoising.
+    pub(crate) fn denoising_time(&self) -> Result<Duration, Error> {
+        Ok(self.denoiser()?.map_or(Duration::ZERO, |chosen| chosen.time))
+    }
+
+    /// Whether albedo and the like are wanted.
+    pub(crate) fn keeps_features(&self) -> bool {
+        let is_kept = |aov: &Aov| aov.is_feature() || *aov == Aov::Guides;
+        self.request.layers.iter().any(is_kept) || self.request.denoiser_name(&self.settings).is_some()
     }
 }
 
 impl Outcome {
-    /// The picture with the layers that are wanted and were kept ([`Job::with_layers`]).
+    /// The picture with the layers that are wanted and were kept ([`JobRequest::layers`]).
     ///
     /// # Errors
     /// If memory is short.

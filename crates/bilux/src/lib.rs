@@ -4,16 +4,14 @@
 //! use bilux::prelude::*;
 //!
 //! let scene = bilux::generate(&Spec::new("", "cornell"))?;
-//! let mut settings = Parameters::default();
-//! settings.set("size", "16x16");
-//! settings.set("spp", Value::Integer(1));
-//! let picture = bilux::Job::new(&scene, &settings)?.render(&Quiet)?.picture()?;
+//! let job = Job::new(&scene, JobRequest::new().size(16, 16).spp(1))?;
+//! let picture = job.render(&Quiet)?.picture()?;
 //! assert_eq!((picture.width(), picture.height()), (16, 16));
 //! # Ok::<(), bilux::Error>(())
 //! ```
 //!
-//! Read a scene with [`load`] or make one with [`generate`]; the [`settings`] combine what its file asks for with what
-//! the user asks for; and a [`Job`] renders it.
+//! Read a scene with [`load`] or make one with [`generate`]; say in a [`JobRequest`] what you want of it; the [`settings`] combine
+//! that with what the scene's file asks for; and a [`Job`] renders it.
 
 pub mod budget;
 mod built;
@@ -38,6 +36,7 @@ pub mod parts;
 pub mod path_drawing;
 pub mod presets;
 pub mod progressive;
+mod request;
 mod scene_warnings;
 pub mod series;
 pub mod session;
@@ -64,6 +63,7 @@ pub use error::Error;
 pub use job::Job;
 pub use outcome::Outcome;
 pub use progressive::{Budget, Progressive};
+pub use request::{Denoised, JobRequest};
 pub use series::Series;
 pub use session::{Edit, Session};
 pub use settings::Settings;
@@ -74,7 +74,7 @@ use std::path::Path;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::{Error, Job, Outcome, Quiet, Settings};
+    pub use crate::{Denoised, Error, Job, JobRequest, Outcome, Quiet, Settings};
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
     pub use bilux_scene::cameras::CameraSpec;

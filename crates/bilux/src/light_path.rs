@@ -1,5 +1,6 @@
 //! The path of a sample on the film: where its vertices and segments are in the picture, and what each brings.
 
+use crate::job::Subject;
 use crate::{Error, Job};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_transport::{Event, PathVertex, Replay, VertexKind};
@@ -38,7 +39,7 @@ impl Job {
     /// If the pixel is outside the picture.
     pub fn light_path(&self, x: u32, y: u32, sample: u32) -> Result<LightPath, Error> {
         let replay = self.replay(x, y, sample)?;
-        let view = View { job: self, time: replay.ray.time };
+        let view = View { subject: &self.subject, time: replay.ray.time };
         let place = |event: &Event| {
             let vertex = event.vertex.filter(|vertex| !is_direction(vertex.kind))?;
             view.on_film(vertex.at)
@@ -49,9 +50,9 @@ impl Job {
     }
 }
 
-/// What the camera of a job sees at a time.
+/// What the camera sees at a time.
 struct View<'a> {
-    job: &'a Job,
+    subject: &'a Subject,
     time: f32,
 }
 
@@ -90,7 +91,7 @@ impl View<'_> {
     /// Where a segment to a vertex ends.
     fn end(&self, vertex: &PathVertex, from: Vec3) -> Vec3 {
         match is_direction(vertex.kind) {
-            true => from + vertex.at * (4.0 * self.job.scene().bounds().radius()),
+            true => from + vertex.at * (4.0 * self.subject.scene.bounds().radius()),
             false => vertex.at,
         }
     }
@@ -117,7 +118,7 @@ impl View<'_> {
 
     /// Where a point is on the film.
     fn on_film(&self, p: Vec3) -> Option<[f32; 2]> {
-        let seen = self.job.camera().connect(p, Vec2::ZERO, self.time)?;
+        let seen = self.subject.camera.connect(p, Vec2::ZERO, self.time)?;
         seen.is_on_film().then(|| seen.film.to_array())
     }
 }

@@ -9,7 +9,7 @@ use bilux_transport::{Features, Reached, Rendered};
 pub struct Outcome {
     /// What was rendered: the film, the work that it took, how far it got.
     pub rendered: Rendered,
-    /// Features of the visible surfaces, if they were asked for ([`with_layers`](crate::Job::with_layers)).
+    /// Features of the visible surfaces, if they were asked for ([`layers`](crate::JobRequest::layers)).
     pub features: Option<Features>,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,

@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::camera_choice::choose_camera;
-use crate::job::shutter_at;
+use crate::job::shutter_of;
 use crate::presets::{self, Studio};
 use crate::settings::Settings;
 use bilux_math::transcendental::{log2, powf};
@@ -63,7 +63,7 @@ pub(crate) fn measure(
     let size = [settings.width, settings.height];
     bilux_scene::presets::set_stroke_widths(&mut framed, &settings.camera, size, settings.time);
     let aspect = settings.width as f32 / settings.height as f32;
-    let built = framed.build_with(known, accel, shutter_at(settings, settings.time), aspect)?;
+    let built = framed.build_with(known, accel, shutter_of(settings), aspect)?;
     let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
     let others = built.cameras().iter().skip(1).take(views.len() - 1).map(|(_, camera)| camera);
     // If a file has lights, and no surfaces that emit, the studio's surroundings are there for metal to reflect.

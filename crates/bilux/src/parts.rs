@@ -8,10 +8,7 @@
 //! use bilux::transport::Division;
 //!
 //! let scene = bilux::generate(&Spec::new("", "cornell"))?;
-//! let mut settings = Parameters::default();
-//! settings.set("size", "16x16");
-//! settings.set("spp", Value::Integer(8));
-//! let job = Job::new(&scene, &settings)?;
+//! let job = Job::new(&scene, JobRequest::new().size(16, 16).spp(8))?;
 //! let division = Division { workers: 2, threads: 1, may_crop: job.may_crop_parts()? };
 //! let mut gathering = job.gathering(division)?;
 //! while let Some(part) = gathering.next_part() {
@@ -42,7 +39,7 @@ pub struct PartOutcome {
 impl Job {
     /// The integrator that renders, once one that chooses has chosen.
     fn planned(&self) -> Result<&dyn PixelIntegrator, Error> {
-        Ok(self.plan()?.map_or(&*self.integrator, |plan| &*plan.integrator))
+        Ok(self.plan()?.map_or(self.integrator(), |plan| &*plan.integrator))
     }
 
     /// What was chosen, as text, if the integrator is one that chooses.
@@ -76,7 +73,7 @@ impl Job {
             ..self.render.clone()
         };
         let integrator = self.planned()?;
-        let rendered = bilux_transport::render(&self.scene, &*self.camera, integrator, &settings, progress)?;
+        let rendered = bilux_transport::render(self.scene(), self.camera(), integrator, &settings, progress)?;
         let mut film = rendered.film;
         self.fingerprint().clone_into(&mut film.fingerprint);
         Ok(PartOutcome { film, rays: rendered.counters.rays, cancelled: rendered.cancelled })
@@ -87,8 +84,8 @@ impl Job {
     /// # Errors
     /// If the job is a crop or has an interval.
     pub fn gathering(&self, division: Division) -> Result<Gathering, Error> {
-        let scale = scale_exponent(&self.scene);
-        let aside = self.time_aside(Instant::now());
+        let scale = scale_exponent(self.scene());
+        let aside = self.time_aside(Instant::now())?;
         Ok(Gathering::new(&self.render, scale, self.fingerprint(), division, aside)?)
     }
 

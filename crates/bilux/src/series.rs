@@ -1,13 +1,11 @@
 //! What the pictures of a turntable or of an animation have in common. If it changed from one to the next, they would
 //! flicker.
 
-use crate::built::Built;
-use crate::memory::Memory;
 use crate::own_light::Judged;
 use crate::presets::{Studio, set_upright};
-use crate::settings::Settings;
-use crate::{Error, Job, own_light};
-use bilux_scene::{BuiltParts, Parameters, SceneBuilder};
+use crate::request::JobRequest;
+use crate::{Error, own_light};
+use bilux_scene::{BuiltParts, SceneBuilder};
 
 /// The maximum number of views in which a turntable's own light is measured.
 const MAX_VIEWS: u32 = 8;
@@ -16,9 +14,9 @@ const MAX_VIEWS: u32 = 8;
 #[derive(Clone, Debug, Default)]
 pub struct Series {
     /// The part of a full turn by which the camera has moved around a model that is framed for the whole turn.
-    turn: Option<f32>,
+    pub(crate) turn: Option<f32>,
     /// What was found of the scene's own light, in the first picture or in all views.
-    own_light: Option<Judged>,
+    pub(crate) own_light: Option<Judged>,
 }
 
 impl Series {
@@ -26,14 +24,9 @@ impl Series {
     /// needs its light. This is the first.
     ///
     /// # Errors
-    /// If a setting or anything in the scene is wrong, or if more than `most` bytes of memory are needed.
-    pub fn turntable(
-        scene: &SceneBuilder,
-        user: &Parameters,
-        most: u64,
-        count: u32,
-    ) -> Result<Series, Error> {
-        let settings = checked(scene, user, most)?;
+    /// If a setting or anything in the scene is wrong, or if more memory is needed than the request allows.
+    pub fn turntable(scene: &SceneBuilder, request: &JobRequest, count: u32) -> Result<Series, Error> {
+        let settings = request.settings_for(scene)?;
         let aspect = settings.width as f32 / settings.height as f32;
         let views = count.clamp(1, MAX_VIEWS);
         let view = |i: u32| Studio {
@@ -58,52 +51,4 @@ impl Series {
 
 fn of_turn(index: u64, count: u32) -> f32 {
     index as f32 / count.max(1) as f32
-}
-
-/// Checks settings, and that the picture fits into memory.
-fn checked(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Settings, Error> {
-    let settings = Settings::of(scene, user)?;
-    let needed = Memory::of(scene, &settings);
-    if needed.total() > most {
-        return Err(Error::TooLarge { needed, most });
-    }
-    Ok(settings)
-}
-
-impl Job {
-    /// A picture of a series, as [`Job::within`].
-    ///
-    /// # Errors
-    /// As for [`Job::within`].
-    pub fn in_series(
-        scene: &SceneBuilder,
-        user: &Parameters,
-        most: u64,
-        series: &Series,
-    ) -> Result<Job, Error> {
-        Job::with_built(scene, user, most, series, &mut Built::default())
-    }
-
-    /// The same picture, made with what earlier jobs have built of this scene or another; what is new is kept there.
-    ///
-    /// # Errors
-    /// As for [`Job::within`].
-    pub fn with_built(
-        scene: &SceneBuilder,
-        user: &Parameters,
-        most: u64,
-        series: &Series,
-        built: &mut Built,
-    ) -> Result<Job, Error> {
-        let mut settings = checked(scene, user, most)?;
-        (settings.studio.turn, settings.own_light) = (series.turn, series.own_light);
-        let mut job = Job::reusing(scene, settings, built)?;
-        job.warnings.extend(job.settings.unused_settings(user));
-        Ok(job)
-    }
-
-    /// The series of this picture and of those that are to be lit as it is.
-    pub fn series(&self) -> Series {
-        Series { turn: self.settings.studio.turn, own_light: self.settings.own_light }
-    }
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 impl Job {
     /// What removes the noise of a shadow on an invisible ground: the built-in filter, where the picture is denoised.
     pub(crate) fn shadow_denoiser(&self) -> Result<Option<Box<dyn Denoiser>>, Error> {
-        if self.denoising.is_zero() {
+        if self.denoising_time()?.is_zero() {
             return Ok(None);
         }
         Ok(Some(denoiser("builtin", &self.threads_task())?.denoiser))
@@ -16,7 +16,7 @@ impl Job {
 
     /// The time set aside for the shadow on an invisible ground.
     pub(crate) fn shadow_time(&self) -> Duration {
-        if self.catcher.is_none() || !self.settings.background.is_cut_out() {
+        if self.subject.catcher.is_none() || !self.settings.background.is_cut_out() {
             return Duration::ZERO;
         }
         let pixels = self.render.width as usize * self.render.height as usize;

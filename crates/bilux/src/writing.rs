@@ -79,7 +79,7 @@ impl Job {
     /// If no tone curve has the name.
     pub fn write_options(&self) -> Result<WriteOptions, Error> {
         let name = match self.settings.tonemap.as_str() {
-            "auto" => self.auto_curve,
+            "auto" => self.found.auto_curve,
             name => name,
         };
         let tone_map = bilux_pictures::tonemap::tone_map(name)?;

@@ -5,7 +5,7 @@ use crate::ending::without_gil;
 use crate::errors::{Error, exception};
 use crate::picture::Picture;
 use crate::render::{
-    BuildWork, Prepared, Request, interrupted, prepared, to_python, with_everything, with_layers,
+    BuildWork, Prepared, Request, check_outputs, interrupted, prepared, to_python, with_layers,
     with_next_pose,
 };
 use crate::scene::Scene;
@@ -118,14 +118,16 @@ impl Gathering {
     ) -> PyResult<Gathering> {
         let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         let py = scene.py();
-        let Prepared { mut job, build } = built(py, scene, &request)?;
+        let Prepared { job, build } = built(py, scene, &request)?;
         let (own, builder) = (scene.get(), scene.get().builder(py).clone());
         let request = Request { origin: own.origin(py).clone(), ..request };
-        let asked = without_gil(py, || {
-            with_everything(&mut job, &request)?;
-            with_next_pose(&mut job, (&builder, &own.built), &request)
+        let checked = without_gil(py, || {
+            check_outputs(&job, &request)?;
+            // What denoises it is looked for now, so that it is missed before anything is rendered.
+            job.denoiser()?;
+            with_next_pose(job, (&builder, &own.built), &request)
         });
-        asked.map_err(exception)?;
+        let job = checked.map_err(exception)?;
         let Request { aovs, begun, .. } = request;
         Ok(Gathering { aovs, begun, build, state: Mutex::new(State { job, parts: None }) })
     }
@@ -196,10 +198,9 @@ impl Gathering {
         let parts = self.lock().parts.take();
         let parts = parts.ok_or_else(|| Error::new_err("the picture was taken before"))?;
         let (rendered, stopped) = follow(py, None, |watch| {
-            let job = &mut self.lock().job;
-            let denoiser = job.denoiser(true)?;
+            let job = &self.lock().job;
             let outcome = job.gathered(parts, watch)?;
-            with_layers(job, outcome, denoiser, &self.aovs, (self.build, watch))
+            with_layers(job, outcome, &self.aovs, (self.build, watch))
         });
         let picture = to_python(py, &rendered.ok_or_else(failed)?.map_err(exception)?, self.begun)?;
         match stopped {

@@ -8,13 +8,13 @@ use crate::picture::Picture;
 use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
-use bilux::pictures::denoise::{DenoiserChoice, preload};
+use bilux::pictures::denoise::preload;
 use bilux::scene::{Object, Parameters, SceneBuilder, SceneError, Span, Warning};
 use bilux::strategies::Light;
 use bilux::transport::aovs::{AOVS, Aov, AovEntry};
 use bilux::transport::{Progress, Strategies, Window};
 use bilux::wording::in_python;
-use bilux::{Built, Display, Job, Outcome, Series};
+use bilux::{Built, Denoised, Display, Job, JobRequest, Outcome, Series, Settings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
@@ -58,6 +58,19 @@ impl Request {
         let aovs = aovs(layers).map_err(of_scene)?;
         let max_memory = memory::within_limits(max_memory);
         Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series, origin: None })
+    }
+
+    /// What is asked of the job, with the limits that apply.
+    fn of_job(&self, user: &Parameters, settings: &Settings) -> Result<JobRequest, bilux::Error> {
+        let asked = JobRequest::from(user)
+            .in_series(self.series.clone())
+            .max_memory(self.max_memory)
+            .begun_at(self.begun)
+            .layers(&self.aovs);
+        Ok(match self.crop {
+            Some(crop) => asked.crop(window(settings, crop)?).denoised(Denoised::IfAsked),
+            None => asked.denoised(Denoised::ForDisplay),
+        })
     }
 }
 
@@ -146,26 +159,26 @@ fn rendered(
     request: Request,
     watch: &Watch,
 ) -> Result<Option<Rendered>, bilux::Error> {
-    let Prepared { mut job, build } = prepared((scene, built), &request)?;
+    let Prepared { job, build } = prepared((scene, built), &request)?;
     if watch.is_cancelled() {
         return Ok(None);
     }
-    let denoiser = with_everything(&mut job, &request)?;
-    with_next_pose(&mut job, (scene, built), &request)?;
+    check_outputs(&job, &request)?;
+    let job = with_next_pose(job, (scene, built), &request)?;
     let outcome = job.render(watch)?;
-    Ok(Some(with_layers(&job, outcome, denoiser, &request.aovs, (build, watch))?))
+    Ok(Some(with_layers(&job, outcome, &request.aovs, (build, watch))?))
 }
 
-/// Tells the job the next pose of meshes that move by themselves, if the layer of motion is wanted.
+/// The job with the next pose of meshes that move by themselves, if the layer of motion is wanted.
 pub(crate) fn with_next_pose(
-    job: &mut Job,
+    job: Job,
     (scene, built): (&SceneBuilder, &Mutex<Built>),
     request: &Request,
-) -> Result<(), bilux::Error> {
+) -> Result<Job, bilux::Error> {
     if !scene.inventory.moves() || !request.aovs.contains(&Aov::Motion) {
-        return Ok(());
+        return Ok(job);
     }
-    let time = job.settings().time + 1.0 / job.settings().fps;
+    let (time, series) = (job.settings().time + 1.0 / job.settings().fps, request.series.clone());
     let later = request.origin.as_ref().map(|origin| origin.read_at(time)).transpose()?;
     let same_shape = |(now, later): (&Object, &Object)| now.mesh.triangles == later.mesh.triangles;
     let later = later.filter(|later| {
@@ -182,8 +195,9 @@ pub(crate) fn with_next_pose(
     for (object, later) in next.objects.iter_mut().zip(later.objects) {
         object.mesh = later.mesh;
     }
-    job.moves_to(build_of((&next, built), &request.user, request.max_memory, &request.series)?.0);
-    Ok(())
+    let request = JobRequest::from(&request.user).max_memory(request.max_memory);
+    let (next, _) = build_of((&next, built), request.in_series(series))?;
+    Ok(job.moving_to(&next))
 }
 
 /// A job, and what it took to build it.
@@ -212,8 +226,10 @@ pub(crate) fn prepared(
     if request.crop.is_none() {
         with_default_budget(&scene.settings, &mut user);
     }
+    let settings = Settings::of(scene, &user)?;
+    let asked = request.of_job(&user, &settings)?;
     let building = Instant::now();
-    let (job, trees) = build_of((scene, built), &user, request.max_memory, &request.series)?;
+    let (job, trees) = build_of((scene, built), asked)?;
     let seconds = building.elapsed().as_secs_f64();
     let time = job.settings().time;
     if scene.inventory.moves() && time != request.loaded_at {
@@ -226,40 +242,28 @@ pub(crate) fn prepared(
     Ok(Prepared { job, build: BuildWork { seconds, trees } })
 }
 
-/// Asks the job for all that the picture is to hold, and chooses its denoiser.
-pub(crate) fn with_everything(
-    job: &mut Job,
-    request: &Request,
-) -> Result<Option<DenoiserChoice>, bilux::Error> {
-    let Request { aovs, crop, begun, .. } = request;
-    job.begun_at(*begun);
-    job.check_layers(aovs)?;
-    if aovs.contains(&Aov::Strategies) {
+/// Checks that the job can make all that is asked for, and begins to load what denoises it.
+pub(crate) fn check_outputs(job: &Job, request: &Request) -> Result<(), bilux::Error> {
+    job.check_layers(&request.aovs)?;
+    if request.aovs.contains(&Aov::Strategies) {
         check_strategies(job)?;
     }
-    job.with_layers(aovs);
-    if aovs.contains(&Aov::Interval) {
-        job.with_interval()?;
+    let settings = job.settings();
+    if settings.stop.is_any() && request.crop.is_none() && settings.denoise != "off" {
+        preload(settings.threads);
     }
-    if let Some(crop) = crop {
-        job.crop(window(job, *crop)?);
-    }
-    if job.settings().stop.is_any() && crop.is_none() && job.settings().denoise != "off" {
-        preload(job.settings().threads);
-    }
-    job.denoiser(crop.is_none())
+    Ok(())
 }
 
 /// The picture with its layers.
 pub(crate) fn with_layers(
     job: &Job,
     outcome: Outcome,
-    denoiser: Option<DenoiserChoice>,
     aovs: &[Aov],
     (build, progress): (BuildWork, &dyn Progress),
 ) -> Result<Rendered, bilux::Error> {
-    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
-    let mut picture = match &denoiser {
+    let denoiser = job.denoiser()?.filter(|_| !outcome.rendered.cancelled);
+    let mut picture = match denoiser {
         Some(chosen) => outcome.denoised(chosen)?,
         None => outcome.picture()?,
     };
@@ -271,7 +275,7 @@ pub(crate) fn with_layers(
         picture.push_rgb("interval", &interval.to_picture()?.to_rgb().unwrap_or_default())?;
     }
     let missing = push_made_later(job, &outcome, aovs, &mut picture, progress)?;
-    job.describe(&mut picture, &outcome, denoiser.as_ref().map(|chosen| chosen.name));
+    job.describe(&mut picture, &outcome, denoiser.map(|chosen| chosen.name));
     let settings = job.settings();
     Ok(Rendered {
         picture,
@@ -328,25 +332,22 @@ pub(crate) fn build(
     user: &Parameters,
     max_memory: u64,
 ) -> Result<(Job, u64), bilux::Error> {
-    build_of((scene, built), user, memory::within_limits(max_memory), &Series::default())
+    build_of((scene, built), JobRequest::from(user).max_memory(memory::within_limits(max_memory)))
 }
 
-/// As [`build`], for a picture of a series.
+/// As [`build`], with more that is asked for.
 fn build_of(
     (scene, built): (&SceneBuilder, &Mutex<Built>),
-    user: &Parameters,
-    max_memory: u64,
-    series: &Series,
+    asked: JobRequest,
 ) -> Result<(Job, u64), bilux::Error> {
     let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);
     let before = built.tree_work().trees;
-    let job = Job::with_built(scene, user, max_memory, series, &mut built)?;
+    let job = Job::with_built(scene, asked, &mut built)?;
     Ok((job, built.tree_work().trees - before))
 }
 
 /// The window of the picture that `crop` asks for.
-fn window(job: &Job, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::Error> {
-    let settings = job.settings();
+fn window(settings: &Settings, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::Error> {
     let fits =
         |at: u32, side: u32, most: u32| side > 0 && at.checked_add(side).is_some_and(|end| end <= most);
     if fits(x, width, settings.width) && fits(y, height, settings.height) {

@@ -5,8 +5,8 @@ use crate::errors::exception;
 use crate::picture::Picture;
 use crate::render::{Request, render};
 use crate::scene::Scene;
-use bilux::Series;
 use bilux::scene::SceneBuilder;
+use bilux::{JobRequest, Series};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -43,8 +43,8 @@ impl Turntable {
         crate::forks::check()?;
         let mut request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
         let builder = scene.get().builder(py).clone();
-        let (user, most) = (&request.user, request.max_memory);
-        let series = without_gil(py, || Series::turntable(&builder, user, most, count));
+        let asked = JobRequest::from(&request.user).max_memory(request.max_memory);
+        let series = without_gil(py, || Series::turntable(&builder, &asked, count));
         request.series = series.map_err(exception)?;
         request.origin = scene.get().origin(py).clone();
         Ok(Turntable { scene, builder, request, callback, count, next: AtomicU32::new(0) })

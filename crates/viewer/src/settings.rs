@@ -1,9 +1,9 @@
 //! The settings of a session: what the user asks for, what a viewer needs, and what small pictures change.
 
 use crate::open_scene::Version;
-use bilux::Settings;
 use bilux::scene::{Parameters, Value};
 use bilux::transport::integrators::INTEGRATORS;
+use bilux::{JobRequest, Settings};
 
 /// The maximum number of samples of each pixel, if neither the user nor the scene says it.
 const SAMPLES: i64 = 1024;
@@ -38,6 +38,11 @@ pub(crate) fn with_defaults(user: &Parameters) -> Parameters {
         }
     }
     all
+}
+
+/// What is asked of a picture with the user's settings and the viewer's.
+pub(crate) fn request(user: &Parameters, max_memory: u64) -> JobRequest {
+    JobRequest::from(&with_defaults(user)).max_memory(max_memory)
 }
 
 /// Settings of the camera, which are about the scene that they were made for.

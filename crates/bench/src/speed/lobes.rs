@@ -11,7 +11,7 @@ use bilux::math::{Rgb, Vec3};
 use bilux::scene::cameras::CameraSpec;
 use bilux::scene::texture::{Image, Texels};
 use bilux::scene::{Mesh, Object, SceneBuilder, Spec, Texture, Value};
-use bilux::{Error, Job};
+use bilux::{Error, Job, JobRequest};
 use bilux_math::hash::hash_words;
 use std::sync::Arc;
 
@@ -76,9 +76,7 @@ fn run(context: &Context) -> Result<Vec<Row>, Error> {
     settings.set("roulette_depth", Value::Integer(1000));
     let mut rays_a_sample = [0.0; 3];
     for (rays, (_, scene)) in rays_a_sample.iter_mut().zip(&scenes) {
-        let mut job = Job::new(scene, &settings)?;
-        job.samples(0..1);
-        job.count_work();
+        let job = Job::new(scene, JobRequest::from(&settings).samples(0..1).counting_work())?;
         *rays = Shot::of(&job)?.rays as f64 / f64::from(SIDE * SIDE);
     }
     let mut seconds = [const { Vec::new() }; 3];

@@ -4,7 +4,7 @@ use crate::render::Clock;
 use bilux::budget::with_default_budget;
 use bilux::math::Rgb;
 use bilux::scene::{Parameters, SceneBuilder, Value};
-use bilux::{Error, Job, Quiet};
+use bilux::{Denoised, Error, Job, JobRequest, Quiet};
 use std::path::Path;
 use std::time::Instant;
 
@@ -54,11 +54,10 @@ pub(super) fn as_a_user(
     output: &Path,
 ) -> Result<UserPicture, Error> {
     with_default_budget(&scene.settings, &mut user);
-    let mut job = Job::new(scene, &user)?;
-    job.begun_at(begun);
-    let denoiser = job.denoiser(true)?;
+    let request = JobRequest::from(&user).begun_at(begun).denoised(Denoised::ForDisplay);
+    let job = Job::new(scene, request)?;
     let outcome = job.render(&Quiet)?;
-    let picture = match &denoiser {
+    let picture = match job.denoiser()? {
         Some(denoiser) => outcome.denoised(denoiser)?,
         None => outcome.picture()?,
     };

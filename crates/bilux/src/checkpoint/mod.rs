@@ -11,10 +11,7 @@
 //! # let folder = tempfile::tempdir().unwrap();
 //! let file = folder.path().join("cornell.png.checkpoint");
 //! let scene = bilux::generate(&Spec::new("", "cornell"))?;
-//! let mut settings = Parameters::default();
-//! settings.set("size", "16x16");
-//! settings.set("spp", Value::Integer(4));
-//! let job = Job::new(&scene, &settings)?;
+//! let job = Job::new(&scene, JobRequest::new().size(16, 16).spp(4))?;
 //! let writer = CheckpointWriter::new(&job, &file, Some(Duration::ZERO));
 //! let whole = job.render_from(None, &Quiet, &writer)?;
 //! // Some other day:

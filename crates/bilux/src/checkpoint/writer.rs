@@ -46,7 +46,7 @@ impl<'a> CheckpointWriter<'a> {
             path: path.to_owned(),
             every,
             identity: OnceLock::new(),
-            begun: job.begun.unwrap_or_else(Instant::now),
+            begun: job.request.begun.unwrap_or_else(Instant::now),
             earlier: Duration::ZERO,
             due: AtomicU64::new(after(Duration::ZERO, every.unwrap_or(Duration::MAX))),
             state: Mutex::default(),
@@ -115,7 +115,7 @@ fn after(time: Duration, wait: Duration) -> u64 {
 impl Job {
     /// What the samples of this picture depend on.
     pub fn identity(&self) -> Identity {
-        super::identity::of_picture(&self.source, &self.settings, &self.render)
+        super::identity::of_picture(self.completed_scene(), &self.settings, &self.render)
     }
 
     /// Renders the picture, all of it or what a checkpoint lacks, while an observer sees it. The time that was spent on

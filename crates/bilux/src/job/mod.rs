@@ -1,208 +1,119 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
 
+mod making;
 mod ranges;
 mod rendering;
+mod subject;
 
 use crate::Error;
-use crate::built::Built;
-use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::merging::ASKED;
 use crate::outcome::Outcome;
-use crate::own_light;
-use crate::scene_warnings::{self, oddities};
+use crate::request::JobRequest;
 use crate::series::Series;
 use crate::settings::Settings;
-use bilux_math::Rgb;
 use bilux_pictures::Picture;
-use bilux_scene::{AccelChoice, Camera, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning};
+use bilux_pictures::denoise::DenoiserChoice;
+use bilux_scene::{Camera, Orientation, Scene, SceneBuilder, Warning};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Features, Filter, PixelAnchor, Plan, Progress, RenderError, RenderSettings, Rendered, Replay,
-    SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    Features, Plan, Progress, RenderSettings, Rendered, Replay, SamplePlace, Stop, Strategies, coverage,
+    shadow_alpha,
 };
-use std::ops::Range;
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Instant;
+pub(crate) use subject::{Subject, shutter_of};
 
-/// A picture to be rendered.
+/// A picture to be rendered. It never changes; [`at_time`](Job::at_time) and the like make other jobs of it.
+#[derive(Clone)]
 pub struct Job {
-    pub(crate) scene: Scene,
-    accel: AccelChoice,
-    pub(crate) camera: Arc<dyn Camera>,
-    pub(crate) integrator: Box<dyn PixelIntegrator>,
-    /// What the integrator has chosen, if it was asked before rendering ([`Job::plan`]).
-    pub(crate) plan: OnceLock<Option<Plan>>,
+    /// What is rendered.
+    pub(crate) subject: Subject,
+    /// How the picture is to be, as the scene and the request say it together.
     pub(crate) settings: Settings,
+    /// How the samples are taken.
     pub(crate) render: RenderSettings,
-    /// The tone curve that `auto` means here.
-    pub(crate) auto_curve: &'static str,
-    /// Whether albedo and the like are wanted.
-    pub(crate) features: bool,
-    /// The time set aside for denoising.
-    pub(crate) denoising: Duration,
-    /// When its time limit starts; `None` means when rendering starts.
-    pub(crate) begun: Option<Instant>,
-    /// Whether loading third-party libraries is forbidden.
-    pub(crate) sandboxed: bool,
+    /// What was asked for.
+    pub(crate) request: JobRequest,
+    /// What was found out while it was made.
+    pub(crate) found: Arc<Found>,
+    /// What is found out when it is first needed.
+    pub(crate) known: Arc<Known>,
+}
+
+/// What is found out while a job is made.
+pub(crate) struct Found {
+    warnings: Vec<Warning>,
+    notes: Vec<String>,
+    studio_light: Option<String>,
     /// How a model was rotated.
     orientation: Option<Orientation>,
-    /// The scene from which the job was built. The fingerprint is computed from it, which takes long if textures are
-    /// large.
-    pub(crate) source: SceneBuilder,
+    /// The tone curve that `auto` means here.
+    pub(crate) auto_curve: &'static str,
+}
+
+/// What is found out when it is first needed.
+#[derive(Default)]
+pub(crate) struct Known {
     fingerprint: OnceLock<String>,
-    pub(crate) warnings: Vec<Warning>,
-    pub(crate) notes: Vec<String>,
-    studio_light: Option<String>,
-    /// The ground of which only the shadow is in the picture.
-    pub(crate) catcher: Option<ShadowCatcher>,
-    /// The next frame, if its meshes have another pose.
-    pub(crate) next_pose: Option<Box<Job>>,
+    /// What the integrator has chosen.
+    plan: OnceLock<Option<Plan>>,
+    /// What denoises the picture.
+    pub(crate) denoiser: OnceLock<Option<Arc<DenoiserChoice>>>,
 }
 
 impl Job {
-    /// Merges the scene file's settings with the user's, which take precedence, and builds the scene.
-    ///
-    /// # Errors
-    /// If a setting or anything in the scene is wrong.
-    pub fn new(scene: &SceneBuilder, user: &Parameters) -> Result<Job, Error> {
-        Job::within(scene, user, u64::MAX)
+    /// The picture at another time, in seconds. Static objects are not rebuilt.
+    #[must_use]
+    pub fn at_time(&self, time: f32) -> Job {
+        let settings = Settings { time, ..self.settings.clone() };
+        let subject = self.subject.at_time_of(&settings);
+        Job { subject, settings, known: Arc::default(), ..self.clone() }
     }
 
-    /// Does the same, but only if `most` bytes of memory are enough.
-    ///
-    /// # Errors
-    /// As for [`Job::new`]; and, before anything is built, if the picture would take more memory.
-    pub fn within(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Job, Error> {
-        Job::in_series(scene, user, most, &Series::default())
+    /// The picture with another beginning of its time limit ([`JobRequest::begun_at`]), as the next frame of an animation has.
+    #[must_use]
+    pub fn begun_at(&self, begun: Instant) -> Job {
+        Job { request: self.request.clone().begun_at(begun), ..self.clone() }
     }
 
-    /// Builds the scene for settings that have already been checked.
-    ///
-    /// # Errors
-    /// If anything in the scene is wrong.
-    pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
-        Job::reusing(scene, settings, &mut Built::default())
+    /// The picture with a count of its work ([`JobRequest::counting_work`]).
+    #[must_use]
+    pub fn counting_work(&self) -> Job {
+        Job { render: RenderSettings { count_work: true, ..self.render.clone() }, ..self.clone() }
     }
 
-    /// The same, with what earlier jobs have built.
-    pub(crate) fn reusing(
-        scene: &SceneBuilder,
-        mut settings: Settings,
-        known: &mut Built,
-    ) -> Result<Job, Error> {
-        let aspect = settings.width as f32 / settings.height as f32;
-        scene_warnings::check_not_empty(scene)?;
-        let mut studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
-        let accel_of = |scene: &SceneBuilder| {
-            settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum())
-        };
-        let mut completed = scene.clone();
-        let orientation = crate::presets::set_upright(&mut completed, &studio);
-        let own = match settings.own_light {
-            None => own_light::measure(&completed, &[studio], &settings, &accel_of(scene), &mut known.alone)?,
-            Some(_) => None,
-        };
-        known.keep_alone(own.is_some());
-        let judged = settings.own_light.or(own.as_ref().map(|own| own.judged));
-        studio.lit = judged.and_then(|judged| judged.is_enough);
-        // The classic shading knows no units: its lights are as bright as ever.
-        studio.brightness = judged.filter(|_| !settings.integrator.classic).map(|judged| judged.brightness());
-        crate::presets::add_missing(&mut completed, &studio);
-        settings.view.place(&mut completed, &settings.camera);
-        let objects = completed.objects.len() as u32;
-        let has_ground = completed.objects.len() > scene.objects.len();
-        let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
-        let of_ground = scene_warnings::of_ground(&studio, has_ground, has_backdrop);
-        let catcher = crate::presets::shadow_catcher(&completed, &studio)
-            .map(|ground| ShadowCatcher { ground: ground as u32, objects });
-        if settings.background.is_cut_out() {
-            let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
-            crate::presets::replace_backdrop(&mut completed, nothing);
-        }
-        crate::presets::add_fog(&mut completed, studio.fog);
-        let size = [settings.width, settings.height];
-        bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
-        let accel = accel_of(&completed);
-        settings.own_light = judged;
-        let (auto_curve, of_curve) = crate::writing::auto_curve(scene, &completed, &settings);
-        let note = own_light::note(&settings, &completed, scene.lights.len());
-        let studio_light = own_light::studio_light(&settings, &completed, scene.lights.len());
-        let notes = note.into_iter().chain(of_curve).collect();
-        let shutter = shutter_at(&settings, settings.time);
-        let built = match own.map(|own| own.alone) {
-            Some((alone, built)) if own_light::is_as_large(&alone, &completed) => {
-                known.completed.clear();
-                let mut moved = || completed.build_with(&mut known.alone, &accel, shutter, aspect);
-                if settings.view.is_moved() { moved()? } else { built }
-            }
-            _ => completed.build_with(&mut known.completed, &accel, shutter, aspect)?,
-        };
-        let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
-        let integrator = (settings.integrator.build)(&reader)?;
-        let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
-        let filters = settings.filters_textures;
-        let built = if filters { built.filtered(camera.clone(), settings.height) } else { built };
-        Ok(Job {
-            warnings: oddities(scene, &built, &*camera).into_iter().chain(of_ground).collect(),
-            camera,
-            render: render_settings(&settings)?,
-            auto_curve,
-            features: false,
-            denoising: Duration::ZERO,
-            begun: None,
-            sandboxed: false,
-            orientation,
-            source: completed,
-            notes,
-            studio_light,
-            catcher,
-            next_pose: None,
-            fingerprint: OnceLock::new(),
-            plan: OnceLock::new(),
-            accel,
-            scene: built,
-            integrator,
-            settings,
-        })
+    /// The picture of a scene whose meshes move to their pose in the next frame, for the layer of motion. Other movement is
+    /// known without it.
+    #[must_use]
+    pub fn moving_to(&self, next: &Job) -> Job {
+        let next_pose = Some(Arc::new(next.subject.clone()));
+        Job { subject: Subject { next_pose, ..self.subject.clone() }, ..self.clone() }
     }
 
-    /// Moves the picture to another time, in seconds. Static objects are not rebuilt.
-    pub fn at_time(&mut self, time: f32) {
-        self.settings.time = time;
-        (self.fingerprint, self.plan) = (OnceLock::new(), OnceLock::new());
-        self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
+    /// The series of this picture and of those that are to be lit as it is.
+    pub fn series(&self) -> Series {
+        Series { turn: self.settings.studio.turn, own_light: self.settings.own_light }
     }
 
     /// What is odd about the picture, even though it can be rendered.
     pub fn warnings(&self) -> &[Warning] {
-        &self.warnings
+        &self.found.warnings
     }
 
     /// What was decided where the scene leaves a choice, such as what lights it.
     pub fn notes(&self) -> &[String] {
-        &self.notes
+        &self.found.notes
     }
 
     /// What the studio lights the scene with, as a list in words, if nothing else is to be told about its light.
     pub fn studio_light(&self) -> Option<&str> {
-        self.studio_light.as_deref()
+        self.found.studio_light.as_deref()
     }
 
     /// How the model was rotated, if it came without a camera or the user asked for a rotation.
     pub fn orientation(&self) -> Option<Orientation> {
-        self.orientation
-    }
-
-    /// Starts the clock of the time limit at `begun`, for example when the file was opened, instead of at the first
-    /// sample.
-    pub fn begun_at(&mut self, begun: Instant) {
-        self.begun = Some(begun);
-    }
-
-    /// Takes only the samples in `range` of each pixel, for a partial film.
-    pub fn samples(&mut self, range: Range<u32>) {
-        self.render.samples = range;
+        self.found.orientation
     }
 
     /// The number of samples that each pixel gets, unless noise or time ends the picture.
@@ -215,43 +126,23 @@ impl Job {
         self.settings.asked_spp().map(|_| self.samples_per_pixel())
     }
 
-    /// Renders only a window of the picture.
-    pub fn crop(&mut self, window: Window) {
-        self.render.crop = Some(window);
-    }
-
-    /// Counts every node visit and triangle test, which is slower.
-    pub fn count_work(&mut self) {
-        self.render.count_work = true;
-    }
-
-    /// Takes samples that also give each pixel's confidence interval ([`Rendered::interval`]). These are different
-    /// samples, so parts of such a picture do not merge with parts of an ordinary one.
-    ///
-    /// # Errors
-    /// If the integrator is deterministic.
-    pub fn with_interval(&mut self) -> Result<(), Error> {
-        if !self.integrator.is_random() {
-            return Err(RenderError::IntervalOfPattern.into());
-        }
-        self.render.interval = true;
-        self.fingerprint = OnceLock::new();
-        Ok(())
-    }
-
     /// The scene.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.subject.scene
     }
 
     /// The scene's description, with what the studio adds, and the camera where the settings have moved it.
     pub fn completed_scene(&self) -> &SceneBuilder {
-        &self.source
+        &self.subject.source
     }
 
     /// The camera.
     pub fn camera(&self) -> &dyn Camera {
-        &*self.camera
+        &*self.subject.camera
+    }
+
+    pub(crate) fn integrator(&self) -> &dyn PixelIntegrator {
+        &*self.subject.integrator
     }
 
     /// The settings.
@@ -283,8 +174,9 @@ impl Job {
     /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel. If a shadow is part of it,
     /// also the coverage by the model alone.
     fn coverage(&self, render: &RenderSettings, samples: u32) -> Result<[Option<Vec<f32>>; 2], Error> {
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
-        Ok(match (self.settings.background.is_cut_out(), self.catcher) {
+        let Subject { scene, camera, integrator, catcher, .. } = &self.subject;
+        let (camera, integrator) = (&**camera, &**integrator);
+        Ok(match (self.settings.background.is_cut_out(), *catcher) {
             (false, _) => [None, None],
             (true, None) => [Some(coverage(scene, camera, integrator, render, samples)?), None],
             (true, Some(catcher)) => {
@@ -297,7 +189,7 @@ impl Job {
 
     /// True if its integrator's strategies can be shown separately.
     pub fn has_strategies(&self) -> bool {
-        self.integrator.has_strategies()
+        self.subject.integrator.has_strategies()
     }
 
     /// Renders a picture for each of the integrator's strategies, from the same samples as the main picture. Returns
@@ -322,8 +214,8 @@ impl Job {
         if let Some(samples) = samples {
             (settings.spp, settings.samples) = (samples, 0..samples);
         }
-        let (scene, camera) = (&self.scene, &*self.camera);
-        Ok(bilux_transport::strategies(scene, camera, &*self.integrator, &settings, progress)?)
+        let Subject { scene, camera, integrator, .. } = &self.subject;
+        Ok(bilux_transport::strategies(scene, &**camera, &**integrator, &settings, progress)?)
     }
 
     /// Traces one sample again and records what happens to it.
@@ -331,14 +223,14 @@ impl Job {
     /// # Errors
     /// If the pixel is outside the picture.
     pub fn replay(&self, x: u32, y: u32, sample: u32) -> Result<Replay, Error> {
-        let (scene, camera, place) = (&self.scene, &*self.camera, SamplePlace { x, y, sample });
+        let (scene, camera, place) = (self.scene(), self.camera(), SamplePlace { x, y, sample });
         Ok(bilux_transport::replay(scene, camera, self.renders(), &self.render, place)?)
     }
 
     /// The fingerprint of this picture: partial films merge only if it agrees.
     pub fn fingerprint(&self) -> &str {
-        self.fingerprint.get_or_init(|| {
-            let plain = fingerprint(&self.source, &self.settings);
+        self.known.fingerprint.get_or_init(|| {
+            let plain = fingerprint(&self.subject.source, &self.settings);
             if self.render.interval { plain + "-replicates" } else { plain }
         })
     }
@@ -359,28 +251,4 @@ impl Job {
         self.describe(&mut picture, outcome, None);
         Ok(picture)
     }
-}
-
-pub(crate) fn shutter_at(settings: &Settings, time: f32) -> [f32; 2] {
-    [time, time + settings.shutter]
-}
-
-fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
-    Ok(RenderSettings {
-        width: settings.width,
-        height: settings.height,
-        samples: 0..settings.spp,
-        spp: settings.spp,
-        crop: None,
-        seed: settings.seed,
-        threads: settings.threads,
-        max_depth: settings.max_depth,
-        pixel_anchor: if settings.corner_anchor { PixelAnchor::Corner } else { PixelAnchor::Centre },
-        filter: Filter::from_name(&settings.filter)?,
-        count_work: false,
-        stop: settings.stop,
-        interval: false,
-        batch_means: false,
-        ids: false,
-    })
 }

@@ -16,17 +16,17 @@ impl Job {
     /// # Errors
     /// As for [`Job::render`].
     pub fn plan(&self) -> Result<Option<&Plan>, Error> {
-        if self.plan.get().is_none() {
-            let plan = bilux_transport::plan(&self.scene, &*self.camera, &*self.integrator, &self.render)?;
+        if self.known.plan.get().is_none() {
+            let plan = bilux_transport::plan(self.scene(), self.camera(), self.integrator(), &self.render)?;
             // Another thread may have been faster, with the same result.
-            let _ = self.plan.set(plan);
+            let _ = self.known.plan.set(plan);
         }
         Ok(self.chosen())
     }
 
     /// What it has chosen so far.
     pub(super) fn chosen(&self) -> Option<&Plan> {
-        self.plan.get().and_then(Option::as_ref)
+        self.known.plan.get().and_then(Option::as_ref)
     }
 
     /// Takes this many other samples of one pixel, at least two, and returns the mean of each colour channel with its 95%
@@ -46,7 +46,7 @@ impl Job {
         let (pixel, spp) = (Window { x, y, width: 1, height: 1 }, samples.max(2));
         let render = RenderSettings { samples: 0..spp, spp, crop: Some(pixel), ..self.render.clone() };
         let render = RenderSettings { interval: true, stop: Stop::default(), batch_means: false, ..render };
-        let (scene, camera) = (&self.scene, &*self.camera);
+        let (scene, camera) = (self.scene(), self.camera());
         let rendered = bilux_transport::render(scene, camera, self.renders(), &render, &Silent)?;
         Ok(rendered.interval.map(|interval| [0, 1, 2].map(|channel| interval.channel(&pixel, channel))))
     }
@@ -61,7 +61,7 @@ impl Job {
     ) -> Result<Option<()>, Error> {
         let mut render = RenderSettings { samples, ..self.render.clone() };
         (render.stop, render.batch_means) = (Stop::default(), false);
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let (scene, camera, integrator) = (self.scene(), self.camera(), self.integrator());
         let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
         if rendered.cancelled {
             return Ok(None);
@@ -72,7 +72,7 @@ impl Job {
             return Ok(Some(()));
         }
         let mut features = None;
-        if self.features {
+        if self.keeps_features() {
             features = bilux_transport::features(scene, camera, integrator, &render, None, progress)?;
             if features.is_none() {
                 return Ok(None);
@@ -88,16 +88,15 @@ impl Job {
 
     /// The integrator that takes the samples.
     pub(crate) fn renders(&self) -> &dyn PixelIntegrator {
-        self.chosen().map_or(&*self.integrator, |plan| &*plan.integrator)
+        self.chosen().map_or(self.integrator(), |plan| &*plan.integrator)
     }
 
-    /// Takes over settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
-    pub(crate) fn show(&mut self, settings: &Settings) {
+    /// The picture with settings that change no sample, and the number of samples ([`Settings::takes_samples_of`]).
+    pub(crate) fn showing(&self, settings: &Settings) -> Job {
         let Settings { spp, threads, fps, exposure, states_exposure, auto_exposure, .. } = *settings;
         let Settings { background, linear_transfer, .. } = *settings;
         let (tonemap, denoise) = (settings.tonemap.clone(), settings.denoise.clone());
-        let own = self.settings.clone();
-        self.settings = Settings {
+        let settings = Settings {
             spp,
             threads,
             fps,
@@ -108,13 +107,14 @@ impl Job {
             linear_transfer,
             tonemap,
             denoise,
-            ..own
+            ..self.settings.clone()
         };
-        (self.render.threads, self.render.spp, self.render.samples) = (threads, spp, 0..spp);
+        let render = RenderSettings { threads, spp, samples: 0..spp, ..self.render.clone() };
+        Job { settings, render, ..self.clone() }
     }
 
     /// True if the number of samples changes nothing but the number of samples.
     pub(crate) fn may_take_more(&self) -> bool {
-        self.integrator.is_random() && !self.settings.background.is_cut_out()
+        self.integrator().is_random() && !self.settings.background.is_cut_out()
     }
 }

@@ -14,7 +14,7 @@ impl Job {
     /// Renders the picture.
     ///
     /// # Errors
-    /// If the size or the crop makes no sense, or memory is short.
+    /// If the size or the crop makes no sense, memory is short, or the denoiser that was asked for is not available.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
         self.render_observed(None, Duration::ZERO, progress, &Unobserved)
     }
@@ -29,9 +29,9 @@ impl Job {
         observer: &dyn Observer,
     ) -> Result<Outcome, Error> {
         let now = Instant::now();
-        let (scene, camera) = (&self.scene, &*self.camera);
+        let (scene, camera) = (self.scene(), self.camera());
         let mut render = self.render.clone();
-        let aside = aside + self.time_aside(now);
+        let aside = aside + self.time_aside(now)?;
         let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, aside));
         let features = self.features_within(end.map(|end| end - now), progress)?;
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
@@ -41,8 +41,9 @@ impl Job {
     }
 
     /// The time that a limit leaves to other work than rendering, as far as it is spent by now or known.
-    pub(crate) fn time_aside(&self, now: Instant) -> Duration {
-        now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time()
+    pub(crate) fn time_aside(&self, now: Instant) -> Result<Duration, Error> {
+        let before = now.duration_since(self.request.begun.unwrap_or(now));
+        Ok(before + self.denoising_time()? + self.shadow_time())
     }
 
     /// The features of surfaces, if they are wanted, in a part of the time that the picture may take.
@@ -51,10 +52,10 @@ impl Job {
         time: Option<Duration>,
         progress: &dyn Progress,
     ) -> Result<Option<Features>, Error> {
-        if !self.features {
+        if !self.keeps_features() {
             return Ok(None);
         }
-        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let (scene, camera, integrator) = (self.scene(), self.camera(), self.integrator());
         let part = time.map(|time| time / FEATURES_PART);
         Ok(bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?)
     }

@@ -6,8 +6,7 @@ pub use edit::Edit;
 
 use crate::built::Built;
 use crate::progressive::{Budget, Progressive};
-use crate::series::Series;
-use crate::{Error, Job, Outcome, Settings};
+use crate::{Denoised, Error, Job, JobRequest, Outcome, Settings};
 use bilux_pictures::Picture;
 use bilux_scene::{Parameters, SceneBuilder, TreeWork, Value};
 use bilux_transport::Progress;
@@ -22,10 +21,7 @@ use bilux_transport::aovs::Aov;
 /// use bilux::{Budget, Edit, Session};
 ///
 /// let scene = bilux::generate(&Spec::new("", "cornell"))?;
-/// let mut settings = Parameters::default();
-/// settings.set("size", "16x16");
-/// settings.set("spp", Value::Integer(4));
-/// let mut session = Session::new(scene, &settings)?;
+/// let mut session = Session::new(scene, JobRequest::new().size(16, 16).spp(4))?;
 /// session.step(Budget::Samples(2), &Quiet)?;
 /// session.apply(Edit::Set("exposure".to_owned(), Value::Number(1.0)))?;
 /// assert_eq!(session.samples(), 2, "only the display changes");
@@ -37,55 +33,41 @@ use bilux_transport::aovs::Aov;
 /// ```
 pub struct Session {
     scene: SceneBuilder,
-    user: Parameters,
-    most: u64,
-    layers: Vec<Aov>,
+    request: JobRequest,
     built: Built,
     picture: Progressive,
 }
 
 impl Session {
-    /// A session with a scene and the user's settings, which take precedence over the scene's. Limits of noise and time
-    /// have no effect: the steps decide when the picture is good enough, up to the number of samples that the settings
-    /// say.
+    /// A session with a scene, and with what is asked of its picture; edits keep to that too. Limits of noise and time have no
+    /// effect: the steps decide when the picture is good enough, up to the number of samples that the settings say. Nothing is denoised.
     ///
     /// # Errors
-    /// If a setting or anything in the scene is wrong.
-    pub fn new(scene: SceneBuilder, user: &Parameters) -> Result<Session, Error> {
-        Session::within(scene, user, u64::MAX)
-    }
-
-    /// The same, but only if `most` bytes of memory are enough; edits keep to it too.
-    ///
-    /// # Errors
-    /// As for [`Session::new`]; and if the picture would take more memory.
-    pub fn within(scene: SceneBuilder, user: &Parameters, most: u64) -> Result<Session, Error> {
-        Session::sharing(scene, user, most, Built::default())
+    /// As for [`Job::new`].
+    pub fn new(scene: SceneBuilder, request: impl Into<JobRequest>) -> Result<Session, Error> {
+        Session::sharing(scene, request, Built::default())
     }
 
     /// The same, with what another session has built of the scene ([`Session::built`]): both then hold the same trees.
     ///
     /// # Errors
-    /// As for [`Session::within`].
+    /// As for [`Session::new`].
     pub fn sharing(
         scene: SceneBuilder,
-        user: &Parameters,
-        most: u64,
+        request: impl Into<JobRequest>,
         mut built: Built,
     ) -> Result<Session, Error> {
-        let user = without_limits(user.clone());
-        let job = Job::with_built(&scene, &user, most, &Series::default(), &mut built)?;
-        let picture = Progressive::new(job);
-        Ok(Session { scene, user, most, layers: Vec::new(), built, picture })
+        let request = without_limits(request.into());
+        let job = Job::with_built(&scene, request.clone(), &mut built)?;
+        Ok(Session { scene, request, built, picture: Progressive::new(job) })
     }
 
-    /// Keeps these layers of the picture ([`Job::with_layers`]) from now on. The picture starts again.
+    /// Keeps these layers of the picture ([`JobRequest::layers`]) from now on. The picture starts again.
     ///
     /// # Errors
     /// As for [`Session::new`].
     pub fn with_layers(&mut self, wanted: &[Aov]) -> Result<(), Error> {
-        self.layers = wanted.to_vec();
-        self.restart(self.scene.clone(), self.user.clone())
+        self.restart(self.scene.clone(), self.request.clone().layers(wanted))
     }
 
     /// Makes an edit. Returns whether the picture starts again.
@@ -101,40 +83,38 @@ impl Session {
     /// # Errors
     /// As for [`Session::apply`]; no edit is made if one of them is wrong.
     pub fn apply_all(&mut self, edits: Vec<Edit>) -> Result<bool, Error> {
-        let (mut scene, mut user) = (self.scene.clone(), self.user.clone());
+        let (mut scene, mut request) = (self.scene.clone(), self.request.clone());
         let mut changes_scene = false;
         for edit in edits {
-            changes_scene |= edit.make(&mut scene, &mut user)?;
+            changes_scene |= edit.make(&mut scene, &mut request.settings)?;
         }
-        let user = without_limits(user);
-        let before = Settings::of(&self.scene, &self.user)?;
-        let settings = Settings::of(&scene, &user)?;
+        let request = without_limits(request);
+        let before = Settings::of(&self.scene, &self.request.settings)?;
+        let settings = Settings::of(&scene, &request.settings)?;
         let has_room =
             settings.spp == before.spp || settings.spp >= self.samples() && self.picture.job.may_take_more();
         if changes_scene || !has_room || !settings.takes_samples_of(&before) {
-            self.restart(scene, user)?;
+            self.restart(scene, request)?;
             return Ok(true);
         }
-        self.picture.job.show(&settings);
-        if let Err(error) = self.picture.job.write_options() {
-            self.picture.job.show(&before);
-            return Err(error);
-        }
+        let shown = self.picture.job.showing(&settings);
+        shown.write_options()?;
+        self.picture.job = shown;
         if let Some(outcome) = &mut self.picture.so_far {
             outcome.linear_transfer = settings.linear_transfer;
         }
-        (self.scene, self.user) = (scene, user);
+        (self.scene, self.request) = (scene, request);
         Ok(false)
     }
 
     /// Shows another scene with other settings, and with what another session has built of it. The picture starts again.
     ///
     /// # Errors
-    /// As for [`Session::within`]: then the session stays as it was.
+    /// As for [`Session::new`]: then the session stays as it was.
     pub fn replace(&mut self, scene: SceneBuilder, user: &Parameters, built: Built) -> Result<(), Error> {
         let before = std::mem::replace(&mut self.built, built);
-        let user = without_limits(user.clone());
-        let replaced = self.restart(scene, user);
+        let request = JobRequest { settings: user.clone(), ..self.request.clone() };
+        let replaced = self.restart(scene, without_limits(request));
         if replaced.is_err() {
             self.built = before;
         }
@@ -142,12 +122,11 @@ impl Session {
     }
 
     /// Starts the picture of another scene or of other settings.
-    fn restart(&mut self, scene: SceneBuilder, user: Parameters) -> Result<(), Error> {
-        let mut job = Job::with_built(&scene, &user, self.most, &Series::default(), &mut self.built)?;
-        job.with_layers(&self.layers);
+    fn restart(&mut self, scene: SceneBuilder, request: JobRequest) -> Result<(), Error> {
+        let job = Job::with_built(&scene, request.clone(), &mut self.built)?;
         job.write_options()?;
         self.picture.restart(job);
-        (self.scene, self.user) = (scene, user);
+        (self.scene, self.request) = (scene, request);
         Ok(())
     }
 
@@ -203,9 +182,8 @@ impl Session {
     }
 }
 
-/// The settings without limits of noise and time.
-fn without_limits(mut user: Parameters) -> Parameters {
-    user.set("noise", Value::Integer(0));
-    user.set("time_limit", Value::Integer(0));
-    user
+/// What is asked for, without limits of noise and time, for all samples, as they are.
+fn without_limits(request: JobRequest) -> JobRequest {
+    let request = JobRequest { samples: None, denoised: Denoised::No, ..request };
+    request.set("noise", Value::Integer(0)).set("time_limit", Value::Integer(0))
 }

@@ -275,8 +275,7 @@ fn films_of_two_integrators_or_two_materials_do_not_join() {
         settings.set("size", "4x4");
         settings.set("spp", Value::Integer(4));
         settings.set("integrator", integrator);
-        let mut job = Job::new(scene, &settings).unwrap();
-        job.samples(samples);
+        let job = Job::new(scene, JobRequest::from(&settings).samples(samples)).unwrap();
         job.render(&Quiet).unwrap().rendered.film
     };
     let mut dull = scene();
@@ -297,10 +296,10 @@ fn films_of_two_integrators_or_two_materials_do_not_join() {
 fn each_frame_of_an_animation_has_the_fingerprint_of_its_time() {
     let mut user = Parameters::default();
     user.set("size", "4x4");
-    let mut moved = Job::new(&scene(), &user).unwrap();
+    let job = Job::new(&scene(), &user).unwrap();
     let mut all = Vec::new();
     for time in [0.0, 0.5, 1.0] {
-        moved.at_time(time);
+        let moved = job.at_time(time);
         let mut at = user.clone();
         at.set("time", time);
         assert_eq!(moved.fingerprint(), Job::new(&scene(), &at).unwrap().fingerprint(), "at {time} s");

@@ -55,8 +55,8 @@ fn a_denoised_picture_has_a_denoised_shadow() {
             [("size", "96x96"), ("ground", "shadow"), ("background", "transparent"), ("denoise", denoise)];
         settings.into_iter().for_each(|(key, value)| all.set(key, value));
         all.set("spp", Value::Integer(4));
-        let mut job = Job::new(&slab(None), &all).unwrap();
-        job.denoiser(true).unwrap();
+        let request = JobRequest::from(&all).denoised(Denoised::ForDisplay);
+        let job = Job::new(&slab(None), request).unwrap();
         alpha(&job.render(&Quiet).unwrap().picture().unwrap())
     };
     let (plain, smooth) = (shadow("off"), shadow("builtin"));

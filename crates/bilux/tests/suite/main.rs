@@ -6,4 +6,6 @@ mod fingerprint_fields;
 mod ground;
 mod own_light;
 mod parts;
+mod request;
 mod session;
+mod typed;

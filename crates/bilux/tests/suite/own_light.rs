@@ -48,6 +48,10 @@ fn settings() -> Parameters {
     settings
 }
 
+fn asked() -> JobRequest {
+    JobRequest::from(&settings())
+}
+
 fn job(scene: &SceneBuilder) -> Job {
     Job::new(scene, &settings()).unwrap()
 }
@@ -215,10 +219,10 @@ fn all_pictures_of_a_turntable_are_lit_alike() {
         Job::new(&wall(), &settings).unwrap().notes()[0].starts_with("the studio")
     });
     assert_eq!(alone, [false, true]);
-    let series = Series::turntable(&wall(), &settings(), u64::MAX, 6).unwrap();
+    let series = Series::turntable(&wall(), &asked(), 6).unwrap();
     let jobs = [0, 1, 3].map(|i| {
         let series = series.turned(i, 6);
-        Job::in_series(&wall(), &settings(), u64::MAX, &series).unwrap()
+        Job::new(&wall(), asked().in_series(series)).unwrap()
     });
     for job in &jobs {
         assert_eq!(job.notes(), jobs[0].notes());
@@ -227,8 +231,8 @@ fn all_pictures_of_a_turntable_are_lit_alike() {
     }
     // A closed box has light enough on all sides.
     let inside = SceneBuilder { cameras: Vec::new(), ..closed_box(15.0) };
-    let series = Series::turntable(&inside, &settings(), u64::MAX, 6).unwrap();
-    let job = Job::in_series(&inside, &settings(), u64::MAX, &series.turned(2, 6)).unwrap();
+    let series = Series::turntable(&inside, &asked(), 6).unwrap();
+    let job = Job::new(&inside, asked().in_series(series.turned(2, 6))).unwrap();
     assert_eq!(job.scene().lights().len(), 1, "{:?}", job.notes());
 }
 
@@ -238,7 +242,7 @@ fn all_frames_of_an_animation_are_lit_as_the_first() {
     for (first, then) in [(60.0, 0.2), (0.2, 60.0)] {
         let is_studio = |job: &Job| job.scene().lights().iter().any(|light| light.name == "room");
         let start = job(&lamp(first));
-        let next = Job::in_series(&lamp(then), &settings(), u64::MAX, &start.series()).unwrap();
+        let next = Job::new(&lamp(then), asked().in_series(start.series())).unwrap();
         assert_ne!(is_studio(&start), is_studio(&job(&lamp(then))));
         assert_eq!((is_studio(&next), next.notes()), (is_studio(&start), start.notes()));
     }
@@ -469,7 +473,7 @@ fn exposures_leave_the_classic_shading_alone() {
 #[test]
 fn all_pictures_of_a_series_are_exposed_alike() {
     let first = job(&sunlit(10_000.0));
-    let next = Job::in_series(&sunlit(100.0), &settings(), u64::MAX, &first.series()).unwrap();
+    let next = Job::new(&sunlit(100.0), asked().in_series(first.series())).unwrap();
     let exposure = |job: &Job| job.write_options().unwrap().exposure;
     assert!(exposure(&first) < -8.0);
     assert_eq!((exposure(&next), next.notes()), (exposure(&first), first.notes()));
@@ -486,8 +490,8 @@ fn no_picture_of_a_turntable_is_burnt_by_the_brighter_side() {
             let sun = Spec::new("", "directional").with("direction", Vec3::new(0.0, -0.2, z));
             scene.lights.push(sun.with("irradiance", lux));
         }
-        let series = Series::turntable(&scene, &settings(), u64::MAX, 2).unwrap();
-        let job = Job::in_series(&scene, &settings(), u64::MAX, &series.turned(0, 2)).unwrap();
+        let series = Series::turntable(&scene, &asked(), 2).unwrap();
+        let job = Job::new(&scene, asked().in_series(series.turned(0, 2))).unwrap();
         job.write_options().unwrap().exposure
     };
     let [begun_dim, begun_bright] = [exposure(30.0, 10_000.0), exposure(10_000.0, 30.0)];

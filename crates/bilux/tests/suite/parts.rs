@@ -27,9 +27,7 @@ fn settings(pairs: &[(&str, Value)]) -> Parameters {
 }
 
 fn job(settings: &Parameters) -> Job {
-    let mut job = Job::new(&scene(), settings).unwrap();
-    job.denoiser(true).unwrap();
-    job
+    Job::new(&scene(), JobRequest::from(settings).denoised(Denoised::ForDisplay)).unwrap()
 }
 
 fn division(workers: u32, may_crop: bool) -> Division {
@@ -143,9 +141,8 @@ fn wrong_parts_are_refused() {
     let film = other.part(&first, &Quiet).unwrap().film;
     assert!(message(&mut gathering, &first, film).contains("different scenes or settings"));
     gathering.add(&first, job.part(&first, &Quiet).unwrap().film, 0).unwrap();
-    let mut interval = job_of(0);
-    interval.with_layers(&[Aov::Interval]);
-    interval.with_interval().unwrap();
+    let request = JobRequest::from(&settings(&[("spp", Value::Integer(8))])).layers(&[Aov::Interval]);
+    let interval = Job::new(&scene(), request).unwrap();
     assert!(
         interval.gathering(division(2, false)).is_err_and(|error| error.to_string().contains("'interval'"))
     );

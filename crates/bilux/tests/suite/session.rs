@@ -103,8 +103,7 @@ fn layers_follow_every_edit() {
         session.apply_all(edit).unwrap();
         finished(&mut session);
         let layers = session.outcome().unwrap().layered(&wanted).unwrap();
-        let mut job = Job::new(session.scene(), &user).unwrap();
-        job.with_layers(&wanted);
+        let job = Job::new(session.scene(), JobRequest::from(&user).layers(&wanted)).unwrap();
         let alone = job.render(&Quiet).unwrap().layered(&wanted).unwrap();
         assert_eq!(layers.channels().len(), 3 + 3 + 3 + 1, "{what}");
         assert!(layers == alone, "{what}");
@@ -307,16 +306,17 @@ fn a_denoised_picture_is_that_of_a_fresh_job_whatever_the_steps() {
             ("spp", Value::Integer(spp)),
             ("denoise", "builtin".into()),
         ]);
-        let mut job = Job::new(&cornell(), &user).unwrap();
-        let denoiser = job.denoiser(true).unwrap().unwrap();
-        let expected = bytes(&job.render(&Quiet).unwrap().denoised(&denoiser).unwrap());
+        let request = JobRequest::from(&user).denoised(Denoised::ForDisplay);
+        let job = Job::new(&cornell(), request).unwrap();
+        let denoiser = job.denoiser().unwrap().unwrap();
+        let expected = bytes(&job.render(&Quiet).unwrap().denoised(denoiser).unwrap());
         for steps in [&[1, 1, 1, 2, 100][..], &[5, 100], &[100]] {
             let mut session = Session::new(cornell(), &user).unwrap();
             session.with_layers(&[Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance]).unwrap();
             for &samples in steps {
                 session.step(Budget::Samples(samples), &Quiet).unwrap();
             }
-            let cleaned = session.outcome().unwrap().denoised(&denoiser).unwrap();
+            let cleaned = session.outcome().unwrap().denoised(denoiser).unwrap();
             assert!(bytes(&cleaned) == expected, "{integrator} in {steps:?}");
         }
     }
@@ -328,8 +328,7 @@ fn sessions_that_share_what_is_built_build_no_tree_and_show_the_same() {
     let first = Session::new(cornell(), &user).unwrap();
     let built = first.tree_work();
     let other = settings(&[("integrator", "path".into()), ("eye", "0.2,0.9,3".into())]);
-    let mut second =
-        Session::sharing(first.scene().clone(), &other, u64::MAX, first.built().clone()).unwrap();
+    let mut second = Session::sharing(first.scene().clone(), &other, first.built().clone()).unwrap();
     assert_eq!(second.tree_work(), built);
     assert!(finished(&mut second) == fresh(&cornell(), &other));
     // Another scene, with what was built of it elsewhere.

@@ -44,8 +44,14 @@ pub fn wants(arguments: &Render, aov: Aov) -> bool {
     arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
 }
 
-/// Checks that the picture's integrator can provide the outputs, and prepares the job for them.
-pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
+/// What a render keeps for its outputs while it takes samples.
+pub fn kept(arguments: &Render) -> Vec<Aov> {
+    let interval = [Aov::Interval].into_iter().filter(|&aov| wants(arguments, aov));
+    layers(arguments).into_iter().chain(interval).collect()
+}
+
+/// Checks that the picture's integrator can provide the outputs.
+pub fn check_job(arguments: &Render, job: &Job) -> anyhow::Result<()> {
     if wants(arguments, Aov::Strategies) && !job.has_strategies() {
         let (name, others) = (job.settings().integrator.entry.name, integrators::with_strategies());
         let message = format!(
@@ -54,12 +60,7 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
     }
-    job.check_layers(&layers(arguments)).context("--aov").map_err(usage::wrong)?;
-    job.with_layers(&layers(arguments));
-    if wants(arguments, Aov::Interval) {
-        job.with_interval().map_err(usage::wrong)?;
-    }
-    Ok(())
+    job.check_layers(&layers(arguments)).context("--aov").map_err(usage::wrong)
 }
 
 /// Makes the layers that are made once the picture is there; `None` if that was interrupted.

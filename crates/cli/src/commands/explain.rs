@@ -4,8 +4,8 @@ use super::{DONE, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Explain};
 use crate::sandbox::SandboxPaths;
 use crate::{output, settings_from, usage};
-use bilux::Job;
 use bilux::explain::{Explanation, Measures, slower};
+use bilux::{Job, JobRequest};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     arguments.studio.set_up(&mut scene, &options)?;
     report_warnings(&scene.warnings, common)?;
-    let job = Job::within(&scene, &user, common.max_memory)?;
+    let job = Job::new(&scene, JobRequest::from(&user).max_memory(common.max_memory))?;
     report_warnings(job.warnings(), common)?;
     let found = job.explain()?;
     if arguments.json {

@@ -3,24 +3,22 @@
 use super::input::Input;
 use super::keeping::Keeping;
 use super::targets::{Target, is_stdout};
-use super::written::{self, Denoising, is_part};
+use super::written::{self, Denoising};
 use super::{DONE, aov, log, stats, time_limit};
 use crate::ending::{end, finished, under_way};
 use crate::preview::{Observers, Preview};
 use crate::progress::Report;
 use crate::{output, usage};
 use bilux::Job;
-use bilux::pictures::formats::format_of_path;
 use std::sync::Arc;
 
 /// Renders a picture and writes it, with what belongs to it.
-pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
+pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
     let Input { arguments, common, interrupt, .. } = *input;
     input.check_outputs(target).map_err(usage::wrong)?;
     let output = &target.output;
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
-    let for_display = is_stdout(output) || format_of_path(output)?.for_display;
-    let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
+    let denoiser = job.denoiser().map_err(usage::wrong)?;
     under_way(&target.scene, output, arguments.json);
     let (keeping, saved) = Keeping::begin(input, job, output)?;
     let before = input.begun.get().elapsed();
@@ -48,11 +46,11 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
         end(status, "it was stopped before there was a picture to save");
     }
     let rendered = input.begun.get().elapsed();
-    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled).map(Arc::new);
+    let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
     let outcome = Arc::new(outcome);
     let extra = aov::extra(arguments, job, &outcome, &report)?;
     let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
-    let denoising = written::write(input, job, &outcome, (denoiser.as_ref(), &layers), output)?;
+    let denoising = written::write(input, job, &outcome, (denoiser, &layers), output)?;
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
@@ -65,7 +63,7 @@ pub fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64)
         build_seconds,
         seconds,
         total_seconds: input.begun.get().elapsed().as_secs_f64(),
-        denoiser: denoiser.as_deref().filter(|_| denoising == Denoising::Done),
+        denoiser: denoiser.map(|chosen| &**chosen).filter(|_| denoising == Denoising::Done),
         is_whole,
         timed_out: interrupt.timed_out(),
         overrun,

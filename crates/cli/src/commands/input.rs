@@ -1,6 +1,7 @@
 //! The scene that `bilux render` renders, and the jobs that it makes of it.
 
 use super::targets::{Target, is_stdout};
+use super::written::is_part;
 use super::{aov, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
@@ -8,11 +9,12 @@ use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::checkpoint::checkpoint_path;
 use bilux::formats::ReadOptions;
+use bilux::pictures::formats::format_of_path;
 use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
 use bilux::transport::aovs::Aov;
 use bilux::watch::Watched;
-use bilux::{Built, Job, Series};
+use bilux::{Built, Denoised, Job, JobRequest, Series};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::io::Read;
@@ -127,20 +129,19 @@ impl Input<'_> {
     }
 
     /// Makes the job for a scene, with everything that the command line says about it.
-    pub fn job(&self, scene: &SceneBuilder, user: &Parameters, series: &Series) -> anyhow::Result<Job> {
+    pub fn job(
+        &self,
+        scene: &SceneBuilder,
+        (user, series): (&Parameters, &Series),
+        output: &Path,
+    ) -> anyhow::Result<Job> {
         let arguments = self.arguments;
+        let request = self.request(user, series, output)?;
         // From one picture of a turntable to the next only the camera moves.
         let (mut own, mut shared) = (Built::default(), self.built.borrow_mut());
         let built = if arguments.turntable.is_some() { &mut *shared } else { &mut own };
-        let mut job = Job::with_built(scene, user, self.common.max_memory, series, built)?;
-        if self.common.sandbox {
-            job.sandbox();
-        }
-        job.begun_at(self.begun.get());
-        aov::prepare(arguments, &mut job)?;
-        if let Some((from, to)) = arguments.samples {
-            job.samples(from..to);
-        }
+        let job = Job::with_built(scene, request, built)?;
+        aov::check_job(arguments, &job)?;
         if let Some([x, y, width, height]) = arguments.crop {
             let s = job.settings();
             let fits = |at: u32, side: u32, most: u32| {
@@ -153,27 +154,49 @@ impl Input<'_> {
                      which is {size}"
                 )));
             }
-            job.crop(Window { x, y, width, height });
-        }
-        if arguments.stats.is_some() {
-            job.count_work();
         }
         Ok(job)
     }
 
-    /// Tells the job the next pose of a scene whose meshes move, if the layer of motion is wanted.
-    pub fn set_next_pose(
+    /// What the command line asks of a picture.
+    fn request(&self, user: &Parameters, series: &Series, output: &Path) -> anyhow::Result<JobRequest> {
+        let (arguments, common) = (self.arguments, self.common);
+        // A path is drawn into the picture that is shown, even if only a part of it is rendered.
+        let is_whole = arguments.replay.is_some() || !is_part(arguments);
+        let is_shown = is_whole && (is_stdout(output) || format_of_path(output)?.for_display);
+        let denoised = if is_shown { Denoised::ForDisplay } else { Denoised::IfAsked };
+        let mut request = JobRequest::from(user)
+            .in_series(series.clone())
+            .max_memory(common.max_memory)
+            .begun_at(self.begun.get())
+            .layers(&aov::kept(arguments))
+            .denoised(denoised);
+        if common.sandbox {
+            request = request.sandboxed();
+        }
+        if let Some((from, to)) = arguments.samples {
+            request = request.samples(from..to);
+        }
+        if let Some([x, y, width, height]) = arguments.crop {
+            request = request.crop(Window { x, y, width, height });
+        }
+        Ok(if arguments.stats.is_some() { request.counting_work() } else { request })
+    }
+
+    /// The job with the next pose of a scene whose meshes move, if the layer of motion is wanted.
+    pub fn with_next_pose(
         &self,
-        job: &mut Job,
+        job: Job,
         scene: &SceneBuilder,
         (user, series): (&Parameters, &Series),
-    ) -> anyhow::Result<()> {
-        if scene.inventory.moves() && aov::wants(self.arguments, Aov::Motion) {
-            let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
-            next.movement = scene.movement.clone();
-            job.moves_to(self.job(&next, user, series)?);
+        output: &Path,
+    ) -> anyhow::Result<Job> {
+        if !scene.inventory.moves() || !aov::wants(self.arguments, Aov::Motion) {
+            return Ok(job);
         }
-        Ok(())
+        let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
+        next.movement = scene.movement.clone();
+        Ok(job.moving_to(&self.job(&next, (user, series), output)?))
     }
 }
 

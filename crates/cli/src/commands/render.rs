@@ -13,11 +13,11 @@ use crate::interrupt::{Interrupt, interrupt};
 use crate::sandbox::{SandboxPaths, check_read, folder_of, leads_out};
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
-use bilux::Series;
 use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::checkpoint::checkpoint_path;
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::watch::Watched;
+use bilux::{JobRequest, Series};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -155,7 +155,7 @@ fn render_one(
     let Some(count) = arguments.turntable else {
         return render_scene(&input, &mut scene, target, user, &Series::default());
     };
-    let series = Series::turntable(&scene, user, common.max_memory, count)?;
+    let series = Series::turntable(&scene, &JobRequest::from(user).max_memory(common.max_memory), count)?;
     let mut finished = FinishedFrames::begin(&input, user, target)?;
     for frame in 0..count {
         let (series, numbered) = (series.turned(frame, count), numbered(target, frame));
@@ -198,48 +198,50 @@ fn render_scene(
         with_fast_budget(&scene.settings, &mut user);
     }
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
-    let mut job = input.job(scene, &user, series)?;
+    let output = &target.output;
+    let mut job = input.job(scene, (&user, series), output)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was set otherwise than by --at.
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
-        job = input.job(scene, &user, series)?;
+        job = input.job(scene, (&user, series), output)?;
     }
-    input.set_next_pose(&mut job, scene, (&user, series))?;
+    let job = input.with_next_pose(job, scene, (&user, series), output)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     // That the studio lights a model without light is part of the line about its picture.
     if common.verbose > 0 || !common.quiet && job.studio_light().is_none() {
-        input.note(&target.output, job.notes());
+        input.note(output, job.notes());
     }
     if arguments.replay.is_some() {
-        return replaying::run(input, &mut job, &target.output);
+        return replaying::run(input, &job, output);
     }
     if by_default && common.verbose > 0 {
-        log::report_default_budget(&target.output);
+        log::report_default_budget(output);
     }
     let Some((first, last)) = arguments.frames else {
-        return finish(input, &mut job, target, build_seconds);
+        return finish(input, &job, target, build_seconds);
     };
-    let series = job.series();
+    let (series, fps) = (job.series(), job.settings().fps);
     let mut finished = FinishedFrames::begin(input, &user, target)?;
     for frame in first..=last {
         let numbered = numbered(target, frame);
         if finished.has(frame, &numbered) {
             continue;
         }
-        let time = frame as f32 / job.settings().fps;
+        let time = frame as f32 / fps;
         if frame > first {
             input.begun.set(Instant::now());
-            job.begun_at(input.begun.get());
         }
-        if scene.inventory.moves() {
+        let posed = if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
             posed.movement = scene.movement.clone();
-            job = input.job(&posed, &user, &series)?;
-        }
-        job.at_time(time);
-        input.set_next_pose(&mut job, scene, (&user, &series))?;
-        let status = finish(input, &mut job, &numbered, build_seconds)?;
+            &input.job(&posed, (&user, &series), output)?
+        } else {
+            &job
+        };
+        let shown = posed.at_time(time).begun_at(input.begun.get());
+        let shown = input.with_next_pose(shown, scene, (&user, &series), output)?;
+        let status = finish(input, &shown, &numbered, build_seconds)?;
         if status != DONE {
             finished.stop();
             return Ok(status);

@@ -8,12 +8,11 @@ use crate::{output, usage};
 use anyhow::Context;
 use bilux::Job;
 use bilux::path_drawing::with_path;
-use bilux::pictures::formats::format_of_path;
 use bilux::pictures::{WriteOptions, to_display};
 use std::path::Path;
 
 /// Prints the sample, and draws it into the picture if that has a name.
-pub fn run(input: &Input, job: &mut Job, path: &Path) -> anyhow::Result<u8> {
+pub fn run(input: &Input, job: &Job, path: &Path) -> anyhow::Result<u8> {
     let Input { arguments, common, interrupt, .. } = *input;
     let [x, y, sample] = arguments.replay.unwrap_or_default();
     let light_path = job.light_path(x, y, sample).context("--replay")?;
@@ -21,14 +20,14 @@ pub fn run(input: &Input, job: &mut Job, path: &Path) -> anyhow::Result<u8> {
     if is_stdout(path) {
         return Ok(DONE);
     }
-    let denoiser = job.denoiser(format_of_path(path)?.for_display).map_err(usage::wrong)?;
+    let denoiser = job.denoiser().map_err(usage::wrong)?;
     let label = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
     interrupt.ends_itself(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let picture = match denoiser.filter(|_| !outcome.rendered.cancelled) {
-        Some(chosen) => outcome.denoised(&chosen)?,
+        Some(chosen) => outcome.denoised(chosen)?,
         None => outcome.picture()?,
     };
     let options = job.write_options_for(&picture)?;

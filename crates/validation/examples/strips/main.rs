@@ -115,10 +115,9 @@ fn rendered(text: &str, table: Table, spp: i64, files: &Path) -> Result<Picture,
     settings.set("spp", Value::Integer(if table == Table::Textures { 16 } else { spp }));
     let is_smooth = table != Table::Textures && !text.contains("\"whitted\"") && !text.contains("\"cast\"");
     settings.set("denoise", if is_smooth { "builtin" } else { "off" });
-    let mut job = Job::new(&scene, &settings)?;
-    let denoiser = job.denoiser(true)?;
+    let job = Job::new(&scene, JobRequest::from(&settings).denoised(Denoised::ForDisplay))?;
     let outcome = job.render(&Quiet)?;
-    let light = match &denoiser {
+    let light = match job.denoiser()? {
         Some(chosen) => outcome.denoised(chosen)?,
         None => outcome.picture()?,
     };

@@ -53,7 +53,7 @@ impl Keeper {
         let scene = (options.open)(&Opening::default()).map_err(ViewerError::Open)?;
         watched.add(&scene.files);
         let (user, unedited) = (options.settings.clone(), scene.clone());
-        let session = Session::within(scene, &settings::with_defaults(&user), options.max_memory)?;
+        let session = Session::new(scene, settings::request(&user, options.max_memory))?;
         let keeper = Keeper {
             first_time: session.job().settings().time,
             options,

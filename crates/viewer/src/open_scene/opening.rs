@@ -120,7 +120,7 @@ impl Keeper {
     fn take(&mut self, scene: SceneBuilder) -> Result<(), String> {
         self.watched.add(&scene.files);
         let opened = scene.clone();
-        let session = Session::within(scene, &settings::with_defaults(&self.user), self.options.max_memory);
+        let session = Session::new(scene, settings::request(&self.user, self.options.max_memory));
         self.session = session.map_err(|error| error.to_string())?;
         self.unedited = opened;
         Ok(())

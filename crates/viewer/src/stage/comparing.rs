@@ -12,7 +12,7 @@ use bilux::pictures::metrics::{HeatMap, Pair, heat_map};
 use bilux::pictures::{METRICS, Picture, WriteOptions, downscaled};
 use bilux::scene::Parameters;
 use bilux::transport::NoiseMeter;
-use bilux::{Budget, Edit, Error, Session};
+use bilux::{Budget, Edit, Error, JobRequest, Session};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -109,12 +109,9 @@ impl Stage {
             _ => {
                 let is_unedited = it.other == Other::Unedited;
                 let scene = if is_unedited { &self.version.unedited } else { self.session.scene() };
-                it.session = Some(Session::sharing(
-                    scene.clone(),
-                    &wanted,
-                    self.common.max_memory,
-                    self.version.built.clone(),
-                )?);
+                let request = JobRequest::from(&wanted).max_memory(self.common.max_memory);
+                let built = self.version.built.clone();
+                it.session = Some(Session::sharing(scene.clone(), request, built)?);
                 true
             }
         };

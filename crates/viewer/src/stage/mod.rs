@@ -142,9 +142,9 @@ impl Stage {
         common.open.attach(&inbox);
         let version = common.open.newest().ok_or_else(closed)?;
         let user = common.settings.clone();
-        let asked = settings::with_defaults(&settings::at_time(&user, &version));
+        let request = settings::request(&settings::at_time(&user, &version), common.max_memory);
         let (scene, built) = (version.scene.clone(), version.built.clone());
-        let session = Session::sharing(scene, &asked, common.max_memory, built)?;
+        let session = Session::sharing(scene, request, built)?;
         let settings = session.job().settings();
         let size = [settings.width, settings.height];
         let task = Task { threads: settings.threads, ..Task::default() };

@@ -3,7 +3,7 @@
 use crate::common::{Client, Frame, Viewer, cornell, get, options, run};
 use bilux::pictures::{Limits, Picture, read_bytes, write_bytes};
 use bilux::scene::{Parameters, Value};
-use bilux::{Job, Quiet};
+use bilux::{Denoised, Job, JobRequest, Quiet};
 use bilux_viewer::Options;
 use serde_json::json;
 
@@ -24,11 +24,11 @@ fn viewer(settings: Parameters) -> Viewer {
 fn rendered(settings: &Parameters) -> Vec<u8> {
     let mut settings = settings.clone();
     settings.set("build", "balanced");
-    let mut job = Job::new(&cornell().unwrap(), &settings).unwrap();
-    let denoiser = job.denoiser(true).unwrap();
+    let request = JobRequest::from(&settings).denoised(Denoised::ForDisplay);
+    let job = Job::new(&cornell().unwrap(), request).unwrap();
     let outcome = job.render(&Quiet).unwrap();
-    let picture = match denoiser {
-        Some(denoiser) => outcome.denoised(&denoiser).unwrap(),
+    let picture = match job.denoiser().unwrap() {
+        Some(denoiser) => outcome.denoised(denoiser).unwrap(),
         None => outcome.picture().unwrap(),
     };
     write_bytes("png", &picture, &job.write_options_for(&picture).unwrap()).unwrap()
