@@ -15,18 +15,20 @@ use std::path::Path;
 impl Stage {
     /// Answers all questions that there is a picture for; the others wait for it.
     pub(super) fn answer_waiting(&mut self) {
-        for question in std::mem::take(&mut self.questions) {
+        for question in self.questions.take() {
             match question {
                 // Pixels are those of the picture in full size.
                 Question::Pick { at, paths, answers }
-                    if matches!(self.level, Level::Preview(1) | Level::Full) =>
+                    if matches!(self.refinement.level, Level::Preview(1) | Level::Full) =>
                 {
                     let answer = pick::answer(&self.session, at, paths);
                     let error = |error: Error| json!({ "say": "error", "message": error.to_string() });
                     // A browser that does not take its answers loses them.
                     let _ = answers.try_send(answer.unwrap_or_else(error).to_string());
                 }
-                Question::Save { format, to } if self.level == Level::Full && self.session.samples() > 0 => {
+                Question::Save { format, to }
+                    if self.refinement.level == Level::Full && self.session.samples() > 0 =>
+                {
                     // Whoever has asked may have gone.
                     let _ = to.send(self.saved(format).map_err(|error| error.to_string()));
                 }
@@ -36,9 +38,9 @@ impl Stage {
                 }
                 Question::Measure { answers } => {
                     let common = self.common.clone();
-                    self.measurement = Some(Measurement::begin(self.session.job(), answers, common));
+                    self.questions.measure(Some(Measurement::begin(self.session.job(), answers, common)));
                 }
-                early => self.questions.push(early),
+                early => self.questions.keep(early),
             }
         }
     }
@@ -62,15 +64,18 @@ impl Stage {
     pub(super) fn whole(&self) -> Whole {
         let job = self.session.job();
         let denoise = denoiser_of(job.settings()).unwrap_or("off").to_owned();
-        Whole { size: self.size, samples: job.samples_per_pixel(), denoise }
+        Whole { size: self.viewpoint.size, samples: job.samples_per_pixel(), denoise }
     }
 
     /// The picture as a file of this format.
     fn saved(&self, format: &str) -> Result<Vec<u8>, Error> {
         let Some(outcome) = self.session.outcome() else { return Ok(Vec::new()) };
         let is_display = format == "png";
-        let (picture, options) =
-            Shown::Picture.of(self.session.job(), outcome, self.denoiser.as_ref().filter(|_| is_display))?;
+        let (picture, options) = Shown::Picture.of(
+            self.session.job(),
+            outcome,
+            self.denoisers.chosen.as_ref().filter(|_| is_display),
+        )?;
         Ok(write_bytes(format, &picture, &options)?)
     }
 }

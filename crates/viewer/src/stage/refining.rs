@@ -2,14 +2,13 @@
 
 use super::Stage;
 use super::show::{FOR_DENOISERS, Shown};
-use crate::frame::{Facts, Frame};
+use crate::frame::Facts;
 use crate::inbox::Inbox;
-use crate::settings::{Level, denoiser_of, divided};
+use crate::settings::{Level, divided};
 use bilux::pictures::{Picture, WriteOptions};
+use bilux::transport::Progress;
 use bilux::transport::aovs::Aov;
-use bilux::transport::{NoiseMeter, Progress};
 use bilux::{Budget, Edit, Error, Outcome, Settings};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long a step of the picture takes: then requests are looked at.
@@ -42,38 +41,31 @@ impl Progress for Interruptible<'_> {
 impl Stage {
     /// Begins the picture anew, with small pictures first, unless what has changed is only how it is displayed.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
-        (self.rests, self.changed) = (false, Instant::now());
+        (self.refinement.rests, self.refinement.changed) = (false, Instant::now());
         self.other_is_out_of_date(false);
         let full = Settings::of(self.session.scene(), &self.settings_for(Level::Full))?;
-        let has_samples = self.level == Level::Full && self.session.samples() > 0;
+        let has_samples = self.refinement.level == Level::Full && self.session.samples() > 0;
         if has_samples && full.takes_samples_of(self.session.job().settings()) {
             self.enter(Level::Full)?;
             if self.session.samples() > 0 {
-                self.rests = self.session.is_done();
+                self.refinement.rests = self.session.is_done();
                 return self.publish_again();
             }
         }
-        self.changes += 1;
-        (self.enough, self.is_full_shown) = (1, false);
-        self.enter(Level::Preview(self.pace.divisor(self.size)))
+        self.refinement.begin();
+        self.enter(Level::Preview(self.refinement.pace.divisor(self.viewpoint.size)))
     }
 
     /// True if what is shown is denoised: small previews always are, or little could be seen in them; larger ones and the
     /// picture if that is asked for.
     pub(super) fn denoises(&self) -> bool {
         let is_picture = self.shown == Shown::Picture;
-        match self.level {
-            Level::Preview(1) | Level::Full => is_picture && self.denoiser.is_some(),
+        match self.refinement.level {
+            Level::Preview(1) | Level::Full => is_picture && self.denoisers.chosen.is_some(),
             Level::Preview(_) | Level::Clean(_) => {
                 is_picture && !self.session.job().settings().integrator.classic
             }
         }
-    }
-
-    /// Looks for the denoiser that the settings ask for.
-    pub(super) fn choose_denoiser(&mut self) -> Result<(), Error> {
-        self.denoiser = self.denoiser_for(self.session.job().settings(), self.comparison.is_some())?;
-        self.choose_layers()
     }
 
     /// Keeps the layers that are shown, or that a denoiser looks at.
@@ -91,22 +83,20 @@ impl Stage {
     /// Goes on with another level.
     fn enter(&mut self, level: Level) -> Result<(), Error> {
         let begun = Instant::now();
-        self.level = level;
+        self.refinement.level = level;
         let restarts = self.session.apply(Edit::Settings(self.settings_for(level)))?;
         self.choose_layers()?;
         if restarts || self.session.samples() == 0 {
-            self.facts.picture += 1;
-            (self.meter, self.facts.noise) = (NoiseMeter::default(), None);
-            self.worked = Duration::ZERO;
+            self.refinement.begin_samples();
         }
-        self.entering = begun.elapsed();
+        self.refinement.entering = begun.elapsed();
         Ok(())
     }
 
     /// Refines what is being rendered a little, and shows it.
     pub(super) fn work(&mut self) -> Result<(), Error> {
         let (begun, before) = (Instant::now(), self.session.samples());
-        let budget = match self.level {
+        let budget = match self.refinement.level {
             Level::Full if before > 0 => Budget::Time(STEP),
             _ => Budget::Samples(1),
         };
@@ -115,36 +105,37 @@ impl Stage {
         if samples == before && !self.session.is_done() {
             return Ok(());
         }
-        self.worked += begun.elapsed();
-        if samples == 1
-            && let Some(outcome) = self.session.outcome()
-        {
-            // Noise is measured by what later samples change.
-            self.meter.look(&outcome.rendered.film, samples);
+        self.refinement.worked += begun.elapsed();
+        if let (1, Some(outcome)) = (samples, self.session.outcome()) {
+            self.refinement.look_first(outcome);
         }
-        match self.level {
+        match self.refinement.level {
             Level::Preview(divisor) => {
                 self.publish()?;
-                self.pace.learn(divided(self.size, divisor), self.entering, begun.elapsed());
+                self.refinement.pace.learn(
+                    divided(self.viewpoint.size, divisor),
+                    self.refinement.entering,
+                    begun.elapsed(),
+                );
                 self.answer_waiting();
                 self.go_on_from(divisor)
             }
             Level::Clean(_) => {
-                let is_enough = self.changed.elapsed() >= CLEAN || samples >= CLEAN_SAMPLES;
+                let is_enough = self.refinement.changed.elapsed() >= CLEAN || samples >= CLEAN_SAMPLES;
                 if !is_enough && !self.session.is_done() {
                     return Ok(());
                 }
                 self.publish()?;
-                self.enough = samples.div_ceil(2);
+                self.refinement.enough = samples.div_ceil(2);
                 self.enter(Level::Full)
             }
             Level::Full => {
-                self.rests = self.session.is_done();
+                self.refinement.rests = self.session.is_done();
                 if self.is_due() {
                     self.publish()?;
-                    if let (true, Some(it)) = (self.rests, &mut self.comparison) {
+                    if let (true, Some(it)) = (self.refinement.rests, &mut self.comparison) {
                         // How far the two are from each other in the end.
-                        it.is_shown = false;
+                        it.show_again();
                     }
                 }
                 self.answer_waiting();
@@ -156,25 +147,25 @@ impl Stage {
     /// True if it is time to show the picture in full size again; with a denoiser, which takes long, less often.
     fn is_due(&self) -> bool {
         let samples = self.session.samples();
-        if self.denoises() && self.denoising.is_some() {
+        if self.denoises() && self.denoisers.are_at_work() {
             return false;
         }
-        if self.session.is_done() || !self.is_full_shown {
-            return self.session.is_done() || samples >= self.enough;
+        if self.session.is_done() || !self.refinement.is_full_shown {
+            return self.session.is_done() || samples >= self.refinement.enough;
         }
         if !self.denoises() {
             let is_more = samples.is_power_of_two() && samples <= 4;
-            return is_more || self.last_shown.elapsed() >= SHOWN_EVERY;
+            return is_more || self.publisher.since_shown() >= SHOWN_EVERY;
         }
-        let often = self.cleaned.as_ref().map_or(CLEANED_EVERY, |it| CLEANED_EVERY.max(it.time * SHARE));
-        self.last_shown.elapsed() >= often
+        let often = self.denoisers.time().map_or(CLEANED_EVERY, |time| CLEANED_EVERY.max(time * SHARE));
+        self.publisher.since_shown() >= often
     }
 
     /// Goes on with a larger picture, or with the picture itself once nothing changes any more.
     fn go_on_from(&mut self, divisor: u32) -> Result<(), Error> {
         if divisor > 1 {
-            let cleans = self.denoises() && self.denoiser.is_some();
-            let clean = self.pace.clean_divisor(self.size);
+            let cleans = self.denoises() && self.denoisers.chosen.is_some();
+            let clean = self.refinement.pace.clean_divisor(self.viewpoint.size);
             let next = match cleans && divisor / 2 <= clean {
                 true => Level::Clean(clean.min(divisor)),
                 false => Level::Preview(divisor / 2),
@@ -182,10 +173,10 @@ impl Stage {
             return self.enter(next);
         }
         if self.settings_for(Level::Full) == self.settings_for(Level::Preview(1)) {
-            self.level = Level::Full;
+            self.refinement.level = Level::Full;
             return self.choose_layers();
         }
-        if self.changed.elapsed() >= SETTLED {
+        if self.refinement.changed.elapsed() >= SETTLED {
             return self.enter(Level::Full);
         }
         Ok(())
@@ -194,25 +185,27 @@ impl Stage {
     /// Shows the picture as it is, denoised if that is wanted: a large picture as soon as that is done.
     pub(super) fn publish(&mut self) -> Result<(), Error> {
         let samples = self.session.samples();
-        if let (true, Some(outcome)) = (self.level == Level::Full && samples > 1, self.session.outcome()) {
-            self.facts.noise = self.meter.look(&outcome.rendered.film, samples).or(self.facts.noise);
+        if let (true, Some(outcome)) =
+            (self.refinement.level == Level::Full && samples > 1, self.session.outcome())
+        {
+            self.refinement.measure_noise(outcome, samples);
         }
         let (job, Some(outcome)) = (self.session.job(), self.session.outcome()) else { return Ok(()) };
         let facts = self.facts_of(outcome);
         // A clean picture does not wait until one that is not wanted any more is denoised.
-        let is_soon = match self.level {
+        let is_soon = match self.refinement.level {
             Level::Preview(_) => true,
-            Level::Clean(_) => self.denoising.is_some(),
+            Level::Clean(_) => self.denoisers.are_at_work(),
             Level::Full => false,
         };
         if self.denoises() && !is_soon {
-            self.facts = facts.clone();
-            return match self.cleaned_of(&facts).is_some_and(|it| it.samples == samples) {
+            self.refinement.facts = facts.clone();
+            return match self.denoisers.cleaned_samples(&facts) == Some(samples) {
                 true => self.show_cleaned(&facts),
                 false => self.begin_denoising(facts),
             };
         }
-        let denoiser = self.denoises().then_some(&self.for_previews);
+        let denoiser = self.denoises().then_some(&self.denoisers.for_previews);
         let (picture, options) = self.shown.of(job, outcome, denoiser)?;
         self.send(&picture, &options, facts)
     }
@@ -221,19 +214,13 @@ impl Stage {
     fn publish_again(&mut self) -> Result<(), Error> {
         let Some(outcome) = self.session.outcome().filter(|_| self.denoises()) else { return self.publish() };
         let facts = self.facts_of(outcome);
-        match self.cleaned_of(&facts).map(|it| it.samples) {
+        match self.denoisers.cleaned_samples(&facts) {
             Some(samples) if samples < facts.samples => {
                 self.show_cleaned(&Facts { samples, rests: false, ..facts })?;
-                if self.rests { self.publish() } else { Ok(()) }
+                if self.refinement.rests { self.publish() } else { Ok(()) }
             }
             _ => self.publish(),
         }
-    }
-
-    /// The picture that was denoised of the one that is being refined.
-    fn cleaned_of(&self, facts: &Facts) -> Option<&super::Cleaned> {
-        let by = self.denoiser.as_ref().map(|chosen| chosen.name);
-        self.cleaned.as_ref().filter(|it| (it.picture, Some(it.by)) == (facts.picture, by))
     }
 
     /// What is known of the picture as it is.
@@ -243,15 +230,15 @@ impl Stage {
         let facts = Facts {
             shown: self.shown.name(),
             total: job.samples_per_pixel(),
-            is_preview: self.level != Level::Full,
-            rests: self.level == Level::Full && self.session.is_done(),
+            is_preview: self.refinement.level != Level::Full,
+            rests: self.refinement.level == Level::Full && self.session.is_done(),
             choice: outcome.rendered.choice.as_ref().map(ToString::to_string),
-            eye: self.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
-            ..self.facts.clone()
+            eye: self.viewpoint.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
+            ..self.refinement.facts.clone()
         };
         let settings = job.settings();
         let size = [settings.width, settings.height];
-        facts.of(size, samples, outcome.rendered.counters.rays, self.worked)
+        facts.of(size, samples, outcome.rendered.counters.rays, self.refinement.worked)
     }
 
     /// Sends a picture to those who watch.
@@ -261,47 +248,14 @@ impl Stage {
         options: &WriteOptions,
         facts: Facts,
     ) -> Result<(), Error> {
-        self.frame += 1;
-        let frame = Frame::new(self.frame, picture, options, self.size, &facts)?;
-        self.is_full_shown |= !facts.is_preview;
+        let frame = self.publisher.frame(picture, options, self.viewpoint.size, &facts)?;
         let rests = facts.rests;
-        if facts.picture == self.facts.picture {
-            self.facts = Facts { noise: self.facts.noise.or(facts.noise), ..facts };
-        }
+        self.refinement.note_frame(facts);
         if rests {
             // Before the frame: after a picture that rests, nothing more may come.
             self.publish_state();
         }
-        self.outlets.frames.send_replace(Some(Arc::new(frame)));
-        self.last_shown = Instant::now();
+        self.publisher.show(frame);
         Ok(())
-    }
-
-    /// Says how far the picture is: frames come more rarely.
-    pub(super) fn publish_progress(&mut self) {
-        if self.last_progress.elapsed() < SHOWN_EVERY && !self.rests {
-            return;
-        }
-        self.last_progress = Instant::now();
-        let progress = super::state::progress(self).to_string();
-        self.outlets.progress.send_if_modified(|last| {
-            let is_new = **last != *progress;
-            *last = progress.into();
-            is_new
-        });
-    }
-
-    /// The denoiser that settings ask for. Two pictures that are compared are not denoised unless that is asked for: what
-    /// people want to see is their noise.
-    pub(super) fn denoiser_for(
-        &self,
-        settings: &Settings,
-        is_compared: bool,
-    ) -> Result<Option<bilux::pictures::denoise::DenoiserChoice>, Error> {
-        let is_open = settings.denoise == "display" && is_compared;
-        Ok(match denoiser_of(settings).filter(|_| !is_open) {
-            Some(name) => Some(bilux::pictures::denoise::denoiser(name, &self.task())?),
-            None => None,
-        })
     }
 }

@@ -2,9 +2,7 @@
 
 use super::Stage;
 use super::show::Shown;
-use crate::eye::{own_bounds, point_at};
-use crate::inbox::{QUESTIONS, Waiting};
-use crate::message::Move;
+use crate::inbox::Waiting;
 use bilux::Edit;
 use bilux::scene::{Parameters, Span, Value};
 
@@ -14,75 +12,37 @@ impl Stage {
         let (changes_picture, is_answered) = (waiting.changes_picture(), waiting.answered.is_some());
         let Waiting { moves, size, settings, shown, questions, answered, .. } = waiting;
         if changes_picture || is_answered {
-            self.problem = None;
-            self.served += 1;
+            self.publisher.serve();
         }
         if changes_picture {
-            self.measurement = None;
+            self.questions.measure(None);
             let taken = self.take_newest();
-            self.note(taken);
+            self.publisher.note(taken);
             if let Some(other) = waiting.compared {
                 let compared = self.compare(other);
-                self.note(compared);
+                self.publisher.note(compared);
             }
-            self.resize(size.unwrap_or(self.wanted_size));
-            moves.iter().for_each(|it| self.make_move(it));
+            self.resize(size.unwrap_or(self.viewpoint.wanted_size));
+            moves.iter().for_each(|it| self.viewpoint.make(it, self.session.job()));
             let set = self.set(settings);
-            self.note(set);
+            self.publisher.note(set);
             let showed = self.show(shown);
-            self.note(showed);
+            self.publisher.note(showed);
             self.other_is_out_of_date(waiting.scene_changed);
             if let Some(are_shown) = waiting.differences {
-                self.show_differences(are_shown);
+                self.comparison.iter_mut().for_each(|it| it.show_differences(are_shown));
             }
             let begun = self.begin().map_err(|error| error.to_string());
-            self.note(begun);
+            self.publisher.note(begun);
         }
         if let Some(Some(problem)) = answered {
-            self.note(Err(problem));
+            self.publisher.note(Err(problem));
         }
         if changes_picture || is_answered {
             self.publish_state();
         }
-        // What waits for a picture is asked again by those who still want it.
-        self.questions.extend(questions);
-        let many = self.questions.len().saturating_sub(QUESTIONS);
-        self.questions.drain(..many);
+        self.questions.add(questions);
         self.answer_waiting();
-    }
-
-    /// Keeps the first problem, for the page.
-    fn note(&mut self, result: Result<(), String>) {
-        if let Err(problem) = result {
-            self.problem.get_or_insert(problem);
-        }
-    }
-
-    /// Moves the camera.
-    fn make_move(&mut self, it: &Move) {
-        let job = self.session.job();
-        if *it == Move::Home {
-            (self.is_moved, self.eye) = (false, self.home);
-            return;
-        }
-        let Some(mut eye) = self.eye else { return };
-        match *it {
-            Move::Orbit([right, up]) => eye.orbit(right, up),
-            Move::Look([right, up]) => eye.look(right, up),
-            Move::Pan([right, up]) => {
-                let height = f64::from(job.camera().height_at(eye.pivot.as_vec3(), job.settings().time));
-                eye.pan(right * height, up * height);
-            }
-            Move::Fly([right, up, forward]) => eye.fly(right, up, forward),
-            Move::Approach(factor) => eye.approach(factor),
-            Move::Focus(at) => {
-                if let Some(point) = point_at(job, at.map(|x| x as f32)) {
-                    eye.focus(point);
-                }
-            }
-            Move::Home => {}
-        }
-        (self.eye, self.is_moved) = (Some(eye), true);
     }
 
     /// Shows the picture or one of its layers.
@@ -90,13 +50,6 @@ impl Stage {
         let Some(what) = what else { return Ok(()) };
         self.shown = Shown::named(&what).ok_or_else(|| format!("there is no layer '{what}' to show"))?;
         self.choose_layers().map_err(|error| error.to_string())
-    }
-
-    /// True if the camera is inside of the scene, as in a room.
-    pub(super) fn is_inside(&self) -> bool {
-        let (job, own) = (self.session.job(), self.session.scene().objects.len());
-        let bounds = own_bounds(job.completed_scene(), own, job.settings().time);
-        self.eye.is_some_and(|eye| bounds.contains(eye.position.as_vec3()))
     }
 
     /// Changes settings, all at once if that is possible; otherwise one by one, without those that are refused.
@@ -120,22 +73,21 @@ impl Stage {
         if settings.is_empty() {
             return Ok(());
         }
-        let (before, eye) = (self.user.clone(), (self.eye, self.is_moved));
+        let before = (self.user.clone(), self.viewpoint);
         let changes_camera = settings.iter().any(|(key, ..)| key == "camera");
         for (key, value, _) in settings {
             self.user.set(key, value.clone());
         }
         if changes_camera {
-            self.is_moved = false;
+            self.viewpoint.is_moved = false;
         }
-        let applied = self.session.apply(Edit::Settings(self.settings_for(self.level)));
+        let applied = self.session.apply(Edit::Settings(self.settings_for(self.refinement.level)));
         let applied = applied.and_then(|_| self.choose_denoiser());
         if applied.is_err() {
-            self.user = before;
-            (self.eye, self.is_moved) = eye;
+            (self.user, self.viewpoint) = before;
         } else if changes_camera {
-            self.find_home();
-            (self.eye, self.is_moved) = (self.home, false);
+            self.viewpoint.home = self.home();
+            self.viewpoint.go_home();
         }
         applied.map_err(|error| error.to_string())
     }

@@ -26,16 +26,16 @@ pub(super) fn state(stage: &Stage) -> Value {
         "cameras": cameras.collect::<Vec<_>>(),
         "settings": values(stage),
         "shown": stage.shown.name(),
-        "full": stage.size,
-        "moved": stage.is_moved,
+        "full": stage.viewpoint.size,
+        "moved": stage.viewpoint.is_moved,
         // Inside of something, a drag looks around; otherwise it moves around.
-        "inside": stage.is_inside(),
+        "inside": stage.viewpoint.is_inside(&stage.session),
         "accel": used.accel.name,
         "curve": job.write_options().map(|options| options.tone_map.entry.name).unwrap_or_default(),
         "max_depth": used.max_depth,
         "command": stage.whole().command(&version.words, &stage.asked(), &version.changes),
-        "served": stage.served,
-        "problem": stage.problem,
+        "served": stage.publisher.served,
+        "problem": stage.publisher.problem,
         "warnings": warnings(stage),
         "notes": job.notes(),
         "may_edit": stage.common.may_edit,
@@ -56,12 +56,11 @@ pub(super) fn state(stage: &Stage) -> Value {
 
 /// How far the picture is, and the one that it is compared with, for the page.
 pub(super) fn progress(stage: &Stage) -> Value {
-    let (session, level) = (&stage.session, stage.level);
-    let other = stage.comparison.as_ref().map(|it| {
-        let samples = it.session.as_ref().map(bilux::Session::samples);
-        let total = it.session.as_ref().map(|session| session.job().samples_per_pixel());
-        json!({ "samples": samples.unwrap_or(0), "total": total, "goes_on": it.goes_on() })
-    });
+    let (session, level) = (&stage.session, stage.refinement.level);
+    let other = stage
+        .comparison
+        .as_ref()
+        .map(|it| json!({ "samples": it.samples(), "total": it.total(), "goes_on": it.goes_on() }));
     json!({
         "say": "progress",
         "level": match level {
@@ -72,10 +71,10 @@ pub(super) fn progress(stage: &Stage) -> Value {
         "divisor": level.divisor(),
         "samples": session.samples(),
         "total": session.job().samples_per_pixel(),
-        "noise": if level == Level::Full { stage.facts.noise } else { None },
-        "denoises": stage.denoising.is_some(),
+        "noise": if level == Level::Full { stage.refinement.facts.noise } else { None },
+        "denoises": stage.denoisers.are_at_work(),
         "waits": stage.awaits_turn,
-        "rests": stage.rests && stage.denoising.is_none(),
+        "rests": stage.refinement.rests && !stage.denoisers.are_at_work(),
         "other": other,
     })
 }
