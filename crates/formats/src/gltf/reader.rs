@@ -8,7 +8,7 @@ use super::instances::Instances;
 use super::json::JsonNode;
 use super::material::{MaterialKey, UsedMaterial};
 use super::primitive::{NodeMesh, Part};
-use super::{cameras, extensions, flat, lights};
+use super::{cameras, extensions, flat, lights, validate};
 use crate::FormatError;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
@@ -39,7 +39,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     gltf.decode_ahead()?;
     gltf.scene()?;
     if gltf.reading.options.validate {
-        gltf.validate()?;
+        validate::document(gltf.document, &mut gltf.reading.budget, &mut gltf.oddities);
+        gltf.validate_images()?;
     } else {
         gltf.check_data()?;
     }

@@ -3,11 +3,40 @@
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
-use super::meshopt;
 use super::reader::Gltf;
+use super::{meshopt, validate};
 use crate::FormatError;
 
 impl<'d> Gltf<'d, '_, '_> {
+    /// Reads the images that no material uses, and validates the bytes of all.
+    pub(super) fn validate_images(&mut self) -> Result<(), FormatError> {
+        let root = self.document.root;
+        let all: Vec<JsonNode<'d>> =
+            root.get("images").map(|list| list.children().collect()).unwrap_or_default();
+        for (number, image) in all.into_iter().enumerate() {
+            let is_placed = image.get("uri").is_some() != image.get("bufferView").is_some();
+            if !is_placed || !image.is_object() {
+                continue;
+            }
+            match self.encoded(image) {
+                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+                Err(error) => self.oddities.note(&error.without_place(), || image.at()),
+                Ok((_, bytes)) => {
+                    validate::image((image, number), &bytes, root, &mut self.oddities);
+                    self.release_encoded(bytes);
+                    let is_read = [true, false].iter().any(|&is_data| self.has_read(number, is_data));
+                    if !is_read && let Err(error) = self.decode(image, false) {
+                        if let FormatError::TooLarge { .. } = error {
+                            return Err(error);
+                        }
+                        self.oddities.note(&error.without_place(), || image.at());
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Warns about buffers, views and accessors that violate the specification. [glTF 2.0, 3.6]
     pub(super) fn check_data(&mut self) -> Result<(), FormatError> {
         let root = self.document.root;

@@ -1,10 +1,9 @@
 //! Images: where they are stored, the format that they declare, and the format that they have. [glTF 2.0, 3.8.3]
 
-use super::{Check, Role, text};
-use crate::FormatError;
+use super::{Check, Role, text, whole};
 use crate::gltf::json::JsonNode;
-use crate::gltf::reader::Gltf;
 use crate::gltf::uri;
+use crate::oddities::Oddities;
 
 pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     match (node.get("uri"), node.get("bufferView")) {
@@ -52,63 +51,36 @@ fn extension_for(kind: &str) -> Option<&'static str> {
     }
 }
 
-impl<'d> Gltf<'d, '_, '_> {
-    /// Reads the images that no material uses, and compares all images with the document's description of them.
-    pub(super) fn validate_images(&mut self) -> Result<(), FormatError> {
-        let root = self.document.root;
-        let all: Vec<JsonNode<'d>> =
-            root.get("images").map(|list| list.children().collect()).unwrap_or_default();
-        for (number, image) in all.into_iter().enumerate() {
-            let is_placed = image.get("uri").is_some() != image.get("bufferView").is_some();
-            if !is_placed || !image.is_object() {
-                continue;
-            }
-            match self.encoded(image) {
-                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-                Err(error) => self.oddities.note(&error.without_place(), || image.at()),
-                Ok((_, bytes)) => {
-                    self.validate_kind(image, number, &bytes);
-                    self.release_encoded(bytes);
-                    let is_read = [true, false].iter().any(|&is_data| self.has_read(number, is_data));
-                    if !is_read && let Err(error) = self.decode(image, false) {
-                        if let FormatError::TooLarge { .. } = error {
-                            return Err(error);
-                        }
-                        self.oddities.note(&error.without_place(), || image.at());
-                    }
-                }
-            }
-        }
-        Ok(())
+/// Compares the bytes of an image, which is the one of this number, with the document's description of it.
+pub(in crate::gltf) fn compare(
+    (image, number): (JsonNode, usize),
+    bytes: &[u8],
+    root: JsonNode,
+    oddities: &mut Oddities,
+) {
+    let in_uri = || uri::data(text(image, "uri")?)?.0.split(';').next();
+    let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
+    let Some(found) = recognised(bytes) else {
+        let what = "this image is neither PNG nor JPEG, the only two formats in glTF without extensions";
+        return oddities.note(what, || image.at());
+    };
+    if let Some(declared) = declared.filter(|declared| *declared != found) {
+        let what = format!("this image is declared as {declared}, but is {found}");
+        oddities.note(&what, || image.at());
     }
-
-    fn validate_kind(&mut self, image: JsonNode<'d>, number: usize, bytes: &[u8]) {
-        let in_uri = || uri::data(text(image, "uri")?)?.0.split(';').next();
-        let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
-        let Some(found) = recognised(bytes) else {
-            let what = "this image is neither PNG nor JPEG, the only two formats in glTF without extensions";
-            return self.oddities.note(what, || image.at());
-        };
-        if let Some(declared) = declared.filter(|declared| *declared != found) {
-            let what = format!("this image is declared as {declared}, but is {found}");
-            self.oddities.note(&what, || image.at());
-        }
-        let Some(extension) = extension_for(found) else { return };
-        let root = self.document.root;
-        let declares = root
-            .get("extensionsUsed")
-            .is_some_and(|list| list.children().any(|name| name.value().as_str() == Some(extension)));
-        if !declares {
-            let what = format!("an image of type {found} needs the extension {extension}");
-            self.oddities.note(&what, || image.at());
-        }
-        for texture in root.get("textures").into_iter().flat_map(|list| list.children()) {
-            if super::whole(texture, "source") == Some(number) {
-                let what = format!(
-                    "the source of a texture must be PNG or JPEG, not {found}: name it in {extension}"
-                );
-                self.oddities.note(&what, || texture.at());
-            }
+    let Some(extension) = extension_for(found) else { return };
+    let declares = root
+        .get("extensionsUsed")
+        .is_some_and(|list| list.children().any(|name| name.value().as_str() == Some(extension)));
+    if !declares {
+        let what = format!("an image of type {found} needs the extension {extension}");
+        oddities.note(&what, || image.at());
+    }
+    for texture in root.get("textures").into_iter().flat_map(|list| list.children()) {
+        if whole(texture, "source") == Some(number) {
+            let what =
+                format!("the source of a texture must be PNG or JPEG, not {found}: name it in {extension}");
+            oddities.note(&what, || texture.at());
         }
     }
 }

@@ -3,6 +3,8 @@
 //! Tables describe the properties of objects ([`core_kinds`], [`material_kinds`], [`extension_kinds`]); rules
 //! check how objects fit together ([`rules`]). Faults are reported as warnings, since most programs show such
 //! files nevertheless.
+//!
+//! It stands beside the reader and knows only what both look at: the document, and how accessors and images are stored.
 
 mod accessors;
 mod animations;
@@ -25,10 +27,10 @@ mod walk;
 use super::accessor::Accessor;
 use super::document::Document;
 use super::json::JsonNode;
-use super::reader::Gltf;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::oddities::Oddities;
+pub(super) use images::compare as image;
 use std::collections::{HashMap, HashSet};
 
 /// The state of a validation.
@@ -76,25 +78,19 @@ impl Role {
     }
 }
 
-impl Gltf<'_, '_, '_> {
-    /// Reports every fault of the document as a warning.
-    ///
-    /// # Errors
-    /// If reading an image exceeds the remaining memory.
-    pub(super) fn validate(&mut self) -> Result<(), FormatError> {
-        let mut check = Check {
-            document: self.document,
-            root: self.document.root,
-            budget: &mut self.reading.budget,
-            oddities: &mut self.oddities,
-            used: HashSet::new(),
-            extensions: HashSet::new(),
-            roles: HashMap::new(),
-            attributes_in: HashMap::new(),
-        };
-        check.object(check.root, &core_kinds::ROOT);
-        self.validate_images()
-    }
+/// Reports every fault of a document as a warning, except for those of the bytes of images ([`image`]).
+pub(super) fn document(document: &Document, budget: &mut Budget, oddities: &mut Oddities) {
+    let mut check = Check {
+        document,
+        root: document.root,
+        budget,
+        oddities,
+        used: HashSet::new(),
+        extensions: HashSet::new(),
+        roles: HashMap::new(),
+        attributes_in: HashMap::new(),
+    };
+    check.object(check.root, &core_kinds::ROOT);
 }
 
 impl<'d> Check<'d, '_> {
