@@ -47,6 +47,15 @@ pub(crate) fn light_number(light: usize) -> u16 {
     u16::try_from(light).unwrap_or(u16::MAX)
 }
 
+impl Start {
+    /// The factor by which the first vertex of a light subpath, here, would sample its start more often than assumed so far.
+    pub(crate) fn light_sampling_ratio(&self, scene: &Scene, from: Vec3) -> f32 {
+        let light = &scene.lights()[self.light].light;
+        // No surface samples what light sampling leaves out.
+        if self.ray.pdf_direct > 0.0 { light.direct_pdf(&self.ray, from) / self.ray.pdf_direct } else { 1.0 }
+    }
+}
+
 impl Emission {
     /// Starts by power, aimed if there is a guide.
     pub(crate) fn new(scene: &Scene, guide: Option<Arc<Guide>>) -> Emission {

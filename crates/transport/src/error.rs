@@ -101,7 +101,7 @@ pub enum RenderError {
     IntervalOfPattern,
     /// The integrator does not follow light in media.
     #[error(
-        "this scene has a medium that scatters light, which this integrator does not follow: choose another, such as auto, \
+        "this scene has a medium that varies, such as smoke, which this integrator does not follow: choose another, such as auto, \
          path, bdpt or vcm"
     )]
     Media,

@@ -3,6 +3,7 @@
 //! A density over solid angle becomes one over the next vertex: per area of a surface, with the cosine there, or per volume of
 //! a medium, without. [Pauly 2000]
 
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
 
@@ -30,6 +31,8 @@ pub(crate) struct MediumPoint {
     pub(crate) phase: Phase,
     /// Its medium is behind a surface, as in skin and milk, and not fog: such events do not count against the depth.
     pub(crate) is_inside: bool,
+    /// Its extinction coefficient, per metre, if it is the same everywhere.
+    pub(crate) even: Option<Rgb>,
 }
 
 impl Interaction {
@@ -94,6 +97,37 @@ impl Interaction {
     #[inline]
     pub(crate) fn cos(&self, direction: Vec3) -> Option<f32> {
         Some(self.surface()?.n_geom.dot(direction).abs())
+    }
+
+    /// The sine between two directions at a point of a medium, on which depends how often rays are merged there; 1 at a surface.
+    #[inline]
+    pub(crate) fn sine(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_in_medium() { wo.cross(wi).length() } else { 1.0 }
+    }
+
+    /// How often merging counts this vertex, but for the [sine](Interaction::sine) of the angle at it, in a channel.
+    #[inline]
+    pub(crate) fn merged<const N: usize>(&self, techniques: &TechniqueCounts<N>, channel: u8) -> PerSet<N> {
+        match self {
+            Interaction::Surface(..) => techniques.eta,
+            Interaction::Medium(point) => match point.even {
+                Some(sigma_t) if techniques.has_beams_in(sigma_t) => {
+                    let sigma = sigma_t[usize::from(channel)];
+                    techniques.beams * (1.0 / (sigma * sigma))
+                }
+                _ => PerSet::ZERO,
+            },
+        }
+    }
+
+    /// What light subpaths find here straight from a light.
+    #[inline]
+    pub(crate) fn direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> DirectLight {
+        match self {
+            _ if techniques.direct => DirectLight::Found,
+            Interaction::Medium(_) => DirectLight::Merged,
+            Interaction::Surface(..) => DirectLight::Left,
+        }
     }
 
     /// A ray that leaves it.

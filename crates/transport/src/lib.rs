@@ -6,6 +6,7 @@
 
 pub mod aovs;
 mod batch_means;
+mod beam;
 mod bidirectional;
 mod bytes;
 #[cfg(test)]
@@ -32,9 +33,11 @@ pub mod light_parts;
 pub mod limits;
 mod media;
 mod merged_layers;
+mod mis;
 pub mod partial;
 mod passes;
 mod path_tracing;
+mod photon_beams;
 mod photon_tracing;
 mod photons;
 mod pixel_integrator;

@@ -144,7 +144,7 @@ impl<'a> Sums<'a> {
         if splats {
             self.make_room_for_splats()?;
         }
-        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+        let techniques = |counts: &_| merging.techniques(counts);
         let visitor = splats.then_some(self);
         Ok(Some(Photons::trace(eye, merging, tiles, iteration, techniques, visitor).0))
     }

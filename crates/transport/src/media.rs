@@ -21,7 +21,7 @@ use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
-pub(crate) use passage::{Arrival, Passage, Travelled};
+pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled};
 
 /// Maximum number of surfaces that a ray passes to find the media that it starts in.
 const MAX_SURFACES: usize = 64;
@@ -120,7 +120,7 @@ impl Media {
     /// first surface that separates two media. `first` is the first surface along the ray. Afterwards these are the media on
     /// the side that the ray comes from. `odds` are those of walks in each channel so far.
     ///
-    /// Beyond the last surface nothing happens: the boundary of what scatters would have been met.
+    /// `visit` is told of each medium that scatters, on the way. Beyond the last surface nothing happens: the boundary of what scatters would have been met.
     #[inline]
     pub(crate) fn travel(
         &mut self,
@@ -129,6 +129,7 @@ impl Media {
         first: Option<Surface>,
         odds: Rgb,
         mut draw: impl FnMut() -> f32,
+        mut visit: impl FnMut(MediumPart),
     ) -> Travelled {
         let scene = tracer.scene;
         let direction = Vec3::from(ray.direction);
@@ -142,12 +143,17 @@ impl Media {
             let channel = WalkChannel { index: usize::from(self.channel), odds: odds * travelled.odds };
             let flight = medium.walk(line.as_ref(), length, channel, &mut draw);
             travelled = travelled.lit(flight.emitted);
+            if medium.scatters() {
+                let end = flight.event.map_or(surface.t, |event| begin + event.distance);
+                visit(MediumPart { object: self.inside, medium, ends: [begin, end], before: &travelled });
+            }
             if let Some(MediumEvent { distance, sigma_s, sigma_t }) = flight.event {
                 let t = begin + distance;
                 let p = Vec3::from(ray.origin) + direction * t;
                 self.overlap.leave();
                 let is_inside = !scene.material_of(self.inside).is_interface();
-                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase, is_inside };
+                let even = medium.density.is_none().then(|| medium.sigma_t());
+                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase, is_inside, even };
                 return travelled.scattered(flight.path, [sigma_s, sigma_t], point);
             }
             travelled = travelled.passed(flight.path);

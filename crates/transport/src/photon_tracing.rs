@@ -1,14 +1,15 @@
 //! Traces the light subpaths of one iteration, whose vertices are kept as photons.
 
+use crate::beam::Beam;
 use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
-use crate::photons::{Merging, Photon, PhotonPosition, PhotonWalk, Photons};
+use crate::photons::{MergeCounts, Merging, Photon, PhotonPosition, PhotonWalk, Photons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
-use crate::techniques::{Contribution, LightPathVisitor, Tally, TechniqueCounts};
+use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, TechniqueCounts};
 use crate::window::Window;
-use bilux_scene::{Counters, Tracer};
+use bilux_scene::{Counters, Scene, Tracer};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -23,8 +24,52 @@ pub(crate) fn iterations(
     samples.clone().step_by(step as usize).map(move |first| first..end.min(first + step))
 }
 
-/// The photons of a tile, and their walks.
-type OfTile<const N: usize> = (Vec<(PhotonPosition, Photon<N>)>, Vec<PhotonWalk>);
+/// The pixels whose light subpaths an iteration traces, and those of them that keep their beams: every so many.
+struct Followed {
+    width: u64,
+    step: u64,
+    beam_step: u64,
+    counts: MergeCounts,
+}
+
+impl Followed {
+    fn of(scene: &Scene, merging: &Merging, tiles: &[Window], iteration: u32) -> Followed {
+        let pixels: usize = tiles.iter().map(Window::pixels).sum();
+        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
+        let step = pixels.div_ceil(most.max(1)) as u64;
+        let width = u64::from(tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1));
+        let count = |step| {
+            let is_one = |tile: &Window, i: usize| is_nth(tile.position(i), width, step);
+            let in_tile = |tile: &Window| (0..tile.pixels()).filter(|&i| is_one(tile, i)).count();
+            tiles.iter().map(in_tile).sum::<usize>() as f32
+        };
+        let traced = count(step);
+        let beam_step = step * merging.beam_step(scene, iteration, traced) as u64;
+        let counts = merging.counts(scene, iteration, [traced, count(beam_step)], pixels as f32);
+        Followed { width, step, beam_step, counts }
+    }
+
+    fn is_traced(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.step)
+    }
+
+    fn has_beams(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.beam_step)
+    }
+}
+
+/// Every pixel of so many, row by row.
+fn is_nth((x, y): (u32, u32), width: u64, step: u64) -> bool {
+    (u64::from(y) * width + u64::from(x)).is_multiple_of(step)
+}
+
+/// What the light subpaths of a tile leave.
+struct OfTile<const N: usize> {
+    photons: Vec<(PhotonPosition, Photon<N>)>,
+    /// Those of the photons, where distances in media are not the same in all channels.
+    walks: Vec<PhotonWalk>,
+    beams: Vec<Beam<N>>,
+}
 
 impl Photons {
     /// The photons of an iteration, where the integrator merges subpaths, and the work that they took. What the camera sees of
@@ -37,7 +82,7 @@ impl Photons {
         splats: Option<&IterationSplats>,
     ) -> Option<(Photons, Counters)> {
         let merging = integrator.merging()?;
-        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+        let techniques = |counts: &MergeCounts| merging.techniques(counts);
         Some(Photons::trace(rays, merging, tiles, iteration, techniques, splats))
     }
 }
@@ -45,45 +90,36 @@ impl Photons {
 impl<const N: usize> Photons<N> {
     /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
     ///
-    /// Also returns the number of rays that this took. `techniques` gives all techniques, given η and the number of
-    /// light subpaths per pixel. Connections with the camera go to the `visitor`.
+    /// Also returns the number of rays that this took. `techniques` gives all techniques, given how often subpaths are
+    /// merged. Connections with the camera go to the `visitor`.
     pub(crate) fn trace<O: LightPathVisitor<N>>(
         eye: &CameraRays,
         merging: &Merging,
         tiles: &[Window],
         iteration: u32,
-        techniques: impl FnOnce(f32, f32) -> TechniqueCounts<N>,
+        techniques: impl FnOnce(&MergeCounts) -> TechniqueCounts<N>,
         visitor: Option<&O>,
     ) -> (Photons<N>, Counters) {
         let scene = eye.context.scene;
-        let pixels: usize = tiles.iter().map(Window::pixels).sum();
-        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
-        let step = pixels.div_ceil(most.max(1)) as u32;
-        let width = tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1);
-        let is_followed = |(x, y): (u32, u32)| {
-            (u64::from(y) * u64::from(width) + u64::from(x)).is_multiple_of(u64::from(step))
-        };
-        let followed = tiles
-            .iter()
-            .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
-            .sum::<usize>();
-        let radius = merging.radius(scene, iteration);
-        // A camera subpath is merged with the light subpaths of its channel, one in three.
-        let merged = if scene.has_coloured_distances() { followed as f32 / 3.0 } else { followed as f32 };
-        let techniques = techniques(merging.area(scene, iteration) * merged, followed as f32 / pixels as f32);
+        let followed = Followed::of(scene, merging, tiles, iteration);
+        let (radius, techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
-            let (mut photons, mut walks) = (Vec::new(), Vec::new());
+            let (mut photons, mut walks, mut beams) = (Vec::new(), Vec::new(), Vec::new());
             let mut tally = visitor.map(O::tally);
-            let places: Vec<(u32, u32)> =
-                (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)).collect();
+            let places: Vec<(u32, u32)> = (0..tile.pixels())
+                .map(|i| tile.position(i))
+                .filter(|&place| followed.is_traced(place))
+                .collect();
             let mut paths = LightPaths::default();
             for places in places.chunks(BATCH) {
                 let place = |&(x, y): &(u32, u32)| SamplePlace { x, y, sample: iteration };
-                let mut samples: Vec<_> =
-                    places.iter().map(|at| QueuedSample::of_light(eye.light_sample(place(at)))).collect();
+                let has_beams = |&at: &(u32, u32)| techniques.beams != PerSet::ZERO && followed.has_beams(at);
+                let sample = |at| QueuedSample::of_light(eye.light_sample(place(at)), has_beams(at));
+                let mut samples: Vec<_> = places.iter().map(sample).collect();
                 let context = &eye.context;
                 paths.trace(&mut samples, context, &mut tracer, merging.roulette_depth, &techniques);
+                beams.append(&mut paths.beams);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
                     let add = |i: usize, film, technique, found: &Contribution<N>| {
@@ -110,13 +146,18 @@ impl<const N: usize> Photons<N> {
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);
             }
-            ((photons, walks), tracer.counters)
+            (OfTile { photons, walks, beams }, tracer.counters)
         };
         let (parts, counters): (Vec<OfTile<N>>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
-        let (parts, walks): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let mut all = OfTile { photons: Vec::new(), walks: Vec::new(), beams: Vec::new() };
+        for mut part in parts {
+            all.photons.append(&mut part.photons);
+            all.walks.append(&mut part.walks);
+            all.beams.append(&mut part.beams);
+        }
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(parts.concat(), &walks.concat(), radius, techniques), counted)
+        (Photons::new(all.photons, &all.walks, all.beams, radius, techniques), counted)
     }
 }

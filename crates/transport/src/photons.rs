@@ -1,7 +1,9 @@
 //! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
 //! to merge with. [Jensen 1996; Georgiev 2012]
 
+use crate::beam::Beam;
 use crate::limits::MAX_DEPTH;
+use crate::photon_beams::PhotonBeams;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
@@ -21,22 +23,71 @@ pub struct Merging {
     pub part: f32,
     /// When Russian roulette begins on the light subpaths.
     pub roulette_depth: u32,
+    /// The largest extinction of media in which beams are merged, per metre; `None`: as the radius allows.
+    pub(crate) densest: Option<f32>,
     /// The techniques that are used as well as merging.
     pub(crate) techniques: TechniqueCounts,
 }
 
+/// How often the photons and beams of an iteration are merged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MergeCounts {
+    /// Light subpaths times the area of the disc that they are merged over, in square metres: η of [Georgiev 2012].
+    pub(crate) eta: f32,
+    /// Those whose beams are kept, times the width that beams are merged over, in metres.
+    pub(crate) beams: f32,
+    /// The largest extinction of media that have beams, per metre.
+    pub(crate) densest: f32,
+    /// Light subpaths per pixel.
+    pub(crate) light_paths: f32,
+}
+
+impl MergeCounts {
+    /// Not at all.
+    pub(crate) const NONE: MergeCounts = MergeCounts { eta: 0.0, beams: 0.0, densest: 0.0, light_paths: 1.0 };
+}
+
+/// Of the mean free path of media with beams, the merging radius is at most this fraction.
+const THICKEST: f32 = 0.05;
+
+/// The number of light subpaths whose beams are kept: at most, and over the merging radius as a fraction of the scene's radius. The smaller the
+/// radius, the fewer beams a ray meets: some dozens, in a room that is full of fog.
+const MAX_BEAM_PATHS: f32 = 16384.0;
+const BEAM_PATHS: f32 = 4.0;
+
 impl Merging {
-    /// Area of the disc that an iteration merges over, in square metres.
-    pub(crate) fn area(&self, scene: &Scene, iteration: u32) -> f32 {
+    /// How often an iteration merges `light_paths` light subpaths, and those of them whose beams are kept, in a film of so many
+    /// `pixels`.
+    pub(crate) fn counts(
+        &self,
+        scene: &Scene,
+        iteration: u32,
+        [light_paths, beam_paths]: [f32; 2],
+        pixels: f32,
+    ) -> MergeCounts {
         let radius = self.radius(scene, iteration);
-        std::f32::consts::PI * radius * radius
+        // A camera subpath is merged with the light subpaths of its channel, one in three.
+        let share = if scene.has_coloured_distances() { 1.0 / 3.0 } else { 1.0 };
+        MergeCounts {
+            eta: std::f32::consts::PI * radius * radius * (light_paths * share),
+            beams: if scene.scatters() { 2.0 * radius * (beam_paths * share) } else { 0.0 },
+            densest: self.densest.unwrap_or(THICKEST / radius),
+            light_paths: light_paths / pixels,
+        }
     }
 
-    /// All techniques of an iteration whose photons give this η, with this many light subpaths per pixel.
-    pub(crate) fn techniques(&self, eta: f32, light_paths: f32) -> TechniqueCounts {
+    /// Of so many light subpaths, the beams of every `n`th are kept.
+    pub(crate) fn beam_step(&self, scene: &Scene, iteration: u32, light_paths: f32) -> f32 {
+        let relative = self.radius(scene, iteration) / scene.bounds().radius();
+        (light_paths / (BEAM_PATHS / relative).min(MAX_BEAM_PATHS)).ceil().max(1.0)
+    }
+
+    /// All techniques of an iteration that merges so often.
+    pub(crate) fn techniques(&self, counts: &MergeCounts) -> TechniqueCounts {
+        let MergeCounts { eta, beams, densest, light_paths } = *counts;
         let splats =
             if self.splats_photons() { self.techniques.splats * light_paths } else { self.techniques.splats };
-        TechniqueCounts { eta: PerSet([eta]), splats, ..self.techniques }
+        TechniqueCounts { eta: PerSet([eta]), beams: PerSet([beams]), densest, splats, ..self.techniques }
     }
 
     /// True where light subpaths are connected with the camera but not with camera subpaths: the photons' light
@@ -128,15 +179,18 @@ pub struct Photons<const N: usize = 1> {
     photons: Vec<Photon<N>>,
     /// What each photon knows of the channels, where distances in media are not the same in all of them.
     walks: Vec<PhotonWalk>,
+    /// Their rays through media.
+    beams: PhotonBeams<N>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
     starts: Vec<u32>,
 }
 
 impl<const N: usize> Photons<N> {
-    /// Sorts the photons by cell, and their walks, if they have any; within a cell they keep the order in which they are given.
+    /// Sorts the photons by cell, and their walks, if they have any, and beams; within a cell they keep the order in which they are given.
     pub(crate) fn new(
         given: Vec<(PhotonPosition, Photon<N>)>,
         walks: &[PhotonWalk],
+        beams: Vec<Beam<N>>,
         radius: f32,
         techniques: TechniqueCounts<N>,
     ) -> Photons<N> {
@@ -162,12 +216,18 @@ impl<const N: usize> Photons<N> {
         let (positions, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
         let walks =
             if walks.is_empty() { Vec::new() } else { order.iter().map(|&i| walks[i as usize]).collect() };
-        Photons { radius, techniques, positions, photons, walks, starts }
+        let beams = PhotonBeams::new(beams, radius);
+        Photons { radius, techniques, positions, photons, walks, beams, starts }
     }
 
     /// All techniques of this iteration.
     pub(crate) fn techniques(&self) -> &TechniqueCounts<N> {
         &self.techniques
+    }
+
+    /// The rays of their light subpaths through media.
+    pub(crate) fn beams(&self) -> &PhotonBeams<N> {
+        &self.beams
     }
 
     /// Calls `visit` with every photon within the radius of a point, and its walk, if photons have any.
@@ -246,7 +306,7 @@ mod tests {
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
             (position, Photon { wo, n_geom, beta: Rgb::WHITE, connected: PerSet::ZERO, d_vc: PerSet::ZERO })
         };
-        Photons::new((0..count).map(photon).collect(), &[], radius, TechniqueCounts::CAMERA)
+        Photons::new((0..count).map(photon).collect(), &[], Vec::new(), radius, TechniqueCounts::CAMERA)
     }
 
     #[test]

@@ -27,14 +27,14 @@ pub trait PixelIntegrator: Send + Sync + 'static {
         CameraSpread::FULL
     }
 
-    /// True if it follows light that media scatter.
-    fn follows_media(&self) -> bool {
+    /// True if it follows light that the media of a scene scatter.
+    fn follows_media(&self, _scene: &Scene) -> bool {
         true
     }
 
     /// True if it finds light that media emit.
     fn sees_glow(&self) -> bool {
-        self.follows_media()
+        true
     }
 
     /// True if it reports each piece of light that a path finds (`Task::find`), so that light can be divided into parts.

@@ -98,7 +98,7 @@ pub fn render_from(
     if settings.interval && !integrator.is_random() {
         return Err(RenderError::IntervalOfPattern);
     }
-    if scene.scatters() && !integrator.follows_media() {
+    if scene.scatters() && !integrator.follows_media(scene) {
         return Err(RenderError::Media);
     }
     if scene.has_glowing_media() && !integrator.sees_glow() {

@@ -20,11 +20,28 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     pub(crate) connections: PerSet<N>,
     /// η: light subpaths that a merged vertex counts, times the area of merging.
     pub(crate) eta: PerSet<N>,
-    /// Light subpaths are connected with the camera, and merged, also where they come straight from a light.
+    /// The same for beams that cross in a medium: light subpaths whose beams are kept, times the width of merging, in metres.
+    pub(crate) beams: PerSet<N>,
+    /// Media of a larger extinction in any channel, per metre, have no beams: light subpaths have many short ones there, and
+    /// connections find as much.
+    pub(crate) densest: f32,
+    /// Light subpaths are connected with the camera, and merged on surfaces, also where they come straight from a light. In media
+    /// they always are merged.
     ///
     /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
     /// heuristic gives photons too much weight.
     pub(crate) direct: bool,
+}
+
+/// What light subpaths find at a vertex that they would reach straight from a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DirectLight {
+    /// They are connected with the camera, and merged.
+    Found,
+    /// They are merged.
+    Merged,
+    /// Nothing: a point on the light is sampled.
+    Left,
 }
 
 /// What one technique contributes for one path.
@@ -50,7 +67,7 @@ pub(crate) enum Technique {
     /// Their last vertices are connected. With s = 0 the camera subpath hits an emitter by chance, with s = 1 a point
     /// on a light is sampled, and with t = 1 a light subpath is connected with the camera.
     Connected { s: u32, t: u32 },
-    /// Their last vertices are merged into one.
+    /// Their last vertices are merged into one, or where their last rays cross.
     Merged { s: u32, t: u32 },
 }
 
@@ -69,6 +86,8 @@ pub(crate) enum Step {
     Connected,
     /// Photons around a vertex are looked up.
     Lookup,
+    /// The same for beams across a ray.
+    Across,
 }
 
 /// Receives contributions.
@@ -111,6 +130,8 @@ impl TechniqueCounts {
         splats: PerSet([0.0]),
         connections: PerSet([0.0]),
         eta: PerSet([0.0]),
+        beams: PerSet([0.0]),
+        densest: 0.0,
         direct: true,
     };
     /// With or without splats, and with or without connections.
@@ -139,15 +160,23 @@ impl<const N: usize> TechniqueCounts<N> {
             splats: PerSet::ZERO,
             connections: PerSet::ZERO,
             eta: PerSet::ZERO,
+            beams: PerSet::ZERO,
+            densest: 0.0,
             direct: true,
         };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
-            (all.splats.0[k], all.connections.0[k], all.eta.0[k]) =
-                (set.splats.0[0], set.connections.0[0], set.eta.0[0]);
-            all.direct = set.direct;
+            (all.splats.0[k], all.connections.0[k]) = (set.splats.0[0], set.connections.0[0]);
+            (all.eta.0[k], all.beams.0[k]) = (set.eta.0[0], set.beams.0[0]);
+            (all.densest, all.direct) = (set.densest, set.direct);
         }
         all
+    }
+
+    /// Whether there are beams in a medium of this extinction that is the same everywhere.
+    #[inline]
+    pub(crate) fn has_beams_in(&self, sigma_t: Rgb) -> bool {
+        self.beams != PerSet::ZERO && sigma_t.max_channel() <= self.densest
     }
 }
 

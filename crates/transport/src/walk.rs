@@ -2,7 +2,7 @@
 
 use crate::interaction::Interaction;
 use crate::limits::Events;
-use crate::media::{Media, Travelled};
+use crate::media::{Media, MediumPart, Travelled};
 use crate::task::SampleState;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::mean;
@@ -92,7 +92,7 @@ impl Walk {
     }
 
     /// Travels along its ray to the next event, given the first surface there; `mode` is what it carries. Afterwards its media
-    /// are those on the side that it comes from. What media emit is what it brings to the start of the path.
+    /// are those on the side that it comes from. `visit` is told of each medium that scatters, on the way. What media emit is what it brings to the start of the path.
     #[inline]
     pub(crate) fn travel(
         &mut self,
@@ -100,13 +100,15 @@ impl Walk {
         tracer: &mut Tracer,
         sample: &mut SampleState,
         mode: TransportMode,
+        visit: impl FnMut(MediumPart),
     ) -> Travelled {
         let scatters = tracer.scene.scatters();
         if scatters {
             sample.enter_medium(self.depth, mode);
             self.media.channel = sample.channel;
         }
-        let travelled = self.media.travel(tracer, &self.ray, first, self.odds, || sample.sampler.next_1d());
+        let draw = || sample.sampler.next_1d();
+        let travelled = self.media.travel(tracer, &self.ray, first, self.odds, draw, visit);
         let emitted = self.beta * travelled.emitted;
         self.beta *= travelled.weight;
         if scatters {

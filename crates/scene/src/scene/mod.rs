@@ -257,6 +257,11 @@ impl Scene {
         self.parts.scatters
     }
 
+    /// True when a grid varies some medium.
+    pub fn has_varying_media(&self) -> bool {
+        self.parts.has_varying_media
+    }
+
     /// True when no medium changes what light carries: none absorbs, scatters, has a priority or disperses.
     #[inline]
     pub fn has_clear_media(&self) -> bool {

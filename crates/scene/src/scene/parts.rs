@@ -55,6 +55,7 @@ pub(crate) struct SceneParts {
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
     pub(super) scatters: bool,
+    pub(super) has_varying_media: bool,
     pub(super) has_coloured_distances: bool,
     /// For each object of triangles.
     pub(super) shading: Vec<ObjectShading>,
@@ -117,6 +118,7 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
+        let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
         SceneParts {
@@ -137,6 +139,7 @@ impl SceneParts {
             disperses,
             absorbs,
             scatters,
+            has_varying_media,
             has_coloured_distances,
             shading,
         }

@@ -6,8 +6,9 @@
 
 use super::connect::{Connection, merged, to_light, to_vertex};
 use super::{
-    CameraSubpath, Partial, Subpath, Vertex, connect_to_camera, emitted, from_infinity, light_vertices,
+    CameraSubpath, Subpath, Vertex, connect_to_camera, crossed, emitted, from_infinity, light_vertices,
 };
+use crate::mis::Partial;
 use crate::photons::Photons;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Step, Tally, Technique, TechniqueCounts};
@@ -142,6 +143,18 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         {
             tally.spend(Step::Lookup, 1);
             merged(task, photons, z, |technique, found| tally.add_sample(technique, found));
+        }
+    }
+
+    #[inline]
+    fn cross(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>) {
+        let Some(photons) = self.photons else { return };
+        for beam in &subpath.beams {
+            tally.spend(Step::Across, 1);
+            let ray = &subpath.walk.ray;
+            crossed(task, photons.beams(), beam, ray, &self.techniques, |technique, found| {
+                tally.add_sample(technique, found);
+            });
         }
     }
 

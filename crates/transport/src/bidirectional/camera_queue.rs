@@ -86,6 +86,7 @@ impl<const N: usize> CameraQueue<N> {
             let mut task = Task { context, tracer: &mut *tracer, sample: &mut samples[i].state };
             let before = self.vertices.len();
             self.vertices.extend(surface.and_then(|surface| subpath.vertex_before(surface, &mut task)));
+            events.cross(subpath, &task, tally);
             let Some(z) = self.vertices.get_mut(before) else {
                 events.escape(subpath, &task, tally);
                 continue;

@@ -2,7 +2,8 @@
 //! [`super::CameraQueue`] takes each event for many subpaths at a time, and finds the same light, bit for bit.
 
 use super::connect::Connection;
-use super::{Partial, Subpath, Vertex};
+use super::{Subpath, Vertex};
+use crate::mis::Partial;
 use crate::task::Task;
 use crate::techniques::{Step, Tally, TechniqueCounts};
 use bilux_math::Rgb;
@@ -40,6 +41,9 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     /// Merges a vertex with the photons around it.
     fn merge(&self, z: &Vertex<N>, task: &Task, tally: &mut impl Tally<N>);
 
+    /// Merges its last ray with the beams of photons that it crosses in media.
+    fn cross(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
+
     /// Sends the subpath on; false where it ends.
     fn scatter(&self, subpath: &mut Subpath<N>, z: &Vertex<N>, task: &mut Task) -> bool;
 
@@ -53,7 +57,9 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
         let mut subpath = self.leave_camera(ray);
         loop {
             tally.spend(Step::Camera, 1);
-            let Some(mut z) = subpath.next_vertex(task) else {
+            let vertex = subpath.next_vertex(task);
+            self.cross(&subpath, task, tally);
+            let Some(mut z) = vertex else {
                 return self.escape(&mut subpath, task, tally);
             };
             if !self.arrive(&mut subpath, &mut z, task, tally) {

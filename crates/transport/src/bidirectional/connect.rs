@@ -83,7 +83,8 @@ pub(crate) fn to_camera<const N: usize>(
     let media = y.media_towards(task.context.scene, seen.wi);
     let ray = task.context.scene.to_camera(y.at.spawn_to(seen.p));
     let arriving = seen.density * y.at.cos(seen.wi).unwrap_or(1.0);
-    let others = y.partial.others(arriving, y.at.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
+    let back = y.at.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance);
+    let others = y.partial.others(arriving, back, y.at.sine(y.wo, seen.wi));
     let light = task.sample.seen(y.beta * scattered * seen.density, y.is_split());
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: 1 },
@@ -130,7 +131,8 @@ pub(crate) fn to_light<const N: usize>(
     let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.at.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
-    let from_light = z.partial.others_of_direct(arriving, back, techniques.direct);
+    let from_light =
+        z.partial.others_of_direct(arriving, back, z.at.sine(z.wo, sample.wi), z.at.direct_light(techniques));
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());
     let join = Join {
@@ -173,11 +175,12 @@ pub(crate) fn to_vertex<const N: usize>(
     let normal = |surface| task.context.scene.normal_towards(surface, -direction);
     let n = y.at.surface().map_or(Vec3::ZERO, normal);
     let cos = |vertex: &Vertex<N>| vertex.at.cos(direction).unwrap_or(1.0);
-    let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
-    let from_camera =
-        y.partial.others(pdf_z * cos(y) / distance2, y.at.pdf_solid_angle(-direction, y.wo, back_y));
-    let from_light =
-        z.partial.others(pdf_y * cos(z) / distance2, z.at.pdf_solid_angle(direction, z.wo, back_z));
+    let back = [
+        z.at.pdf_solid_angle(direction, z.wo, TransportMode::Importance),
+        y.at.pdf_solid_angle(-direction, y.wo, TransportMode::Radiance),
+    ];
+    let from_camera = y.partial.others(pdf_z * cos(y) / distance2, back[1], y.at.sine(y.wo, direction));
+    let from_light = z.partial.others(pdf_y * cos(z) / distance2, back[0], z.at.sine(z.wo, direction));
     let light = task.sample.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: z.count() },

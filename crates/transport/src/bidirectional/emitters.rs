@@ -1,7 +1,8 @@
 //! Emitters that a camera subpath hits by chance (s = 0).
 
-use super::{Partial, Subpath};
+use super::Subpath;
 use crate::emission::light_number;
+use crate::mis::Partial;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, power_factor};
 use bilux_math::{Rgb, Vec3};

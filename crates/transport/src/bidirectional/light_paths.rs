@@ -3,8 +3,10 @@
 
 use super::connect::{Connection, Join, to_camera};
 use super::queued_sample::QueuedSample;
-use super::{Partial, Subpath, Vertex};
+use super::{Subpath, Vertex};
+use crate::beam::Beam;
 use crate::emission::Start;
+use crate::mis::Partial;
 use crate::shadow_rays::ShadowRays;
 use crate::task::{Context, SampleState, Task};
 use crate::techniques::{Contribution, Step, Tally, Technique, TechniqueCounts};
@@ -127,6 +129,8 @@ pub(crate) struct LightPaths<const N: usize = 1> {
     active: Vec<u32>,
     next: Vec<u32>,
     shadow_rays: ShadowRays<Splat<N>>,
+    /// The beams of those samples that keep them.
+    pub(crate) beams: Vec<Beam<N>>,
 }
 
 /// A connection with the camera.
@@ -142,6 +146,7 @@ impl<const N: usize> LightPaths<N> {
         self.vertices.clear();
         self.samples.clear();
         self.order.clear();
+        self.beams.clear();
         self.starts.clear();
         self.starts.resize(samples + 1, 0);
     }
@@ -161,6 +166,7 @@ impl<const N: usize> LightPaths<N> {
         for (i, sample) in samples.iter_mut().enumerate() {
             let mut task = Task { context, tracer: &mut *tracer, sample: &mut sample.state };
             let subpath = begin_at_light(&mut task, sample.ray.time, techniques);
+            let subpath = subpath.map(|subpath| subpath.keeping_beams(sample.has_beams));
             self.active.extend(subpath.is_some().then_some(i as u32));
             subpaths.push(subpath);
         }
@@ -179,6 +185,7 @@ impl<const N: usize> LightPaths<N> {
                 let mut task = Task { context, tracer: &mut *tracer, sample: state };
                 let before = self.vertices.len();
                 self.vertices.extend(subpath.vertex_before(surface, &mut task));
+                self.beams.append(&mut subpath.beams);
                 let Some(vertex) = self.vertices.get(before) else { continue };
                 let exists = vertex.events().are_within(context.max_depth);
                 let goes_on = exists && goes_on(subpath, vertex, roulette_depth, &mut task);

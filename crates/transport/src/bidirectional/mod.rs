@@ -4,8 +4,8 @@
 //! pair (s, t). All of them are tried, and each is weighted by the balance heuristic against all others
 //! [Veach 1997, 10.2]. A subpath carries the sums over the other techniques along as it grows
 //! [Georgiev 2012, eq. 31 to 48], so a weight costs no more for long paths than for short ones. In words:
-//! [`Partial::d_vcm`] is how likely a connection to the vertex is, over how likely the random walk is to reach it;
-//! [`Partial::d_vc`] is the same for all vertices before it.
+//! [`Partial::d_vcm`](crate::mis::Partial::d_vcm) is how likely a connection to the vertex is, over how likely the random walk is to reach it;
+//! [`Partial::d_vc`](crate::mis::Partial::d_vc) is the same for all vertices before it.
 //!
 //! Densities assume a film of area 1 and one light subpath per camera subpath. They leave out Russian roulette: all
 //! that weights need is to be the same for all techniques.
@@ -15,10 +15,10 @@ mod both_ends;
 mod camera_queue;
 mod camera_subpath;
 mod connect;
+mod crossing;
 mod emitters;
 mod light_paths;
 mod light_tracing;
-mod partial;
 mod queue;
 mod queued_sample;
 mod subpath;
@@ -30,10 +30,10 @@ pub(crate) use both_ends::BothEnds;
 pub(crate) use camera_queue::CameraQueue;
 pub(crate) use camera_subpath::CameraSubpath;
 pub(crate) use connect::merged;
+pub(crate) use crossing::crossed;
 pub(crate) use emitters::{emitted, from_infinity};
 pub(crate) use light_paths::{LightPaths, connect_to_camera, light_vertices};
 pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
-pub(crate) use partial::Partial;
 pub(crate) use queue::{BothEndsQueue, BothEndsSamples};
 pub(crate) use queued_sample::QueuedSample;
 pub(crate) use subpath::{Subpath, Vertex};

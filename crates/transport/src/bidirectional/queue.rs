@@ -80,7 +80,7 @@ impl BatchQueue for BothEndsSamples<'_> {
 mod tests {
     use super::*;
     use crate::failures::SamplePlace;
-    use crate::photons::Photons;
+    use crate::photons::{MergeCounts, Photons};
     use crate::settings::RenderSettings;
     use crate::shapes::{ball, built, integrator, mixed, put, still_life};
     use crate::splats::IterationSplats;
@@ -98,7 +98,7 @@ mod tests {
     struct Record {
         samples: Vec<(Technique, Vec<u32>)>,
         splats: Vec<(Technique, Vec<u32>)>,
-        steps: [usize; 6],
+        steps: [usize; 7],
     }
 
     fn bits(found: &Contribution<N>, film: Vec2) -> Vec<u32> {
@@ -120,9 +120,11 @@ mod tests {
         }
     }
 
-    fn techniques(eta: f32, direct: bool) -> TechniqueCounts<N> {
+    fn techniques(counts: &MergeCounts, direct: bool) -> TechniqueCounts<N> {
         let (splats, connections) = (PerSet([1.0, 0.25, 0.0]), PerSet([1.0, 0.0, 1.0]));
-        TechniqueCounts { splats, connections, eta: PerSet([eta, 0.0, 2.0 * eta]), direct }
+        let per_set = |often: f32| PerSet([often, 0.0, 2.0 * often]);
+        let (eta, beams) = (per_set(counts.eta), per_set(counts.beams));
+        TechniqueCounts { splats, connections, eta, beams, densest: counts.densest, direct }
     }
 
     /// Compares all contributions of all samples, and the steps of all together.
@@ -131,7 +133,7 @@ mod tests {
         let settings = RenderSettings::new(64, 48, 1);
         let rays = vcm.camera_rays(&scene, &*scene.cameras()[0].1, &settings);
         let (merging, window) = (vcm.merging().unwrap(), Window::whole(64, 48));
-        let techniques = |eta, _| techniques(eta, !splats);
+        let techniques = |counts: &MergeCounts| techniques(counts, !splats);
         let (photons, _) = Photons::trace::<IterationSplats>(&rays, merging, &[window], 0, techniques, None);
         let both_ends = BothEnds::merging(&photons, splats, 4);
         let places: Vec<_> = (0..window.pixels()).map(|i| window.position(i)).collect();
@@ -161,7 +163,7 @@ mod tests {
             .iter()
             .for_each(|(i, film, technique, found)| together[*i].add_splat(*film, *technique, found));
         let steps = |records: &[Record]| {
-            records.iter().fold([0; 6], |sum: [usize; 6], one| std::array::from_fn(|k| sum[k] + one.steps[k]))
+            records.iter().fold([0; 7], |sum: [usize; 7], one| std::array::from_fn(|k| sum[k] + one.steps[k]))
         };
         assert_eq!(steps(&one_by_one), steps(&together), "{name}");
         for (one, other) in one_by_one.iter().zip(&together) {
@@ -182,9 +184,16 @@ mod tests {
         let one_sided = Spec::new("", "diffuse").with("visible_sides", "front");
         put(&mut sheet, "shell", ball(Vec3::new(0.2, 0.5, 1.2), 0.5, 8, true), one_sided.clone());
         put(&mut sheet, "other", ball(Vec3::new(0.2, 0.5, 1.2), 0.4999, 8, false), one_sided);
-        for (name, builder) in
-            [("mixed", mixed()), ("still life", still_life()), ("nested", nested), ("sheet", sheet)]
-        {
+        let mut foggy = mixed();
+        let fog = Spec::new("", "interface").with("scattering", 0.05f32).with("absorption", 0.01f32);
+        put(&mut foggy, "fog", ball(Vec3::new(0.0, 0.7, 0.0), 9.0, 8, true), fog);
+        for (name, builder) in [
+            ("mixed", mixed()),
+            ("still life", still_life()),
+            ("nested", nested),
+            ("sheet", sheet),
+            ("foggy", foggy),
+        ] {
             assert_same(name, &builder, true);
             assert_same(name, &builder, false);
         }

@@ -1,14 +1,14 @@
 //! Subpaths while they grow, from either end, and their vertices.
 
-use super::Partial;
-use super::partial::Edge;
+use crate::beam::{Beam, BeamStart};
 use crate::emission::Start;
 use crate::interaction::Interaction;
 use crate::limits::Events;
-use crate::media::{Media, Travelled};
+use crate::media::{Media, MediumPart, Travelled};
+use crate::mis::{Edge, Partial};
 use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, SampleState, Task, VertexKind};
-use crate::techniques::{PerSet, TechniqueCounts};
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Ray, Scene, Surface, TransportMode};
@@ -109,6 +109,10 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     leaves_medium: bool,
     /// What media on the way to the next vertex emit, over the density of finding it.
     glow: Rgb,
+    /// The parts of its last ray through media in which rays are merged.
+    pub(crate) beams: Vec<Beam<N>>,
+    /// Whether it keeps them.
+    has_beams: bool,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
@@ -134,6 +138,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
             origin: 0,
             leaves_medium: false,
             glow: Rgb::BLACK,
+            beams: Vec::new(),
+            has_beams: mode == TransportMode::Radiance && techniques.beams != PerSet::ZERO,
             techniques,
         }
     }
@@ -141,6 +147,11 @@ impl<'w, const N: usize> Subpath<'w, N> {
     /// The same from a light of the scene.
     pub(crate) fn leaving(self, start: Start) -> Subpath<'w, N> {
         Subpath { origin: start.cell, start: Some(start), ..self }
+    }
+
+    /// The same, and keeps its beams if it `has_beams`.
+    pub(super) fn keeping_beams(self, has_beams: bool) -> Subpath<'w, N> {
+        Subpath { has_beams, ..self }
     }
 
     /// The light that it comes from.
@@ -185,7 +196,35 @@ impl<'w, const N: usize> Subpath<'w, N> {
         if walk.depth == 0 {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
-        let Travelled { arrival, passage, emitted, .. } = walk.travel(Some(first), tracer, sample, self.mode);
+        // Light sampling connects the first surface of a light subpath with the light.
+        let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
+        self.beams.clear();
+        let start = self.has_beams.then(|| BeamStart {
+            origin: self.origin,
+            channel: sample.channel,
+            is_split: walk.is_split,
+            leaves_medium: self.leaves_medium,
+            by_area: self.by_area,
+            partial: self.partial,
+            start: self.start,
+            depth: walk.depth,
+            events: walk.events(),
+            beta: walk.beta,
+            odds: walk.odds,
+        });
+        let (ray, techniques, beams) = (walk.ray, self.techniques, &mut self.beams);
+        let keep = |MediumPart { object, medium, ends, before }: MediumPart| {
+            let Some(start) = &start else { return };
+            let sigma_t = medium.sigma_t();
+            if medium.density.is_none()
+                && techniques.has_beams_in(sigma_t)
+                && sigma_t[usize::from(start.channel)] > 0.0
+            {
+                beams.push(start.beam(&ray, object, ends, before));
+            }
+        };
+        let Travelled { arrival, passage, emitted, .. } =
+            walk.travel(Some(first), tracer, sample, self.mode, keep);
         self.glow = emitted;
         let media = walk.media;
         let back = passage.returning(self.leaves_medium);
@@ -196,12 +235,9 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let (wo, t) = (walk.wo(), at.t());
         let edge = Edge { forward: passage.arriving(at.cos(wo)), back };
         let distance2 = if self.by_area { 1.0 } else { t * t };
-        // Light sampling connects the first surface of a light subpath with the light.
-        let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
-        let merged = if is_at_light && !self.techniques.direct { PerSet::ZERO } else { self.techniques.eta };
-        // Photons lie on surfaces.
-        let merged = if at.is_in_medium() { PerSet::ZERO } else { merged };
+        let is_left = is_at_light && at.direct_light(self.techniques) == DirectLight::Left;
+        let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel) };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
         let events = self.walk.events().and(at.is_inside());
@@ -242,8 +278,11 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let cos = at.cos(sample.wi).unwrap_or(1.0);
         let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
-        let counts = self.techniques.direct || self.mode == TransportMode::Importance;
-        self.partial.leave(cos, pdfs, counts, vertex.events.in_row);
+        let direct = match self.mode {
+            TransportMode::Importance => DirectLight::Found,
+            TransportMode::Radiance => at.direct_light(self.techniques),
+        };
+        self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, direct, vertex.events.in_row);
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
@@ -264,11 +303,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
 
     /// The factor by which the first vertex of a light subpath would sample its start more often than assumed so far.
     fn light_sampling_ratio(&mut self, scene: &Scene, from: Vec3) -> f32 {
-        self.start.take().map_or(1.0, |Start { light, ray, .. }| {
-            let light = &scene.lights()[light].light;
-            // No surface samples what light sampling leaves out.
-            if ray.pdf_direct > 0.0 { light.direct_pdf(&ray, from) / ray.pdf_direct } else { 1.0 }
-        })
+        self.start.take().map_or(1.0, |start| start.light_sampling_ratio(scene, from))
     }
 
     fn whose(&self) -> &'static str {

@@ -52,6 +52,7 @@ pub(super) fn read(reader: &Reader, techniques: TechniqueCounts) -> Merging {
         alpha: reader.number("alpha"),
         max_light_paths: reader.integer("light_paths") as u32,
         part: 1.0,
+        densest: None,
         roulette_depth: reader.integer("roulette_depth") as u32,
         techniques,
     }

@@ -4,7 +4,7 @@
 
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator, merging};
 use crate::bidirectional::{
-    BatchQueue, CameraQueue, CameraSubpath, LightPaths, QueuedSample, Subpath, Vertex, emitted,
+    BatchQueue, CameraQueue, CameraSubpath, LightPaths, QueuedSample, Subpath, Vertex, crossed, emitted,
     from_infinity, merged,
 };
 use crate::photons::{Merging, Photons};
@@ -13,7 +13,7 @@ use crate::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, PixelSum, Tally, Technique, TechniqueCounts};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2};
-use bilux_scene::{Ray, Tracer};
+use bilux_scene::{Ray, Scene, Tracer};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -25,7 +25,11 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| Ok(Box::new(Sppm { merging: merging::read(reader, TechniqueCounts::CAMERA) })),
+    build: |reader| {
+        let merging = merging::read(reader, TechniqueCounts::CAMERA);
+        // Nothing else would find what dense media scatter.
+        Ok(Box::new(Sppm { merging: Merging { densest: Some(f32::INFINITY), ..merging } }))
+    },
 };
 
 struct Sppm {
@@ -39,8 +43,12 @@ impl Sppm {
 }
 
 impl PixelIntegrator for Sppm {
-    /// Its photons lie on surfaces, and nothing else would find light in media.
-    fn follows_media(&self) -> bool {
+    /// Its photons lie on surfaces and in media that are the same everywhere, and nothing else would find light in the others.
+    fn follows_media(&self, scene: &Scene) -> bool {
+        !scene.has_varying_media()
+    }
+
+    fn sees_glow(&self) -> bool {
         false
     }
 
@@ -83,7 +91,7 @@ struct PhotonGathering<'a> {
 
 impl CameraSubpath for PhotonGathering<'_> {
     fn techniques(&self) -> &TechniqueCounts {
-        &TechniqueCounts::CAMERA
+        self.photons.map_or(&TechniqueCounts::CAMERA, Photons::techniques)
     }
 
     /// Lights are seen directly, in mirrors too; photons bring the light that they give to other surfaces.
@@ -114,6 +122,16 @@ impl CameraSubpath for PhotonGathering<'_> {
             && !z.at.is_delta()
         {
             merged(task, photons, z, |technique, found| {
+                tally.add_sample(technique, &Contribution { others: PerSet::ZERO, ..*found });
+            });
+        }
+    }
+
+    fn cross(&self, subpath: &Subpath, task: &Task, tally: &mut impl Tally<1>) {
+        let Some(photons) = self.photons else { return };
+        for beam in &subpath.beams {
+            let (ray, techniques) = (&subpath.walk.ray, photons.techniques());
+            crossed(task, photons.beams(), beam, ray, techniques, |technique, found| {
                 tally.add_sample(technique, &Contribution { others: PerSet::ZERO, ..*found });
             });
         }

@@ -6,7 +6,7 @@ use super::bdpt::of_camera_path;
 use super::{IntegratorEntry, LightSubpaths, PixelIntegrator};
 use crate::bidirectional::BothEnds;
 use crate::emission::Guide;
-use crate::photons::{Merging, Photons};
+use crate::photons::{MergeCounts, Merging, Photons};
 use crate::task::Task;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::Rgb;
@@ -83,6 +83,6 @@ impl LightSubpaths for Vcm {
 
 impl Vcm {
     fn unmerged(&self) -> BothEnds<'static> {
-        BothEnds::new(self.merging.techniques(0.0, 1.0), self.merging.roulette_depth)
+        BothEnds::new(self.merging.techniques(&MergeCounts::NONE), self.merging.roulette_depth)
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::interaction::MediumPoint;
 use bilux_math::Rgb;
-use bilux_scene::Surface;
 use bilux_scene::media::{FreePath, mean};
+use bilux_scene::{Medium, Surface};
 
 /// A line through media on which nothing blocks light.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,17 @@ pub(crate) struct Travelled {
     pub(crate) passage: Passage,
     /// The light that media on the way emit.
     pub(crate) emitted: Rgb,
+}
+
+/// A part of a ray through a medium that scatters.
+pub(crate) struct MediumPart<'t> {
+    /// The object that it is in.
+    pub(crate) object: u32,
+    pub(crate) medium: Medium<'t>,
+    /// Distances along the ray, in metres, to where it begins and to where it ends, at a surface or at an event.
+    pub(crate) ends: [f32; 2],
+    /// What happened before it.
+    pub(crate) before: &'t Travelled,
 }
 
 impl Passage {
@@ -94,7 +105,7 @@ impl Passage {
 
 impl Travelled {
     /// At the start.
-    pub(super) const NOWHERE: Travelled = Travelled {
+    pub(crate) const NOWHERE: Travelled = Travelled {
         arrival: Arrival::Escape,
         weight: Rgb::WHITE,
         odds: Rgb::WHITE,
@@ -110,7 +121,7 @@ impl Travelled {
 
     /// Past all of this.
     #[inline]
-    pub(super) fn passed(self, part: FreePath) -> Travelled {
+    pub(crate) fn passed(self, part: FreePath) -> Travelled {
         // Where numbers run out the path carries nothing.
         let (weight, odds) = match part.survival > 0.0 {
             true => (part.transmittance / part.survival, part.survivals / part.survival),

@@ -57,7 +57,8 @@ impl PathTracing {
         let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
         loop {
             let first = task.tracer.closest(&path.walk.ray);
-            let travelled = path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance);
+            let travelled =
+                path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance, |_| {});
             if let Some((_, pdf)) = &mut path.last {
                 *pdf *= travelled.passage.survival;
             }

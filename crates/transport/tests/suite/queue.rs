@@ -103,8 +103,7 @@ fn every_built_in_scene_is_the_same() {
         let scene = built(&builder);
         let follows = |name: &&str| {
             let integrator = integrator(name);
-            (integrator.follows_media() || !scene.scatters())
-                && (integrator.sees_glow() || !scene.has_glowing_media())
+            integrator.follows_media(&scene) && (integrator.sees_glow() || !scene.has_glowing_media())
         };
         let names: Vec<&str> = QUEUED.into_iter().filter(follows).collect();
         let one = turn % names.len();

@@ -38,8 +38,8 @@ struct Verdict {
     wrong: usize,
     worst: f64,
     /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
-    /// merge.
-    telling: [usize; 5],
+    /// merge, crossed beams.
+    telling: [usize; 6],
 }
 
 impl Verdict {
@@ -64,7 +64,7 @@ impl Verdict {
         self.wrong += usize::from(error.is_nan() || error > path.tolerance());
         self.worst = self.worst.max(error);
         let kind = match key {
-            (true, _) => 4,
+            (true, i) => 4 + usize::from(path.nodes[i - 2].at.is_in_medium()),
             (_, s) if s < 2 => s,
             (_, s) if s == path.nodes.len() + 1 => 2,
             _ => 3,
@@ -83,7 +83,7 @@ fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw, fog: Option<
     let eye = integrator.camera_rays(scene, &*scene.cameras()[0].1, &settings);
     let mut tracer = Tracer::new(scene, false);
     let mut verdict =
-        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
+        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 6] };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
         let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
@@ -167,12 +167,17 @@ fn cameras() -> [Spec; 3] {
 
 /// Without merging, with it, and with it but without connections or without splats.
 fn sets() -> [TechniqueCounts; 4] {
-    let eta = PerSet([300.0]);
+    let merging = |others: TechniqueCounts| TechniqueCounts {
+        eta: PerSet([300.0]),
+        beams: PerSet([4.0]),
+        densest: 1.0,
+        ..others
+    };
     [
         TechniqueCounts::BOTH_ENDS,
-        TechniqueCounts { eta, ..TechniqueCounts::BOTH_ENDS },
-        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_connections(true, false) },
-        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_connections(false, true) },
+        merging(TechniqueCounts::BOTH_ENDS),
+        merging(TechniqueCounts::with_splats_and_connections(true, false)),
+        merging(TechniqueCounts::with_splats_and_connections(false, true)),
     ]
 }
 
@@ -249,11 +254,13 @@ fn every_mis_weight_matches_its_definition_in_fog() {
     let extinction = Some(FOG[0] + FOG[1]);
     for (i, lights) in [&["rect"][..], &["point", "rect"]].into_iter().enumerate() {
         let scene = foggy(lights);
-        for techniques in [sets()[i], sets()[2 + i]] {
+        let without_direct = |set: TechniqueCounts| TechniqueCounts { direct: false, ..set };
+        for techniques in [sets()[i], without_direct(sets()[2 + i])] {
             let Verdict { compared, wrong, worst, telling, .. } =
                 verdict(&scene, &techniques, Flaw::None, extinction);
             assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
-            assert!(compared > 3000 && telling[..4].iter().sum::<usize>() > 500, "{telling:?}");
+            assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
+            assert!(techniques.beams == PerSet::ZERO || telling[5] > 500, "{telling:?}");
         }
     }
 }
@@ -262,7 +269,7 @@ fn every_mis_weight_matches_its_definition_in_fog() {
 fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
     let scene = foggy(&["rect"]);
     // The density of events per metre is the same factor at each point of fog, whichever technique finds it.
-    for flaw in [Flaw::Survival, Flaw::Cosine, Flaw::Distance] {
+    for flaw in [Flaw::Survival, Flaw::Cosine, Flaw::Distance, Flaw::Sine, Flaw::Extinction] {
         let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, Some(FOG[0] + FOG[1]));
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }

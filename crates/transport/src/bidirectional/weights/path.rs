@@ -58,6 +58,9 @@ pub(super) enum Flaw {
     Survival,
     /// Two points of a medium are connected in long rows too.
     Row,
+    /// The angle between beams that cross is left out, or that beams stand for all events along them.
+    Sine,
+    Extinction,
 }
 
 impl Path {
@@ -70,8 +73,9 @@ impl Path {
     ) -> Vec<((bool, usize), f64)> {
         let count = self.nodes.len();
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
-        let [splats, connections, eta] =
-            [techniques.splats, techniques.connections, techniques.eta].map(|counts| f64::from(counts.0[0]));
+        let [splats, connections, eta, beams] =
+            [techniques.splats, techniques.connections, techniques.eta, techniques.beams]
+                .map(|counts| f64::from(counts.0[0]));
         // Light subpaths may leave direct light to camera subpaths.
         let leaves_direct = !techniques.direct && flaw != Flaw::Direct;
         // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
@@ -94,10 +98,11 @@ impl Path {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
-        let is_merged = |i: &usize| is_open(*i) && !self.nodes[i - 1].at.is_in_medium();
-        for i in (1..=count).filter(is_merged) {
+        for i in (1..=count).filter(|i| is_open(*i)) {
+            let node = &self.nodes[i - 1];
             let copies = match i {
-                1 if leaves_direct => 0.0,
+                1 if leaves_direct && !node.at.is_in_medium() => 0.0,
+                _ if node.at.is_in_medium() => beams * self.crossing(node, flaw),
                 _ if flaw == Flaw::MergedTwice => 2.0 * eta,
                 _ => eta,
             };
@@ -225,6 +230,16 @@ impl Path {
             return self.survival(distance, flaw);
         };
         f64::from(fog) * exp_f64(-f64::from(fog) * f64::from(distance))
+    }
+
+    /// How often two beams of one metre's width cross at a point of the fog, over the densities of both walks having events there.
+    fn crossing(&self, node: &PathVertex, flaw: Flaw) -> f64 {
+        let sine = match flaw {
+            Flaw::Sine => 1.0,
+            _ => node.to_light.as_dvec3().cross(node.to_camera.as_dvec3()).length(),
+        };
+        let fog = if flaw == Flaw::Extinction { 1.0 } else { f64::from(self.fog.unwrap_or(1.0)) };
+        sine / (fog * fog)
     }
 
     fn survival(&self, distance: f32, flaw: Flaw) -> f64 {

@@ -2,9 +2,12 @@
 
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
+use crate::beam::Beam;
 use crate::bidirectional::connect::{to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
+use crate::mis::Partial;
+use crate::photon_beams::PhotonBeams;
 use crate::photons::Photons;
 use crate::photons::{Photon, PhotonPosition, PhotonWalk};
 use crate::task::Task;
@@ -117,6 +120,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
     if techniques.eta == PerSet::ZERO {
         return;
     }
+    crossed_beams(task, verdict, start, (y, z));
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
         if light_end.depth == 0 && !techniques.direct {
@@ -130,6 +134,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         let photons = Photons::new(
             vec![(position, photon)],
             &[PhotonWalk { odds: light_end.odds, channel: task.sample.channel }],
+            Vec::new(),
             1.0,
             *techniques,
         );
@@ -146,9 +151,43 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
     }
 }
 
+/// Moves each beam of the light subpath to where a beam of the camera subpath has an event, so that they cross there.
+fn crossed_beams(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Traced, &Traced)) {
+    let techniques = &{ verdict.techniques };
+    let in_fog = |subpath: &Traced| {
+        let is_in_fog = |i: &usize| subpath.vertices[*i].at.is_in_medium();
+        (0..subpath.vertices.len()).filter(is_in_fog).collect::<Vec<_>>()
+    };
+    for (a, b) in in_fog(z).into_iter().flat_map(|a| in_fog(y).into_iter().map(move |b| (a, b))) {
+        let (Some(eye), Some(light)) = (z.beams[a].last(), y.beams[b].last()) else { continue };
+        let (ray, camera_end, light_end) = (&z.rays[a], &z.vertices[a], &y.vertices[b]);
+        // Both a bit longer than to their events, where they would end.
+        let p = camera_end.at.p();
+        let mut moved = light.clone();
+        moved.line.origin = p - light.line.direction * light.line.length;
+        moved.line.length *= 1.0 + 1e-5;
+        let mut eye = eye.clone();
+        eye.line.length *= 1.0 + 1e-5;
+        let mut nodes = y.nodes(b, true, camera_end.wo, false);
+        let shared = nodes.pop().unwrap();
+        let behind = nodes.len();
+        nodes.extend(z.nodes(a, false, light_end.wo, false));
+        nodes[behind].from_light = shared.from_light;
+        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
+        // Wide enough for the rounding of where they are.
+        let beams = PhotonBeams::new(vec![moved], 1e-4);
+        crossed(task, &beams, &eye, ray, techniques, |_, found| {
+            verdict.look(task, found, (true, b + 2), &path);
+        });
+    }
+}
+
 /// A subpath with all surfaces that it hits.
 struct Traced<'w> {
     vertices: Vec<Vertex>,
+    /// The ray to each, and its beams.
+    rays: Vec<Ray>,
+    beams: Vec<Vec<Beam>>,
     /// Which events were delta events.
     is_delta: Vec<bool>,
     /// The subpath with which it left the scene.
@@ -180,11 +219,15 @@ fn followed<'w>(
     is_camera: bool,
 ) -> Traced<'w> {
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
+    let (mut rays, mut beams) = (Vec::new(), Vec::new());
+    subpath = subpath.keeping_beams(techniques.beams != PerSet::ZERO);
     loop {
+        rays.push(subpath.walk.ray);
         let Some(mut vertex) = subpath.next_vertex(task) else {
             left = Some(subpath);
             break;
         };
+        beams.push(std::mem::take(&mut subpath.beams));
         if is_camera && vertex.depth == 0 {
             camera_density = task.context.camera.density(&subpath.walk.ray, vertex.at.t());
             vertex.partial =
@@ -200,5 +243,5 @@ fn followed<'w>(
             break;
         }
     }
-    Traced { vertices, is_delta, left, camera_density }
+    Traced { vertices, rays, beams, is_delta, left, camera_density }
 }

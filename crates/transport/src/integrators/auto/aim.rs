@@ -11,7 +11,7 @@
 use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
 use crate::emission::Guide;
-use crate::photons::Merging;
+use crate::photons::{MergeCounts, Merging};
 use crate::sampler::PixelSampler;
 use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
@@ -33,23 +33,25 @@ const WORTH_AIMING: f64 = 2.0;
 /// latter without merging.
 const SET_COUNT: usize = 3;
 
-/// All sets, given η of the round's photons and of the film's, and the number of light subpaths that are connected
+/// All sets, given how often the round's photons are merged and the film's, and the number of light subpaths that are connected
 /// with the camera for each sample of the round.
-fn techniques(own: f32, film: f32, splats: f32, direct: bool) -> TechniqueCounts<SET_COUNT> {
+fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> TechniqueCounts<SET_COUNT> {
     TechniqueCounts {
         splats: PerSet([splats, 1.0, 1.0]),
         connections: PerSet::ZERO,
-        eta: PerSet([own, film, 0.0]),
-        direct,
+        eta: PerSet([own.eta, film.eta.0[0], 0.0]),
+        beams: PerSet([own.beams, film.beams.0[0], 0.0]),
+        densest: film.densest,
+        direct: film.direct,
     }
 }
 
-/// Learns from a round whose light subpaths are not aimed. `eta` is that of the film's photons, of which `near` are
+/// Learns from a round whose light subpaths are not aimed. `film` are the techniques of the picture, of whose photons `near` are
 /// merged with a vertex that the camera sees.
 pub(super) fn learn(
     round: PilotRound,
     merging: &Merging,
-    (eta, near): (f32, f64),
+    (film, near): (&TechniqueCounts, f64),
 ) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
     let Some(untrained) = Guide::untrained(round.eye.context.scene) else { return (None, counters) };
@@ -58,7 +60,7 @@ pub(super) fn learn(
     let tiles = grid.tiles();
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
     let splats = round.light.settings.width as f32 / pixels;
-    let all_sets = |own| techniques(own, eta, splats, merging.techniques.direct);
+    let all_sets = |own: &MergeCounts| techniques(own, film, splats);
     let mut lessons = GuideStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
     let mut halves = Vec::new();
     for iteration in 0..SAMPLES {

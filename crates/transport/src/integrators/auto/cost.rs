@@ -1,20 +1,20 @@
 //! The cost of a sample: the number of its steps, times the duration of a step. Durations are never measured, since
 //! pictures must not depend on the machine.
 
-use super::sets::Set;
-use crate::techniques::Step;
+use super::sets::{SET_COUNT, Set};
+use crate::techniques::{PerSet, Step};
 
 /// Step counts of a sample.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Steps {
     counts: [f64; STEPS],
-    /// Merged photons, for η = 1.
-    pub(super) merged: f64,
+    /// Merged photons and beams that each set would have.
+    merged: [f64; SET_COUNT],
     /// The part of the camera steps that path tracing shades in columns, 0..=1.
     pub(super) in_columns: f64,
 }
 
-const STEPS: usize = 6;
+const STEPS: usize = 7;
 
 /// Nanoseconds of each step, as measured on one machine in a few scenes of some ten thousand triangles: only their
 /// ratios matter.
@@ -24,6 +24,7 @@ const SEEN: f64 = 290.0;
 const PICKED: f64 = 210.0;
 const CONNECTED: f64 = 140.0;
 const LOOKUP: f64 = 250.0;
+const ACROSS: f64 = 2000.0;
 const MERGED: f64 = 80.0;
 /// A step of a photon's subpath, which is traced among many others, with the cost of storing it and sorting it into a
 /// cell.
@@ -44,12 +45,21 @@ impl Steps {
         for (count, more) in self.counts.iter_mut().zip(others.counts) {
             *count += share * more;
         }
-        self.merged += share * others.merged;
+        for (merged, more) in self.merged.iter_mut().zip(others.merged) {
+            *merged += share * more;
+        }
         self
     }
 
-    /// Nanoseconds of a sample with the techniques of a set, which merges with η.
-    pub(super) fn nanoseconds(&self, set: &Set, eta: f32) -> f64 {
+    /// One photon or beam is merged, as often as each set has the technique.
+    pub(super) fn merge(&mut self, own: PerSet<SET_COUNT>) {
+        for (merged, often) in self.merged.iter_mut().zip(own.0) {
+            *merged += f64::from(often) / f64::from(own.0[0]);
+        }
+    }
+
+    /// Nanoseconds of a sample with the techniques of a set of this index.
+    pub(super) fn nanoseconds(&self, set: &Set, index: usize) -> f64 {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
         let Set { splats, connections, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
@@ -70,8 +80,8 @@ impl Steps {
             sum += of(Step::Connected, CONNECTED);
         }
         if merges {
-            sum += of(Step::Light, PHOTON) * photons + of(Step::Lookup, LOOKUP);
-            sum += self.merged * f64::from(eta) * MERGED;
+            sum += of(Step::Light, PHOTON) * photons + of(Step::Lookup, LOOKUP) + of(Step::Across, ACROSS);
+            sum += self.merged[index] * MERGED;
         }
         sum
     }

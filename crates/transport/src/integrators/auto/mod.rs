@@ -18,7 +18,7 @@ use crate::camera_rays::{CameraRays, CameraSpread};
 use crate::emission::Guide;
 use crate::light_choice::LightChoice;
 use crate::path_tracing::PathTracing;
-use crate::photons::Merging;
+use crate::photons::{MergeCounts, Merging};
 use crate::pixel_integrator::Plan;
 use crate::plan::{Candidate, Choice};
 use crate::settings::RenderSettings;
@@ -142,17 +142,26 @@ impl Chooser for Auto {
         }
         let light_paths =
             (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
-        let eta = merging.area(scene, TYPICAL_ITERATION) * light_paths;
-        let techniques = |set: &Set| set.merging(merging).techniques(eta * set.photons, set.photons);
+        let pixels = (u64::from(film.width) * u64::from(film.height)) as f32;
+        let counts = |set: &Set| {
+            let traced = light_paths * set.photons;
+            let beams = traced / merging.beam_step(scene, TYPICAL_ITERATION, traced);
+            merging.counts(scene, TYPICAL_ITERATION, [traced, beams], pixels)
+        };
+        let techniques = |set: &Set| {
+            let light_paths = set.photons;
+            set.merging(merging).techniques(&MergeCounts { light_paths, ..counts(set) })
+        };
         let mut counters = Counters::default();
         let mut guide = None;
         if self.aims {
-            let (learned, rays) = aim::learn(round(0), &merging, (eta, NEAR));
+            let (learned, rays) = aim::learn(round(0), &merging, (&techniques(&SETS[SETS.len() - 1]), NEAR));
             counters += rays;
             guide = learned.map(Arc::new);
         }
-        let all_sets = |own: f32| {
-            let all = std::iter::once(merging.techniques(own, 1.0)).chain(SETS.iter().map(techniques));
+        let all_sets = |own: &MergeCounts| {
+            let own = MergeCounts { light_paths: 1.0, ..*own };
+            let all = std::iter::once(merging.techniques(&own)).chain(SETS.iter().map(techniques));
             TechniqueCounts::pack(all)
         };
         let rounds: Vec<PilotRound> = (1..settings.len()).map(|i| round(i).guided(&guide)).collect();
@@ -167,7 +176,7 @@ impl Chooser for Auto {
                 techniques: set.techniques,
                 error: outliers::error(&seen.blocks, i + 1),
                 lost: lost(&seen.blocks, i + 1),
-                nanoseconds: seen.steps.nanoseconds(set, techniques(set).eta.0[0]),
+                nanoseconds: seen.steps.nanoseconds(set, i + 1),
             })
             .collect();
         let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&candidates)), candidates };

@@ -13,7 +13,7 @@ use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
 use crate::failures::SamplePlace;
 use crate::filters::Filter;
-use crate::photons::{Merging, Photons};
+use crate::photons::{MergeCounts, Merging, Photons};
 use crate::settings::{PixelAnchor, RenderSettings};
 use crate::splats::IterationSplats;
 use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, TechniqueCounts};
@@ -170,7 +170,7 @@ impl PilotRound<'_> {
 pub(super) fn look(
     rounds: &[PilotRound],
     merging: &Merging,
-    techniques: impl Fn(f32) -> TechniqueCounts<SET_COUNT> + Sync,
+    techniques: impl Fn(&MergeCounts) -> TechniqueCounts<SET_COUNT> + Sync,
 ) -> Pilot {
     let grid = Grid::of(rounds[0].eye.settings);
     let tiles = grid.tiles();
@@ -199,7 +199,7 @@ pub(super) fn look(
 fn one_sample(
     round: &PilotRound,
     merging: &Merging,
-    techniques: &(impl Fn(f32) -> TechniqueCounts<SET_COUNT> + Sync),
+    techniques: &(impl Fn(&MergeCounts) -> TechniqueCounts<SET_COUNT> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
     pilot: &mut Pilot,
     sums: &mut [Vec<[f64; SET_COUNT]>],
@@ -235,7 +235,7 @@ fn one_sample(
 pub(super) fn sample_all<const N: usize, T, O>(
     PilotRound { eye, light }: &PilotRound,
     merging: &Merging,
-    techniques: &(impl Fn(f32) -> TechniqueCounts<N> + Sync),
+    techniques: &(impl Fn(&MergeCounts) -> TechniqueCounts<N> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
     visitor: Option<&O>,
 ) -> (Vec<Vec<T>>, Counters)
@@ -244,8 +244,7 @@ where
     O: LightPathVisitor<N>,
 {
     let sources = Window::whole(light.settings.width, 1).tiles(256);
-    let (photons, mut counted) =
-        Photons::trace(light, merging, &sources, iteration, |eta, _| techniques(eta), visitor);
+    let (photons, mut counted) = Photons::trace(light, merging, &sources, iteration, techniques, visitor);
     let splats = visitor.is_none();
     let both_ends = BothEnds::merging(&photons, splats, merging.roulette_depth);
     let look = |queue: &mut BothEndsQueue<N>, tiles: &[Window]| {
@@ -342,7 +341,7 @@ impl Tally<SET_COUNT> for PilotSample {
 
     fn add_sample(&mut self, technique: Technique, found: &Contribution<SET_COUNT>) {
         if matches!(technique, Technique::Merged { .. }) {
-            self.steps.merged += 1.0 / f64::from(found.own.0[0]);
+            self.steps.merge(found.own);
         }
         match technique {
             // Directly visible lights and background: antialiased edges, which all sets resolve alike, and soon.

@@ -1,7 +1,7 @@
 //! What a subpath carries along for the weights of its techniques.
 
 use crate::limits::MAX_CONNECTED_ROW;
-use crate::techniques::{PerSet, TechniqueCounts};
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) connected: PerSet<N>,
     /// The same, where the connection is one with the camera.
     pub(crate) splatted: PerSet<N>,
-    /// Light subpaths that merging here counts, times the area of merging.
+    /// How often [merging](crate::interaction::Interaction::merged) counts this vertex.
     pub(crate) merged: PerSet<N>,
     /// dVC: what connections and merging count together, summed over the steps before.
     pub(crate) d_vc: PerSet<N>,
@@ -26,9 +26,9 @@ pub(crate) struct Partial<const N: usize = 1> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
     /// At the end: the cosine at a surface, or the density of an event in a medium, times the probability of coming so far.
-    pub(super) forward: f32,
+    pub(crate) forward: f32,
     /// The same at the start, without the cosine at a surface, which the subpath has counted when it left.
-    pub(super) back: f32,
+    pub(crate) back: f32,
 }
 
 impl<const N: usize> Partial<N> {
@@ -45,7 +45,7 @@ impl<const N: usize> Partial<N> {
 
     /// A light subpath that leaves its light under the cosine `cos`. `pdf_direct` does not yet know the point that
     /// would sample the light.
-    pub(super) fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
+    pub(crate) fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
         Partial { d_vcm: pdf_direct / pdf_emission, d_vc: PerSet::ONE * d_vc, ..Partial::START }
     }
@@ -59,7 +59,7 @@ impl<const N: usize> Partial<N> {
 
     /// Arrives from the distance √`distance2`, by an [edge](Edge), where `connections` techniques connect the last vertex with
     /// this one, and merging counts `merged`.
-    pub(super) fn arrive(&mut self, distance2: f32, edge: Edge, connections: PerSet<N>, merged: PerSet<N>) {
+    pub(crate) fn arrive(&mut self, distance2: f32, edge: Edge, connections: PerSet<N>, merged: PerSet<N>) {
         self.pass(distance2, edge);
         self.connected = connections * self.d_vcm;
         self.splatted = PerSet::ZERO;
@@ -70,7 +70,7 @@ impl<const N: usize> Partial<N> {
     ///
     /// Two points of a medium are connected only in short rows, so what counts is known where a row ends, or becomes too long.
     #[inline]
-    pub(super) fn in_row(&mut self, number: u32) {
+    pub(crate) fn in_row(&mut self, number: u32) {
         if number == 1 {
             self.settled = self.d_vc;
         } else if number > MAX_CONNECTED_ROW {
@@ -80,7 +80,7 @@ impl<const N: usize> Partial<N> {
 
     /// Goes along an edge; where it ends infinitely far away, densities stay over solid angle, and `distance2` is 1.
     #[inline]
-    pub(super) fn pass(&mut self, distance2: f32, edge: Edge) {
+    pub(crate) fn pass(&mut self, distance2: f32, edge: Edge) {
         self.d_vcm *= distance2 / edge.forward;
         let ratio = edge.back / edge.forward;
         self.d_vc = self.d_vc * ratio;
@@ -88,10 +88,17 @@ impl<const N: usize> Partial<N> {
         self.except_direct = self.except_direct * ratio;
     }
 
-    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `counts` is
-    /// false where light subpaths do not look for what would be direct light here; `row` is the number of events in a row in
-    /// media, up to this one.
-    pub(super) fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool, row: u32) {
+    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `direct` is
+    /// what light subpaths find here of direct light; `row` is the number of events in a row in
+    /// media, up to this one; `sine` is that of the [angle](crate::interaction::Interaction::sine) here.
+    pub(crate) fn leave(
+        &mut self,
+        cos: f32,
+        sine: f32,
+        pdfs: Option<(f32, f32)>,
+        direct: DirectLight,
+        row: u32,
+    ) {
         match pdfs {
             None => {
                 self.d_vcm = 0.0;
@@ -99,19 +106,21 @@ impl<const N: usize> Partial<N> {
                 self.except_direct = PerSet::ZERO;
             }
             Some((pdf, pdf_back)) => {
-                let here = (self.merged + self.splatted) * (cos / pdf);
+                let (merged, splatted) = (self.merged * sine, self.splatted);
+                let (always, except_direct) = match direct {
+                    DirectLight::Found => (Some(merged + splatted), PerSet::ZERO),
+                    DirectLight::Merged => (Some(merged), splatted * (cos / pdf)),
+                    DirectLight::Left => (None, (merged + splatted) * (cos / pdf)),
+                };
+                let always = always.map_or(PerSet::ZERO, |always| always * (cos / pdf));
                 if row > 0 {
                     let connected = if row == 1 { self.connected } else { PerSet::ZERO };
                     let settled = (self.settled + self.except_direct) * pdf_back + connected;
-                    self.settled = settled * (cos / pdf) + if counts { here } else { PerSet::ZERO };
+                    self.settled = settled * (cos / pdf) + always;
                 }
-                self.d_vc = ((self.d_vc + self.except_direct) * pdf_back + self.connected) * (cos / pdf);
-                self.except_direct = PerSet::ZERO;
-                if counts {
-                    self.d_vc = self.d_vc + here;
-                } else {
-                    self.except_direct = here;
-                }
+                self.d_vc =
+                    ((self.d_vc + self.except_direct) * pdf_back + self.connected) * (cos / pdf) + always;
+                self.except_direct = except_direct;
                 self.d_vcm = 1.0 / pdf;
             }
         }
@@ -120,21 +129,42 @@ impl<const N: usize> Partial<N> {
     /// The sum over all techniques that move this subpath's vertices to the other side, relative to the current one.
     ///
     /// The other side would find this subpath's end with density `pdf_area`, and from there the vertex before it with
-    /// `pdf_back`.
-    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> PerSet<N> {
-        (self.merged + self.before(pdf_back)) * pdf_area
+    /// `pdf_back`. `sine` is that of the [angle](crate::interaction::Interaction::sine) there.
+    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32, sine: f32) -> PerSet<N> {
+        (self.merged * sine + self.before(pdf_back)) * pdf_area
     }
 
     /// The same where the vertex on the other side is on a light.
-    pub(crate) fn others_of_direct(&self, pdf_area: f32, pdf_back: f32, counts: bool) -> PerSet<N> {
-        if counts {
-            return self.others(pdf_area, pdf_back);
+    pub(crate) fn others_of_direct(
+        &self,
+        pdf_area: f32,
+        pdf_back: f32,
+        sine: f32,
+        direct: DirectLight,
+    ) -> PerSet<N> {
+        let subpath = self.connected + (self.d_vc + self.except_direct) * pdf_back;
+        match direct {
+            DirectLight::Found => self.others(pdf_area, pdf_back, sine),
+            DirectLight::Merged => (self.merged * sine + subpath) * pdf_area,
+            DirectLight::Left => subpath * pdf_area,
         }
-        (self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
     }
 
     /// The same over the density of finding this vertex, without merging here.
-    pub(super) fn before(&self, pdf_back: f32) -> PerSet<N> {
+    pub(crate) fn before(&self, pdf_back: f32) -> PerSet<N> {
         self.connected + self.splatted + (self.d_vc + self.except_direct) * pdf_back
+    }
+
+    /// [`Partial::before`], at a point of a medium that is the event of this number in a row, where the whole path has a `row` of so
+    /// many: between the points of long ones nothing is connected.
+    pub(crate) fn before_crossing(mut self, pdf_back: f32, number: u32, row: u32) -> PerSet<N> {
+        self.in_row(number);
+        if row > MAX_CONNECTED_ROW {
+            self.d_vc = self.settled;
+            if number > 1 {
+                self.connected = PerSet::ZERO;
+            }
+        }
+        self.before(pdf_back)
     }
 }
