@@ -12,6 +12,13 @@ pub struct GridLine {
     pub(super) direction: Vec3,
 }
 
+impl GridLine {
+    /// Voxels that a metre of it is long.
+    pub fn voxels_per_metre(&self) -> f32 {
+        self.direction.length()
+    }
+}
+
 /// Visits the blocks of a grid of this many voxels along a line, up to a length in metres: where it enters and leaves each of them, and
 /// their coordinates in blocks, until `visit` returns false.
 #[inline]

@@ -7,6 +7,7 @@
 mod glow;
 mod medium;
 mod phases;
+mod seen;
 pub mod slab;
 mod tracking;
 
@@ -18,6 +19,7 @@ pub use medium::{FreePath, Medium, MediumLine, beer, mean};
 pub use phases::{
     Draine, Droplets, HenyeyGreenstein, PHASES, Phase, PhaseEntry, PhaseSample, Rayleigh, read_phase,
 };
+pub use seen::Seen;
 pub use tracking::{Draws, Flight, MediumEvent, WalkChannel};
 
 pub(crate) use phases::{ANISOTROPY as PHASE_ANISOTROPY, DIAMETER, DRAINE_ALPHA, KIND as PHASE};

@@ -118,7 +118,12 @@ impl Medium<'_> {
     /// The light that arrives of what is emitted along a line, where the density is the same everywhere: what a walk finds on average,
     /// wherever its event is. Of grids one point of each block is taken.
     #[cold]
-    fn emitted(&self, line: Option<&MediumLine>, length: f32, mut draw: impl FnMut() -> f32) -> Rgb {
+    pub(super) fn emitted(
+        &self,
+        line: Option<&MediumLine>,
+        length: f32,
+        mut draw: impl FnMut() -> f32,
+    ) -> Rgb {
         let Some(glow) = self.glow else { return Rgb::BLACK };
         let line = line.and_then(|line| line.glow.as_ref());
         let Some((grid, along)) = glow.grid().zip(line.and_then(|line| line.through_grid())) else {
@@ -193,7 +198,7 @@ impl Medium<'_> {
     }
 
     /// The radiance of what is emitted at a collision, for each part of the light that it stops.
-    fn emitted_at(&self, line: &MediumLine, t: f32) -> Rgb {
+    pub(super) fn emitted_at(&self, line: &MediumLine, t: f32) -> Rgb {
         let Some(glow) = self.glow else { return Rgb::BLACK };
         let share =
             |sigma_a: f32, sigma_s: f32| if sigma_a > 0.0 { sigma_a / (sigma_a + sigma_s) } else { 0.0 };

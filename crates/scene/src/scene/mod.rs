@@ -237,6 +237,11 @@ impl Scene {
         medium.line(to_world, origin, direction)
     }
 
+    /// True when some object is the boundary of a medium without a surface of its own: of fog, smoke, a cloud.
+    pub fn has_interfaces(&self) -> bool {
+        self.parts.materials.iter().any(|material| material.is_interface())
+    }
+
     /// True when some medium emits light.
     pub fn has_glowing_media(&self) -> bool {
         self.parts
