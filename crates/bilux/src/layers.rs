@@ -137,6 +137,7 @@ impl Source for Outcome {
             albedo,
             normal,
             depth: features.map(|features| features.mean_depth[pixels.clone()].to_vec()),
+            haze: features.and_then(|features| features.haze(coverage.is_some(), pixels)),
         };
         Ok(noisy.separated())
     }

@@ -205,7 +205,7 @@ pub const AOVS: &[AovEntry] = &[
         Aov::Guides,
         "guides",
         "what guides a later `bilux denoise`, as means of the pixels: guides.R, .G, .B, \
-         .X, .Y, .Z, .depth",
+         .X, .Y, .Z, .depth, and .haze where media scatter",
     ),
     layer(
         Aov::Variance,

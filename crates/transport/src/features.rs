@@ -7,6 +7,10 @@
 //! edges too; depth is that of the first surface. The other features are [labels](crate::labels), all of one surface. Each
 //! pixel is summed on its own, in the order of its samples: the bytes are the same for any number of threads, any crop
 //! and any range of samples.
+//!
+//! Fog, smoke and murky insides are part of albedo, mean depth, mean normal and coverage by the share of the light that they
+//! scatter or stop; what they let pass is the share of what lies behind. These shares are expected values, without the noise of a walk
+//! that ends somewhere.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
@@ -17,6 +21,7 @@ use crate::media::Media;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
+use crate::sight::Sight;
 use crate::window::{TILE, Window};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
@@ -37,7 +42,7 @@ const MAX_SMOOTH: u32 = 12;
 pub struct Features {
     /// The pixels that they cover.
     pub window: Window,
-    /// The fraction of light that surfaces scatter, 0..=1; for lights and the background their emission, at most 1.
+    /// The fraction of light that surfaces and media scatter, 0..=1; for lights, fire and the background their emission, at most 1.
     pub albedo: Vec<Rgb>,
     /// The shading normal of the labelled surface in world space, on the visible side: of unit length, or zero where nothing is
     /// visible.
@@ -49,11 +54,14 @@ pub struct Features {
     pub object: Vec<u32>,
     /// The same for its material.
     pub material: Vec<u32>,
-    /// The mean of the samples' shading normals: shorter than 1 where normals differ.
+    /// The mean of the samples' shading normals: shorter than 1 where normals differ, and in fog, which has none.
     pub mean_normal: Vec<Vec3>,
-    /// The mean depth of the samples that hit something; infinite where none does.
+    /// The mean depth of what the samples see, of surfaces and media; infinite where there is nothing.
     pub mean_depth: Vec<f32>,
-    /// The fraction of the samples that hit something, 0..=1.
+    /// The share of each pixel that fog, smoke, and surfaces with a murky inside show, 0..=1; empty where no medium scatters. Their light
+    /// has no sharp edges, however noisy it is.
+    pub haze: Vec<f32>,
+    /// The fraction of the pixel that is covered, 0..=1, as [`coverage`] says.
     pub coverage: Vec<f32>,
 }
 
@@ -63,7 +71,10 @@ struct Sums {
     albedo: Rgb,
     normal: Vec3,
     depth: f32,
-    hits: u32,
+    /// The sum of the weights of the depths.
+    seen: f32,
+    covered: f32,
+    haze: f32,
     label: Label,
 }
 
@@ -127,11 +138,13 @@ pub fn features(
             break;
         }
     }
-    Features::of(window, tiles, done, settings.ids).map(Some)
+    let has_haze = scene.scatters() || scene.has_interfaces();
+    Features::of(window, tiles, done, (settings.ids, has_haze)).map(Some)
 }
 
-/// The fraction of each pixel's first samples whose camera rays hit something, 0..=1, in rows of the film's window, the
-/// top row first.
+/// The fraction of each pixel that is covered, 0..=1, in rows of the film's window, the top row first: the mean over its first
+/// samples, of which one whose camera ray ends at a surface counts as 1, and one that passes only fog, smoke or fire as what these stop of
+/// the light behind, the mean over the channels.
 ///
 /// # Errors
 /// As [`features`].
@@ -145,16 +158,24 @@ pub fn coverage(
     settings.check()?;
     let window = settings.window();
     let eye = integrator.camera_rays(scene, camera, settings);
+    let has_interfaces = scene.has_interfaces();
     let mut coverage = zeroed::<f32>(window.pixels())?;
     let of_row = |(row, coverage): (usize, &mut [f32])| {
         let mut tracer = Tracer::new(eye.context.scene, false);
         for (column, coverage) in coverage.iter_mut().enumerate() {
             let (x, y) = (window.x + column as u32, window.y + row as u32);
-            let hits = (0..samples).filter(|&sample| {
+            let of_sample = |sample: u32| {
                 let (ray, _) = eye.sample(SamplePlace { x, y, sample });
-                tracer.closest(&ray).is_some()
-            });
-            *coverage = hits.count() as f32 / samples.max(1) as f32;
+                match tracer.closest(&ray) {
+                    None => 0.0,
+                    Some(_) if !has_interfaces => 1.0,
+                    first => {
+                        let mut media = Media::at_start(&mut tracer, &ray);
+                        Sight::along(&mut tracer, &mut media, &ray, first, |_, _| {}).coverage()
+                    }
+                }
+            };
+            *coverage = (0..samples).map(of_sample).sum::<f32>() / samples.max(1) as f32;
         }
     };
     threads(settings)?
@@ -188,22 +209,29 @@ impl Sums {
         let scene = tracer.scene;
         let mut media = Media::at_start(tracer, ray);
         let (mut ray, mut beta) = (*ray, Rgb::WHITE);
+        // The share of the sample that the ray still sees, and the normal of the surface that it came through.
+        let (mut share, mut boundary) = (1.0, Vec3::ZERO);
+        // How much denser radiance is where the ray is: what scatters in there sends all of it out again.
+        let mut denser = 1.0;
         for event in 0..=MAX_SMOOTH {
             let direction = Vec3::from(ray.direction);
             if event > 0 {
                 surface = tracer.closest(&ray);
             }
-            let arrived = surface.map(|surface| media.closest_from(tracer, &ray, surface, u64::from(event)));
-            let (arrived, passed) = arrived.unwrap_or((None, Rgb::WHITE));
-            beta *= passed;
-            let Some(surface) = arrived else {
+            let sight = Sight::along(tracer, &mut media, &ray, surface, |_, _| {});
+            if event == 0 {
+                self.add_first(&sight);
+            }
+            let [air, inside] = sight.shares();
+            self.albedo += beta * sight.albedo * denser;
+            // Fog has no normal. What shines out of milk has that of its surface.
+            self.normal += boundary * (share * inside);
+            self.haze += share * (air + inside);
+            (beta, share) = (beta * sight.transmittance, share * (1.0 - air - inside));
+            let Some(surface) = sight.surface else {
                 self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
                 return;
             };
-            if event == 0 {
-                self.depth += surface.t;
-                self.hits += 1;
-            }
             let classic = scene.material(&surface).classic(&surface);
             // Where there is a diffuse lobe, not all lobes are smooth.
             let may_be_smooth = event < MAX_SMOOTH && classic.kd.is_black();
@@ -212,15 +240,28 @@ impl Sums {
                     let only_way = || bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance);
                     bsdf.is_delta().then(only_way).flatten()
                 });
+            let normal = visible_normal(&surface, direction);
             let Some(next) = smooth else {
                 self.albedo += beta * albedo(&classic, scene.emission(&surface, -direction));
-                self.normal += visible_normal(&surface, direction);
+                self.normal += normal * share;
+                let is_murky =
+                    scene.scatters() && scene.material(&surface).medium().is_some_and(|m| m.scatters());
+                self.haze += if is_murky { share } else { 0.0 };
                 return;
             };
             beta *= next.weight.clamp(0.0, 1.0);
+            denser *= next.eta * next.eta;
             media = media.beyond(scene, &surface, -direction, next.wi);
-            ray = surface.spawn(next.wi);
+            (ray, boundary) = (surface.spawn(next.wi), normal);
         }
+    }
+
+    /// Adds what the camera itself sees.
+    fn add_first(&mut self, sight: &Sight) {
+        let [depth, weight] = sight.depth();
+        self.depth += depth * weight;
+        self.seen += weight;
+        self.covered += sight.coverage();
     }
 }
 
@@ -235,7 +276,7 @@ impl Features {
         window: Window,
         tiles: Vec<(Window, Vec<Sums>)>,
         samples: u32,
-        ids: bool,
+        (ids, has_haze): (bool, bool),
     ) -> Result<Features, RenderError> {
         let (pixels, share) = (window.pixels(), 1.0 / samples as f32);
         let with_id = if ids { pixels } else { 0 };
@@ -248,6 +289,7 @@ impl Features {
             material: zeroed(with_id)?,
             mean_normal: zeroed(pixels)?,
             mean_depth: zeroed(pixels)?,
+            haze: zeroed(if has_haze { pixels } else { 0 })?,
             coverage: zeroed(pixels)?,
         };
         for (tile, sums) in tiles {
@@ -255,9 +297,12 @@ impl Features {
                 let (x, y) = tile.position(i);
                 let Some(at) = window.index(x, y) else { continue };
                 (all.albedo[at], all.mean_normal[at]) = (sum.albedo * share, sum.normal * share);
-                all.mean_depth[at] = if sum.hits > 0 { sum.depth / sum.hits as f32 } else { f32::INFINITY };
-                all.coverage[at] = sum.hits as f32 * share;
+                all.mean_depth[at] = if sum.seen > 0.0 { sum.depth / sum.seen } else { f32::INFINITY };
+                all.coverage[at] = sum.covered * share;
                 (all.normal[at], all.depth[at]) = (sum.label.normal, sum.label.depth);
+                if has_haze {
+                    all.haze[at] = (sum.haze * share).min(1.0);
+                }
                 if ids {
                     (all.object[at], all.material[at]) = (sum.label.object, sum.label.material);
                 }
@@ -292,7 +337,7 @@ impl Features {
         Ok(())
     }
 
-    /// Adds what guides denoisers: albedo, normal and depth, each the mean of a pixel's samples. In a picture with an alpha channel
+    /// Adds what guides denoisers: albedo, normal, depth, and haze where there may be some, each the mean of a pixel's samples. In a picture with an alpha channel
     /// the mean is that of the samples that hit something.
     ///
     /// # Errors
@@ -304,7 +349,22 @@ impl Features {
         for (axis, name) in ["guides.X", "guides.Y", "guides.Z"].into_iter().enumerate() {
             picture.push_channel(name, normal.iter().map(|n| n[axis]).collect())?;
         }
-        Ok(picture.push_channel("guides.depth", self.mean_depth.clone())?)
+        picture.push_channel("guides.depth", self.mean_depth.clone())?;
+        match self.haze(is_cut_out, 0..self.albedo.len()) {
+            Some(haze) => Ok(picture.push_channel("guides.haze", haze)?),
+            None => Ok(()),
+        }
+    }
+
+    /// The haze of some pixels, if there may be some; if the picture `is_cut_out`, as a fraction of what is there.
+    pub fn haze(&self, is_cut_out: bool, pixels: Range<usize>) -> Option<Vec<f32>> {
+        let haze = self.haze.get(pixels.clone()).filter(|_| !self.haze.is_empty())?;
+        let parts = haze.iter().zip(&self.coverage[pixels]);
+        Some(
+            parts
+                .map(|(haze, all)| if is_cut_out && *all > 0.0 { (haze / all).min(1.0) } else { *haze })
+                .collect(),
+        )
     }
 
     /// The mean albedo and normal of some pixels; if the picture `is_cut_out` of its background, those of the samples that hit

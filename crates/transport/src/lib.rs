@@ -57,6 +57,7 @@ mod shadow_rays;
 #[cfg(test)]
 #[path = "../tests/suite/common/mod.rs"]
 mod shapes;
+mod sight;
 mod splats;
 pub mod stop;
 pub mod strategies;

@@ -15,13 +15,12 @@ mod nested;
 mod passage;
 
 use crate::interaction::{Interaction, MediumPoint};
-use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
-pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled};
+pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled, behind, draws_along};
 
 /// Maximum number of surfaces that a ray passes to find the media that it starts in.
 const MAX_SURFACES: usize = 64;
@@ -199,6 +198,31 @@ impl Media {
         }
     }
 
+    /// Visits the media along a ray of unit direction up to the first surface that separates two, which it returns: the object of each, its
+    /// line through grids, and its ends in metres. `first` is the first surface of all. Afterwards these are the media before that surface.
+    pub(crate) fn each_along(
+        &mut self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        first: Option<Surface>,
+        mut visit: impl FnMut(u32, &Medium, Option<MediumLine>, [f32; 2]),
+    ) -> Option<Surface> {
+        let (scene, mut next, mut begin) = (tracer.scene, first, 0.0);
+        while let Some(surface) = next {
+            let surface = self.arrive(tracer, ray, surface);
+            let medium = self.medium(scene);
+            if !medium.is_clear() {
+                visit(self.inside, &medium, self.line(scene, &medium, ray, begin), [begin, surface.t]);
+            }
+            if self.overlap.separates(scene, &surface) {
+                return Some(surface);
+            }
+            self.cross(scene, &surface, Vec3::from(ray.direction));
+            (begin, next) = (surface.t, tracer.closest(&behind(ray, &surface)));
+        }
+        None
+    }
+
     /// The surface, of those that coincide with the closest one along a ray, at which the ray ends, if they separate two media;
     /// otherwise the rest of the ray. Afterwards these are the media on the side that the ray comes from, or in which the
     /// rest begins.
@@ -260,10 +284,8 @@ impl Media {
             media.cross(scene, &surface, direction);
             (begin, rest) = (end, behind(&rest, &surface));
         }
-        let end = distance.map(|distance| distance.max(begin));
-        Some(
-            end.map_or(passed, |end| passed.then(media.passed_between(scene, ray, [begin, end], &mut draws))),
-        )
+        let Some(distance) = distance else { return Some(passed) };
+        Some(passed.then(media.passed_between(scene, ray, [begin, distance.max(begin)], &mut draws)))
     }
 
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.
@@ -382,16 +404,4 @@ impl Media {
             self.inside = if enters { surface.object } else { self.overlap.strongest_object(scene) };
         }
     }
-}
-
-/// The same ray, from behind a surface that it has hit.
-fn behind(ray: &Ray, surface: &Surface) -> Ray {
-    Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
-}
-
-/// Random numbers for what varies along a ray, of this line alone: others of the same sample have another direction.
-#[inline]
-fn draws_along(ray: &Ray, seed: u64) -> Draws {
-    let [x, y, z] = ray.direction.map(|c| u64::from(c.to_bits()));
-    Draws::new(mix64(seed ^ mix64(x ^ y << 32) ^ z << 16))
 }

@@ -2,18 +2,21 @@
 //! it would be without the model, gives the ground with its shadow.
 //!
 //! Only direct light counts: alpha is the fraction of it that the model blocks. Where the model casts no shadow, alpha
-//! is exactly 0, without noise.
+//! is exactly 0, without noise. Smoke blocks what it stops, for the camera and for the light.
 
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::zeroed;
 use crate::light_choice::LightChoice;
+use crate::media::Media;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::sampler::PixelSampler;
 use crate::settings::{RenderSettings, threads};
+use crate::sight::Sight;
 use bilux_math::{Rgb, Vec3};
 use bilux_pictures::PictureError;
 use bilux_pictures::denoise::{Denoiser, Layer, Noisy, Source};
+use bilux_scene::media::mean;
 use bilux_scene::{Camera, LightSample, Ray, Scene, Surface, Tracer};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -47,9 +50,9 @@ pub struct ShadowCatcher {
 /// Sums over the samples of one pixel.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// Camera rays that hit the model, and that hit the ground.
-    model: u32,
-    ground: u32,
+    /// Camera rays that see the model, and that see the ground: one that does through smoke counts for both, in parts.
+    model: f64,
+    ground: f64,
     /// Light on the ground with the model and without it.
     with: f64,
     without: f64,
@@ -119,7 +122,7 @@ impl Source for Shadow<'_> {
     fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
         let pixels = &self.pixels[rows.start * self.width..rows.end * self.width];
         let grey = |of: fn(&Sums) -> f64| pixels.iter().map(|sums| Rgb::grey(of(sums) as f32)).collect();
-        let depth = |sums: &Sums| if sums.ground > 0 { 1.0 } else { f32::INFINITY };
+        let depth = |sums: &Sums| if sums.ground > 0.0 { 1.0 } else { f32::INFINITY };
         Ok(Noisy {
             width: self.width,
             height: rows.len(),
@@ -128,6 +131,7 @@ impl Source for Shadow<'_> {
             albedo: None,
             normal: None,
             depth: Some(pixels.iter().map(depth).collect()),
+            haze: None,
         })
     }
 }
@@ -148,16 +152,17 @@ impl Sums {
         (lights, catcher): (&[usize], ShadowCatcher),
         (sampler, tries): (&mut PixelSampler, u32),
     ) {
-        if tracer.closest(ray).is_some_and(|surface| surface.object < catcher.objects) {
-            self.model += 1;
+        let hidden = hidden(tracer, ray, catcher);
+        self.model += hidden;
+        if hidden >= 1.0 {
             return;
         }
-        let Some(ground) =
-            tracer.closest(&Ray { mask: u32::MAX, ..*ray }).filter(|s| s.object == catcher.ground)
+        let Some(ground) = beyond_smoke(tracer, &Ray { mask: u32::MAX, ..*ray })
+            .filter(|surface| surface.object == catcher.ground)
         else {
             return;
         };
-        self.ground += 1;
+        self.ground += 1.0 - hidden;
         let n =
             if ground.n_geom.dot(Vec3::from(ray.direction)) > 0.0 { -ground.n_geom } else { ground.n_geom };
         for _ in 0..tries {
@@ -192,9 +197,60 @@ impl Sums {
     }
 
     fn alpha(&self, blocked: f64, samples: u32) -> f32 {
-        let sum = f64::from(self.model) + f64::from(self.ground) * blocked;
+        let sum = self.model + self.ground * blocked;
         (sum / f64::from(samples.max(1))).clamp(0.0, 1.0) as f32
     }
+}
+
+/// How much of what is behind it the model hides from the camera, 0..=1.
+fn hidden(tracer: &mut Tracer, ray: &Ray, catcher: ShadowCatcher) -> f64 {
+    let of_model = |surface: &Surface| surface.object < catcher.objects;
+    let first = tracer.closest(ray).filter(of_model);
+    if first.is_none() || !tracer.scene.has_interfaces() {
+        return if first.is_some() { 1.0 } else { 0.0 };
+    }
+    let mut media = Media::at_start(tracer, ray);
+    let sight = Sight::along(tracer, &mut media, ray, first, |_, _| {});
+    if sight.surface.as_ref().is_some_and(of_model) {
+        1.0
+    } else {
+        f64::from(1.0 - mean(sight.transmittance))
+    }
+}
+
+/// The first surface along a ray that is not only the boundary of smoke.
+fn beyond_smoke(tracer: &mut Tracer, ray: &Ray) -> Option<Surface> {
+    let mut ray = *ray;
+    loop {
+        let surface = tracer.closest(&ray)?;
+        if !tracer.scene.material(&surface).is_interface() {
+            return Some(surface);
+        }
+        ray = Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..ray };
+    }
+}
+
+/// The fraction of the light along a ray that smoke lets through, whatever else is there.
+fn through_smoke(tracer: &mut Tracer, ray: &Ray) -> f32 {
+    let (scene, direction) = (tracer.scene, Vec3::from(ray.direction));
+    if !scene.has_interfaces() {
+        return 1.0;
+    }
+    let (length, unit) = (direction.length(), direction.normalize());
+    let mut ray =
+        Ray { direction: unit.to_array(), t_min: ray.t_min * length, t_max: ray.t_max * length, ..*ray };
+    let (mut media, mut left) = (Media::at_start(tracer, &ray), 1.0);
+    for _ in 0..MAX_PANES {
+        let (first, mut stopped) = (tracer.closest(&ray), 0.0);
+        let sight = Sight::along(tracer, &mut media, &ray, first, |object, part| {
+            stopped += if scene.material_of(object).is_interface() { part } else { 0.0 };
+        });
+        left *= 1.0 - stopped;
+        let Some(surface) = sight.surface else { break };
+        media = media.beyond(scene, &surface, -unit, unit);
+        ray = Ray { t_max: ray.t_max - surface.t, mask: ray.mask, ..surface.spawn(unit) };
+    }
+    left
 }
 
 /// The fraction of a light that the model lets through to the ground; `None` where another light is in the way, with or
@@ -207,8 +263,9 @@ fn passed(
 ) -> Option<f32> {
     let mut ray = ground.spawn_to_light(sample);
     let (direction, mut left) = (Vec3::from(ray.direction), 1.0);
+    let smoke = through_smoke(tracer, &ray);
     for _ in 0..MAX_PANES {
-        let Some(surface) = tracer.closest(&ray) else { return Some(left) };
+        let Some(surface) = tracer.closest(&ray) else { return Some(left * smoke) };
         if surface.object >= catcher.objects {
             return None;
         }

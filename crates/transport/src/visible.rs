@@ -2,19 +2,23 @@
 //! each pixel each object covers.
 //!
 //! Positions, texture coordinates and motion are [labels](crate::labels). Coverage is counted in camera rays of the picture's
-//! first samples. Mirrors and glass are surfaces like any other.
+//! first samples. Mirrors and glass are surfaces like any other. The object that bounds fog or smoke covers what its inside hides of
+//! what lies behind, and that covers the rest: the shares of a pixel add up to its alpha.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::zeroed;
 use crate::labels::labels;
+use crate::media::Media;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
+use crate::sight::Sight;
 use crate::window::{TILE, Window};
 use bilux_accel::Hit;
 use bilux_math::{Vec2, Vec3};
+use bilux_scene::media::mean;
 use bilux_scene::{Camera, Ray, Scene, Surface, Tracer};
 use rayon::prelude::*;
 
@@ -85,6 +89,7 @@ pub fn visible(
         camera,
         wanted,
         samples: samples.clamp(least, MAX_SAMPLES),
+        has_interfaces: scene.has_interfaces(),
     };
     let window = settings.window();
     let of_tile = |tile: Window| (!progress.is_cancelled()).then(|| look.tile(tile));
@@ -100,6 +105,7 @@ struct Look<'a> {
     camera: &'a dyn Camera,
     wanted: &'a Wanted<'a>,
     samples: u32,
+    has_interfaces: bool,
 }
 
 /// A pixel.
@@ -132,17 +138,23 @@ impl<'a> Look<'a> {
         &self,
         (x, y): (u32, u32),
         tracer: &mut Tracer<'a>,
-        counts: &mut [Vec<(u32, u32)>],
+        counts: &mut [Vec<(u32, f32)>],
     ) -> Vec<Ranks> {
         let rays: Vec<Ray> =
             (0..self.samples).map(|sample| self.eye.sample(SamplePlace { x, y, sample }).0).collect();
         let mut hits = vec![None; rays.len()];
         tracer.hits(&rays, &mut hits);
         counts.iter_mut().for_each(Vec::clear);
-        for hit in hits.iter().flatten() {
-            let object = self.eye.context.scene.geometry().object_of(hit) as usize;
+        let mut add = |object: u32, share: f32| {
             for (counts, ids) in counts.iter_mut().zip(&self.wanted.ids) {
-                count(counts, ids.get(object).copied().unwrap_or_default());
+                count(counts, ids.get(object as usize).copied().unwrap_or_default(), share);
+            }
+        };
+        for (ray, hit) in rays.iter().zip(&hits).filter_map(|(ray, hit)| Some((ray, hit.as_ref()?))) {
+            if self.has_interfaces {
+                covered(tracer, ray, hit, &mut add);
+            } else {
+                add(self.eye.context.scene.geometry().object_of(hit), 1.0);
             }
         }
         counts.iter_mut().map(|counts| ranked(counts, self.samples)).collect()
@@ -194,21 +206,31 @@ fn put<T>(plane: &mut [T], at: usize, value: T) {
     }
 }
 
-/// Counts one more sample of an id; 0 is none.
-fn count(counts: &mut Vec<(u32, u32)>, id: u32) {
+/// The share of a sample that each object covers, among fog and smoke, given what its ray hits first.
+fn covered(tracer: &mut Tracer, ray: &Ray, hit: &Hit, add: &mut impl FnMut(u32, f32)) {
+    let first = tracer.surface(ray, hit);
+    let mut media = Media::at_start(tracer, ray);
+    let sight = Sight::along(tracer, &mut media, ray, Some(first), &mut *add);
+    if let Some(surface) = sight.surface {
+        add(surface.object, mean(sight.transmittance));
+    }
+}
+
+/// Counts a share of a sample for an id; 0 is none.
+fn count(counts: &mut Vec<(u32, f32)>, id: u32, share: f32) {
     match counts.iter_mut().find(|(known, _)| *known == id) {
-        _ if id == 0 => {}
-        Some((_, count)) => *count += 1,
-        None => counts.push((id, 1)),
+        _ if id == 0 || share <= 0.0 => {}
+        Some((_, count)) => *count += share,
+        None => counts.push((id, share)),
     }
 }
 
 /// The ids that cover most; those that cover as much by their numbers.
-fn ranked(counts: &mut [(u32, u32)], samples: u32) -> Ranks {
-    counts.sort_unstable_by_key(|&(id, count)| (std::cmp::Reverse(count), id));
+fn ranked(counts: &mut [(u32, f32)], samples: u32) -> Ranks {
+    counts.sort_unstable_by(|(a, most), (b, least)| least.total_cmp(most).then(a.cmp(b)));
     let mut ranks = Ranks::default();
     for (rank, &(id, count)) in ranks.iter_mut().zip(counts.iter()) {
-        *rank = (id, count as f32 / samples as f32);
+        *rank = (id, count / samples as f32);
     }
     ranks
 }

@@ -3,6 +3,7 @@
 mod examples;
 mod fingerprint;
 mod fingerprint_fields;
+mod fog;
 mod ground;
 mod own_light;
 mod parts;

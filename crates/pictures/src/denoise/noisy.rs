@@ -49,6 +49,8 @@ pub struct Noisy {
     pub normal: Option<Vec<[f32; 3]>>,
     /// Metres from the camera; infinite where nothing is visible.
     pub depth: Option<Vec<f32>>,
+    /// The share of each pixel that fog, smoke, milk or skin show, 0..=1: light without sharp edges.
+    pub haze: Option<Vec<f32>>,
 }
 
 /// A part of the picture.
@@ -111,6 +113,7 @@ impl Noisy {
             albedo,
             normal: normal.map(|plane| plane.into_iter().map(|n| n.to_array()).collect()),
             depth: plane(["guides.depth", "depth.Z"]),
+            haze: plane(["guides.haze", "guides.haze"]),
         };
         Ok(noisy.separated())
     }
@@ -133,6 +136,9 @@ impl Noisy {
         }
         let normals = self.normal.iter_mut().flatten();
         normals.filter(|n| !n.iter().all(|x| x.is_finite())).for_each(|n| *n = [0.0; 3]);
+        for haze in self.haze.iter_mut().flatten() {
+            *haze = if haze.is_finite() { haze.clamp(0.0, 1.0) } else { 0.0 };
+        }
         for coverage in self.coverage.iter_mut().flatten() {
             *coverage = if coverage.is_finite() { coverage.clamp(0.0, 1.0) } else { 0.0 };
         }

@@ -2,8 +2,9 @@
 
 use crate::interaction::MediumPoint;
 use bilux_math::Rgb;
-use bilux_scene::media::{FreePath, mean};
-use bilux_scene::{Medium, Surface};
+use bilux_math::hash::mix64;
+use bilux_scene::media::{Draws, FreePath, mean};
+use bilux_scene::{Medium, Ray, Surface};
 
 /// A line through media on which nothing blocks light.
 #[derive(Clone, Copy, Debug)]
@@ -156,4 +157,16 @@ impl Travelled {
             ..self
         }
     }
+}
+
+/// The same ray, from behind a surface that it has hit.
+pub(crate) fn behind(ray: &Ray, surface: &Surface) -> Ray {
+    Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
+}
+
+/// Random numbers for what varies along a ray, of this line alone: others of the same sample have another direction.
+#[inline]
+pub(crate) fn draws_along(ray: &Ray, seed: u64) -> Draws {
+    let [x, y, z] = ray.direction.map(|c| u64::from(c.to_bits()));
+    Draws::new(mix64(seed ^ mix64(x ^ y << 32) ^ z << 16))
 }

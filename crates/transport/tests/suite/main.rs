@@ -21,6 +21,7 @@ mod path_tracing;
 mod queue;
 mod random_numbers;
 mod scattering;
+mod seen_media;
 mod sides;
 mod skin;
 mod stop;

@@ -9,6 +9,8 @@ use bilux_math::Rgb;
 /// the reciprocal of the expected depth difference between neighbours; and inverse depth, 0 where nothing is visible.
 pub(super) struct Guides {
     pub(super) planes: Planes,
+    /// The share of haze; `None` where there is none.
+    pub(super) haze: Option<Planes>,
 }
 
 /// Index of each guide's first plane.
@@ -60,7 +62,9 @@ impl Guides {
             }
             within
         };
-        Ok(Guides { planes })
+        let haze = noisy.haze.as_ref().filter(|haze| haze.iter().any(|&share| share > 0.0));
+        let haze = haze.map(|haze| Planes::filled((width, height), |i| [haze[i]])).transpose()?;
+        Ok(Guides { planes, haze })
     }
 
     /// The albedo at an index of the planes.

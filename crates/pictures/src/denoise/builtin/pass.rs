@@ -18,6 +18,9 @@ const LIGHT_GROWTH: f32 = 1.1;
 /// Tolerances for differences in albedo and in normals.
 const ALBEDO_APART: f32 = 0.05;
 const NORMAL_APART: f32 = 0.2;
+/// How much larger the tolerance for squared differences is in fog and all else that is hazy. Its light has no edges, but few samples
+/// find it, so that most pixels are too dark and do not know it.
+const HAZY: f32 = 7.0;
 /// Squared relative difference below which light counts as the same where there is no noise at all.
 const SAME: f32 = 1e-5;
 
@@ -47,6 +50,7 @@ pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Lig
 struct Band<'a> {
     light: &'a Planes,
     guides: &'a Planes,
+    haze: Option<&'a [f32]>,
     step: usize,
     rows: std::ops::Range<usize>,
     /// Sums of weight · light, for R, G and B, of weight² · variance, and of weights.
@@ -63,6 +67,7 @@ impl<'a> Band<'a> {
         Band {
             light: &light.planes,
             guides: &guides.planes,
+            haze: guides.haze.as_ref().map(|haze| &*haze.planes[0]),
             step,
             sums: std::array::from_fn(|_| vec![0.0; width * count]),
             moments: (step <= LAST_LINEAR).then(|| Moments::new(width * count)),
@@ -126,6 +131,11 @@ impl<'a> Band<'a> {
                 let sum = (r.0[x] + g.0[x] + b.0[x]) * (r.1[x] + g.1[x] + b.1[x]);
                 let noise = 3.0 * (vp + if vp < vq { vp } else { vq });
                 *to = (squared - noise) / (tolerance * (vp + vq) + SAME * sum.abs() + 1e-12);
+            }
+            if let Some(haze) = self.haze {
+                for (to, (p, q)) in to.iter_mut().zip(haze[p..p + width].iter().zip(&haze[q..q + width])) {
+                    *to /= 1.0 + HAZY * if p < q { *p } else { *q };
+                }
             }
         }
     }
