@@ -238,7 +238,7 @@ mod tests {
         let [mean, variance] = [sum, squares].map(|sum| sum / LOOKS as f64);
         // The mean of exponentials is larger than the exponential of the mean by half the variance.
         assert!((mean - passed).abs() < 4.0 * (variance / LOOKS as f64).sqrt() + variance, "{mean} {passed}");
-        // A walk finds 0 or 1: a variance of 0.2.
-        assert!(variance < 1e-3 * passed, "{variance}");
+        // A walk finds 0 or 1, with a variance of more than half of what passes.
+        assert!(variance < 0.02 * passed, "{variance}");
     }
 }
