@@ -16,7 +16,7 @@ mod passage;
 
 use crate::interaction::{Interaction, MediumPoint};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
+use bilux_scene::media::{Draws, FreePath, MediumEvent, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
@@ -87,17 +87,6 @@ impl Media {
         }
     }
 
-    /// The part of a ray from this distance on, in metres, through the grids of a medium.
-    #[inline]
-    fn line(&self, scene: &Scene, medium: &Medium, ray: &Ray, begin: f32) -> Option<MediumLine> {
-        if medium.density.is_none() && medium.glow.is_none() {
-            return None;
-        }
-        let direction = Vec3::from(ray.direction).normalize();
-        let origin = Vec3::from(ray.origin) + direction * begin;
-        scene.medium_line(self.inside, medium, [origin, direction], ray.time)
-    }
-
     /// What lies along a part of a ray, from here up to there in metres, for light that passes.
     #[inline]
     fn passed_between(
@@ -111,7 +100,7 @@ impl Media {
             return FreePath::CLEAR;
         }
         let medium = self.medium(scene);
-        let line = self.line(scene, &medium, ray, begin);
+        let line = scene.medium_line(self.inside, &medium, ray, begin);
         medium.passed(line.as_ref(), end - begin, usize::from(self.channel), || draws.next_1d())
     }
 
@@ -138,7 +127,7 @@ impl Media {
             let surface = self.arrive(tracer, ray, surface);
             let medium = self.medium(scene);
             let length = surface.t - begin;
-            let line = self.line(scene, &medium, ray, begin);
+            let line = scene.medium_line(self.inside, &medium, ray, begin);
             let channel = WalkChannel { index: usize::from(self.channel), odds: odds * travelled.odds };
             let flight = medium.walk(line.as_ref(), length, channel, &mut draw);
             travelled = travelled.lit(flight.emitted);
@@ -212,7 +201,12 @@ impl Media {
             let surface = self.arrive(tracer, ray, surface);
             let medium = self.medium(scene);
             if !medium.is_clear() {
-                visit(self.inside, &medium, self.line(scene, &medium, ray, begin), [begin, surface.t]);
+                visit(
+                    self.inside,
+                    &medium,
+                    scene.medium_line(self.inside, &medium, ray, begin),
+                    [begin, surface.t],
+                );
             }
             if self.overlap.separates(scene, &surface) {
                 return Some(surface);

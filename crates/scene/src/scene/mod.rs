@@ -222,18 +222,17 @@ impl Scene {
         around.map(exit).reduce(f32::max)
     }
 
-    /// The line of a ray through the grids of the medium of an object, if it has any: from a point along a unit vector.
+    /// The part of a ray from this distance on, in metres, through the grids of the medium of an object, if it has any.
     #[inline]
-    pub fn medium_line(
-        &self,
-        object: u32,
-        medium: &Medium,
-        [origin, direction]: [Vec3; 2],
-        time: f32,
-    ) -> Option<MediumLine> {
+    pub fn medium_line(&self, object: u32, medium: &Medium, ray: &Ray, begin: f32) -> Option<MediumLine> {
+        if medium.density.is_none() && medium.glow.is_none() {
+            return None;
+        }
+        let direction = Vec3::from(ray.direction).normalize();
+        let origin = Vec3::from(ray.origin) + direction * begin;
         // Spheres have no space of their own.
         let placed = self.parts.geometry.objects().get(object as usize);
-        let to_world = || placed.map_or(Transform::IDENTITY, |placed| placed.motion.at(time));
+        let to_world = || placed.map_or(Transform::IDENTITY, |placed| placed.motion.at(ray.time));
         medium.line(to_world, origin, direction)
     }
 
