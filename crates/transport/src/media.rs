@@ -16,7 +16,7 @@ mod passage;
 
 use crate::interaction::{Interaction, MediumPoint};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::media::{Draws, FreePath, MediumEvent, WalkChannel};
+use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
@@ -104,11 +104,11 @@ impl Media {
         medium.passed(line.as_ref(), end - begin, usize::from(self.channel), || draws.next_1d())
     }
 
-    /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the
-    /// first surface that separates two media. `first` is the first surface along the ray. Afterwards these are the media on
-    /// the side that the ray comes from. `odds` are those of walks in each channel so far.
+    /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the first surface
+    /// that separates two media. `first` is the first surface along the ray. Afterwards these are the media on the side that the ray comes
+    /// from. `odds` are those of walks in each channel so far. `visit` is told of each medium that scatters, on the way.
     ///
-    /// `visit` is told of each medium that scatters, on the way. Beyond the last surface nothing happens: the boundary of what scatters would have been met.
+    /// Beyond the last surface nothing happens: the boundary of what scatters would have been met.
     #[inline]
     pub(crate) fn travel(
         &mut self,
@@ -237,9 +237,8 @@ impl Media {
 
     /// What lies along a ray that begins in these media and is `distance` metres long; `None` where something blocks it.
     ///
-    /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the
-    /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none. Of media that vary
-    /// it is an estimate, by random numbers of this seed.
+    /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the [normal](Scene::normal_towards) of the
+    /// surface that the ray ends on at parameter 1; zero where there is none. Of media that vary it is an estimate, by random numbers of this seed.
     #[inline]
     pub(crate) fn visible(
         &self,
