@@ -12,6 +12,7 @@ use std::process::{Command, Stdio};
 const SUITES: &[(&str, &[&str])] = &[
     ("math", &["bilux-math", "bilux-accel", "bilux-scene", "bilux-transport"]),
     ("accel", &["bilux-accel"]),
+    ("visibility", &["bilux-visibility"]),
     ("scene", &["bilux-scene", "bilux-transport", "bilux-validation"]),
     ("transport", &["bilux-transport", "bilux-validation"]),
     ("formats", &["bilux-formats", "bilux-validation"]),

@@ -8,6 +8,7 @@ use anyhow::{Result, bail};
 const LIBRARIES: &[&str] = &[
     "bilux-math",
     "bilux-accel",
+    "bilux-visibility",
     "bilux-pictures",
     "bilux-scene",
     "bilux-transport",

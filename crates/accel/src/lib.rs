@@ -35,7 +35,6 @@ pub mod ray;
 pub mod registry;
 pub mod slab;
 pub mod triangle;
-pub mod visibility;
 
 pub use accelerator::{Accelerator, Traverse, TreeShape};
 pub use bvh::Bvh;

@@ -2,8 +2,8 @@
 
 use crate::{Options, ProgressFn, Report, median, table};
 use bilux::accel::BuildOptions;
-use bilux::accel::visibility::{VISIBILITY, View, VisibilityOptions, VisibilityResult, wrong_pixels};
 use bilux::scene::{CameraSample, Parameters, SceneError};
+use bilux::visibility::{VISIBILITY, View, VisibilityOptions, VisibilityResult, wrong_pixels};
 use bilux::{Error, Job};
 use bilux_math::Vec2;
 use serde_json::json;

@@ -54,6 +54,7 @@ pub use bilux_math as math;
 pub use bilux_pictures as pictures;
 pub use bilux_scene as scene;
 pub use bilux_transport as transport;
+pub use bilux_visibility as visibility;
 
 pub use bilux_transport::Silent as Quiet;
 pub use built::Built;

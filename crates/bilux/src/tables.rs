@@ -34,7 +34,7 @@ pub const TABLES: &[Table] = &[
     Table {
         name: "visibility",
         summary: "hidden-surface removal",
-        rows: rows!(bilux_accel::visibility::VISIBILITY),
+        rows: rows!(bilux_visibility::VISIBILITY),
     },
     Table {
         name: "materials",

@@ -8,6 +8,7 @@ use crate::workspace::Package;
 const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-math", &[]),
     ("bilux-accel", &["bilux-math"]),
+    ("bilux-visibility", &["bilux-math", "bilux-accel"]),
     ("bilux-pictures", &["bilux-math"]),
     ("bilux-scene", &["bilux-math", "bilux-accel", "bilux-pictures"]),
     ("bilux-transport", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene"]),
@@ -21,13 +22,21 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-const LIBRARIES: &[&str] =
-    &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene", "bilux-transport", "bilux-formats"];
+const LIBRARIES: &[&str] = &[
+    "bilux-math",
+    "bilux-accel",
+    "bilux-visibility",
+    "bilux-pictures",
+    "bilux-scene",
+    "bilux-transport",
+    "bilux-formats",
+];
 
 const WITH_FACADE: &[&str] = &[
     "bilux",
     "bilux-math",
     "bilux-accel",
+    "bilux-visibility",
     "bilux-pictures",
     "bilux-scene",
     "bilux-transport",

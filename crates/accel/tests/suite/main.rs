@@ -12,5 +12,4 @@ mod primitives;
 mod questions;
 mod support;
 mod two_levels;
-mod visibility;
 mod watertight;

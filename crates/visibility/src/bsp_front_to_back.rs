@@ -1,18 +1,18 @@
 //! The same tree front to back: the first hit in a pixel stays, and what is covered is skipped.
 
-use super::canvas::{Canvas, NO_OWNER};
-use super::coverage::Coverage;
-use super::partition::{Child, Piece, Start, Stop, Tree, draw_piece};
-use super::polygon::corners;
-use super::screen::{Screen, Slack};
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
-use crate::ray::Culling;
+use crate::canvas::{Canvas, NO_OWNER};
+use crate::coverage::Coverage;
+use crate::partition::{Child, Piece, Start, Stop, Tree, draw_piece};
+use crate::polygon::corners;
+use crate::screen::{Screen, Slack};
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::Culling;
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};
 use std::time::Instant;
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "bsp-front-to-back",
         summary: "the same BSP tree front to back, with a coverage mask and occlusion culling of subtrees",

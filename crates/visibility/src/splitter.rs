@@ -1,9 +1,9 @@
 //! Chooses the polygon whose plane divides the others [Fuchs 1983].
 
-use super::partition::Piece;
-use super::polygon::{Plane, corners};
-use super::screen::Slack;
-use crate::mesh::TriangleMesh;
+use crate::partition::Piece;
+use crate::polygon::{Plane, corners};
+use crate::screen::Slack;
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, hash};
 
 /// Number of candidate planes, and of polygons by which they are judged.
@@ -13,7 +13,7 @@ const JUDGES: usize = 64;
 const SPLIT_WEIGHT: usize = 4;
 
 /// A few of the pieces, chosen by a hash so that no order of the triangles is a worst case.
-pub(super) fn candidates(pieces: usize, salt: usize) -> Vec<usize> {
+pub(crate) fn candidates(pieces: usize, salt: usize) -> Vec<usize> {
     (0..CANDIDATES.min(pieces))
         .map(|k| (hash::mix64((salt * CANDIDATES + k) as u64) % pieces as u64) as usize)
         .collect()
@@ -21,7 +21,7 @@ pub(super) fn candidates(pieces: usize, salt: usize) -> Vec<usize> {
 
 /// Among the candidates' planes, the one that cuts the fewest pieces and balances the rest, and how far its own
 /// triangle deviates from it.
-pub(super) fn fewest_splits(
+pub(crate) fn fewest_splits(
     pieces: &[Piece],
     candidates: &[usize],
     mesh: &TriangleMesh,

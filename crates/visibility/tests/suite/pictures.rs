@@ -1,11 +1,11 @@
 //! Every exact algorithm gives the image of ray casting.
 
-use crate::support::effort::effort;
-use bilux_accel::visibility::{
-    BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
-};
+use crate::effort::effort;
 use bilux_accel::{BuildOptions, Culling, TriangleMesh, build};
 use bilux_math::{hash, transcendental};
+use bilux_visibility::{
+    BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
+};
 use std::f32::consts::TAU;
 
 type Triangle = [[f32; 3]; 3];

@@ -1,57 +1,57 @@
 //! Conservative bounds of polygons on the screen.
 
-use super::polygon::{Plane, clip, corners};
-use super::view::View;
-use crate::mesh::TriangleMesh;
-use crate::ray::Ray;
-use crate::triangle::PreparedRay;
+use crate::polygon::{Plane, clip, corners};
+use crate::view::View;
+use bilux_accel::Ray;
+use bilux_accel::TriangleMesh;
+use bilux_accel::triangle::PreparedRay;
 use bilux_math::DVec3;
 
 /// How far the ray test may deviate from the triangles that it is given.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slack {
+pub(crate) struct Slack {
     /// Every hit, and every vertex as the test sees it, lies within a ball of this radius around a point of
-    /// the triangle: the lemma of [`crate::triangle`] on every axis, hence √3 of its bound and less than two.
-    pub(super) radius: f64,
+    /// the triangle: the lemma of [`bilux_accel::triangle`] on every axis, hence √3 of its bound and less than two.
+    pub(crate) radius: f64,
     /// No vertex is farther from the eye.
-    pub(super) reach: f64,
+    pub(crate) reach: f64,
 }
 
 /// A view, for triangles of a mesh.
 #[derive(Debug)]
-pub(super) struct Screen<'a> {
-    pub(super) view: &'a View,
-    pub(super) eye: DVec3,
-    pub(super) slack: Slack,
+pub(crate) struct Screen<'a> {
+    pub(crate) view: &'a View,
+    pub(crate) eye: DVec3,
+    pub(crate) slack: Slack,
     /// What is in front of the eye and within the rectangle of pixel centres.
     frustum: [Plane; 5],
 }
 
 /// Pixels from a first column and row up to, but not including, an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Rect {
-    pub(super) x: (usize, usize),
-    pub(super) y: (usize, usize),
+pub(crate) struct Rect {
+    pub(crate) x: (usize, usize),
+    pub(crate) y: (usize, usize),
 }
 
 impl Rect {
-    pub(super) const EMPTY: Rect = Rect { x: (0, 0), y: (0, 0) };
+    pub(crate) const EMPTY: Rect = Rect { x: (0, 0), y: (0, 0) };
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.x.0 >= self.x.1 || self.y.0 >= self.y.1
     }
 
-    pub(super) fn is_pixel(&self) -> bool {
+    pub(crate) fn is_pixel(&self) -> bool {
         self.x.1 - self.x.0 == 1 && self.y.1 - self.y.0 == 1
     }
 
-    pub(super) fn intersection(&self, other: &Rect) -> Rect {
+    pub(crate) fn intersection(&self, other: &Rect) -> Rect {
         let common = |a: (usize, usize), b: (usize, usize)| (a.0.max(b.0), a.1.min(b.1));
         Rect { x: common(self.x, other.x), y: common(self.y, other.y) }
     }
 
     /// Its four quarters, or two where it is one pixel wide or high.
-    pub(super) fn quarters(&self) -> impl Iterator<Item = Rect> {
+    pub(crate) fn quarters(&self) -> impl Iterator<Item = Rect> {
         let halves = |(first, end): (usize, usize)| {
             let middle = first + (end - first) / 2;
             [(first, middle), (middle, end)]
@@ -61,31 +61,31 @@ impl Rect {
         parts.filter(|part| !part.is_empty())
     }
 
-    pub(super) fn overlaps(&self, other: &Rect) -> bool {
+    pub(crate) fn overlaps(&self, other: &Rect) -> bool {
         self.x.0 < other.x.1 && other.x.0 < self.x.1 && self.y.0 < other.y.1 && other.y.0 < self.y.1
     }
 }
 
 /// A polygon on the screen.
 #[derive(Clone, Debug)]
-pub(super) struct Footprint {
+pub(crate) struct Footprint {
     /// The pixels whose rays may hit it.
-    pub(super) rect: Rect,
+    pub(crate) rect: Rect,
     /// Minimum and maximum depth along the view's axis, of the visible part.
-    pub(super) depth: (f64, f64),
+    pub(crate) depth: (f64, f64),
     /// Its corners on the screen one unit in front of the eye; `None` when it comes too near to the eye.
-    pub(super) outline: Option<Outline>,
+    pub(crate) outline: Option<Outline>,
 }
 
 /// Corners on the screen; every hit is within `blur` of their hull.
 #[derive(Clone, Debug)]
-pub(super) struct Outline {
+pub(crate) struct Outline {
     corners: Vec<[f64; 2]>,
     blur: f64,
 }
 
 impl<'a> Screen<'a> {
-    pub(super) fn new(view: &'a View, mesh: &TriangleMesh) -> Screen<'a> {
+    pub(crate) fn new(view: &'a View, mesh: &TriangleMesh) -> Screen<'a> {
         let toward = Ray::new(view.eye(), [0.0, 0.0, 1.0]);
         let pad = PreparedRay::new(&toward).map_or(f32::INFINITY, |ray| ray.pad(&mesh.bounds()));
         let eye = view.eye_point();
@@ -105,7 +105,7 @@ impl<'a> Screen<'a> {
     }
 
     /// The pixels whose rays may hit a convex polygon; empty when it cannot be visible.
-    pub(super) fn rect(&self, polygon: &[DVec3]) -> Rect {
+    pub(crate) fn rect(&self, polygon: &[DVec3]) -> Rect {
         match self.visible(polygon) {
             Some(part) => self.rect_of_visible(&part),
             None => Rect::EMPTY,
@@ -113,7 +113,7 @@ impl<'a> Screen<'a> {
     }
 
     /// The pixels whose rays may hit anything within the hull of some points.
-    pub(super) fn rect_of_hull(&self, points: &[DVec3]) -> Rect {
+    pub(crate) fn rect_of_hull(&self, points: &[DVec3]) -> Rect {
         if self.frustum.iter().any(|plane| plane.range(points).1 < -self.slack.radius) {
             return Rect::EMPTY;
         }
@@ -121,7 +121,7 @@ impl<'a> Screen<'a> {
     }
 
     /// The footprint of a convex polygon on the screen; `None` when it cannot be visible.
-    pub(super) fn footprint(&self, polygon: &[DVec3]) -> Option<Footprint> {
+    pub(crate) fn footprint(&self, polygon: &[DVec3]) -> Option<Footprint> {
         let part = self.visible(polygon)?;
         let rect = self.rect_of_visible(&part);
         if rect.is_empty() {
@@ -132,12 +132,12 @@ impl<'a> Screen<'a> {
     }
 
     /// The pixels of the whole view.
-    pub(super) fn whole(&self) -> Rect {
+    pub(crate) fn whole(&self) -> Rect {
         Rect { x: (0, self.view.width()), y: (0, self.view.height()) }
     }
 
     /// The part of a polygon that rays of the view may hit.
-    pub(super) fn visible<'p>(&self, polygon: &'p [DVec3]) -> Option<std::borrow::Cow<'p, [DVec3]>> {
+    pub(crate) fn visible<'p>(&self, polygon: &'p [DVec3]) -> Option<std::borrow::Cow<'p, [DVec3]>> {
         let mut part = std::borrow::Cow::Borrowed(polygon);
         for plane in &self.frustum {
             let (low, high) = plane.range(&part);
@@ -152,7 +152,7 @@ impl<'a> Screen<'a> {
     }
 
     /// Minimum and maximum depth along the view's axis.
-    pub(super) fn depth(&self, polygon: &[DVec3]) -> (f64, f64) {
+    pub(crate) fn depth(&self, polygon: &[DVec3]) -> (f64, f64) {
         self.frustum[4].range(polygon)
     }
 
@@ -204,7 +204,7 @@ impl<'a> Screen<'a> {
 
 impl Outline {
     /// True when no ray can hit both: all of one lies beyond some edge of the other.
-    pub(super) fn is_apart_from(&self, other: &Outline) -> bool {
+    pub(crate) fn is_apart_from(&self, other: &Outline) -> bool {
         self.has_edge_against(other) || other.has_edge_against(self)
     }
 

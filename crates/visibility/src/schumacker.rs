@@ -5,19 +5,19 @@
 //! with too many faces, or one whose faces can hide each other in a cycle: in that case by the plane of a face in the
 //! cycle, which also cuts what crosses it.
 
-use super::canvas::{Canvas, NO_OWNER};
-use super::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
-use super::polygon::{Plane, corners};
-use super::result::VisibilityCounts;
-use super::screen::{Screen, Slack};
-use super::splitter::{candidates, fewest_splits};
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
+use crate::canvas::{Canvas, NO_OWNER};
+use crate::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
+use crate::polygon::{Plane, corners};
+use crate::result::VisibilityCounts;
+use crate::screen::{Screen, Slack};
+use crate::splitter::{candidates, fewest_splits};
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};
 use std::time::Instant;
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "schumacker",
         summary: "Schumacker's clusters: ordered by separating planes, faces by view-independent priorities",

@@ -1,15 +1,15 @@
 //! The plain painter's algorithm: far triangles first, near ones over them. Wrong wherever one depth per triangle
 //! cannot order them: where they are large, intersect, or overlap in a cycle.
 
-use super::canvas::Canvas;
-use super::polygon::corners;
-use super::screen::Screen;
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
+use crate::canvas::Canvas;
+use crate::polygon::corners;
+use crate::screen::Screen;
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "painter",
         summary: "painter's algorithm: triangles sorted by the depth of their centres; not exact",

@@ -4,19 +4,19 @@
 //! behind it. Polygons are cut and distributed to every region in which they may have hits; a hit belongs to exactly
 //! one of the three, by the computed distance of its point.
 
-use super::canvas::{Canvas, PixelHit};
-use super::polygon::{Plane, clip, corners};
-use super::result::VisibilityCounts;
-use super::screen::{Screen, Slack};
-use super::splitter::{candidates, fewest_splits};
-use crate::mesh::TriangleMesh;
+use crate::canvas::{Canvas, PixelHit};
+use crate::polygon::{Plane, clip, corners};
+use crate::result::VisibilityCounts;
+use crate::screen::{Screen, Slack};
+use crate::splitter::{candidates, fewest_splits};
+use bilux_accel::TriangleMesh;
 use bilux_math::DVec3;
 
 /// The tree.
 #[derive(Debug)]
-pub(super) struct Tree {
-    pub(super) root: Option<Child>,
-    pub(super) nodes: Vec<PartitionNode>,
+pub(crate) struct Tree {
+    pub(crate) root: Option<Child>,
+    pub(crate) nodes: Vec<PartitionNode>,
     pieces: Vec<Piece>,
     tests: Vec<Test>,
     /// Number of triangles that it was built for.
@@ -35,21 +35,21 @@ const ALWAYS: usize = 1 << 19;
 
 /// A thick plane and the pieces on it.
 #[derive(Debug)]
-pub(super) struct PartitionNode {
-    pub(super) plane: Plane,
+pub(crate) struct PartitionNode {
+    pub(crate) plane: Plane,
     /// Half the thickness: no hit of a polygon in the plane is farther from it.
-    pub(super) half: f64,
+    pub(crate) half: f64,
     /// Pieces with hits on the plane; a range of [`Tree::pieces`].
     on: std::ops::Range<u32>,
-    pub(super) front: Option<Child>,
-    pub(super) back: Option<Child>,
+    pub(crate) front: Option<Child>,
+    pub(crate) back: Option<Child>,
     /// Minimum and maximum corner of the bounding box of this node and everything below.
     bounds: [DVec3; 2],
 }
 
 /// A child of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Child {
+pub(crate) enum Child {
     /// A plane.
     PartitionNode(u32),
     /// Something of the caller's that needs no more planes.
@@ -58,9 +58,9 @@ pub(super) enum Child {
 
 /// Part of a triangle: a hull for its hits in some cell, and the tests that decide whether a hit is there.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
-    pub(super) triangle: u32,
-    pub(super) polygon: Vec<DVec3>,
+pub(crate) struct Piece {
+    pub(crate) triangle: u32,
+    pub(crate) polygon: Vec<DVec3>,
     tests: Option<u32>,
 }
 
@@ -73,7 +73,7 @@ struct Test {
 
 /// The position of a point relative to a thick plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Region {
+pub(crate) enum Region {
     /// Beyond half the thickness, on the side that the normal points to.
     Front,
     /// Within the thickness.
@@ -84,7 +84,7 @@ pub(super) enum Region {
 
 /// A stop on a walk through the tree.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Stop {
+pub(crate) enum Stop {
     /// About to go below this child; return false to skip it.
     Enter(Child),
     /// At the pieces on a node's plane.
@@ -95,7 +95,7 @@ pub(super) enum Stop {
 
 /// The end of the order at which a walk begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Start {
+pub(crate) enum Start {
     /// With what nothing can hide.
     Nearest,
     /// With what can hide nothing.
@@ -104,14 +104,14 @@ pub(super) enum Start {
 
 /// The parts into which a plane splits a set of pieces.
 #[derive(Debug, Default)]
-pub(super) struct Sides {
-    pub(super) front: Vec<Piece>,
-    pub(super) back: Vec<Piece>,
+pub(crate) struct Sides {
+    pub(crate) front: Vec<Piece>,
+    pub(crate) back: Vec<Piece>,
 }
 
 impl PartitionNode {
     #[inline]
-    pub(super) fn region(&self, distance: f64) -> Region {
+    pub(crate) fn region(&self, distance: f64) -> Region {
         // Neither comparison holds for a NaN distance: everything is on such a plane.
         if distance > self.half {
             Region::Front
@@ -124,7 +124,7 @@ impl PartitionNode {
 }
 
 /// All finite triangles of a mesh, whole.
-pub(super) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+pub(crate) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
     let triangles = mesh.triangles().iter().enumerate();
     triangles
         .filter_map(|(index, triangle)| {
@@ -135,7 +135,7 @@ pub(super) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
 
 impl Tree {
     /// An empty tree.
-    pub(super) fn new(mesh: &TriangleMesh) -> Tree {
+    pub(crate) fn new(mesh: &TriangleMesh) -> Tree {
         let (nodes, pieces, tests) = (Vec::new(), Vec::new(), Vec::new());
         Tree { root: None, nodes, pieces, tests, triangles: mesh.len(), splits: 0, dealt: 0 }
     }
@@ -147,7 +147,7 @@ impl Tree {
     }
 
     /// A tree of the polygons' own planes; of a few candidates, the one that cuts the fewest [Fuchs 1983].
-    pub(super) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
+    pub(crate) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
         let mut tree = Tree::new(mesh);
         let mut waiting = vec![(SubtreeSlot::Root, whole_pieces(mesh))];
         while let Some((place, pieces)) = waiting.pop() {
@@ -167,7 +167,7 @@ impl Tree {
     }
 
     /// Attaches a child at its slot.
-    pub(super) fn attach(&mut self, place: SubtreeSlot, child: Child) {
+    pub(crate) fn attach(&mut self, place: SubtreeSlot, child: Child) {
         match place {
             SubtreeSlot::Root => self.root = Some(child),
             SubtreeSlot::Front(node) => self.nodes[node as usize].front = Some(child),
@@ -176,7 +176,7 @@ impl Tree {
     }
 
     /// Adds a node with nothing on it. `thickness` is how far the polygons that define the plane deviate from it.
-    pub(super) fn add(&mut self, place: SubtreeSlot, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
+    pub(crate) fn add(&mut self, place: SubtreeSlot, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
         let index = self.nodes.len() as u32;
         self.attach(place, Child::PartitionNode(index));
         let on = self.pieces.len() as u32..self.pieces.len() as u32;
@@ -187,7 +187,7 @@ impl Tree {
     }
 
     /// Distributes pieces over the three regions of the last node.
-    pub(super) fn distribute(
+    pub(crate) fn distribute(
         &mut self,
         pieces: Vec<Piece>,
         slack: &Slack,
@@ -272,7 +272,7 @@ impl Tree {
     }
 
     /// The corners of the bounding box of everything below a child; `None` for leaves.
-    pub(super) fn hull(&self, child: Child) -> Option<[DVec3; 8]> {
+    pub(crate) fn hull(&self, child: Child) -> Option<[DVec3; 8]> {
         let Child::PartitionNode(node) = child else { return None };
         let bounds = self.nodes[node as usize].bounds;
         let pick = |i: usize, bit: usize| bounds[i >> bit & 1];
@@ -280,12 +280,12 @@ impl Tree {
     }
 
     /// The total number of pieces on planes.
-    pub(super) fn pieces_on_planes(&self) -> usize {
+    pub(crate) fn pieces_on_planes(&self) -> usize {
         self.pieces.len()
     }
 
     /// The pieces on a node's plane.
-    pub(super) fn pieces_on(&self, node: u32) -> &[Piece] {
+    pub(crate) fn pieces_on(&self, node: u32) -> &[Piece] {
         let on = &self.nodes[node as usize].on;
         &self.pieces[on.start as usize..on.end as usize]
     }
@@ -293,7 +293,7 @@ impl Tree {
     /// True when a hit is in the piece's own cell. Along a ray the computed distance from each plane is monotone in
     /// `t`, so that every hit is in exactly one cell, and nearer hits are in nearer cells.
     #[inline]
-    pub(super) fn owns(&self, piece: &Piece, hit: &PixelHit, canvas: &mut Canvas, eye: DVec3) -> bool {
+    pub(crate) fn owns(&self, piece: &Piece, hit: &PixelHit, canvas: &mut Canvas, eye: DVec3) -> bool {
         let mut next = piece.tests;
         if next.is_none() {
             return true;
@@ -312,7 +312,7 @@ impl Tree {
     }
 
     /// Walks through the tree in the order that the eye determines.
-    pub(super) fn walk(&self, eye: DVec3, start: Start, mut visit: impl FnMut(Stop) -> bool) {
+    pub(crate) fn walk(&self, eye: DVec3, start: Start, mut visit: impl FnMut(Stop) -> bool) {
         let mut waiting: Vec<Stop> = self.root.map(Stop::Enter).into_iter().collect();
         while let Some(stop) = waiting.pop() {
             if !visit(stop) {
@@ -344,7 +344,7 @@ impl Tree {
 
 /// The slot of a subtree.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum SubtreeSlot {
+pub(crate) enum SubtreeSlot {
     /// The root: the whole tree.
     Root,
     /// In front of a node.
@@ -355,7 +355,7 @@ pub(super) enum SubtreeSlot {
 
 /// Draws a piece's hits in its cell, wherever `wants` accepts the pixel.
 #[inline]
-pub(super) fn draw_piece(
+pub(crate) fn draw_piece(
     tree: &Tree,
     piece: &Piece,
     screen: &Screen,

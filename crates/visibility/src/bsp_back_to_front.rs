@@ -1,15 +1,15 @@
 //! A tree of the polygons' own planes, painted back to front [Fuchs 1980].
 
-use super::canvas::Canvas;
-use super::partition::{Start, Stop, Tree, draw_piece};
-use super::screen::Screen;
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
+use crate::canvas::Canvas;
+use crate::partition::{Start, Stop, Tree, draw_piece};
+use crate::screen::Screen;
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::TriangleMesh;
 use bilux_math::registry::Entry;
 use std::time::Instant;
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "bsp-back-to-front",
         summary: "BSP tree of the polygons' planes, painted back to front",

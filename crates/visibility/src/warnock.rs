@@ -1,17 +1,17 @@
 //! Warnock's area subdivision: a window in which a single triangle decides everything is drawn; any other window is
 //! divided into four, down to single pixels [Warnock 1969].
 
-use super::canvas::Canvas;
-use super::polygon::{Plane, clip, corners};
-use super::screen::{Rect, Screen};
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
-use crate::ray::Culling;
+use crate::canvas::Canvas;
+use crate::polygon::{Plane, clip, corners};
+use crate::screen::{Rect, Screen};
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::Culling;
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};
 use std::rc::Rc;
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "warnock",
         summary: "Warnock's algorithm: the screen is divided into quarters until one triangle covers a window",

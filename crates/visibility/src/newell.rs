@@ -1,15 +1,15 @@
 //! Painter's algorithm of Newell, Newell and Sancha: before a polygon is painted, every polygon that it might hide is
 //! shown to be behind it; polygons that overlap in a cycle are cut [Newell 1972].
 
-use super::canvas::{Canvas, NO_OWNER};
-use super::polygon::{Plane, clip, corners};
-use super::screen::{Footprint, Screen};
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
+use crate::canvas::{Canvas, NO_OWNER};
+use crate::polygon::{Plane, clip, corners};
+use crate::screen::{Footprint, Screen};
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "newell",
         summary: "Newell's painter's algorithm: pairwise depth tests; polygons that form a cycle are split",

@@ -1,9 +1,9 @@
 //! The eye and its pixels.
 
-use super::result::BACKGROUND;
-use crate::accelerator::Accelerator;
-use crate::ray::{Culling, Query, Ray};
-use crate::triangle::PreparedRay;
+use crate::result::BACKGROUND;
+use bilux_accel::Accelerator;
+use bilux_accel::triangle::PreparedRay;
+use bilux_accel::{Culling, Query, Ray};
 use bilux_math::{DVec3, transcendental};
 
 /// An eye and the directions from it through the centres of a rectangle of pixels.
@@ -15,11 +15,11 @@ pub struct View {
     directions: Vec<[f32; 3]>,
     t_min: f32,
     /// Right, down and forward: orthonormal, world coordinates.
-    pub(super) axes: [DVec3; 3],
-    pub(super) columns: Lanes,
-    pub(super) rows: Lanes,
+    pub(crate) axes: [DVec3; 3],
+    pub(crate) columns: Lanes,
+    pub(crate) rows: Lanes,
     /// The maximum component along `forward` of any direction.
-    pub(super) deepest: f64,
+    pub(crate) deepest: f64,
 }
 
 /// Why a view cannot be created.
@@ -178,19 +178,19 @@ impl View {
             .collect()
     }
 
-    pub(super) fn eye_point(&self) -> DVec3 {
+    pub(crate) fn eye_point(&self) -> DVec3 {
         DVec3::from(self.eye.map(f64::from))
     }
 
-    pub(super) fn direction(&self, pixel: usize) -> DVec3 {
+    pub(crate) fn direction(&self, pixel: usize) -> DVec3 {
         DVec3::from(self.directions[pixel].map(f64::from))
     }
 
-    pub(super) fn t_min(&self) -> f32 {
+    pub(crate) fn t_min(&self) -> f32 {
         self.t_min
     }
 
-    pub(super) fn prepared_rays(&self) -> Vec<Option<PreparedRay>> {
+    pub(crate) fn prepared_rays(&self) -> Vec<Option<PreparedRay>> {
         (0..self.directions.len()).map(|pixel| PreparedRay::new(&self.ray(pixel)?)).collect()
     }
 }
@@ -202,7 +202,7 @@ const MIN_COSINE: f64 = 1.0 / 65536.0;
 /// The positions of the pixels of each column (or row) on the screen one unit in front of the eye. Made monotone, so
 /// that a search is conservative however the directions were rounded, or distorted.
 #[derive(Clone, Debug)]
-pub(super) struct Lanes {
+pub(crate) struct Lanes {
     low: Vec<f64>,
     high: Vec<f64>,
 }
@@ -227,19 +227,19 @@ impl Lanes {
     }
 
     /// The lanes that may have a pixel centre between two positions; all possible lanes, when the positions are NaN.
-    pub(super) fn between(&self, low: f64, high: f64) -> (usize, usize) {
+    pub(crate) fn between(&self, low: f64, high: f64) -> (usize, usize) {
         let first = self.high.partition_point(|&h| h < low);
         let end = self.low.partition_point(|&l| l <= high || high.is_nan());
         (first, end.max(first))
     }
 
     /// The positions of all pixel centres of some lanes.
-    pub(super) fn span(&self, first: usize, end: usize) -> (f64, f64) {
+    pub(crate) fn span(&self, first: usize, end: usize) -> (f64, f64) {
         (self.low[first], self.high[end - 1])
     }
 
     /// The positions of all pixel centres.
-    pub(super) fn whole(&self) -> (f64, f64) {
+    pub(crate) fn whole(&self) -> (f64, f64) {
         self.span(0, self.low.len())
     }
 }

@@ -4,20 +4,20 @@ use bilux_math::DVec3;
 
 /// An oriented plane with a unit normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
-    pub(super) normal: DVec3,
-    pub(super) offset: f64,
+pub(crate) struct Plane {
+    pub(crate) normal: DVec3,
+    pub(crate) offset: f64,
 }
 
 impl Plane {
     /// The plane through a point.
-    pub(super) fn through(point: DVec3, normal: DVec3) -> Plane {
+    pub(crate) fn through(point: DVec3, normal: DVec3) -> Plane {
         Plane { normal, offset: normal.dot(point) }
     }
 
     /// The plane of a triangle, whose front is where the corners run counter-clockwise. For a triangle without area,
     /// some plane through it.
-    pub(super) fn of_triangle(corners: &[DVec3; 3]) -> Plane {
+    pub(crate) fn of_triangle(corners: &[DVec3; 3]) -> Plane {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| {
             let longest = [b - a, c - b, a - c]
@@ -33,18 +33,18 @@ impl Plane {
 
     /// Signed distance of a point, positive in front.
     #[inline]
-    pub(super) fn side(&self, point: DVec3) -> f64 {
+    pub(crate) fn side(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset
     }
 
     /// The same plane seen from its other side.
-    pub(super) fn flipped(&self) -> Plane {
+    pub(crate) fn flipped(&self) -> Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }
 
     /// Minimum and maximum distance of some points.
     #[inline]
-    pub(super) fn range(&self, points: &[DVec3]) -> (f64, f64) {
+    pub(crate) fn range(&self, points: &[DVec3]) -> (f64, f64) {
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &p| {
             let side = self.side(p);
             (low.min(side), high.max(side))
@@ -53,7 +53,7 @@ impl Plane {
 }
 
 /// The part of a convex polygon at distance `least` or more from a plane.
-pub(super) fn clip(polygon: &[DVec3], plane: &Plane, least: f64) -> Vec<DVec3> {
+pub(crate) fn clip(polygon: &[DVec3], plane: &Plane, least: f64) -> Vec<DVec3> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     let Some(&last) = polygon.last() else { return kept };
     let (mut from, mut from_side) = (last, plane.side(last) - least);
@@ -72,7 +72,7 @@ pub(super) fn clip(polygon: &[DVec3], plane: &Plane, least: f64) -> Vec<DVec3> {
 }
 
 /// The corners of a triangle, unless it is not finite and hence never hit.
-pub(super) fn corners(triangle: &[[f32; 3]; 3]) -> Option<[DVec3; 3]> {
+pub(crate) fn corners(triangle: &[[f32; 3]; 3]) -> Option<[DVec3; 3]> {
     let finite = triangle.iter().flatten().all(|c| c.is_finite());
     finite.then(|| triangle.map(|corner| DVec3::from(corner.map(f64::from))))
 }

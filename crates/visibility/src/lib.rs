@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use bilux_accel::TriangleMesh;
-//! use bilux_accel::visibility::{View, VisibilityOptions, visibility};
+//! use bilux_visibility::{View, VisibilityOptions, visibility};
 //!
 //! let mesh = TriangleMesh::new(
 //!     vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
@@ -46,8 +46,8 @@ mod z_buffer;
 pub use result::{BACKGROUND, VisibilityCounts, VisibilityResult, wrong_pixels};
 pub use view::{View, ViewError};
 
-use crate::mesh::TriangleMesh;
-use crate::ray::Culling;
+use bilux_accel::Culling;
+use bilux_accel::TriangleMesh;
 use bilux_math::registry::Entry;
 
 /// Every available algorithm.

@@ -1,13 +1,13 @@
 //! Tracks which pixels are still open, by tiles.
 
-use super::screen::Rect;
+use crate::screen::Rect;
 
 /// Pixels along a tile's side.
 const TILE: usize = 16;
 
 /// Counts the open pixels of each tile.
 #[derive(Debug)]
-pub(super) struct Coverage {
+pub(crate) struct Coverage {
     columns: usize,
     width: usize,
     open_in_tile: Vec<u16>,
@@ -16,7 +16,7 @@ pub(super) struct Coverage {
 }
 
 impl Coverage {
-    pub(super) fn new(width: usize, height: usize) -> Coverage {
+    pub(crate) fn new(width: usize, height: usize) -> Coverage {
         let columns = width.div_ceil(TILE);
         let mut coverage = Coverage {
             columns,
@@ -38,7 +38,7 @@ impl Coverage {
 
     /// Closes a pixel; closing it again changes nothing.
     #[inline]
-    pub(super) fn cover(&mut self, pixel: usize) {
+    pub(crate) fn cover(&mut self, pixel: usize) {
         if !std::mem::replace(&mut self.covered[pixel], true) {
             let tile = self.tile(pixel);
             self.open_in_tile[tile] -= 1;
@@ -47,12 +47,12 @@ impl Coverage {
     }
 
     /// True when no pixel is open.
-    pub(super) fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.open == 0
     }
 
     /// True when no pixel of a rectangle is open.
-    pub(super) fn covers(&self, rect: Rect) -> bool {
+    pub(crate) fn covers(&self, rect: Rect) -> bool {
         if rect.is_empty() || self.is_full() {
             return true;
         }

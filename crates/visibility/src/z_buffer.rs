@@ -1,14 +1,14 @@
 //! A depth for every pixel, and a comparison for every hit.
 
-use super::canvas::Canvas;
-use super::polygon::corners;
-use super::screen::Screen;
-use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
-use crate::mesh::TriangleMesh;
+use crate::canvas::Canvas;
+use crate::polygon::corners;
+use crate::screen::Screen;
+use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use bilux_accel::TriangleMesh;
 use bilux_math::registry::Entry;
 
-/// Row of [`super::VISIBILITY`].
-pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+/// Row of [`VISIBILITY`](crate::VISIBILITY).
+pub(crate) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "z-buffer",
         summary: "z-buffer: one depth comparison per pixel and triangle",
