@@ -167,11 +167,12 @@ fn smoke_is_seen_alike_by_any_threads_and_in_any_crop() {
     let (all, alphas, shares) = (seen(&scene, &one), alpha(&scene, &one), mattes(&scene, &one));
     assert!(seen(&scene, &base) == all && alpha(&scene, &base) == alphas && mattes(&scene, &base) == shares);
     let (found, alpha, mattes) = (seen(&scene, &part), alpha(&scene, &part), mattes(&scene, &part));
-    for i in 0..crop.pixels() {
+    assert_eq!(alpha.len(), crop.pixels());
+    for (i, alpha) in alpha.into_iter().enumerate() {
         let (x, y) = crop.position(i);
         let whole = (y * SIDE + x) as usize;
         assert_eq!(
-            (found.albedo[i], found.mean_depth[i], alpha[i]),
+            (found.albedo[i], found.mean_depth[i], alpha),
             (all.albedo[whole], all.mean_depth[whole], alphas[whole])
         );
         assert_eq!(mattes.mattes[0][i], shares.mattes[0][whole]);
