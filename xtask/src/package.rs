@@ -5,7 +5,7 @@ use crate::process::{cargo, run as run_process};
 use anyhow::{Result, bail};
 
 /// The published libraries, in order of dependency.
-const LIBRARIES: &[&str] = &[
+pub(crate) const LIBRARIES: &[&str] = &[
     "bilux-math",
     "bilux-accel",
     "bilux-visibility",

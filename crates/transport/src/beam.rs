@@ -29,31 +29,36 @@ pub(crate) struct Line {
 const PARALLEL: f32 = 1e-10;
 
 /// A part of a subpath's ray, in one medium.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 pub(crate) struct Beam<const N: usize = 1> {
     pub(crate) line: Line,
     /// The object whose inside is the medium.
     pub(crate) object: u32,
-    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
-    pub(crate) origin: u16,
-    /// The channel of its sample's distances.
-    pub(crate) channel: u8,
-    /// The subpath carries a single wavelength.
-    pub(crate) is_split: bool,
     /// From the last vertex to where it begins: metres, and what lies between.
     before: f32,
     passage: Passage,
-    /// The last vertex is a point of a medium; infinitely far away.
-    leaves_medium: bool,
-    by_area: bool,
-    /// Where it begins.
-    beta: Rgb,
-    odds: Rgb,
-    /// As the subpath left the last vertex.
+    /// The subpath: as it left the last vertex, but for throughput and odds, which are those where the beam begins.
+    pub(crate) subpath: Leaving<N>,
+}
+
+/// A subpath as it leaves a vertex.
+#[derive(Clone, Copy)]
+pub(crate) struct Leaving<const N: usize = 1> {
+    /// The cell in which it began, if that was at a light: [`crate::emission::Start::cell`].
+    pub(crate) origin: u16,
+    /// The channel of its sample's distances.
+    pub(crate) channel: u8,
+    /// It carries a single wavelength.
+    pub(crate) is_split: bool,
+    /// The vertex is a point of a medium; it is infinitely far away.
+    pub(crate) leaves_medium: bool,
+    pub(crate) by_area: bool,
+    pub(crate) beta: Rgb,
+    pub(crate) odds: Rgb,
     pub(crate) partial: Partial<N>,
-    /// The light, if it comes straight from there.
+    /// The light, if the vertex is on one.
     pub(crate) start: Option<Start>,
-    /// Events before it: all, and as far as they limit paths.
+    /// Events so far: all, and as far as they limit paths.
     pub(crate) depth: u32,
     pub(crate) events: Events,
 }
@@ -65,24 +70,8 @@ pub(crate) struct Crossing<const N: usize> {
     pub(crate) partial: Partial<N>,
 }
 
-/// A subpath where a beam of its begins.
-pub(crate) struct BeamStart<const N: usize> {
-    pub(crate) origin: u16,
-    pub(crate) channel: u8,
-    pub(crate) is_split: bool,
-    pub(crate) leaves_medium: bool,
-    pub(crate) by_area: bool,
-    pub(crate) partial: Partial<N>,
-    pub(crate) start: Option<Start>,
-    pub(crate) depth: u32,
-    pub(crate) events: Events,
-    /// Throughput and odds at the last vertex.
-    pub(crate) beta: Rgb,
-    pub(crate) odds: Rgb,
-}
-
-impl<const N: usize> BeamStart<N> {
-    /// The part of the ray that lies between two distances, inside an object, beyond what the walk has `travelled`.
+impl<const N: usize> Leaving<N> {
+    /// The part of its ray that lies between two distances, inside an object, beyond what the walk has `travelled`.
     pub(crate) fn beam(
         &self,
         ray: &Ray,
@@ -91,24 +80,16 @@ impl<const N: usize> BeamStart<N> {
         travelled: &Travelled,
     ) -> Beam<N> {
         let direction = Vec3::from(ray.direction);
+        let origin = Vec3::from(ray.origin) + direction * begin;
         let odds = self.odds * travelled.odds;
         let all = mean(odds);
+        let (beta, odds) = (self.beta * travelled.weight / all, odds / all);
         Beam {
-            line: Line { origin: Vec3::from(ray.origin) + direction * begin, direction, length: end - begin },
+            line: Line { origin, direction, length: end - begin },
             object,
-            origin: self.origin,
-            channel: self.channel,
-            is_split: self.is_split,
             before: begin,
             passage: travelled.passage,
-            leaves_medium: self.leaves_medium,
-            by_area: self.by_area,
-            beta: self.beta * travelled.weight / all,
-            odds: odds / all,
-            partial: self.partial,
-            start: self.start,
-            depth: self.depth,
-            events: self.events,
+            subpath: Leaving { beta, odds, ..*self },
         }
     }
 }
@@ -117,7 +98,7 @@ impl<const N: usize> BeamStart<N> {
 impl Beam {
     /// One in no medium, of a line alone.
     pub(crate) fn of_line(line: Line, origin: u16) -> Beam {
-        let start = BeamStart {
+        let subpath = Leaving {
             origin,
             channel: 0,
             is_split: false,
@@ -131,7 +112,7 @@ impl Beam {
             odds: Rgb::WHITE,
         };
         let ray = Ray::new(line.origin.to_array(), line.direction.to_array());
-        start.beam(&ray, 0, [0.0, line.length], &Travelled::NOWHERE)
+        subpath.beam(&ray, 0, [0.0, line.length], &Travelled::NOWHERE)
     }
 }
 
@@ -145,24 +126,23 @@ impl<const N: usize> Beam<N> {
         eye: Option<(&dyn Camera, &Ray)>,
         techniques: &TechniqueCounts<N>,
     ) -> Crossing<N> {
-        let free = medium.free_path(along, usize::from(self.channel));
+        let Leaving { channel, leaves_medium, by_area, start, mut partial, .. } = self.subpath;
+        let free = medium.free_path(along, usize::from(channel));
         let travelled = Travelled { passage: self.passage, ..Travelled::NOWHERE }.passed(free);
-        let (odds, passage) = (self.odds * travelled.odds, travelled.passage);
+        let (odds, passage) = (self.subpath.odds * travelled.odds, travelled.passage);
         let all = mean(odds);
-        let edge = Edge { forward: passage.arriving(None), back: passage.returning(self.leaves_medium) };
+        let edge = Edge { forward: passage.arriving(None), back: passage.returning(leaves_medium) };
         let distance = self.before + along;
-        let mut partial = self.partial;
         if let Some((camera, ray)) = eye {
             let density = camera.density(ray, distance);
             partial = Partial::of_camera(density * edge.forward, techniques, PerSet::ZERO);
         } else {
-            let distance2 = if self.by_area { 1.0 } else { distance * distance };
-            let ratio =
-                self.start.map_or(1.0, |start| start.light_sampling_ratio(scene, self.line.at(along)));
-            let connections = if self.start.is_some() { PerSet::ONE } else { techniques.connections };
+            let distance2 = if by_area { 1.0 } else { distance * distance };
+            let ratio = start.map_or(1.0, |start| start.light_sampling_ratio(scene, self.line.at(along)));
+            let connections = if start.is_some() { PerSet::ONE } else { techniques.connections };
             partial.arrive(distance2 * ratio, edge, connections, PerSet::ZERO);
         }
-        Crossing { beta: self.beta * travelled.weight / all, odds: odds / all, partial }
+        Crossing { beta: self.subpath.beta * travelled.weight / all, odds: odds / all, partial }
     }
 }
 

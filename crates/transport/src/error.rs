@@ -99,7 +99,7 @@ pub enum RenderError {
              integrator, such as path"
     )]
     IntervalOfPattern,
-    /// The integrator does not follow light in media.
+    /// The integrator does not follow light in media that vary.
     #[error(
         "this scene has a medium that varies, such as smoke, which this integrator does not follow: choose another, such as auto, \
          path, bdpt or vcm"

@@ -139,7 +139,7 @@ pub fn features(
         }
     }
     let has_haze = scene.scatters() || scene.has_interfaces();
-    Features::of(window, tiles, done, (settings.ids, has_haze)).map(Some)
+    Features::of(window, tiles, done, settings.ids, has_haze).map(Some)
 }
 
 /// The fraction of each pixel that is covered, 0..=1, in rows of the film's window, the top row first: the mean over its first
@@ -276,7 +276,8 @@ impl Features {
         window: Window,
         tiles: Vec<(Window, Vec<Sums>)>,
         samples: u32,
-        (ids, has_haze): (bool, bool),
+        ids: bool,
+        has_haze: bool,
     ) -> Result<Features, RenderError> {
         let (pixels, share) = (window.pixels(), 1.0 / samples as f32);
         let with_id = if ids { pixels } else { 0 };

@@ -111,11 +111,8 @@ impl Interaction {
         match self {
             Interaction::Surface(..) => techniques.eta,
             Interaction::Medium(point) => match point.even {
-                Some(sigma_t) if techniques.has_beams_in(sigma_t) => {
-                    let sigma = sigma_t[usize::from(channel)];
-                    techniques.beams * (1.0 / (sigma * sigma))
-                }
-                _ => PerSet::ZERO,
+                Some(sigma_t) => techniques.crossings(sigma_t, channel),
+                None => PerSet::ZERO,
             },
         }
     }

@@ -206,12 +206,15 @@ mod tests {
                 all.crossing(&ray, |beam, [t, along]| {
                     let apart = ray.at(t).distance(beam.line.at(along));
                     assert!(apart <= radius * 1.001 + 1e-6, "{apart}");
-                    found.push(beam.origin);
+                    found.push(beam.subpath.origin);
                 });
                 found.sort_unstable();
                 let is_near = |beam: &&Beam| ray.closest(&beam.line, radius).is_some();
                 met += found.len();
-                assert!(beams.iter().filter(is_near).map(|beam| beam.origin).eq(found), "{count} {radius}");
+                assert!(
+                    beams.iter().filter(is_near).map(|beam| beam.subpath.origin).eq(found),
+                    "{count} {radius}"
+                );
             }
         }
         assert!(met > 500, "{met}");

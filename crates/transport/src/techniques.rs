@@ -173,6 +173,14 @@ impl<const N: usize> TechniqueCounts<N> {
         all
     }
 
+    /// How often beams that cross at a right angle count, over both walks having events there, in a channel of a medium of this
+    /// extinction.
+    #[inline]
+    pub(crate) fn crossings(&self, sigma_t: Rgb, channel: u8) -> PerSet<N> {
+        let sigma = sigma_t[usize::from(channel)];
+        if self.has_beams_in(sigma_t) { self.beams * (1.0 / (sigma * sigma)) } else { PerSet::ZERO }
+    }
+
     /// Whether there are beams in a medium of this extinction that is the same everywhere.
     #[inline]
     pub(crate) fn has_beams_in(&self, sigma_t: Rgb) -> bool {

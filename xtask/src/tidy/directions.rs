@@ -22,26 +22,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("xtask", &[]),
 ];
 
-const LIBRARIES: &[&str] = &[
-    "bilux-math",
-    "bilux-accel",
-    "bilux-visibility",
-    "bilux-pictures",
-    "bilux-scene",
-    "bilux-transport",
-    "bilux-formats",
-];
+/// All libraries but the facade, which is published last.
+const LIBRARIES: &[&str] = match WITH_FACADE {
+    [libraries @ .., _] => libraries,
+    [] => &[],
+};
 
-const WITH_FACADE: &[&str] = &[
-    "bilux",
-    "bilux-math",
-    "bilux-accel",
-    "bilux-visibility",
-    "bilux-pictures",
-    "bilux-scene",
-    "bilux-transport",
-    "bilux-formats",
-];
+const WITH_FACADE: &[&str] = crate::package::LIBRARIES;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let members: Vec<_> = repository.packages.iter().filter(|package| package.member).collect();

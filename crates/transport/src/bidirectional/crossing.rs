@@ -20,31 +20,34 @@ pub(crate) fn crossed<const N: usize>(
 ) {
     let scene = task.context.scene;
     let Some((medium, is_inside)) = medium_of(scene, z.object) else { return };
+    let (eye, channel) = (&z.subpath, usize::from(z.subpath.channel));
     let sigma_t = medium.sigma_t();
-    let sigma = sigma_t[usize::from(z.channel)];
-    let here = 1.0 / (sigma * sigma);
-    let eye = (z.depth == 0).then_some((task.context.camera, ray));
+    let often = techniques.crossings(sigma_t, eye.channel);
+    let per_events = 1.0 / (sigma_t[channel] * sigma_t[channel]);
+    let camera = (eye.depth == 0).then_some((task.context.camera, ray));
     beams.crossing(&z.line, |y, [along_z, along_y]| {
-        let events = z.events.joined(y.events).and(is_inside);
-        if y.object != z.object || y.channel != z.channel || !events.are_within(task.context.max_depth) {
+        let light = &y.subpath;
+        let events = eye.events.joined(light.events).and(is_inside);
+        let is_one = y.object == z.object && light.channel == eye.channel;
+        if !is_one || !events.are_within(task.context.max_depth) {
             return;
         }
         let [wo, wi] = [-z.line.direction, -y.line.direction];
         let pdf = medium.phase.eval(wo, wi);
-        let mut from_camera = z.at(scene, &medium, along_z, eye, techniques);
-        if y.start.is_some() && !techniques.direct {
+        let mut from_camera = z.at(scene, &medium, along_z, camera, techniques);
+        // What comes straight from a light is not connected with the camera.
+        if light.start.is_some() && !techniques.direct {
             from_camera.partial.splatted = PerSet::ZERO;
         }
         let from_light = y.at(scene, &medium, along_y, None, techniques);
-        let row = if is_inside { events.in_row } else { 0 };
-        let rows = [z, y].map(|beam| if is_inside { beam.events.in_row + 1 } else { 0 });
-        let others = from_camera.partial.before_crossing(pdf, rows[0], row)
-            + from_light.partial.before_crossing(pdf, rows[1], row);
-        let light = from_camera.beta * from_light.beta * medium.sigma_s * (pdf * here);
-        let light = task.sample.seen(light, z.is_split || y.is_split);
-        let light = light / mean(from_camera.odds * from_light.odds * sigma_t / sigma);
-        let own = techniques.beams * (wo.cross(wi).length() * here);
-        let technique = Technique::Merged { s: count(y.depth), t: count(z.depth) };
-        visit(technique, &Contribution { own, others, origin: y.origin, ..Contribution::only(light) });
+        let [row_z, row_y] = [eye, light].map(|subpath| subpath.events.and(is_inside).in_row);
+        let others = from_camera.partial.before_crossing(pdf, row_z, events.in_row)
+            + from_light.partial.before_crossing(pdf, row_y, events.in_row);
+        let brought = from_camera.beta * from_light.beta * medium.sigma_s * (pdf * per_events);
+        let brought = task.sample.seen(brought, eye.is_split || light.is_split);
+        let brought = brought / mean(from_camera.odds * from_light.odds * sigma_t / sigma_t[channel]);
+        let technique = Technique::Merged { s: count(light.depth), t: count(eye.depth) };
+        let (own, origin) = (often * wo.cross(wi).length(), light.origin);
+        visit(technique, &Contribution { own, others, origin, ..Contribution::only(brought) });
     });
 }

@@ -1,6 +1,6 @@
 //! Subpaths while they grow, from either end, and their vertices.
 
-use crate::beam::{Beam, BeamStart};
+use crate::beam::{Beam, Leaving};
 use crate::emission::Start;
 use crate::interaction::Interaction;
 use crate::limits::Events;
@@ -109,7 +109,7 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     leaves_medium: bool,
     /// What media on the way to the next vertex emit, over the density of finding it.
     glow: Rgb,
-    /// The parts of its last ray through media in which rays are merged.
+    /// The parts of its last ray through media in which rays are merged; none before the ray is followed.
     pub(crate) beams: Vec<Beam<N>>,
     /// Whether it keeps them.
     has_beams: bool,
@@ -198,8 +198,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         }
         // Light sampling connects the first surface of a light subpath with the light.
         let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
-        self.beams.clear();
-        let start = self.has_beams.then(|| BeamStart {
+        let leaving = self.has_beams.then(|| Leaving {
             origin: self.origin,
             channel: sample.channel,
             is_split: walk.is_split,
@@ -214,13 +213,13 @@ impl<'w, const N: usize> Subpath<'w, N> {
         });
         let (ray, techniques, beams) = (walk.ray, self.techniques, &mut self.beams);
         let keep = |MediumPart { object, medium, ends, before }: MediumPart| {
-            let Some(start) = &start else { return };
+            let Some(leaving) = &leaving else { return };
             let sigma_t = medium.sigma_t();
             if medium.density.is_none()
                 && techniques.has_beams_in(sigma_t)
-                && sigma_t[usize::from(start.channel)] > 0.0
+                && sigma_t[usize::from(leaving.channel)] > 0.0
             {
-                beams.push(start.beam(&ray, object, ends, before));
+                beams.push(leaving.beam(&ray, object, ends, before));
             }
         };
         let Travelled { arrival, passage, emitted, .. } =
@@ -270,6 +269,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
 
     /// Continues from a vertex; false when the subpath ends there.
     pub(crate) fn scatter(&mut self, vertex: &Vertex<N>, roulette_depth: u32, task: &mut Task) -> bool {
+        self.beams.clear();
         let sampler = &mut task.sample.sampler;
         let (u_choice, u) = (sampler.next_1d(), sampler.next_2d());
         let u_survival = sampler.next_1d();

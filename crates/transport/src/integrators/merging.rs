@@ -38,9 +38,11 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 pub(super) const CONNECTIONS: Parameter = switch("connections", "connect the vertices of the two subpaths");
 pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to the camera");
 
-/// Whether light subpaths look for direct light as well.
-pub(super) const DIRECT: Parameter =
-    switch("direct", "also connect and merge light paths that come straight from a light");
+/// Whether light subpaths look for direct light as well, but in fog, where their rays always do.
+pub(super) const DIRECT: Parameter = switch(
+    "direct",
+    "also connect and merge light paths that come straight from a light; in fog they are always merged",
+);
 
 const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }

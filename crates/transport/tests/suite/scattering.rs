@@ -175,6 +175,18 @@ fn light_in_fog_is_what_the_closed_form_says() {
     }
 }
 
+/// A path that leaves fog and then the scene has crossed its beams once.
+#[test]
+fn fog_before_a_mirror_is_crossed_once() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(0.0, 2.0, 0.5)).with("intensity", 8.0f32);
+    let mut builder = SceneBuilder { lights: vec![panel], ..SceneBuilder::default() };
+    put(&mut builder, "fog", ball(Vec3::ZERO, 1.0, 12, false), medium(0.02f32, 0.3f32));
+    let wall = quad(Vec3::new(-3.0, -3.0, -3.0), Vec3::X * 6.0, Vec3::Y * 6.0);
+    put(&mut builder, "wall", wall, Spec::new("", "mirror"));
+    look(&mut builder, Vec3::new(0.0, 0.5, 4.0), Vec3::ZERO, 35.0);
+    assert_like_path("fog before a mirror", &built(&builder), &["vcm", "sppm"]);
+}
+
 /// Light that a glass ball casts into fog, seen in the ball: beams find it, and paths that happen to hit the large lamp.
 #[test]
 fn light_that_glass_casts_into_fog_is_as_bright_seen_through_the_glass() {

@@ -163,10 +163,10 @@ fn crossed_beams(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (
         let (ray, camera_end, light_end) = (&z.rays[a], &z.vertices[a], &y.vertices[b]);
         // Both a bit longer than to their events, where they would end.
         let p = camera_end.at.p();
-        let mut moved = light.clone();
+        let mut moved = *light;
         moved.line.origin = p - light.line.direction * light.line.length;
         moved.line.length *= 1.0 + 1e-5;
-        let mut eye = eye.clone();
+        let mut eye = *eye;
         eye.line.length *= 1.0 + 1e-5;
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();

@@ -51,7 +51,8 @@ fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> Techniq
 pub(super) fn learn(
     round: PilotRound,
     merging: &Merging,
-    (film, near): (&TechniqueCounts, f64),
+    film: &TechniqueCounts,
+    near: f64,
 ) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
     let Some(untrained) = Guide::untrained(round.eye.context.scene) else { return (None, counters) };

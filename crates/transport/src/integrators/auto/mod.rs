@@ -155,7 +155,7 @@ impl Chooser for Auto {
         let mut counters = Counters::default();
         let mut guide = None;
         if self.aims {
-            let (learned, rays) = aim::learn(round(0), &merging, (&techniques(&SETS[SETS.len() - 1]), NEAR));
+            let (learned, rays) = aim::learn(round(0), &merging, &techniques(&SETS[SETS.len() - 1]), NEAR);
             counters += rays;
             guide = learned.map(Arc::new);
         }
