@@ -31,6 +31,7 @@ mod ply;
 mod polygon;
 mod reading;
 mod sharing;
+mod sink;
 mod stl;
 mod strokes;
 mod text;

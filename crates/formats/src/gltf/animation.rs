@@ -1,8 +1,7 @@
 //! Animation: node transforms and morph target weights at a given time. [glTF 2.0, 3.11 and appendix C]
 
-use super::accessor::Accessor;
+use super::data::DataReader;
 use super::json::JsonNode;
-use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan2_f64, sin_f64};
@@ -13,7 +12,17 @@ use std::collections::{HashMap, HashSet};
 /// The animated values of nodes, which replace those of the rest pose.
 #[derive(Default)]
 pub(super) struct Pose {
-    moved: HashMap<(usize, AnimatedProperty), Vec<f64>>,
+    moved: HashMap<Target, Vec<f64>>,
+    /// All animations of the file, and which of them play.
+    pub(super) animations: Vec<Animation>,
+}
+
+/// What a channel animates.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Target {
+    /// The index of the node.
+    node: usize,
+    property: AnimatedProperty,
 }
 
 /// The property of a node that a channel animates.
@@ -35,161 +44,167 @@ enum Interpolation {
 }
 
 impl Pose {
+    /// Reads every animation of the file, and poses the nodes at a time in seconds by those that play: the one that
+    /// `wanted` names, or else the first and all that animate other targets.
+    pub(super) fn read(
+        time: f32,
+        wanted: Option<&str>,
+        data: &mut DataReader<'_, '_>,
+    ) -> Result<Pose, FormatError> {
+        let list = data.document.root.list("animations")?;
+        let chosen = wanted.map(|wanted| chosen(wanted, &list, data.document.root)).transpose()?;
+        let (mut pose, mut taken) = (Pose::default(), HashSet::new());
+        for (i, node) in list.into_iter().enumerate() {
+            let targets: Vec<_> = node.list("channels")?.iter().filter_map(target).collect();
+            let plays = match chosen {
+                Some(chosen) => i == chosen,
+                None => !targets.is_empty() && targets.iter().all(|target| !taken.contains(target)),
+            };
+            let (values, seconds) = play(node, time, data)?;
+            if plays {
+                pose.moved.extend(values);
+                taken.extend(targets);
+            } else if chosen.is_none() {
+                let what = "an animation is not played because an earlier one moves the same nodes; choose it by its name";
+                data.oddities.remark(what, || node.at());
+            }
+            let name = node.name().to_owned();
+            pose.animations.push(Animation { name, seconds, plays });
+        }
+        Ok(pose)
+    }
+
     /// Three or four numbers of a node, if they are animated.
     pub(super) fn numbers<const N: usize>(
         &self,
         node: usize,
         property: AnimatedProperty,
     ) -> Option<[f64; N]> {
-        self.moved.get(&(node, property))?.as_slice().try_into().ok()
+        self.moved.get(&Target { node, property })?.as_slice().try_into().ok()
     }
 
     /// The weights of a node's morph targets, if they are animated.
     pub(super) fn weights(&self, node: usize) -> Option<&[f64]> {
-        self.moved.get(&(node, AnimatedProperty::Weights)).map(Vec::as_slice)
+        self.moved.get(&Target { node, property: AnimatedProperty::Weights }).map(Vec::as_slice)
     }
 
     /// Whether a node is visible, if that is animated.
     pub(super) fn is_visible(&self, node: usize) -> Option<bool> {
-        self.moved.get(&(node, AnimatedProperty::Visible)).map(|values| values.first() != Some(&0.0))
+        self.moved
+            .get(&Target { node, property: AnimatedProperty::Visible })
+            .map(|values| values.first() != Some(&0.0))
     }
 }
 
-impl<'d> Gltf<'d, '_, '_> {
-    /// Reads every animation of the file, and poses the nodes at the requested time by those that play.
-    pub(super) fn pose(&mut self) -> Result<(), FormatError> {
-        let list = self.document.root.list("animations")?;
-        let chosen = self.chosen_animation(&list)?;
-        let mut taken = HashSet::new();
-        for (i, node) in list.into_iter().enumerate() {
-            let targets: Vec<_> = node.list("channels")?.iter().filter_map(target).collect();
-            // The first animation plays, and with it all that animate other targets.
-            let plays = match chosen {
-                Some(chosen) => i == chosen,
-                None => !targets.is_empty() && targets.iter().all(|target| !taken.contains(target)),
-            };
-            let seconds = self.play(node, plays)?;
-            if plays {
-                taken.extend(targets);
-            } else if chosen.is_none() {
-                let what = "an animation is not played because an earlier one moves the same nodes; choose it by its name";
-                self.oddities.remark(what, || node.at());
+/// The index of the animation that `wanted` names.
+fn chosen(wanted: &str, list: &[JsonNode], root: JsonNode) -> Result<usize, FormatError> {
+    let names: Vec<String> = list.iter().map(|node| node.name().to_owned()).collect();
+    named_or_numbered("animation", wanted, &names, &root.at_key("animations"))
+}
+
+/// The values of an animation at a time, and the time of its last key.
+fn play<'d>(
+    animation: JsonNode<'d>,
+    time: f32,
+    data: &mut DataReader<'d, '_>,
+) -> Result<(Vec<(Target, Vec<f64>)>, f32), FormatError> {
+    let samplers = animation.list("samplers")?;
+    let (mut values, mut end) = (Vec::new(), 0f32);
+    for channel in animation.list("channels")? {
+        let Some(target) = target(&channel) else {
+            if channel.get("target").is_some_and(|target| {
+                target.get("node").is_some() || target.extension("KHR_animation_pointer").is_some()
+            }) {
+                let what = "an animation moves something other than nodes and weights, which is ignored";
+                data.note(what, || channel.at());
             }
-            let name = node.name().to_owned();
-            self.scene.inventory.animations.push(Animation { name, seconds, plays });
-        }
-        Ok(())
-    }
-
-    /// The index of the animation that the options select.
-    fn chosen_animation(&self, list: &[JsonNode<'d>]) -> Result<Option<usize>, FormatError> {
-        let Some(wanted) = &self.reading.options.animation else { return Ok(None) };
-        let names: Vec<String> = list.iter().map(|node| node.name().to_owned()).collect();
-        named_or_numbered("animation", wanted, &names, &self.document.root.at_key("animations")).map(Some)
-    }
-
-    /// Adds an animation to the pose if it plays; returns its end time.
-    fn play(&mut self, animation: JsonNode<'d>, plays: bool) -> Result<f32, FormatError> {
-        let samplers = animation.list("samplers")?;
-        let mut end = 0f32;
-        for channel in animation.list("channels")? {
-            let Some((node, property)) = target(&channel) else {
-                if channel.get("target").is_some_and(|target| {
-                    target.get("node").is_some() || target.extension("KHR_animation_pointer").is_some()
-                }) {
-                    let what = "an animation moves something other than nodes and weights, which is ignored";
-                    self.oddities.note(what, || channel.at());
-                }
-                continue;
-            };
-            let index = channel.need("sampler")?;
-            let Some(&sampler) = samplers.get(index.as_count()?) else {
-                return Err(index.error(format!("there are {} samplers in this animation", samplers.len())));
-            };
-            match self.sample(sampler, node, property) {
-                Ok((values, last)) => {
-                    end = end.max(last);
-                    if plays {
-                        self.pose.moved.insert((node, property), values);
-                    }
-                }
-                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-                Err(error) => {
-                    let what = format!("part of an animation is left out: {}", error.without_place());
-                    self.oddities.note(&what, || sampler.at());
-                }
+            continue;
+        };
+        let index = channel.need("sampler")?;
+        let Some(&sampler) = samplers.get(index.as_count()?) else {
+            return Err(index.error(format!("there are {} samplers in this animation", samplers.len())));
+        };
+        match sample(sampler, target, time, data) {
+            Ok((value, last)) => {
+                end = end.max(last);
+                values.push((target, value));
+            }
+            Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+            Err(error) => {
+                let what = format!("part of an animation is left out: {}", error.without_place());
+                data.note(&what, || sampler.at());
             }
         }
-        Ok(end)
     }
+    Ok((values, end))
+}
 
-    /// A sampler's value at the requested time, and the time of its last key.
-    fn sample(
-        &mut self,
-        sampler: JsonNode<'d>,
-        node: usize,
-        property: AnimatedProperty,
-    ) -> Result<(Vec<f64>, f32), FormatError> {
-        let budget = &mut self.reading.budget;
-        let spent = budget.spent();
-        let input = Accessor::named(self.document, sampler.need("input")?, budget)?;
-        let times = input.numbers(budget)?;
-        let output = Accessor::named(self.document, sampler.need("output")?, budget)?;
-        let values = output.numbers(budget)?;
-        let interpolation = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
-            // What is true or false has no value in between.
-            "LINEAR" if property == AnimatedProperty::Visible => Interpolation::Step,
-            "STEP" => Interpolation::Step,
-            "LINEAR" => Interpolation::Linear,
-            "CUBICSPLINE" => Interpolation::Cubic,
-            other => {
-                return Err(sampler
-                    .error(format!("'{other}' is not an interpolation: use STEP, LINEAR or CUBICSPLINE")));
-            }
-        };
-        let rises = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
-        let Some(&last) = times.last().filter(|_| input.width() == 1 && rises) else {
-            return Err(input.node.error("the times of an animation must be numbers that increase"));
-        };
-        let parts = if interpolation == Interpolation::Cubic { 3 } else { 1 };
-        let width = match property {
-            AnimatedProperty::Rotation => 4,
-            AnimatedProperty::Translation | AnimatedProperty::Scale => 3,
-            AnimatedProperty::Visible => 1,
-            AnimatedProperty::Weights => values.len() / (parts * times.len()),
-        };
-        if width == 0 || values.len() != width * parts * times.len() {
-            let message =
-                format!("there are {} numbers for {} times, which do not match", values.len(), times.len());
-            return Err(output.node.error(message));
+/// A sampler's value at a time, and the time of its last key.
+fn sample<'d>(
+    sampler: JsonNode<'d>,
+    Target { node, property }: Target,
+    time: f32,
+    data: &mut DataReader<'d, '_>,
+) -> Result<(Vec<f64>, f32), FormatError> {
+    let spent = data.budget.spent();
+    let input = data.accessor(sampler.need("input")?)?;
+    let times = input.numbers(data.budget)?;
+    let output = data.accessor(sampler.need("output")?)?;
+    let values = output.numbers(data.budget)?;
+    let interpolation = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
+        // What is true or false has no value in between.
+        "LINEAR" if property == AnimatedProperty::Visible => Interpolation::Step,
+        "STEP" => Interpolation::Step,
+        "LINEAR" => Interpolation::Linear,
+        "CUBICSPLINE" => Interpolation::Cubic,
+        other => {
+            return Err(
+                sampler.error(format!("'{other}' is not an interpolation: use STEP, LINEAR or CUBICSPLINE"))
+            );
         }
-        if !values.iter().all(|x| x.is_finite()) {
-            return Err(output.node.error("an animation has numbers that are infinite or not numbers (NaN)"));
-        }
-        let keys = Keys {
-            times: &times,
-            values: &values,
-            width,
-            interpolation,
-            turns: property == AnimatedProperty::Rotation,
-        };
-        let value = keys.at(f64::from(self.time));
-        self.reading.budget.release(self.reading.budget.spent() - spent);
-        if property == AnimatedProperty::Rotation && value.iter().all(|x| *x == 0.0) {
-            return Err(output.node.error(format!("the rotation of node {node} is zero and has no effect")));
-        }
-        Ok((value, last))
+    };
+    let rises = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
+    let Some(&last) = times.last().filter(|_| input.width() == 1 && rises) else {
+        return Err(input.node.error("the times of an animation must be numbers that increase"));
+    };
+    let parts = if interpolation == Interpolation::Cubic { 3 } else { 1 };
+    let width = match property {
+        AnimatedProperty::Rotation => 4,
+        AnimatedProperty::Translation | AnimatedProperty::Scale => 3,
+        AnimatedProperty::Visible => 1,
+        AnimatedProperty::Weights => values.len() / (parts * times.len()),
+    };
+    if width == 0 || values.len() != width * parts * times.len() {
+        let message =
+            format!("there are {} numbers for {} times, which do not match", values.len(), times.len());
+        return Err(output.node.error(message));
     }
+    if !values.iter().all(|x| x.is_finite()) {
+        return Err(output.node.error("an animation has numbers that are infinite or not numbers (NaN)"));
+    }
+    let keys = Keys {
+        times: &times,
+        values: &values,
+        width,
+        interpolation,
+        turns: property == AnimatedProperty::Rotation,
+    };
+    let value = keys.at(f64::from(time));
+    data.budget.release(data.budget.spent() - spent);
+    if property == AnimatedProperty::Rotation && value.iter().all(|x| *x == 0.0) {
+        return Err(output.node.error(format!("the rotation of node {node} is zero and has no effect")));
+    }
+    Ok((value, last))
 }
 
 /// The target of a channel; `None` if this reader does not animate it.
-fn target(channel: &JsonNode) -> Option<(usize, AnimatedProperty)> {
+fn target(channel: &JsonNode) -> Option<Target> {
     let target = channel.get("target")?;
     if let Some(pointer) = target.extension("KHR_animation_pointer") {
         return pointed(pointer.get("pointer")?.as_text().ok()?);
     }
     let property = property_named(target.get("path")?.as_text().ok()?)?;
-    Some((target.get("node")?.as_count().ok()?, property))
+    Some(Target { node: target.get("node")?.as_count().ok()?, property })
 }
 
 fn property_named(name: &str) -> Option<AnimatedProperty> {
@@ -203,13 +218,13 @@ fn property_named(name: &str) -> Option<AnimatedProperty> {
 }
 
 /// The node and its property that a JSON pointer names, such as `/nodes/3/translation`. [KHR_animation_pointer]
-fn pointed(pointer: &str) -> Option<(usize, AnimatedProperty)> {
+fn pointed(pointer: &str) -> Option<Target> {
     let (node, property) = pointer.strip_prefix("/nodes/")?.split_once('/')?;
     let property = match property {
         "extensions/KHR_node_visibility/visible" => AnimatedProperty::Visible,
         name => property_named(name)?,
     };
-    Some((node.parse().ok()?, property))
+    Some(Target { node: node.parse().ok()?, property })
 }
 
 /// The index of an item that the user selected by name or by number, from 0.

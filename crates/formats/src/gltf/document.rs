@@ -8,10 +8,12 @@ use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// The JSON and the buffers.
 pub(super) struct Document<'a> {
     pub(super) root: JsonNode<'a>,
+    source: Source<'a>,
     buffers: Vec<Cow<'a, [u8]>>,
     /// The bytes of compressed views after decompression, by index.
     unpacked: HashMap<usize, Vec<u8>>,
@@ -39,7 +41,7 @@ pub(super) struct BufferView<'d> {
 }
 
 impl<'a> Document<'a> {
-    /// Loads every buffer.
+    /// Loads every buffer, and decompresses those views that are compressed.
     pub(super) fn load(
         root: JsonNode<'a>,
         container: &Container<'a>,
@@ -72,6 +74,7 @@ impl<'a> Document<'a> {
         let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
         let mut document = Document {
             root,
+            source: *source,
             buffers,
             unpacked: HashMap::new(),
             drawn: HashMap::new(),
@@ -79,11 +82,23 @@ impl<'a> Document<'a> {
             has_binary: container.binary.is_some(),
         };
         document.unpacked = document.unpack(reading)?;
-        #[cfg(feature = "draco")]
-        {
-            document.drawn = super::draco::unpack(&document, &mut reading.budget)?;
-        }
         Ok(document)
+    }
+
+    /// The same document with data for accessors that lie in no buffer.
+    #[cfg(feature = "draco")]
+    pub(super) fn with_drawn(self, drawn: HashMap<usize, DecodedAccessor>) -> Document<'a> {
+        Document { drawn, ..self }
+    }
+
+    /// The name of the file.
+    pub(super) fn file(&self) -> &'a str {
+        self.source.name
+    }
+
+    /// The folder that relative names refer to.
+    pub(super) fn folder(&self) -> Option<&'a Path> {
+        self.source.folder
     }
 
     fn unpack(&self, reading: &mut Reading) -> Result<HashMap<usize, Vec<u8>>, FormatError> {

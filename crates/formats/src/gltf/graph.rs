@@ -1,11 +1,14 @@
 //! The nodes of the scene with their transforms to world space.
 
-use super::SURROUNDINGS;
+use super::animation::Pose;
+use super::data::DataReader;
+use super::document::Document;
+use super::extras::SURROUNDINGS;
 use super::json::JsonNode;
 use super::place;
-use super::reader::Gltf;
 use crate::FormatError;
-use bilux_math::DMat4;
+use crate::oddities::Oddities;
+use bilux_math::{DMat4, DVec3};
 
 /// A node of the scene.
 #[derive(Clone, Copy)]
@@ -19,89 +22,100 @@ pub(super) struct Placed<'d> {
     pub(super) is_visible: bool,
 }
 
-impl<'d> Gltf<'d, '_, '_> {
-    /// All nodes of the scene, parents first, in the order of the file.
+/// The nodes of the scene that is shown.
+pub(super) struct Graph<'d> {
+    /// Parents first, in the order of the file.
+    pub(super) nodes: Vec<Placed<'d>>,
+    /// For each node of the file its index in `nodes`, if it is in the scene.
+    order: Vec<Option<usize>>,
+    /// True if the scene records all of its surroundings, as one does that Bilux wrote.
+    pub(super) has_surroundings: bool,
+}
+
+impl<'d> Graph<'d> {
+    /// All nodes of the scene, as they are posed, with their positions relative to `origin`.
     ///
     /// # Errors
     /// If a node is reached twice, from two parents or from itself.
-    pub(super) fn nodes(&mut self) -> Result<Vec<Placed<'d>>, FormatError> {
-        let root = self.document.root;
-        let count = root.list("nodes")?.len();
-        self.reading.budget.take_bytes((count * size_of::<[Placed; 2]>()) as u64, &self.file)?;
-        self.order = vec![None; count];
-        let at_origin = DMat4::from_translation(-self.reading.origin);
+    pub(super) fn read(
+        pose: &Pose,
+        origin: DVec3,
+        data: &mut DataReader<'d, '_>,
+    ) -> Result<Graph<'d>, FormatError> {
+        let document = data.document;
+        let count = document.root.list("nodes")?.len();
+        data.take_bytes((count * size_of::<[Placed; 2]>()) as u64)?;
+        let scene = shown_scene(document, data.oddities)?;
+        let roots = scene.map_or(Ok(Vec::new()), |scene| scene.list("nodes"))?;
+        let at_origin = DMat4::from_translation(-origin);
         let mut waiting: Vec<(JsonNode<'d>, DMat4, bool)> =
-            self.roots()?.into_iter().rev().map(|node| (node, at_origin, true)).collect();
-        let mut placed = Vec::new();
+            roots.into_iter().rev().map(|node| (node, at_origin, true)).collect();
+        let (mut nodes, mut order) = (Vec::new(), vec![None; count]);
         while let Some((index, parent, is_parent_visible)) = waiting.pop() {
-            let node = self.document.named("nodes", index)?;
+            let node = document.named("nodes", index)?;
             let number = index.as_count()?;
-            let slot = &mut self.order[number];
-            if slot.replace(placed.len()).is_some() {
+            if order[number].replace(nodes.len()).is_some() {
                 let message = "this node has two parents, or is its own ancestor: a node has one parent";
                 return Err(index.error(message));
             }
-            let world = parent * place::local(node, number, &self.pose)?;
+            let world = parent * place::local(node, number, pose)?;
             if !world.is_finite() {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
-            let is_visible = is_parent_visible && self.is_visible(node, number)?;
-            placed.push(Placed { node, index: number, world, is_visible });
+            let is_visible = is_parent_visible && is_visible(node, number, pose, data.oddities)?;
+            nodes.push(Placed { node, index: number, world, is_visible });
             let children = node.list("children")?;
             waiting.extend(children.into_iter().rev().map(|child| (child, world, is_visible)));
         }
-        Ok(placed)
+        let has_surroundings =
+            scene.is_some_and(|scene| scene.get("extras").is_some_and(|own| own.get(SURROUNDINGS).is_some()));
+        Ok(Graph { nodes, order, has_surroundings })
     }
 
-    /// Whether a node is visible if its parents are.
-    fn is_visible(&mut self, node: JsonNode<'d>, number: usize) -> Result<bool, FormatError> {
-        let stated = match node.extension("KHR_node_visibility").and_then(|entry| entry.get("visible")) {
-            Some(value) => value.as_switch()?,
-            None => true,
-        };
-        let is_visible = self.pose.is_visible(number).unwrap_or(stated);
-        if !is_visible {
-            let what = "a node is hidden by KHR_node_visibility, and with it all nodes below it";
-            self.oddities.remark(what, || node.at());
-        }
-        Ok(is_visible)
+    /// The transform of the node with this index in the file to world space; `None` if it is not in the scene.
+    pub(super) fn world_of(&self, node: usize) -> Option<DMat4> {
+        self.order[node].map(|order| self.nodes[order].world)
     }
+}
 
-    /// The indices of the scene's root nodes, as the file lists them.
-    fn roots(&mut self) -> Result<Vec<JsonNode<'d>>, FormatError> {
-        let root = self.document.root;
-        let scenes = root.list("scenes")?;
-        let scene = match root.get("scene") {
-            Some(index) => Some(self.document.named("scenes", index)?),
-            None => scenes.first().copied(),
-        };
-        if scenes.len() > 1 {
-            let at = || root.at_key("scenes");
-            match root.get("scene") {
-                Some(_) => {
-                    let what = format!("the file has {} scenes: the default one is shown", scenes.len());
-                    self.oddities.remark(&what, at);
-                }
-                None => {
-                    let what =
-                        format!("the file has {} scenes and no default: the first is shown", scenes.len());
-                    self.oddities.note(&what, at);
-                }
-            }
-        }
-        // A scene that Bilux wrote records all of its surroundings.
-        let around = scene.as_ref().and_then(|scene| scene.get("extras")?.get(SURROUNDINGS));
-        self.scene.environment_unspecified = around.is_none();
-        self.scene.exposure_unspecified = around.is_none();
-        match scene {
-            Some(scene) => scene.list("nodes"),
-            None => {
-                if root.get("nodes").is_some() {
-                    let what = "the file has no scene, so nothing in it is rendered";
-                    self.oddities.note(what, || root.at());
-                }
-                Ok(Vec::new())
-            }
+/// Whether a node is visible if its parents are.
+fn is_visible(
+    node: JsonNode,
+    number: usize,
+    pose: &Pose,
+    oddities: &mut Oddities,
+) -> Result<bool, FormatError> {
+    let stated = match node.extension("KHR_node_visibility").and_then(|entry| entry.get("visible")) {
+        Some(value) => value.as_switch()?,
+        None => true,
+    };
+    let is_visible = pose.is_visible(number).unwrap_or(stated);
+    if !is_visible {
+        let what = "a node is hidden by KHR_node_visibility, and with it all nodes below it";
+        oddities.remark(what, || node.at());
+    }
+    Ok(is_visible)
+}
+
+/// The scene that is shown, if the file has one: the default one, or else the first.
+fn shown_scene<'d>(
+    document: &Document<'d>,
+    oddities: &mut Oddities,
+) -> Result<Option<JsonNode<'d>>, FormatError> {
+    let root = document.root;
+    let scenes = root.list("scenes")?;
+    let default = root.get("scene").map(|index| document.named("scenes", index)).transpose()?;
+    if scenes.len() > 1 {
+        let (count, at) = (scenes.len(), || root.at_key("scenes"));
+        if default.is_some() {
+            oddities.remark(&format!("the file has {count} scenes: the default one is shown"), at);
+        } else {
+            oddities.note(&format!("the file has {count} scenes and no default: the first is shown"), at);
         }
     }
+    let scene = default.or(scenes.first().copied());
+    if scene.is_none() && root.get("nodes").is_some() {
+        oddities.note("the file has no scene, so nothing in it is rendered", || root.at());
+    }
+    Ok(scene)
 }

@@ -1,9 +1,8 @@
 //! `EXT_mesh_gpu_instancing`: one node with many instances.
 
-use super::accessor::Accessor;
+use super::data::DataReader;
 use super::graph::Placed;
 use super::place::compose;
-use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::DMat4;
 
@@ -17,6 +16,35 @@ pub(super) struct Instances {
 }
 
 impl Instances {
+    /// The world transforms of a node's mesh: one, or as many as the extension lists.
+    pub(super) fn read<'d>(
+        placed: &Placed<'d>,
+        data: &mut DataReader<'d, '_>,
+    ) -> Result<Instances, FormatError> {
+        let Some(extension) = placed.node.extension("EXT_mesh_gpu_instancing") else {
+            return Ok(Instances::once(placed.world));
+        };
+        let attributes = extension.need("attributes")?;
+        let mut count = None;
+        for (key, index) in attributes.entries() {
+            let here = data.accessor(index)?.count;
+            if count.is_some_and(|count| count != here) {
+                return Err(index.error("all instance attributes must have the same number of elements"));
+            }
+            count = Some(here);
+            if !matches!(key, "TRANSLATION" | "ROTATION" | "SCALE") {
+                data.note("an instance attribute is not used", || index.at());
+            }
+        }
+        let count = count.unwrap_or(0);
+        let translations = attributes.get("TRANSLATION").map(|index| data.attribute::<3>(index, None));
+        let rotations = attributes.get("ROTATION").map(|index| data.attribute::<4>(index, None));
+        let scales = attributes.get("SCALE").map(|index| data.attribute::<3>(index, None));
+        let (translations, rotations, scales) =
+            (translations.transpose()?, rotations.transpose()?, scales.transpose()?);
+        Ok(Instances { count, node: placed.world, translations, rotations, scales })
+    }
+
     /// A single instance.
     pub(super) fn once(node: DMat4) -> Instances {
         Instances { count: 1, node, translations: None, rotations: None, scales: None }
@@ -37,33 +65,5 @@ impl Instances {
             // A degenerate transform is reported where the instance is placed.
             self.node * local.unwrap_or(DMat4::ZERO)
         })
-    }
-}
-
-impl<'d> Gltf<'d, '_, '_> {
-    /// The world transforms of a node's mesh: one, or as many as the extension lists.
-    pub(super) fn instances(&mut self, placed: &Placed<'d>) -> Result<Instances, FormatError> {
-        let Some(extension) = placed.node.extension("EXT_mesh_gpu_instancing") else {
-            return Ok(Instances::once(placed.world));
-        };
-        let attributes = extension.need("attributes")?;
-        let mut count = None;
-        for (key, index) in attributes.entries() {
-            let here = Accessor::named(self.document, index, &mut self.reading.budget)?.count;
-            if count.is_some_and(|count| count != here) {
-                return Err(index.error("all instance attributes must have the same number of elements"));
-            }
-            count = Some(here);
-            if !matches!(key, "TRANSLATION" | "ROTATION" | "SCALE") {
-                self.oddities.note("an instance attribute is not used", || index.at());
-            }
-        }
-        let count = count.unwrap_or(0);
-        let translations = attributes.get("TRANSLATION").map(|index| self.attribute::<3>(index, None));
-        let rotations = attributes.get("ROTATION").map(|index| self.attribute::<4>(index, None));
-        let scales = attributes.get("SCALE").map(|index| self.attribute::<3>(index, None));
-        let (translations, rotations, scales) =
-            (translations.transpose()?, rotations.transpose()?, scales.transpose()?);
-        Ok(Instances { count, node: placed.world, translations, rotations, scales })
     }
 }

@@ -6,10 +6,13 @@ mod animation;
 mod area_lights;
 mod cameras;
 mod container;
+mod data;
 mod document;
 #[cfg(feature = "draco")]
 mod draco;
+mod draft;
 mod extensions;
+mod extras;
 mod fitting;
 mod flat;
 mod glass;
@@ -19,9 +22,11 @@ mod instances;
 mod json;
 mod lights;
 mod material;
+mod meshes;
 mod meshopt;
+mod pictures;
 mod place;
-mod prefetch;
+mod posed;
 mod primitive;
 mod reader;
 mod remapped;
@@ -39,10 +44,6 @@ mod write;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
-
-/// The key in the `extras` of a scene that Bilux writes which records its surroundings: "none" beyond the file's
-/// lights.
-const SURROUNDINGS: &str = "surroundings";
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {

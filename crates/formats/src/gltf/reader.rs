@@ -1,30 +1,29 @@
 //! Converts the document to a scene.
 
-use super::animation::Pose;
-use super::container;
+use super::data::DataReader;
 use super::document::Document;
 use super::graph::Placed;
 use super::instances::Instances;
 use super::json::JsonNode;
-use super::material::{MaterialKey, UsedMaterial};
-use super::primitive::{NodeMesh, Part};
-use super::{cameras, extensions, flat, lights, validate};
+use super::meshes::Meshes;
+use super::pictures::Pictures;
+use super::posed::Posed;
+use super::primitive::Part;
+use super::{area_lights, cameras, container, extensions, flat, lights, soundness, validate};
 use crate::FormatError;
-use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
+use crate::sink::Sink;
 use bilux_math::motion::Motion;
 use bilux_math::{DMat4, Transform};
-use bilux_scene::texture::Image;
 use bilux_scene::{Object, SceneBuilder, Span};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let container = container::open(source)?;
-    let mut oddities = Oddities::default();
+    let mut sink = Sink::for_bare_files();
     for warning in &container.warnings {
-        oddities.note(warning, || crate::text::whole_file(source.name));
+        sink.oddities.note(warning, || crate::text::whole_file(source.name));
     }
     let json = parse(reading, container.json, source)?;
     let root = JsonNode::root(&json, source.name);
@@ -32,251 +31,171 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         return Err(root.error("this JSON is not glTF: it must be an object in braces"));
     }
     check_version(root)?;
-    extensions::check(root, &mut oddities)?;
-    let document = Document::load(root, &container, reading, source, &mut oddities)?;
-    let time = reading.options.time;
-    let mut gltf = Gltf::new(&document, source, reading, oddities, time);
-    gltf.decode_ahead()?;
-    gltf.scene()?;
-    if gltf.reading.options.validate {
-        validate::document(gltf.document, &mut gltf.reading.budget, &mut gltf.oddities);
-        gltf.validate_images()?;
-    } else {
-        gltf.check_data()?;
+    extensions::check(root, &mut sink.oddities)?;
+    let document = Document::load(root, &container, reading, source, &mut sink.oddities)?;
+    #[cfg(feature = "draco")]
+    let drawn = super::draco::unpack(&document, &mut reading.budget)?;
+    #[cfg(feature = "draco")]
+    let document = document.with_drawn(drawn);
+    let mut meshes = Meshes::default();
+    meshes.materials.pictures = Pictures::decoded_ahead(&document, reading)?;
+    place_all(&document, reading.options.time, &mut meshes, reading, &mut sink)?;
+    check(&document, &meshes.materials.pictures, reading, &mut sink)?;
+    if reading.options.whole_movement && sink.scene.inventory.moves() {
+        let end = sink.scene.inventory.seconds();
+        sink.scene.movement = Some(Arc::new(movement(&document, meshes, reading, end)?));
     }
-    let Gltf { mut scene, oddities, meshes, materials, images, .. } = gltf;
-    if reading.options.whole_movement && scene.inventory.moves() {
-        let cache = PassCache { meshes, materials, images };
-        let end = scene.inventory.seconds();
-        scene.movement = Some(Arc::new(movement(&document, source, reading, cache, end)?));
-    }
-    oddities.into_warnings(&mut scene);
-    Ok(scene)
+    Ok(sink.finish())
 }
 
-/// The results of one pass over a file that the next pass can reuse.
-struct PassCache {
-    meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
-    materials: HashMap<MaterialKey, UsedMaterial>,
-    images: HashMap<(usize, bool), Option<Named>>,
+/// Notes what is wrong with the document, whether or not it is shown.
+fn check(
+    document: &Document,
+    pictures: &Pictures,
+    reading: &mut Reading,
+    sink: &mut Sink,
+) -> Result<(), FormatError> {
+    if reading.options.validate {
+        validate::document(document, &mut reading.budget, &mut sink.oddities);
+        soundness::validate_images(document, pictures, reading, &mut sink.oddities)
+    } else {
+        soundness::check_data(&mut DataReader::new(document, &mut reading.budget, &mut sink.oddities))
+    }
 }
 
 /// The number of intervals into which the animation is divided to find where objects move.
 const MOMENTS: u32 = 8;
 
 /// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
-fn movement<'r>(
-    document: &Document<'_>,
-    source: &'r Source<'r>,
-    reading: &'r mut Reading,
-    mut cache: PassCache,
+fn movement(
+    document: &Document,
+    mut meshes: Meshes,
+    reading: &mut Reading,
     end: f32,
 ) -> Result<SceneBuilder, FormatError> {
     let mut all = SceneBuilder::default();
     for moment in 0..=MOMENTS {
         let time = end * moment as f32 / MOMENTS as f32;
-        let mut gltf = Gltf::new(document, source, &mut *reading, Oddities::default(), time);
-        (gltf.meshes, gltf.materials, gltf.images) = (cache.meshes, cache.materials, cache.images);
-        // The keys of skinned meshes do not include the time.
-        gltf.meshes.retain(|(_, _, skin), _| skin.is_none());
-        gltf.scene()?;
-        let Gltf { scene, meshes, materials, images, .. } = gltf;
-        all.objects.extend(scene.objects);
-        cache = PassCache { meshes, materials, images };
+        let mut sink = Sink::default();
+        meshes.forget_skinned();
+        place_all(document, time, &mut meshes, reading, &mut sink)?;
+        all.objects.extend(sink.scene.objects);
     }
     Ok(all)
 }
 
-/// An image with its name.
-pub(super) type Named = (String, Arc<Image>);
-
-/// A mesh, the bits of its weights, and its skin.
-type PosedMesh = (usize, Vec<u64>, Option<usize>);
-
-/// The state while a file is converted to a scene.
-pub(super) struct Gltf<'d, 'o, 'r> {
-    pub(super) document: &'d Document<'d>,
-    pub(super) source: &'r Source<'r>,
-    pub(super) file: Arc<str>,
-    pub(super) reading: &'r mut Reading<'o>,
-    pub(super) scene: SceneBuilder,
-    pub(super) oddities: Oddities,
-    /// For each node of the file its index in `nodes`, once it is placed.
-    pub(super) order: Vec<Option<usize>>,
-    /// The time, in seconds.
-    pub(super) time: f32,
-    /// The animated values at that time.
-    pub(super) pose: Pose,
-    /// The index of the selected variant.
-    pub(super) variant: Option<usize>,
-    /// All nodes of the scene, parents first.
-    pub(super) nodes: Vec<Placed<'d>>,
-    /// The parts of each mesh, keyed by its index, the weights of its morph targets and its skin.
-    meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
-    pub(super) materials: HashMap<MaterialKey, UsedMaterial>,
-    /// Images with their names, by their index in the file and by whether they hold numbers; `None` for one that
-    /// failed.
-    pub(super) images: HashMap<(usize, bool), Option<Named>>,
+/// Adds all nodes to the scene, as they are at a time in seconds.
+fn place_all<'d>(
+    document: &'d Document<'d>,
+    time: f32,
+    meshes: &mut Meshes,
+    reading: &mut Reading,
+    sink: &mut Sink,
+) -> Result<(), FormatError> {
+    let posed = Posed::read(document, time, reading, &mut sink.oddities)?;
+    for placed in &posed.graph.nodes {
+        place(placed, &posed, meshes, reading, sink)?;
+    }
+    let scene = &mut sink.scene;
+    share_trees(scene);
+    scene.environment_unspecified = !posed.graph.has_surroundings;
+    scene.exposure_unspecified = !posed.graph.has_surroundings;
+    let skins = document.root.list("skins")?;
+    scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
+    scene.inventory.animations = posed.pose.animations;
+    scene.inventory.variants = posed.variants.names;
+    if scene.objects.is_empty() && scene.lights.is_empty() {
+        sink.oddities.note("there is nothing to render in this file", || document.root.at());
+    }
+    Ok(())
 }
 
-impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
-    fn new(
-        document: &'d Document<'d>,
-        source: &'r Source<'r>,
-        reading: &'r mut Reading<'o>,
-        oddities: Oddities,
-        time: f32,
-    ) -> Gltf<'d, 'o, 'r> {
-        Gltf {
-            document,
-            source,
-            file: source.name.clone(),
-            reading,
-            scene: SceneBuilder {
-                environment_unspecified: true,
-                exposure_unspecified: true,
-                ..SceneBuilder::default()
-            },
-            oddities,
-            order: Vec::new(),
-            time,
-            pose: Pose::default(),
-            variant: None,
-            nodes: Vec::new(),
-            meshes: HashMap::new(),
-            materials: HashMap::new(),
-            images: HashMap::new(),
-        }
+/// Adds what a node holds: a mesh, a camera, lights.
+fn place<'d>(
+    placed: &Placed<'d>,
+    posed: &Posed<'d>,
+    meshes: &mut Meshes,
+    reading: &mut Reading,
+    sink: &mut Sink,
+) -> Result<(), FormatError> {
+    let (node, document) = (placed.node, posed.document);
+    if let Some(index) = node.get("mesh").filter(|_| placed.is_visible) {
+        let parts = meshes.parts(index, placed, posed, reading, sink)?;
+        place_mesh(placed, &parts, document, reading, sink)?;
     }
-
-    fn scene(&mut self) -> Result<(), FormatError> {
-        self.variants()?;
-        self.pose()?;
-        self.nodes = self.nodes()?;
-        for i in 0..self.nodes.len() {
-            let placed = self.nodes[i];
-            self.place(&placed)?;
-        }
-        share_trees(&mut self.scene);
-        let root = self.document.root;
-        let skins = root.list("skins")?;
-        self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
-        if self.scene.objects.is_empty() && self.scene.lights.is_empty() {
-            self.oddities.note("there is nothing to render in this file", || root.at());
-        }
-        Ok(())
+    if let Some(index) = node.get("camera") {
+        let camera = document.named("cameras", index)?;
+        let spec = cameras::camera(camera, node, &placed.world, &mut sink.oddities)?;
+        sink.scene.cameras.extend(spec);
     }
-
-    fn place(&mut self, placed: &Placed<'d>) -> Result<(), FormatError> {
-        let node = placed.node;
-        if let Some(index) = node.get("mesh").filter(|_| placed.is_visible) {
-            self.place_mesh(placed, index)?;
-        }
-        if let Some(index) = node.get("camera") {
-            let camera = self.document.named("cameras", index)?;
-            let spec = cameras::camera(camera, node, &placed.world, &mut self.oddities)?;
-            self.scene.cameras.extend(spec);
-        }
-        if !placed.is_visible {
-            return Ok(());
-        }
-        if let Some(light) = node.extension("KHR_lights_punctual") {
-            let radius = self.reading.options.light_radius;
-            let spec = lights::light(self.document.root, light, placed, radius, &mut self.oddities)?;
-            self.scene.lights.extend(spec);
-        }
-        if let Some(light) = node.extension("EXT_lights_area") {
-            self.area_light(light, placed)?;
-        }
-        Ok(())
+    if !placed.is_visible {
+        return Ok(());
     }
+    if let Some(light) = node.extension("KHR_lights_punctual") {
+        let radius = reading.options.light_radius;
+        let spec = lights::light(document.root, light, placed, radius, &mut sink.oddities)?;
+        sink.scene.lights.extend(spec);
+    }
+    if let Some(light) = node.extension("EXT_lights_area") {
+        area_lights::place(document.root, light, placed, sink)?;
+    }
+    Ok(())
+}
 
-    fn place_mesh(&mut self, placed: &Placed<'d>, index: JsonNode<'d>) -> Result<(), FormatError> {
-        let node = placed.node;
-        let parts = self.mesh(index, placed)?;
-        let name =
-            if node.name().is_empty() { parts.first().map(|p| &*p.mesh.name) } else { Some(node.name()) };
-        let name = name.unwrap_or_default().to_owned();
-        // A skinned mesh is in world space: its own node's transform is ignored. [glTF 2.0, 3.7.3.3]
-        let places = match node.get("skin") {
-            Some(_) => Instances::once(DMat4::IDENTITY),
-            None => self.instances(placed)?,
-        };
-        for world in places.iter() {
-            let Some(transform) = Transform::from_matrix(world) else {
-                self.place_flattened(&name, &parts, &world, node)?;
-                continue;
-            };
+/// Adds the parts of a node's mesh at each of its instances.
+fn place_mesh<'d>(
+    placed: &Placed<'d>,
+    parts: &[Part],
+    document: &'d Document<'d>,
+    reading: &mut Reading,
+    sink: &mut Sink,
+) -> Result<(), FormatError> {
+    let node = placed.node;
+    let name = if node.name().is_empty() { parts.first().map(|p| &*p.mesh.name) } else { Some(node.name()) };
+    let name = name.unwrap_or_default();
+    // A skinned mesh is in world space: its own node's transform is ignored. [glTF 2.0, 3.7.3.3]
+    let places = match node.get("skin") {
+        Some(_) => Instances::once(DMat4::IDENTITY),
+        None => {
+            let mut data = DataReader::new(document, &mut reading.budget, &mut sink.oddities);
+            Instances::read(placed, &mut data)?
+        }
+    };
+    for world in places.iter() {
+        if let Some(transform) = Transform::from_matrix(world) {
             let motion = Motion::still(transform);
             let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len() + motion.heap_bytes();
-            self.reading.budget.take_bytes(bytes as u64, &self.file)?;
-            for part in &*parts {
-                let object = Object::new(&name, part.mesh.clone(), part.material);
-                self.scene.objects.push(Object { motion: motion.clone(), ..object });
+            reading.budget.take_bytes(bytes as u64, document.file())?;
+            for part in parts {
+                let object = Object::new(name, part.mesh.clone(), part.material);
+                sink.scene.objects.push(Object { motion: motion.clone(), ..object });
+            }
+        } else if is_flat(&world, node, sink) {
+            for part in parts {
+                let bytes = part.mesh.size() + (size_of::<[Object; 2]>() + name.len()) as u64;
+                reading.budget.take_bytes(bytes, document.file())?;
+                let mesh = Arc::new(flat::flattened(&part.mesh, &world));
+                sink.scene.objects.push(Object::new(name, mesh, part.material));
             }
         }
-        Ok(())
     }
+    Ok(())
+}
 
-    /// Places a mesh whose transform cannot be inverted: a scale of zero along one axis makes it flat.
-    fn place_flattened(
-        &mut self,
-        name: &str,
-        parts: &[Part],
-        world: &DMat4,
-        node: JsonNode<'d>,
-    ) -> Result<(), FormatError> {
-        match flat::rank(world) {
-            2 => {}
-            // This is how files hide meshes. [glTF 2.0, 3.5.3]
-            0 => {
-                self.oddities.remark("a node with a scale of zero is not shown", || node.at());
-                return Ok(());
-            }
-            _ => {
-                let what =
-                    "a node is scaled to a line or to something that is not finite, and is not rendered";
-                self.oddities.note(what, || node.at());
-                return Ok(());
-            }
+/// Whether a transform that cannot be inverted leaves something to see: a scale of zero along one axis makes a mesh flat.
+fn is_flat(world: &DMat4, node: JsonNode, sink: &mut Sink) -> bool {
+    match flat::rank(world) {
+        2 => true,
+        // This is how files hide meshes. [glTF 2.0, 3.5.3]
+        0 => {
+            sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+            false
         }
-        for part in parts {
-            let bytes = part.mesh.size() + (size_of::<[Object; 2]>() + name.len()) as u64;
-            self.reading.budget.take_bytes(bytes, &self.file)?;
-            let mesh = Arc::new(flat::flattened(&part.mesh, world));
-            self.scene.objects.push(Object::new(name, mesh, part.material));
+        _ => {
+            let what = "a node is scaled to a line or to something that is not finite, and is not rendered";
+            sink.oddities.note(what, || node.at());
+            false
         }
-        Ok(())
-    }
-
-    /// The parts of a mesh, made once for each combination of weights and skin.
-    fn mesh(&mut self, index: JsonNode<'d>, user: &Placed<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
-        let mesh = self.document.named("meshes", index)?;
-        let holder = if user.node.get("weights").is_some() { user.node } else { mesh };
-        let weights: Vec<f64> = match self.pose.weights(user.index) {
-            Some(posed) => posed.to_vec(),
-            None => holder.list("weights")?.iter().map(JsonNode::as_number).collect::<Result<_, _>>()?,
-        };
-        let skin = user.node.get("skin");
-        let bits = weights.iter().map(|w| w.to_bits()).collect();
-        let key = (index.as_count()?, bits, skin.map(|skin| skin.as_count()).transpose()?);
-        if let Some(parts) = self.meshes.get(&key) {
-            return Ok(parts.clone());
-        }
-        let joints = skin.map(|skin| self.joints(skin)).transpose()?;
-        let worn = NodeMesh { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
-        let mut parts = Vec::new();
-        for primitive in mesh.need("primitives")?.items()? {
-            parts.extend(self.primitive(primitive, &worn)?);
-        }
-        let parts = Arc::new(parts);
-        self.meshes.insert(key, parts.clone());
-        Ok(parts)
-    }
-
-    /// True if an image has been read, as numbers or as colours.
-    pub(super) fn has_read(&self, image: usize, is_data: bool) -> bool {
-        self.images.contains_key(&(image, is_data))
     }
 }
 

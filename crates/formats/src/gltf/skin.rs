@@ -1,9 +1,9 @@
 //! Skins: vertices that several nodes move. [glTF 2.0, 3.7.3]
 
-use super::accessor::Accessor;
+use super::data::DataReader;
 use super::json::JsonNode;
 use super::place;
-use super::reader::Gltf;
+use super::posed::Posed;
 use crate::FormatError;
 use bilux_math::{DMat3, DMat4};
 use bilux_scene::Mesh;
@@ -11,29 +11,33 @@ use bilux_scene::Mesh;
 /// For each joint of a skin, the matrix from the mesh in its rest pose to world space.
 pub(super) struct Joints(Vec<DMat4>);
 
-impl<'d> Gltf<'d, '_, '_> {
+impl Joints {
     /// The joints of a skin in the current pose; the transform of the skinned node itself is ignored.
-    pub(super) fn joints(&mut self, index: JsonNode<'d>) -> Result<Joints, FormatError> {
-        let skin = self.document.named("skins", index)?;
+    pub(super) fn read<'d>(
+        skin: JsonNode<'d>,
+        posed: &Posed<'d>,
+        data: &mut DataReader<'d, '_>,
+    ) -> Result<Joints, FormatError> {
+        let skin = data.document.named("skins", skin)?;
         let list = skin.need("joints")?.items()?;
         let count = list.len();
-        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
+        data.take_bytes((count * size_of::<DMat4>()) as u64)?;
         let mut matrices = Vec::with_capacity(count);
         for joint in list {
-            let node = self.document.named("nodes", joint)?;
-            matrices.push(match self.order[joint.as_count()?] {
-                Some(order) => self.nodes[order].world,
+            let node = data.document.named("nodes", joint)?;
+            matrices.push(match posed.graph.world_of(joint.as_count()?) {
+                Some(world) => world,
                 None => {
-                    self.oddities.note(
+                    data.note(
                         "a joint is not in the scene that is shown; it is placed without parents",
                         || joint.at(),
                     );
-                    place::local(node, joint.as_count()?, &self.pose)?
+                    place::local(node, joint.as_count()?, &posed.pose)?
                 }
             });
         }
         if let Some(index) = skin.get("inverseBindMatrices") {
-            let bind = self.attribute::<16>(index, None)?;
+            let bind = data.attribute::<16>(index, None)?;
             if bind.len() < count {
                 let message =
                     format!("there must be a matrix for each of the {count} joints, not {}", bind.len());
@@ -45,65 +49,65 @@ impl<'d> Gltf<'d, '_, '_> {
         }
         Ok(Joints(matrices))
     }
+}
 
-    /// Skins a mesh: moves it from its rest pose to its joints, in world space.
-    pub(super) fn bend(
-        &mut self,
-        primitive: JsonNode<'d>,
-        joints: &Joints,
-        mesh: &mut Mesh,
-    ) -> Result<(), FormatError> {
-        let attributes = primitive.need("attributes")?;
-        let count = mesh.positions.len();
-        self.reading.budget.take_bytes((count * size_of::<(DMat4, f64, f32)>()) as u64, &self.file)?;
-        let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
-        let mut firsts: Vec<f32> = Vec::new();
-        for (key, index) in attributes.entries() {
-            let Some(set) = key.strip_prefix("JOINTS_") else { continue };
-            let weights = attributes.entries().find(|(key, _)| key.strip_prefix("WEIGHTS_") == Some(set));
-            let Some((_, weights)) = weights else {
-                return Err(index.error(format!("WEIGHTS_{set} are missing for these joints")));
-            };
-            let weights = self.attribute::<4>(weights, Some(count))?;
-            let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
-            let indices = self.attribute::<4>(index, Some(count))?;
-            if set == "0" {
-                firsts = indices.iter().map(|joints| joints[0]).collect();
-            }
-            for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
-                for (joint, weight) in indices.into_iter().zip(weights) {
-                    // Non-finite weights are skipped, so they are reported as weights that do not sum to one.
-                    if weight == 0.0 || !weight.is_finite() {
-                        continue;
-                    }
-                    let Some(matrix) = joints.0.get(joint as usize) else {
-                        let message = format!(
-                            "vertex {vertex} refers to joint {joint}, but there are only {}",
-                            joints.0.len()
-                        );
-                        return Err(accessor.node.error(message));
-                    };
-                    blends[vertex] += *matrix * f64::from(weight);
-                    sums[vertex] += f64::from(weight);
+/// Skins a mesh: moves it from its rest pose to its joints, in world space.
+pub(super) fn bend<'d>(
+    primitive: JsonNode<'d>,
+    joints: &Joints,
+    mesh: &mut Mesh,
+    data: &mut DataReader<'d, '_>,
+) -> Result<(), FormatError> {
+    let attributes = primitive.need("attributes")?;
+    let count = mesh.positions.len();
+    data.take_bytes((count * size_of::<(DMat4, f64, f32)>()) as u64)?;
+    let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
+    let mut firsts: Vec<f32> = Vec::new();
+    for (key, index) in attributes.entries() {
+        let Some(set) = key.strip_prefix("JOINTS_") else { continue };
+        let weights = attributes.entries().find(|(key, _)| key.strip_prefix("WEIGHTS_") == Some(set));
+        let Some((_, weights)) = weights else {
+            return Err(index.error(format!("WEIGHTS_{set} are missing for these joints")));
+        };
+        let weights = data.attribute::<4>(weights, Some(count))?;
+        let accessor = data.accessor(index)?;
+        let indices = data.attribute::<4>(index, Some(count))?;
+        if set == "0" {
+            firsts = indices.iter().map(|joints| joints[0]).collect();
+        }
+        for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
+            for (joint, weight) in indices.into_iter().zip(weights) {
+                // Non-finite weights are skipped, so they are reported as weights that do not sum to one.
+                if weight == 0.0 || !weight.is_finite() {
+                    continue;
                 }
+                let Some(matrix) = joints.0.get(joint as usize) else {
+                    let message = format!(
+                        "vertex {vertex} refers to joint {joint}, but there are only {}",
+                        joints.0.len()
+                    );
+                    return Err(accessor.node.error(message));
+                };
+                blends[vertex] += *matrix * f64::from(weight);
+                sums[vertex] += f64::from(weight);
             }
         }
-        if sums.iter().any(|&sum| sum != 0.0 && (sum - 1.0).abs() > 0.02) {
-            let what = "the weights of a skin do not add up to 1; they are normalised";
-            self.oddities.note(what, || attributes.at());
-        }
-        if sums.contains(&0.0) {
-            let what = "some vertices of a skin have no weights; they follow the first joint that they name";
-            self.oddities.note(what, || attributes.at());
-        }
-        for (vertex, (blend, sum)) in blends.iter_mut().zip(sums).enumerate() {
-            // The specification does not say where such a vertex is; this is where three.js and its kin put it.
-            let first = || Some(*joints.0.get(*firsts.get(vertex)? as usize)?);
-            *blend = if sum == 0.0 { first().unwrap_or(DMat4::IDENTITY) } else { *blend * (1.0 / sum) };
-        }
-        moved(mesh, &blends);
-        Ok(())
     }
+    if sums.iter().any(|&sum| sum != 0.0 && (sum - 1.0).abs() > 0.02) {
+        let what = "the weights of a skin do not add up to 1; they are normalised";
+        data.note(what, || attributes.at());
+    }
+    if sums.contains(&0.0) {
+        let what = "some vertices of a skin have no weights; they follow the first joint that they name";
+        data.note(what, || attributes.at());
+    }
+    for (vertex, (blend, sum)) in blends.iter_mut().zip(sums).enumerate() {
+        // The specification does not say where such a vertex is; this is where three.js and its kin put it.
+        let first = || Some(*joints.0.get(*firsts.get(vertex)? as usize)?);
+        *blend = if sum == 0.0 { first().unwrap_or(DMat4::IDENTITY) } else { *blend * (1.0 / sum) };
+    }
+    moved(mesh, &blends);
+    Ok(())
 }
 
 /// Transforms each vertex by its own matrix.

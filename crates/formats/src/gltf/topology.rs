@@ -1,8 +1,7 @@
 //! How vertices form triangles, lines and points.
 
-use super::accessor::Accessor;
+use super::data::DataReader;
 use super::json::JsonNode;
-use super::reader::Gltf;
 use crate::FormatError;
 use bilux_scene::Mesh;
 use std::collections::HashMap;
@@ -50,48 +49,51 @@ impl Mode {
     }
 }
 
-impl<'d> Gltf<'d, '_, '_> {
-    /// The corners of a primitive: its indices, or all vertices in order.
-    pub(super) fn corners(&mut self, node: JsonNode<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
-        let Ok(count) = u32::try_from(vertices) else {
-            return Err(node.error("there are more than 4 billion vertices: split the mesh"));
-        };
-        let Some(index) = node.get("indices") else {
-            self.reading.budget.take_bytes(u64::from(count) * 4, &self.file)?;
-            return Ok((0..count).collect());
-        };
-        let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
-        let corners = accessor.indices(&mut self.reading.budget)?;
-        if let Some(at) = corners.iter().position(|&corner| corner >= count) {
-            let message = format!("index {at} is {}, but there are {count} vertices", corners[at]);
-            return Err(accessor.node.error(message));
-        }
-        Ok(corners)
+/// The corners of a primitive: its indices, or all vertices in order.
+pub(super) fn corners<'d>(
+    node: JsonNode<'d>,
+    vertices: usize,
+    data: &mut DataReader<'d, '_>,
+) -> Result<Vec<u32>, FormatError> {
+    let Ok(count) = u32::try_from(vertices) else {
+        return Err(node.error("there are more than 4 billion vertices: split the mesh"));
+    };
+    let Some(index) = node.get("indices") else {
+        data.take_bytes(u64::from(count) * 4)?;
+        return Ok((0..count).collect());
+    };
+    let accessor = data.accessor(index)?;
+    let corners = accessor.indices(data.budget)?;
+    if let Some(at) = corners.iter().position(|&corner| corner >= count) {
+        let message = format!("index {at} is {}, but there are {count} vertices", corners[at]);
+        return Err(accessor.node.error(message));
     }
+    Ok(corners)
+}
 
-    pub(super) fn triangles(
-        &mut self,
-        node: JsonNode<'d>,
-        mode: Mode,
-        vertices: usize,
-    ) -> Result<Vec<[u32; 3]>, FormatError> {
-        let corners = self.corners(node, vertices)?;
-        let n = match mode {
-            Mode::Triangles => corners.len() / 3,
-            _ => corners.len().saturating_sub(2),
-        };
-        if mode == Mode::Triangles && corners.len() % 3 != 0 {
-            self.oddities.note("the last corners of a triangle list do not make a triangle", || node.at());
-        }
-        self.reading.budget.take_bytes(n as u64 * 12, &self.file)?;
-        // This order of corners gives all triangles of a strip the same winding. [glTF 2.0, 3.7.2.1]
-        let corner = |t: usize| match mode {
-            Mode::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
-            Mode::Fan => [t + 1, t + 2, 0],
-            _ => [3 * t, 3 * t + 1, 3 * t + 2],
-        };
-        Ok((0..n).map(|t| corner(t).map(|i| corners[i])).collect())
+/// The triangles of a primitive, each by its corners.
+pub(super) fn triangles<'d>(
+    node: JsonNode<'d>,
+    mode: Mode,
+    vertices: usize,
+    data: &mut DataReader<'d, '_>,
+) -> Result<Vec<[u32; 3]>, FormatError> {
+    let corners = corners(node, vertices, data)?;
+    let n = match mode {
+        Mode::Triangles => corners.len() / 3,
+        _ => corners.len().saturating_sub(2),
+    };
+    if mode == Mode::Triangles && corners.len() % 3 != 0 {
+        data.note("the last corners of a triangle list do not make a triangle", || node.at());
     }
+    data.take_bytes(n as u64 * 12)?;
+    // This order of corners gives all triangles of a strip the same winding. [glTF 2.0, 3.7.2.1]
+    let corner = |t: usize| match mode {
+        Mode::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
+        Mode::Fan => [t + 1, t + 2, 0],
+        _ => [3 * t, 3 * t + 1, 3 * t + 2],
+    };
+    Ok((0..n).map(|t| corner(t).map(|i| corners[i])).collect())
 }
 
 /// True if a mesh is closed: two triangles share each edge, counting vertices at the same position as one.

@@ -1,6 +1,6 @@
 //! Decodes vertex attributes: each byte is stored as its difference from that of the previous element.
 
-use super::{Broken, Bytes};
+use super::bytes::{Broken, Bytes};
 
 const HEADER: u8 = 0xa0;
 /// The number of differences in a group.

@@ -1,6 +1,6 @@
 //! Decodes triangles that share edges and vertices with earlier ones, and lists of indices.
 
-use super::{Broken, Bytes};
+use super::bytes::{Broken, Bytes};
 
 const TRIANGLES: u8 = 0xe1;
 const SEQUENCE: u8 = 0xd1;

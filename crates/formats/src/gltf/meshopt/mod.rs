@@ -2,18 +2,17 @@
 //! [Kapoulkine 2021]
 
 mod attributes;
+mod bytes;
 mod filters;
 mod indices;
 
 use super::json::JsonNode;
 use crate::FormatError;
 use crate::budget::Budget;
+use bytes::Broken;
 use filters::Filter;
 
 pub(super) const NAME: &str = "EXT_meshopt_compression";
-
-/// The compressed bytes end too early, are too many, or are invalid.
-pub(super) struct Broken;
 
 /// How elements are packed.
 #[derive(Clone, Copy, PartialEq)]
@@ -21,21 +20,6 @@ enum Mode {
     Attributes,
     Triangles,
     Indices,
-}
-
-/// Bytes that are consumed from the front; reading past the end is an error.
-struct Bytes<'a>(&'a [u8]);
-
-impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Broken> {
-        let (taken, left) = self.0.split_at_checked(count).ok_or(Broken)?;
-        self.0 = left;
-        Ok(taken)
-    }
-
-    fn byte(&mut self) -> Result<u8, Broken> {
-        Ok(self.take(1)?[0])
-    }
 }
 
 /// Decompresses the elements of a view; `extension` describes where they are in a buffer of these bytes.

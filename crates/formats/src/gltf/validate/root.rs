@@ -1,7 +1,7 @@
 //! Rules for the document as a whole, cameras and lights.
 
 use super::extension_kinds::{ANYWHERE, EXTENSIONS, WITHOUT_OBJECT};
-use super::walk::singular;
+use super::schema::singular;
 use super::{Check, number, text};
 use crate::gltf::json::JsonNode;
 use std::collections::HashSet;

@@ -96,3 +96,21 @@ pub(super) const fn must(key: &'static str, shape: Shape) -> Property {
 }
 
 pub(super) const NAME: Property = may("name", Shape::Text);
+
+/// The singular of a list's name.
+pub(super) fn singular(list: &str) -> &'static str {
+    match list {
+        "accessors" => "accessor",
+        "bufferViews" => "buffer view",
+        "buffers" => "buffer",
+        "cameras" => "camera",
+        "images" => "image",
+        "materials" => "material",
+        "meshes" => "mesh",
+        "nodes" => "node",
+        "samplers" => "sampler",
+        "scenes" => "scene",
+        "skins" => "skin",
+        _ => "texture",
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::extension_kinds::{ANYWHERE, EXTENSIONS};
 use super::rules::RULES;
-use super::schema::{Kind, Property, Shape};
+use super::schema::{Kind, Property, Shape, singular};
 use super::{Check, counted, whole_float};
 use crate::gltf::json::JsonNode;
 use bilux_scene::error::nearest_name;
@@ -204,22 +204,4 @@ fn one_of(choices: impl ExactSizeIterator<Item = String>) -> String {
         words += &choice;
     }
     words
-}
-
-/// The singular of a list's name.
-pub(super) fn singular(list: &str) -> &'static str {
-    match list {
-        "accessors" => "accessor",
-        "bufferViews" => "buffer view",
-        "buffers" => "buffer",
-        "cameras" => "camera",
-        "images" => "image",
-        "materials" => "material",
-        "meshes" => "mesh",
-        "nodes" => "node",
-        "samplers" => "sampler",
-        "scenes" => "scene",
-        "skins" => "skin",
-        _ => "texture",
-    }
 }

@@ -9,7 +9,7 @@ mod material;
 mod nodes;
 mod pictures;
 
-use super::SURROUNDINGS;
+use super::extras::SURROUNDINGS;
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::writing::Writing;
