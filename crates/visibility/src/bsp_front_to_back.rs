@@ -2,7 +2,8 @@
 
 use crate::canvas::{Canvas, NO_OWNER};
 use crate::coverage::Coverage;
-use crate::partition::{Child, Piece, Start, Stop, Tree, draw_piece};
+use crate::partition::{Child, Start, Stop, Tree, draw_piece};
+use crate::piece::Piece;
 use crate::polygon::corners;
 use crate::screen::{Screen, Slack};
 use crate::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};

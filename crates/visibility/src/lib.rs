@@ -34,6 +34,7 @@ mod coverage;
 mod newell;
 mod painter;
 mod partition;
+mod piece;
 mod polygon;
 mod result;
 mod schumacker;

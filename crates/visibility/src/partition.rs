@@ -5,6 +5,7 @@
 //! one of the three, by the computed distance of its point.
 
 use crate::canvas::{Canvas, PixelHit};
+use crate::piece::Piece;
 use crate::polygon::{Plane, clip, corners};
 use crate::result::VisibilityCounts;
 use crate::screen::{Screen, Slack};
@@ -54,14 +55,6 @@ pub(crate) enum Child {
     PartitionNode(u32),
     /// Something of the caller's that needs no more planes.
     Leaf(u32),
-}
-
-/// Part of a triangle: a hull for its hits in some cell, and the tests that decide whether a hit is there.
-#[derive(Clone, Debug)]
-pub(crate) struct Piece {
-    pub(crate) triangle: u32,
-    pub(crate) polygon: Vec<DVec3>,
-    tests: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,8 @@
 //! cycle, which also cuts what crosses it.
 
 use crate::canvas::{Canvas, NO_OWNER};
-use crate::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
+use crate::partition::{Child, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
+use crate::piece::Piece;
 use crate::polygon::{Plane, corners};
 use crate::result::VisibilityCounts;
 use crate::screen::{Screen, Slack};

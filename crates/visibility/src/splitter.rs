@@ -1,6 +1,6 @@
 //! Chooses the polygon whose plane divides the others [Fuchs 1983].
 
-use crate::partition::Piece;
+use crate::piece::Piece;
 use crate::polygon::{Plane, corners};
 use crate::screen::Slack;
 use bilux_accel::TriangleMesh;

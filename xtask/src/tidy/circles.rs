@@ -12,7 +12,8 @@ use super::repository::Repository;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The crates that have none.
-const CRATES: &[&str] = &["crates/math", "crates/scene", "crates/transport", "crates/validation"];
+const CRATES: &[&str] =
+    &["crates/math", "crates/scene", "crates/transport", "crates/validation", "crates/visibility"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let crates = CRATES.iter().map(|folder| Modules::read(repository, folder));
