@@ -22,6 +22,7 @@ const TABLES: &[(&str, &str)] = &[
     ("textures", "Procedural textures"),
     ("bsdfs", "BSDFs"),
     ("phases", "Phase functions"),
+    ("densities", "Densities"),
     ("lights", "Lights"),
     ("cameras", "Cameras"),
     ("generators", "Built-in scenes"),

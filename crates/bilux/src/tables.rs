@@ -52,6 +52,11 @@ pub const TABLES: &[Table] = &[
         summary: "phase functions: the directions that media scatter light into",
         rows: rows!(bilux_scene::media::PHASES),
     },
+    Table {
+        name: "densities",
+        summary: "densities of media that are formulas",
+        rows: rows!(bilux_scene::media::DENSITIES),
+    },
     Table { name: "lights", summary: "light sources", rows: rows!(bilux_scene::lights::LIGHTS) },
     Table { name: "cameras", summary: "kinds of camera", rows: rows!(bilux_scene::cameras::CAMERAS) },
     Table {

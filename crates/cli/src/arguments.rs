@@ -359,8 +359,8 @@ pub struct Merge {
     bilux list materials --json"
 )]
 pub struct List {
-    /// What to list: integrators, accels, visibility, materials, textures, bsdfs, phases, lights, cameras, generators, presets,
-    /// formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics or settings
+    /// What to list: integrators, accels, visibility, materials, textures, bsdfs, phases, densities, lights, cameras, generators,
+    /// presets, formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics or settings
     pub what: String,
     /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]

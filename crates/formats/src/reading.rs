@@ -7,7 +7,7 @@ use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
 use bilux_pictures::Limits;
-use bilux_scene::media::Grid;
+use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::texture::{Channel, Image};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -190,6 +190,17 @@ impl<'o> Reading<'o> {
         self.budget.take_bytes(grid.bytes(), file)?;
         self.texture_bytes += grid.bytes();
         Ok(())
+    }
+
+    /// The grid of a density that is a formula, charged for good.
+    pub(crate) fn computed_grid(&mut self, spec: Spec, file: &str) -> Result<Arc<Grid>, FormatError> {
+        let density = ComputedDensity::new(spec)?;
+        let bytes = density.bytes();
+        self.budget.take_bytes(bytes, file)?;
+        let grid = density.grid()?;
+        self.budget.release(bytes);
+        self.charge_grid(&grid, file)?;
+        Ok(Arc::new(grid))
     }
 
     /// Counts a grid as one that the next read finds again.

@@ -6,8 +6,10 @@ use crate::ending::without_gil;
 use crate::errors::{exception, warn};
 use crate::memory;
 use crate::source::Source;
+use crate::values;
 use bilux::formats::ReadOptions;
 use bilux::math::{Transform, Vec3};
+use bilux::scene::media::ComputedDensity;
 use bilux::scene::{SceneBuilder, Span, Spec, Value, Warning};
 use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::PyValueError;
@@ -76,6 +78,34 @@ impl Grid {
         let warnings = found.warnings.into_iter().map(|message| Warning { message, at: at() });
         warn(py, &warnings.collect::<Vec<_>>())?;
         let grid = found.grid.map_err(PyValueError::new_err)?;
+        Ok(Grid(Arc::new(grid)))
+    }
+
+    /// A density that is a formula, evaluated at its voxels.
+    ///
+    /// Args:
+    ///     kind: its name, such as 'cloud', 'noise' or 'height'; `bilux.densities()` lists them.
+    ///     parameters: its parameters, as in scene files.
+    ///
+    /// Example:
+    ///     >>> haze = bilux.Grid.computed("height", falloff=5, to=(20, 30, 20))
+    ///     >>> fog = bilux.materials.interface(scattering=0.1, density=haze)
+    #[staticmethod]
+    #[pyo3(signature = (kind, /, **parameters))]
+    fn computed(py: Python<'_>, kind: &str, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Grid> {
+        let mut spec = Spec::new("", kind);
+        if let Some(keywords) = parameters {
+            spec.parameters = values::parameters(keywords, &mut values::Unresolved)?;
+        }
+        let density = ComputedDensity::new(spec).map_err(exception)?;
+        let max_memory = memory::within_limits(ReadOptions::default().max_memory);
+        if density.bytes() > max_memory {
+            let [x, y, z] = density.size();
+            let message =
+                format!("{x} x {y} x {z} voxels need {} bytes, and there are {max_memory}", density.bytes());
+            return Err(PyValueError::new_err(message));
+        }
+        let grid = without_gil(py, || density.grid()).map_err(exception)?;
         Ok(Grid(Arc::new(grid)))
     }
 

@@ -291,6 +291,23 @@ def test_textures_of_numbers_are_not_decoded(tmp_path):
     np.testing.assert_allclose(light[1][4, 4], curve, rtol=0.1)
 
 
+def test_grids_are_computed_by_the_formulas_of_the_table(square, tmp_path):
+    assert "height" in bilux.densities
+    fog = bilux.Grid.computed("height", falloff=2, to=(4, 8, 4))
+    assert fog.shape == (1, 128, 1) and fog.name == "height"
+    scene = bilux.Scene()
+    scene.add_mesh(*square, material=bilux.materials.interface(scattering=1, density=fog))
+    scene.save(tmp_path / "fog.toml")
+    text = (tmp_path / "fog.toml").read_text()
+    assert 'density = { kind = "height", falloff = 2, to = [4, 8, 4] }' in text
+    with pytest.raises(bilux.SceneError, match="no density 'hieght'; did you mean 'height'"):
+        bilux.Grid.computed("hieght")
+    with pytest.raises(bilux.SceneError, match="height.falloff is 0"):
+        bilux.Grid.computed("height", falloff=0)
+    with pytest.raises(bilux.SceneError, match="voxels are more than"):
+        bilux.Grid.computed("cloud", resolution=1024)
+
+
 def test_grids_are_read_from_files_and_bytes(tmp_path):
     values = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
     np.save(tmp_path / "smoke.npy", values)

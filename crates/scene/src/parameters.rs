@@ -305,7 +305,9 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             format!("a number from {min} to {max}, or {{ texture = \"FILE\" }}"),
         ),
         ParameterKind::Texture => (matches!(value, Value::Texture(_)), "{ texture = \"FILE\" }".to_owned()),
-        ParameterKind::Grid => (matches!(value, Value::Grid(_)), "{ grid = \"FILE\" }".to_owned()),
+        ParameterKind::Grid => {
+            (matches!(value, Value::Grid(_)), "{ grid = \"FILE\" } or { kind = \"cloud\" }".to_owned())
+        }
         ParameterKind::Stops { min, max } => {
             let is_right = |stops: Vec<(f32, Rgb)>| {
                 let within = |c: f32| number_in(Some(f64::from(c)), min, max);

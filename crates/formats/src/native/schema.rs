@@ -7,6 +7,7 @@ use super::specs::CHANNELS;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::change::Part;
 use bilux_scene::generators::GENERATORS;
+use bilux_scene::media::DENSITIES;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES};
 use serde_json::{Map, Value, json};
 
@@ -46,7 +47,10 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
             "replace": list(replacement()),
             "change": list(changed()),
         },
-        "$defs": { "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None) },
+        "$defs": {
+            "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None),
+            "density": rows(DENSITIES.iter().map(|r| &r.entry).collect(), &[("place", place_of_voxels())], None),
+        },
     })
 }
 
@@ -138,18 +142,22 @@ fn texture(extra: &[(&str, Value)]) -> Value {
     json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }
 
-/// Numbers in space, from a file.
+/// Numbers in space, from a file or by a formula.
 fn grid() -> Value {
-    let place = json!({
-        "type": "array", "items": { "type": "number" }, "minItems": 12, "maxItems": 12,
-        "description": "where it is in the object: the steps of a voxel along x, y and z, and the corner of the first one",
-    });
     let properties = json!({
         "grid": described("string", "a file of grids, relative to this file"),
         "name": described("string", "the grid of that file"),
-        "place": place,
+        "place": place_of_voxels(),
     });
-    json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": ["grid"] })
+    let file = json!({ "type": "object", "additionalProperties": false, "properties": properties, "required": ["grid"] });
+    json!({ "oneOf": [file, { "$ref": "#/$defs/density" }] })
+}
+
+fn place_of_voxels() -> Value {
+    json!({
+        "type": "array", "items": { "type": "number" }, "minItems": 12, "maxItems": 12,
+        "description": "where it is in the object: the steps of a voxel along x, y and z, and the corner of the first one",
+    })
 }
 
 fn vector() -> Value {

@@ -10,7 +10,7 @@ use bilux_math::glam::DVec4;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_math::{DMat4, Transform};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::media::Grid;
+use bilux_scene::media::{DENSITIES, Grid};
 use bilux_scene::texture::Channel;
 use bilux_scene::{
     CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, TEXTURES, Texture, Value,
@@ -114,15 +114,34 @@ impl Native<'_, '_> {
         Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
     }
 
-    /// Reads a grid of a file.
+    /// Reads a grid of a file, or computes one.
     fn grid(&mut self, key: &str, table: &Table, part: &Part) -> Result<Arc<Grid>, FormatError> {
-        table.check_keys(&format!("the grid of '{key}'"), ["grid", "name", "place"].into_iter())?;
-        let file = table.find("grid").ok_or_else(|| missing("grid (a file)", table))?;
-        let name = table.text("name")?.unwrap_or_default();
-        let grid = self.reading.grid(part.folder.as_deref(), (file.text("grid")?, name), &file.at)?;
+        let grid = match table.find("kind") {
+            Some(kind) => self.computed_grid(kind.text("kind")?, table)?,
+            None => self.grid_of_file(key, table, part)?,
+        };
         let Some(item) = table.find("place") else { return Ok(grid) };
         let place = place(item).ok_or_else(|| item.wrong("place", PLACE))?;
         Ok(Arc::new(Grid::clone(&grid).placed(&place)))
+    }
+
+    /// A density that is a formula.
+    fn computed_grid(&mut self, kind: &str, table: &Table) -> Result<Arc<Grid>, FormatError> {
+        let mut spec = Spec { span: table.at.clone(), ..Spec::new("", kind) };
+        for (key, at, item) in table.entries.iter().filter(|(key, ..)| key != "kind" && key != "place") {
+            spec.parameters.set_at(key, plain_value(key, item)?, at.clone());
+        }
+        self.reading.computed_grid(spec, &table.at.file)
+    }
+
+    fn grid_of_file(&mut self, key: &str, table: &Table, part: &Part) -> Result<Arc<Grid>, FormatError> {
+        table.check_keys(&format!("the grid of '{key}'"), ["grid", "name", "place"].into_iter())?;
+        let file = table.find("grid").ok_or_else(|| {
+            let kinds: Vec<&str> = DENSITIES.iter().map(|row| row.entry.name).collect();
+            missing(&format!("grid (a file), or kind ({}),", kinds.join(", ")), table)
+        })?;
+        let name = table.text("name")?.unwrap_or_default();
+        self.reading.grid(part.folder.as_deref(), (file.text("grid")?, name), &file.at)
     }
 
     /// Reads a texture for a parameter of this kind. If the kind does not determine colours or numbers, `around`

@@ -8,6 +8,7 @@ use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::{Motion, MotionKey};
 use bilux_scene::cameras::CameraSpec;
+use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -197,18 +198,43 @@ fn value_text(
             Some(texture) => texture_text(texture, scene, writing)?,
             None => return Ok(None),
         },
-        Value::Grid(grid) => {
-            let Some(name) = writing.grid_file(grid) else { return Ok(None) };
-            let matrix = *grid.to_object().matrix();
-            let place = [matrix.x_axis, matrix.y_axis, matrix.z_axis, matrix.w_axis];
-            let place = place.map(|column| column.truncate().to_array());
-            format!("{{ grid = {}, place = {} }}", quoted(&name), list(place.as_flattened()))
-        }
+        Value::Grid(grid) => return grid_text(grid, scene, writing),
         Value::Material(index) => match material_names(&scene.materials).get(*index) {
             Some(name) => quoted(name),
             None => return Ok(None),
         },
     }))
+}
+
+/// A file, or a formula with its parameters; `None` for a grid that is left out.
+fn grid_text(
+    grid: &Arc<Grid>,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+) -> Result<Option<String>, FormatError> {
+    let formula = grid.origin().and_then(|origin| origin.of::<Spec>());
+    let what = if let Some(formula) = formula {
+        let mut out = format!("kind = {}", quoted(&formula.kind));
+        for (key, value, _) in &formula.parameters.0 {
+            if let Some(value) = value_text(value, scene, writing)? {
+                out.push_str(&format!(", {key} = {value}"));
+            }
+        }
+        out
+    } else {
+        let Some(name) = writing.grid_file(grid) else { return Ok(None) };
+        format!("grid = {}", quoted(&name))
+    };
+    let has_its_place = |formula: &Spec| {
+        ComputedDensity::new(formula.clone()).is_ok_and(|own| *own.to_object() == grid.to_object())
+    };
+    if formula.is_some_and(has_its_place) {
+        return Ok(Some(format!("{{ {what} }}")));
+    }
+    let matrix = *grid.to_object().matrix();
+    let place = [matrix.x_axis, matrix.y_axis, matrix.z_axis, matrix.w_axis];
+    let place = place.map(|column| column.truncate().to_array());
+    Ok(Some(format!("{{ {what}, place = {} }}", list(place.as_flattened()))))
 }
 
 /// A file, or a procedural texture with the textures that it contains.

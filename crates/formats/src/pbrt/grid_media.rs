@@ -4,8 +4,8 @@ use super::parameters::ParameterList;
 use super::reader::Pbrt;
 use crate::FormatError;
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
-use bilux_scene::Span;
 use bilux_scene::media::Grid;
+use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
 /// A grid, and the place of its medium in the world.
@@ -112,6 +112,20 @@ impl Pbrt<'_, '_> {
         self.reading.budget.release(bytes);
         self.reading.charge_grid(&grid, file)?;
         Ok(Density { grid: Arc::new(grid), to_world: self.state.matrices[0] })
+    }
+
+    /// A cloud that is a formula, in the box of its medium.
+    pub(super) fn cloud(&mut self, list: &ParameterList) -> Result<Density, FormatError> {
+        let mut spec = Spec { span: list.at.clone(), ..Spec::new("", "cloud") };
+        for (key, default) in [("density", 1.0), ("wispiness", 1.0), ("frequency", 5.0)] {
+            let number = list.number(key)?.unwrap_or(default);
+            spec.parameters.set_at(key, Value::from(number), list.place(key));
+        }
+        for (key, corner, default) in [("from", "p0", Vec3::ZERO), ("to", "p1", Vec3::ONE)] {
+            spec.parameters.set_at(key, Value::from(list.triple(corner, default)?), list.place(corner));
+        }
+        let grid = self.reading.computed_grid(spec, &list.at.file)?;
+        Ok(Density { grid, to_world: self.state.matrices[0] })
     }
 
     /// A grid of a file; `None`, with a warning, if that cannot be read.

@@ -77,6 +77,7 @@ impl Pbrt<'_, '_> {
             "homogeneous" => (self.coefficients(list)?, None),
             "uniformgrid" => (self.coefficients(list)?, Some(self.uniform_grid(&name, "density", list)?)),
             "nanovdb" => (self.coefficients(list)?, self.nanovdb(list)?),
+            "cloud" => (self.coefficients(list)?, Some(self.cloud(list)?)),
             "rgbgrid" => {
                 let (coefficients, density) = self.rgb_grid(&name, list)?;
                 (coefficients, Some(density))

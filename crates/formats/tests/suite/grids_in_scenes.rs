@@ -197,6 +197,91 @@ fn grids_of_pbrt_stay_where_the_medium_is_whatever_the_shape() {
 }
 
 #[test]
+fn clouds_of_pbrt_are_those_of_their_formula() {
+    let scene = world(
+        r#"
+        AttributeBegin
+        Scale 2 2 2
+        MakeNamedMedium "puff" "string type" "cloud" "float density" 1.5 "float wispiness" 0.5 "float frequency" 1.25
+            "point3 p0" [0 .2 0] "point3 p1" [1 1 1] "rgb sigma_a" [.1 .2 .3] "rgb sigma_s" [1 2 3]
+        AttributeEnd
+        Material "interface"
+        MediumInterface "puff" ""
+        Shape "sphere""#,
+    )
+    .unwrap();
+    assert_eq!(warnings(&scene), "");
+    close(scene.materials[scene.objects[0].material].colour("scattering").unwrap().g, 2.0);
+    // As in the tests of the formula.
+    for (p, wanted) in [
+        ([0.703, 0.452, 0.725], 0.2538),
+        ([0.726, 0.422, 0.088], 0.1560),
+        ([0.497, 0.921, 0.42], 0.0902),
+        ([0.398, 0.639, 0.093], 0.0000),
+    ] {
+        let found = at(&scene, 0, p.map(|x: f32| 2.0 * x));
+        assert!((found - wanted).abs() < 0.02, "{found} for {wanted}");
+    }
+    close(at(&scene, 0, [1.0, 0.39, 1.0]), 0.0);
+    for (parameter, message) in [
+        ("\"float frequency\" -1", "cloud.frequency is -1.0, but must be a number from 0 to 10000"),
+        ("\"float density\" [1 2]", "one number"),
+        ("\"point3 p1\" [1 0 1]", "no volume"),
+    ] {
+        let text = format!("MakeNamedMedium \"m\" \"string type\" \"cloud\" {parameter}");
+        let found = world(&text).unwrap_err();
+        assert!(found.contains(message), "{found}");
+    }
+}
+
+#[test]
+fn formulas_are_densities_of_toml_scenes_and_are_written_as_they_were_read() {
+    let scene = |density: &str| {
+        let text = format!(
+            "[[material]]\nname = \"m\"\nkind = \"interface\"\nscattering = 1\ndensity = {density}\n\
+             [[model]]\nshape = \"box\"\nmaterial = \"m\"\n"
+        );
+        read_bytes(text.as_bytes(), "toml", None, "x.toml", &ReadOptions::default())
+            .map_err(|error| error.to_string())
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let place = "[0.1, 0, 0, 0, 0, 0.1, 0, -0.1, 0, 1, 2, 3]";
+    for density in [
+        "{ kind = \"height\", falloff = 0.5, up = \"z\", from = [-1, -1, 0], to = [1, 1, 4] }".to_owned(),
+        "{ kind = \"cloud\", frequency = 0.5, to = [1, 2, 1] }".to_owned(),
+        format!("{{ kind = \"noise\", octaves = 2, low = 0.4, resolution = 16, place = {place} }}"),
+    ] {
+        let first = scene(&density).unwrap();
+        let path = folder.path().join("written.toml");
+        bilux_formats::write(&path, &first, &Default::default()).unwrap();
+        let written = std::fs::read_to_string(&path).unwrap();
+        assert!(written.contains("density = { kind = "), "{written}");
+        assert_eq!(written.contains("place = "), density.contains("place = "), "{written}");
+        let second = read(&path, &ReadOptions::default()).unwrap();
+        let [first, second] = [&first, &second].map(|scene| density_of(scene));
+        assert_eq!(first, second);
+        assert!(first.maximum() > 0.3, "{first:?}");
+    }
+    let height = scene("{ kind = \"height\", falloff = 0.5, to = [1, 4, 1] }").unwrap();
+    close(density_of(&height).value(Vec3::new(0.5, 1.0, 0.5)), 0.135_335_28);
+    for (density, message) in [
+        ("{ kind = \"fog\" }", "there is no density 'fog' (known: cloud, noise, height)"),
+        ("{ kind = \"cloud\", frequenzy = 1 }", "did you mean 'frequency'"),
+        ("{ kind = \"cloud\", frequency = nan }", "cloud.frequency"),
+        ("{ kind = \"noise\", resolution = 2048 }", "voxels are more than 134217728"),
+        ("{ kind = \"noise\", resolution = 5000 }", "0 to 2048"),
+        ("{ }", "grid (a file), or kind (cloud, noise, height)"),
+    ] {
+        let found = scene(density).unwrap_err();
+        assert!(found.contains(message), "{found}");
+    }
+}
+
+fn density_of(scene: &SceneBuilder) -> &Arc<Grid> {
+    density(&scene.materials[scene.objects[0].material])
+}
+
+#[test]
 fn media_of_pbrt_emit_light_times_their_absorption() {
     let scene = world(
         r#"
@@ -306,8 +391,8 @@ fn media_of_pbrt_that_cannot_be_are_refused_or_named() {
     .unwrap();
     assert!(warnings(&scene).contains("numbers of a grid that are negative"), "{}", warnings(&scene));
     assert!(warnings(&scene).contains("emission by the temperature of a medium"), "{}", warnings(&scene));
-    let scene = medium(r#""string type" "cloud""#).unwrap();
-    assert!(warnings(&scene).contains("a medium of type 'cloud' is not supported"), "{}", warnings(&scene));
+    let scene = medium(r#""string type" "clouds""#).unwrap();
+    assert!(warnings(&scene).contains("a medium of type 'clouds' is not supported"), "{}", warnings(&scene));
     assert!(refusal("vdb", b"nothing").contains("no file of grids"));
 }
 

@@ -3,6 +3,7 @@
 use super::blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, all, blocks_of, check, voxel_of, within};
 use super::half::{from_half, half, scale_of};
 use super::line::{GridLine, for_each_block};
+use super::origin::Origin;
 use bilux_math::{Transform, Vec3};
 use std::fmt;
 
@@ -22,6 +23,7 @@ pub struct Grid {
     /// Upper bounds of all values inside a block, and of what lies within a voxel around.
     majorants: Box<[f32]>,
     scale: f32,
+    origin: Option<Origin>,
 }
 
 /// What a grid holds, as it is stored.
@@ -65,7 +67,8 @@ impl Grid {
         let voxels = stored.iter().map(|value| half(value / scale)).collect();
         let to_voxels = to_object.inverted();
         let (name, majorants) = (name.to_owned(), Box::default());
-        let mut grid = Grid { name, size, to_voxels, places: places.into(), voxels, majorants, scale };
+        let places = places.into();
+        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale, origin: None };
         grid.majorants = grid.bounds_of_blocks(blocks);
         Ok(grid)
     }
@@ -116,7 +119,7 @@ impl Grid {
         }
         let (places, voxels, majorants) = (places.into(), voxels.into(), Box::default());
         let (name, to_voxels) = (String::new(), to_object.inverted());
-        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale };
+        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale, origin: None };
         grid.majorants = grid.bounds_of_blocks(blocks);
         Ok(grid)
     }
@@ -134,6 +137,16 @@ impl Grid {
     /// The same grid under another name.
     pub fn named(self, name: &str) -> Grid {
         Grid { name: name.to_owned(), ..self }
+    }
+
+    /// The same grid with what it was made from.
+    pub fn with_origin(self, origin: Origin) -> Grid {
+        Grid { origin: Some(origin), ..self }
+    }
+
+    /// What it was made from, if that is known.
+    pub fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
     }
 
     /// The file that it came from, and the name there.

@@ -8,7 +8,9 @@ mod blocks;
 mod grid;
 mod half;
 mod line;
+mod origin;
 
 pub use blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, MAX_SIDE};
 pub use grid::{Grid, Stored};
 pub use line::GridLine;
+pub use origin::Origin;

@@ -1,9 +1,10 @@
 //! Media: what fills the inside of an object, and absorbs and scatters light there: the same everywhere, or as dense as a
-//! [`Grid`] says. How they scatter, the phase function, is one of [`PHASES`].
+//! [`Grid`] says, from a file or by a formula of [`DENSITIES`]. How they scatter, the phase function, is one of [`PHASES`].
 //!
 //! Coefficients are per metre and per channel. All distances of a path are those of one channel, which its sample has chosen: so a
 //! density does not depend on the path so far, and is the same for the same line from both ends.
 
+pub mod densities;
 mod glow;
 mod medium;
 mod phases;
@@ -11,7 +12,8 @@ mod seen;
 pub mod slab;
 mod tracking;
 
-pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE, Stored};
+pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE, Origin, Stored};
+pub use densities::{ComputedDensity, DENSITIES, DensityEntry};
 pub(crate) use glow::{EMISSION, EMISSION_GRID, TEMPERATURE, TEMPERATURE_SCALE};
 pub use glow::{Glow, GlowLine};
 pub(crate) use medium::{DENSITY, SCATTERING};

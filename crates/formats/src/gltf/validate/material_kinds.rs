@@ -158,6 +158,7 @@ pub(super) const VOLUME_SCATTER: Kind = kind(
     &[
         may("multiscatterColor", COLOUR),
         may("multiscatterColorFactor", COLOUR),
+        texture("multiscatterColorTexture"),
         may("scatterAnisotropy", Number(Range::SIGNED_UNIT)),
     ],
 );
