@@ -1,10 +1,12 @@
 //! Cameras, which look along +z with +x to the right: left-handed, unless their matrix mirrors.
 
+use super::entity::Entity;
+use super::names::unknown;
+use super::options::{Options, Settings};
 use super::parameters::ParameterList;
-use super::reader::{Entity, Pbrt};
 use super::state::{Matrices, half_tangent};
-use super::unknown;
 use crate::FormatError;
+use crate::oddities::Oddities;
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan, atan2_f64};
 use bilux_math::{DMat3, DMat4, DVec3, Motion, MotionKey, Vec3};
@@ -14,136 +16,136 @@ use bilux_scene::{Parameters, Spec};
 /// The known cameras, all shown by one of the renderer's own.
 const CAMERAS: [&str; 4] = ["perspective", "orthographic", "realistic", "spherical"];
 
-impl Pbrt<'_, '_> {
-    /// Adds the camera, if there is one.
-    pub(super) fn place_camera(&mut self) -> Result<(), FormatError> {
-        let Some((entity, matrices)) = self.options.camera.take() else { return Ok(()) };
-        let list = &entity.parameters;
-        let kind = match entity.kind.as_str() {
-            "orthographic" => "orthographic",
-            "perspective" => "perspective",
-            // `environment` is a name of version 3.
-            "realistic" | "spherical" | "environment" => {
-                let what = format!(
-                    "the camera '{}' is not supported: a perspective camera is used instead",
-                    entity.kind
-                );
-                self.oddities.note(&what, || entity.at.clone());
-                for name in [
-                    "lensfile",
-                    "aperturediameter",
-                    "focusdistance",
-                    "aperture",
-                    "mapping",
-                    "simpleweighting",
-                ] {
-                    list.has(name);
-                }
-                "perspective"
+/// The camera, if there is one.
+pub(super) fn camera(
+    options: &Options,
+    settings: &Settings,
+    oddities: &mut Oddities,
+) -> Result<Option<CameraSpec>, FormatError> {
+    let Some((entity, matrices)) = &options.camera else { return Ok(None) };
+    let list = &entity.parameters;
+    let kind = match entity.kind.as_str() {
+        "orthographic" => "orthographic",
+        "perspective" => "perspective",
+        // `environment` is a name of version 3.
+        "realistic" | "spherical" | "environment" => {
+            let what = format!(
+                "the camera '{}' is not supported: a perspective camera is used instead",
+                entity.kind
+            );
+            oddities.note(&what, || entity.at.clone());
+            for name in
+                ["lensfile", "aperturediameter", "focusdistance", "aperture", "mapping", "simpleweighting"]
+            {
+                list.has(name);
             }
-            other => return Err(unknown("camera", other, CAMERAS, &entity.at)),
-        };
-        let half_height = self.half_height(list)?;
-        let to_world = matrices.map(|m| m.inverse());
-        let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
-        if !to_world.iter().all(sound) {
-            return Err(is_flat(&entity));
+            "perspective"
         }
-        let place = |m: &DMat4| place(m, &entity);
-        let mut spec = Spec { span: entity.at.clone(), ..Spec::new("", kind) };
-        spec.parameters = place(&to_world[0])?;
-        // Bilux's cameras are right-handed.
-        if to_world[0].determinant() > 0.0 {
-            spec.parameters.set("mirrored", true);
-        }
-        let sizes = DVec3::new(
-            to_world[0].x_axis.truncate().length(),
-            to_world[0].y_axis.truncate().length(),
-            to_world[0].z_axis.truncate().length(),
-        );
-        self.lens(list, &mut spec, half_height, sizes)?;
-        let mut keyframes = Vec::new();
-        if to_world[0] != to_world[1] {
-            for (time, matrix) in between(self.options.times, &to_world, &entity)? {
-                keyframes.push((time, place(&matrix)?));
-            }
-        }
-        for name in ["shutteropen", "shutterclose"] {
-            list.has(name);
-        }
-        list.report_unused(&mut self.oddities);
-        self.scene.cameras.push(CameraSpec { spec, keyframes });
-        Ok(())
+        other => return Err(unknown("camera", other, CAMERAS, &entity.at)),
+    };
+    let half_height = half_height(list, settings, oddities)?;
+    let to_world = matrices.map(|m| m.inverse());
+    let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
+    if !to_world.iter().all(sound) {
+        return Err(is_flat(entity));
     }
+    let place = |m: &DMat4| place(m, entity);
+    let mut spec = Spec { span: entity.at.clone(), ..Spec::new("", kind) };
+    spec.parameters = place(&to_world[0])?;
+    // Bilux's cameras are right-handed.
+    if to_world[0].determinant() > 0.0 {
+        spec.parameters.set("mirrored", true);
+    }
+    let sizes = DVec3::new(
+        to_world[0].x_axis.truncate().length(),
+        to_world[0].y_axis.truncate().length(),
+        to_world[0].z_axis.truncate().length(),
+    );
+    set_lens(&mut spec, list, half_height, sizes, oddities)?;
+    let mut keyframes = Vec::new();
+    if to_world[0] != to_world[1] {
+        for (time, matrix) in between(options.times, &to_world, entity)? {
+            keyframes.push((time, place(&matrix)?));
+        }
+    }
+    for name in ["shutteropen", "shutterclose"] {
+        list.has(name);
+    }
+    list.report_unused(oddities);
+    Ok(Some(CameraSpec { spec, keyframes }))
+}
 
-    fn lens(
-        &mut self,
-        list: &ParameterList,
-        spec: &mut Spec,
-        half_height: f64,
-        sizes: DVec3,
-    ) -> Result<(), FormatError> {
-        let (radius, focus) = (list.finite("lensradius", 0.0)?, list.finite("focaldistance", 1e6)?);
-        let fov = list.finite("fov", 90.0)?;
-        if spec.kind == "orthographic" {
-            if radius > 0.0 {
-                let what = "an orthographic camera has no lens: everything is sharp";
-                self.oddities.note(what, || list.place("lensradius"));
-            }
-            let height = (2.0 * half_height * sizes.y).clamp(1e-9, 1e9);
-            spec.parameters.set_at("height", (height as f32).into(), list.place("screenwindow"));
-            return Ok(());
-        }
-        if list.has("halffov") {
-            // A parameter of version 2, no longer in use.
-            self.oddities.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
-        }
-        let half = half_height * half_tangent(fov.clamp(0.0, 179.9)) * sizes.y / sizes.z;
-        let vertical = 2.0 * atan(half as f32).to_degrees();
-        if !(0.01..=179.0).contains(&vertical) {
-            self.oddities
-                .note("a field of view is out of range: it is limited to 0.01 to 179 degrees", || {
-                    list.place("fov")
-                });
-        }
-        spec.parameters.set_at("fov", vertical.clamp(0.01, 179.0).into(), list.place("fov"));
+/// Sets how wide a camera sees, and how sharp. `sizes` are the scales of its axes.
+fn set_lens(
+    spec: &mut Spec,
+    list: &ParameterList,
+    half_height: f64,
+    sizes: DVec3,
+    oddities: &mut Oddities,
+) -> Result<(), FormatError> {
+    let (radius, focus) = (list.finite("lensradius", 0.0)?, list.finite("focaldistance", 1e6)?);
+    let fov = list.finite("fov", 90.0)?;
+    if spec.kind == "orthographic" {
         if radius > 0.0 {
-            let held = |x: f64| x.clamp(0.0, 1e9) as f32;
-            spec.parameters.set("aperture", held(f64::from(radius) * sizes.x).min(1e6));
-            spec.parameters.set("focus", held(f64::from(focus) * sizes.z));
+            let what = "an orthographic camera has no lens: everything is sharp";
+            oddities.note(what, || list.place("lensradius"));
         }
-        Ok(())
+        let height = (2.0 * half_height * sizes.y).clamp(1e-9, 1e9);
+        spec.parameters.set_at("height", (height as f32).into(), list.place("screenwindow"));
+        return Ok(());
     }
+    if list.has("halffov") {
+        // A parameter of version 2, no longer in use.
+        oddities.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
+    }
+    let half = half_height * half_tangent(fov.clamp(0.0, 179.9)) * sizes.y / sizes.z;
+    let vertical = 2.0 * atan(half as f32).to_degrees();
+    if !(0.01..=179.0).contains(&vertical) {
+        oddities.note("a field of view is out of range: it is limited to 0.01 to 179 degrees", || {
+            list.place("fov")
+        });
+    }
+    spec.parameters.set_at("fov", vertical.clamp(0.01, 179.0).into(), list.place("fov"));
+    if radius > 0.0 {
+        let held = |x: f64| x.clamp(0.0, 1e9) as f32;
+        spec.parameters.set("aperture", held(f64::from(radius) * sizes.x).min(1e6));
+        spec.parameters.set("focus", held(f64::from(focus) * sizes.z));
+    }
+    Ok(())
+}
 
-    /// Half the height of the screen window, whose shorter side runs from -1 to 1.
-    fn half_height(&mut self, list: &ParameterList) -> Result<f64, FormatError> {
-        let [width, height] = self.options.size.map(|n| f64::from(n.max(1)));
-        let film = width / height;
-        let frame = f64::from(list.finite("frameaspectratio", film as f32)?);
-        let frame = if list.has("frameaspectratio") && frame > 0.0 { frame } else { film };
-        let mut screen =
-            if frame > 1.0 { [-frame, frame, -1.0, 1.0] } else { [-1.0, 1.0, -1.0 / frame, 1.0 / frame] };
-        match list.numbers("screenwindow")? {
-            [] => {}
-            [a, b, c, d] => screen = [*a, *b, *c, *d].map(f64::from),
-            other => {
-                let message = format!("'screenwindow' takes 4 numbers, not {}", other.len());
-                return Err(FormatError::malformed(message, list.place("screenwindow")));
-            }
-        }
-        let [left, right, bottom, top] = screen;
-        let (half_width, half_height) = (0.5 * (right - left).abs(), 0.5 * (top - bottom).abs());
-        if !(half_width > 0.0 && half_height > 0.0) {
-            let message = "the screen has no area: correct 'screenwindow'";
+/// Half the height of the screen window, whose shorter side runs from -1 to 1.
+fn half_height(
+    list: &ParameterList,
+    settings: &Settings,
+    oddities: &mut Oddities,
+) -> Result<f64, FormatError> {
+    let [width, height] = settings.size.map(|n| f64::from(n.max(1)));
+    let film = width / height;
+    let frame = f64::from(list.finite("frameaspectratio", film as f32)?);
+    let frame = if list.has("frameaspectratio") && frame > 0.0 { frame } else { film };
+    let mut screen =
+        if frame > 1.0 { [-frame, frame, -1.0, 1.0] } else { [-1.0, 1.0, -1.0 / frame, 1.0 / frame] };
+    match list.numbers("screenwindow")? {
+        [] => {}
+        [a, b, c, d] => screen = [*a, *b, *c, *d].map(f64::from),
+        other => {
+            let message = format!("'screenwindow' takes 4 numbers, not {}", other.len());
             return Err(FormatError::malformed(message, list.place("screenwindow")));
         }
-        let shifted = (left + right).abs() > 1e-4 * half_width || (bottom + top).abs() > 1e-4 * half_height;
-        if shifted || (half_width / half_height / film - 1.0).abs() > 1e-3 {
-            let what = "a shifted or stretched screen window is not supported: only its height is used";
-            self.oddities.note(what, || list.place("screenwindow"));
-        }
-        Ok(half_height)
     }
+    let [left, right, bottom, top] = screen;
+    let (half_width, half_height) = (0.5 * (right - left).abs(), 0.5 * (top - bottom).abs());
+    if !(half_width > 0.0 && half_height > 0.0) {
+        let message = "the screen has no area: correct 'screenwindow'";
+        return Err(FormatError::malformed(message, list.place("screenwindow")));
+    }
+    let shifted = (left + right).abs() > 1e-4 * half_width || (bottom + top).abs() > 1e-4 * half_height;
+    if shifted || (half_width / half_height / film - 1.0).abs() > 1e-3 {
+        let what = "a shifted or stretched screen window is not supported: only its height is used";
+        oddities.note(what, || list.place("screenwindow"));
+    }
+    Ok(half_height)
 }
 
 /// The largest angle, in degrees, between two keyframes of a camera that turns. Cameras interpolate the point that they look

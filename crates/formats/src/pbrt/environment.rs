@@ -1,32 +1,32 @@
 //! `infinite` lights: environment maps. pbrt uses an equal-area mapping to a square, Bilux longitude and latitude.
 
-use super::lights::picture_name;
+use super::light_maker::{LightMaker, picture_name};
+use super::loader::Loader;
 use super::parameters::ParameterList;
-use super::reader::Pbrt;
 use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
-use bilux_scene::{Spec, Texture, Value};
+use bilux_scene::{Span, Spec, Texture, Value};
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, PI, TAU};
 use std::sync::Arc;
 
 pub(super) fn infinite(
-    pbrt: &mut Pbrt,
+    maker: &mut LightMaker,
     list: &ParameterList,
     matrix: &DMat4,
 ) -> Result<Option<Spec>, FormatError> {
     let file = picture_name(list)?;
     if list.has("portal") {
         let what = "portals are not supported: light comes from all sides";
-        pbrt.oddities.note(what, || list.place("portal"));
+        maker.textures.loader.note(what, || list.place("portal"));
     }
     for name in ["samples", "nsamples"] {
         list.has(name);
     }
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0);
     let Some((name, is_old)) = file else {
-        let radiance = pbrt.scaled_spectrum(list, "L")?;
+        let radiance = maker.scaled_spectrum(list, "L")?;
         // The illuminance of a uniform environment is π times its luminance.
         let radiance = illuminance.map_or(radiance, |lux| radiance * (lux * FRAC_1_PI as f32));
         return Ok(Some(Spec::new("", "environment").with("radiance", radiance)));
@@ -36,20 +36,20 @@ pub(super) fn infinite(
         let message = "'L' and 'filename' both define this light's radiance: remove one of them";
         return Err(FormatError::malformed(message, list.place("L")));
     }
-    let picture = pbrt.light_file(&name, &at)?;
+    let picture = maker.textures.loader.light_file(&name, &at)?;
     let is_square = picture.width() == picture.height();
     if !is_square && !is_old {
         let what = "the picture of an infinite light is not square: it is read as a longitude-latitude map";
-        pbrt.oddities.note(what, || at.clone());
+        maker.textures.loader.note(what, || at.clone());
     }
     let mapping = if is_old || !is_square { Mapping::Latitudes } else { Mapping::Square };
-    let mut scale = if is_old { pbrt.scaled_spectrum(list, "L")? } else { pbrt.light_scale(list)? };
+    let mut scale = if is_old { maker.scaled_spectrum(list, "L")? } else { maker.light_scale(list)? };
     if let Some(lux) = illuminance {
         let ours = illuminance_of(&picture, mapping).max(f32::MIN_POSITIVE);
         scale *= lux / ours;
     }
-    let turned = pbrt.by_longitude(&name, &picture, mapping, matrix, list)?;
-    let value = pbrt.value(TextureOrValue::Picture(Arc::new(turned)));
+    let turned = by_longitude(&name, &picture, mapping, matrix, &list.at, &mut maker.textures.loader)?;
+    let value = maker.textures.value(TextureOrValue::Picture(Arc::new(turned)));
     let spec = Spec::new("", "environment").with("radiance", value);
     Ok(Some(spec.with("scale", Value::from(scale))))
 }
@@ -135,42 +135,40 @@ fn wrapped(mapping: Mapping, [x, y]: [i64; 2], [width, height]: [i64; 2]) -> [us
     [x.clamp(0, width - 1) as usize, y.clamp(0, height - 1) as usize]
 }
 
-impl Pbrt<'_, '_> {
-    /// Resamples the image to Bilux's mapping in world space: its middle at -z, and +y up.
-    fn by_longitude(
-        &mut self,
-        name: &str,
-        picture: &Texture,
-        mapping: Mapping,
-        matrix: &DMat4,
-        list: &ParameterList,
-    ) -> Result<Texture, FormatError> {
-        /// The maximum number of rows.
-        const MAX: usize = 4096;
-        if !picture.image.is_whole() {
-            return Ok(picture.clone());
-        }
-        let to_light = matrix.inverse();
-        if !to_light.is_finite() {
-            return Err(FormatError::malformed("this light has a scale of zero", list.at.clone()));
-        }
-        let height = picture.height().clamp(16, MAX);
-        let width = 2 * height;
-        let bytes = (width * height * size_of::<Rgb>()) as u64;
-        self.reading.budget.take_bytes(bytes, name)?;
-        let mut texels = Vec::with_capacity(width * height);
-        for row in 0..height {
-            let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / height as f64);
-            for column in 0..width {
-                let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / width as f64 - 0.5));
-                let direction = DVec3::new(r * sin, y, -r * cos);
-                let d = to_light.transform_vector3(direction).try_normalize().unwrap_or(DVec3::Z);
-                texels.push(looked_up(picture, mapping, d));
-            }
-        }
-        self.reading.budget.release(bytes);
-        self.picture(name, [width, height], texels)
+/// Resamples the image to Bilux's mapping in world space: its middle at -z, and +y up.
+fn by_longitude(
+    name: &str,
+    picture: &Texture,
+    mapping: Mapping,
+    matrix: &DMat4,
+    at: &Span,
+    loader: &mut Loader,
+) -> Result<Texture, FormatError> {
+    /// The maximum number of rows.
+    const MAX: usize = 4096;
+    if !picture.image.is_whole() {
+        return Ok(picture.clone());
     }
+    let to_light = matrix.inverse();
+    if !to_light.is_finite() {
+        return Err(FormatError::malformed("this light has a scale of zero", at.clone()));
+    }
+    let height = picture.height().clamp(16, MAX);
+    let width = 2 * height;
+    let bytes = (width * height * size_of::<Rgb>()) as u64;
+    loader.reading.budget.take_bytes(bytes, name)?;
+    let mut texels = Vec::with_capacity(width * height);
+    for row in 0..height {
+        let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / height as f64);
+        for column in 0..width {
+            let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / width as f64 - 0.5));
+            let direction = DVec3::new(r * sin, y, -r * cos);
+            let d = to_light.transform_vector3(direction).try_normalize().unwrap_or(DVec3::Z);
+            texels.push(looked_up(picture, mapping, d));
+        }
+    }
+    loader.reading.budget.release(bytes);
+    loader.picture(name, [width, height], texels)
 }
 
 #[cfg(test)]

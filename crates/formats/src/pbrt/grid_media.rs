@@ -1,7 +1,7 @@
 //! Media whose density a grid gives: in the file itself, or in a file of NanoVDB.
 
+use super::loader::Loader;
 use super::parameters::ParameterList;
-use super::reader::Pbrt;
 use crate::FormatError;
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
 use bilux_scene::media::Grid;
@@ -20,26 +20,47 @@ impl Density {
     fn is_placed_as(&self, shape_to_world: &DMat4) -> bool {
         self.to_world == *shape_to_world
     }
+
+    /// A grid in the space of a shape, whose medium has a place of its own in the world; `None` for a shape
+    /// without extent.
+    pub(super) fn within(
+        &self,
+        shape_to_world: &DMat4,
+        at: &Span,
+        loader: &mut Loader,
+    ) -> Result<Option<Arc<Grid>>, FormatError> {
+        if self.is_placed_as(shape_to_world) {
+            return Ok(Some(self.grid.clone()));
+        }
+        let to_medium = self.grid.to_object().matrix().as_dmat4();
+        let to_shape = shape_to_world.inverse() * self.to_world * to_medium;
+        let Some(to_shape) = Transform::from_matrix(to_shape) else { return Ok(None) };
+        let grid = Grid::clone(&self.grid).placed(&to_shape);
+        loader.reading.charge_grid(&grid, &at.file)?;
+        Ok(Some(Arc::new(grid)))
+    }
 }
 
-impl Pbrt<'_, '_> {
+/// Makes the grids that the parameters of a medium describe.
+pub(super) struct GridMaker<'m, 'o, 'r> {
+    /// The name of the medium.
+    pub(super) name: &'m str,
+    pub(super) list: &'m ParameterList,
+    /// The place of the medium.
+    pub(super) to_world: DMat4,
+    pub(super) loader: &'m mut Loader<'o, 'r>,
+}
+
+impl GridMaker<'_, '_, '_> {
     /// A grid of numbers in the list.
-    pub(super) fn uniform_grid(
-        &mut self,
-        name: &str,
-        key: &'static str,
-        list: &ParameterList,
-    ) -> Result<Density, FormatError> {
-        let numbers = list.numbers(key)?;
-        self.in_box(name, key, numbers.len(), |i| numbers[i], list)
+    pub(super) fn uniform(&mut self, key: &'static str) -> Result<Density, FormatError> {
+        let numbers = self.list.numbers(key)?;
+        self.in_box(key, numbers.len(), |i| numbers[i])
     }
 
     /// A grid of the colours of absorption and scattering: the luminance of both is the density, and their means are its colours.
-    pub(super) fn rgb_grid(
-        &mut self,
-        name: &str,
-        list: &ParameterList,
-    ) -> Result<([Rgb; 2], Density), FormatError> {
+    pub(super) fn coloured(&mut self) -> Result<([Rgb; 2], Density), FormatError> {
+        let list = self.list;
         let [absorption, scattering] = [list.triples("sigma_a")?, list.triples("sigma_s")?];
         let count = absorption.len().max(scattering.len());
         let of = |all: &[Vec3], i: usize| {
@@ -58,20 +79,19 @@ impl Pbrt<'_, '_> {
             Rgb::from_array(mean.as_vec3().to_array())
         };
         let what = "the colours of a medium of type 'rgbgrid' are the same everywhere here, and only its density varies";
-        self.oddities.note(what, || list.at.clone());
-        let density = self.in_box(name, "sigma_s", count, luminance, list)?;
+        self.loader.note(what, || list.at.clone());
+        let density = self.in_box("sigma_s", count, luminance)?;
         Ok(([mean(&absorption), mean(&scattering)], density))
     }
 
     /// A grid of numbers that fills the box of a medium. Towards the border they fade to 0 within a voxel, as in pbrt.
     fn in_box(
         &mut self,
-        name: &str,
         key: &str,
         count: usize,
         value: impl Fn(usize) -> f32,
-        list: &ParameterList,
     ) -> Result<Density, FormatError> {
+        let list = self.list;
         let mut size = [0usize; 3];
         for (side, key) in size.iter_mut().zip(["nx", "ny", "nz"]) {
             *side = usize::try_from(list.integer(key)?.unwrap_or(1)).unwrap_or(0);
@@ -93,7 +113,7 @@ impl Pbrt<'_, '_> {
         let file = &*list.at.file;
         // Numbers, and blocks as floats in a list that grows by doubling, and as halves.
         let bytes = padded.iter().fold(4 + 8 + 2, |bytes: u64, side| bytes.saturating_mul(*side as u64));
-        self.reading.budget.take_bytes(bytes, file)?;
+        self.loader.reading.budget.take_bytes(bytes, file)?;
         let mut values = vec![0.0; padded.iter().product()];
         let mut faults = 0;
         for i in 0..count {
@@ -106,16 +126,18 @@ impl Pbrt<'_, '_> {
         }
         if faults > 0 {
             let what = "numbers of a grid that are negative or not finite are taken as 0";
-            self.oddities.note(what, || list.place(key));
+            self.loader.note(what, || list.place(key));
         }
-        let grid = Grid::dense(name, padded, &to_medium, &values).map_err(|error| fail(error.to_string()))?;
-        self.reading.budget.release(bytes);
-        self.reading.charge_grid(&grid, file)?;
-        Ok(Density { grid: Arc::new(grid), to_world: self.state.matrices[0] })
+        let grid =
+            Grid::dense(self.name, padded, &to_medium, &values).map_err(|error| fail(error.to_string()))?;
+        self.loader.reading.budget.release(bytes);
+        self.loader.reading.charge_grid(&grid, file)?;
+        Ok(Density { grid: Arc::new(grid), to_world: self.to_world })
     }
 
     /// A cloud that is a formula, in the box of its medium.
-    pub(super) fn cloud(&mut self, list: &ParameterList) -> Result<Density, FormatError> {
+    pub(super) fn cloud(&mut self) -> Result<Density, FormatError> {
+        let list = self.list;
         let mut spec = Spec { span: list.at.clone(), ..Spec::new("", "cloud") };
         for (key, default) in [("density", 1.0), ("wispiness", 1.0), ("frequency", 5.0)] {
             let number = list.number(key)?.unwrap_or(default);
@@ -124,38 +146,24 @@ impl Pbrt<'_, '_> {
         for (key, corner, default) in [("from", "p0", Vec3::ZERO), ("to", "p1", Vec3::ONE)] {
             spec.parameters.set_at(key, Value::from(list.triple(corner, default)?), list.place(corner));
         }
-        let grid = self.reading.computed_grid(spec, &list.at.file)?;
-        Ok(Density { grid, to_world: self.state.matrices[0] })
+        let grid = self.loader.reading.computed_grid(spec, &list.at.file)?;
+        Ok(Density { grid, to_world: self.to_world })
     }
 
     /// A grid of a file; `None`, with a warning, if that cannot be read.
-    pub(super) fn nanovdb(&mut self, list: &ParameterList) -> Result<Option<Density>, FormatError> {
+    pub(super) fn nanovdb(&mut self) -> Result<Option<Density>, FormatError> {
+        let list = self.list;
         let Some(file) = list.text("filename")? else {
             return Err(FormatError::malformed(
                 "a medium of type 'nanovdb' needs a 'filename'",
                 list.at.clone(),
             ));
         };
-        let grid = self.reading.grid(self.folder.as_deref(), (file, "density"), &list.place("filename"))?;
-        Ok(Some(Density { grid, to_world: self.state.matrices[0] }))
-    }
-
-    /// A grid in the space of a shape, whose medium has a place of its own in the world; `None` for a shape
-    /// without extent.
-    pub(super) fn grid_in(
-        &mut self,
-        density: &Density,
-        shape_to_world: &DMat4,
-        at: &Span,
-    ) -> Result<Option<Arc<Grid>>, FormatError> {
-        if density.is_placed_as(shape_to_world) {
-            return Ok(Some(density.grid.clone()));
-        }
-        let to_medium = density.grid.to_object().matrix().as_dmat4();
-        let to_shape = shape_to_world.inverse() * density.to_world * to_medium;
-        let Some(to_shape) = Transform::from_matrix(to_shape) else { return Ok(None) };
-        let grid = Grid::clone(&density.grid).placed(&to_shape);
-        self.reading.charge_grid(&grid, &at.file)?;
-        Ok(Some(Arc::new(grid)))
+        let grid = self.loader.reading.grid(
+            self.loader.folder.as_deref(),
+            (file, "density"),
+            &list.place("filename"),
+        )?;
+        Ok(Some(Density { grid, to_world: self.to_world }))
     }
 }

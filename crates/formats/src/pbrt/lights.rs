@@ -3,12 +3,13 @@
 //! pbrt divides a light by the luminance of its spectrum, which for a colour is the luminance of white alone, and
 //! its default sensor maps a luminance of 1 to 1. So `rgb L` is the Rec. 709 radiance that the image shows.
 
+use super::entity::Entity;
 use super::environment;
+use super::light_maker::{LightMaker, picture_name};
+use super::names::unknown;
 use super::parameters::ParameterList;
-use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
-use super::texture_or_value::{SpectrumType, TextureOrValue};
-use super::unknown;
+use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
 use bilux_math::transcendental::cos_f64;
 use bilux_math::{DMat4, DVec3, Rgb, Vec3};
@@ -17,7 +18,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Builds a light; `None`, with a warning, if there is nothing to build.
-type Make = fn(&mut Pbrt, &ParameterList, &DMat4) -> Result<Option<Spec>, FormatError>;
+type Make = fn(&mut LightMaker, &ParameterList, &DMat4) -> Result<Option<Spec>, FormatError>;
 
 /// Every supported light.
 const LIGHTS: &[(&str, Make)] = &[
@@ -32,101 +33,20 @@ const LIGHTS: &[(&str, Make)] = &[
 /// Names from version 3.
 const OLD: &[(&str, Make)] = &[("exinfinite", environment::infinite)];
 
-/// The maximum value of a light.
-const MAX_LIGHT: f32 = 1e11;
-
-/// The emission of a surface.
-#[derive(Clone, Debug)]
-pub(super) struct AreaEmission {
-    pub(super) radiance: TextureOrValue,
-    pub(super) both_sides: bool,
-    /// The total power, per shape.
-    pub(super) power: Option<f32>,
-}
-
-impl Pbrt<'_, '_> {
-    /// Adds all lights that are not surfaces.
-    pub(super) fn place_lights(&mut self) -> Result<(), FormatError> {
-        for (entity, matrix) in std::mem::take(&mut self.lights) {
-            let list = &entity.parameters;
-            let Some((_, make)) = LIGHTS.iter().chain(OLD).find(|(name, _)| *name == entity.kind) else {
-                let names = LIGHTS.iter().map(|(name, _)| *name);
-                return Err(unknown("light", &entity.kind, names, &entity.at));
-            };
-            let made = make(self, list, &matrix)?;
-            list.report_unused(&mut self.oddities);
-            self.scene.lights.extend(made.map(|spec| Spec { span: entity.at.clone(), ..spec }));
-        }
-        Ok(())
-    }
-
-    /// The colour of a parameter, white by default, times the scales of the light and of the film.
-    pub(super) fn scaled_spectrum(
-        &mut self,
-        list: &ParameterList,
-        name: &'static str,
-    ) -> Result<Rgb, FormatError> {
-        let colour = self.spectrum(list, name, SpectrumType::Light)?.unwrap_or(Rgb::WHITE);
-        let shone = colour * self.light_scale(list)?;
-        if shone.max_channel() > MAX_LIGHT {
-            self.oddities.note("the brightness of a light overflows", || list.at.clone());
-        }
-        Ok(shone.clamp(0.0, MAX_LIGHT))
-    }
-
-    /// The scales of a light and of the film.
-    pub(super) fn light_scale(&mut self, list: &ParameterList) -> Result<Rgb, FormatError> {
-        // A colour in version 3.
-        let is_number = list.find("scale").is_none_or(|p| p.kind == super::parameters::Kind::Float);
-        let scale = if is_number {
-            Rgb::grey(list.finite("scale", 1.0)?)
-        } else {
-            self.spectrum(list, "scale", SpectrumType::Number)?.unwrap_or(Rgb::WHITE)
-        };
-        Ok(scale.map(|c| c.max(0.0)) * self.options.gain)
-    }
-
-    /// Reads the emission of a surface.
-    pub(super) fn glow(&mut self, entity: &Entity) -> Result<AreaEmission, FormatError> {
-        let list = &entity.parameters;
-        if entity.kind != "diffuse" && entity.kind != "area" {
-            return Err(unknown("area light", &entity.kind, ["diffuse"], &entity.at));
-        }
-        let radiance = match list.text("filename")? {
-            Some(name) => {
-                if list.has("L") {
-                    let message = "'L' and 'filename' both define this light's radiance: remove one of them";
-                    return Err(FormatError::malformed(message, list.place("L")));
-                }
-                let at = list.place("filename");
-                let picture = self.light_file(name, &at)?;
-                TextureOrValue::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
-            }
-            None => TextureOrValue::Colour(self.scaled_spectrum(list, "L")?),
-        };
-        for name in ["samples", "nsamples"] {
-            list.has(name);
-        }
-        let power = list.number("power")?.filter(|power| *power > 0.0);
-        let both_sides = list.flag("twosided", false)?;
-        list.report_unused(&mut self.oddities);
-        Ok(AreaEmission { radiance, both_sides, power })
-    }
-}
-
-impl AreaEmission {
-    /// The radiance of a shape with this area.
-    pub(super) fn radiance_of(&self, area: f64) -> TextureOrValue {
-        let Some(power) = self.power else { return self.radiance.clone() };
-        let mean = match &self.radiance {
-            TextureOrValue::Colour(_) => 1.0,
-            picture => f64::from(picture.mean().luminance()),
-        };
-        let sides = if self.both_sides { 2.0 } else { 1.0 };
-        let given = mean * sides * area * PI;
-        let factor = if given > 0.0 { f64::from(power) / given } else { 0.0 };
-        self.radiance.clone().scaled(Rgb::grey(factor as f32))
-    }
+/// A light that is not a surface; `None`, with a warning, if there is nothing to build.
+pub(super) fn light(
+    entity: &Entity,
+    to_world: &DMat4,
+    maker: &mut LightMaker,
+) -> Result<Option<Spec>, FormatError> {
+    let list = &entity.parameters;
+    let Some((_, make)) = LIGHTS.iter().chain(OLD).find(|(name, _)| *name == entity.kind) else {
+        let names = LIGHTS.iter().map(|(name, _)| *name);
+        return Err(unknown("light", &entity.kind, names, &entity.at));
+    };
+    let made = make(maker, list, to_world)?;
+    list.report_unused(&mut maker.textures.loader.oddities);
+    Ok(made.map(|spec| Spec { span: entity.at.clone(), ..spec }))
 }
 
 /// The position of a light in world space.
@@ -163,14 +83,18 @@ fn cone(position: DVec3, forward: DVec3, intensity: Rgb, [outer, inner]: [f32; 2
         .with("inner_angle", inner.clamp(0.0, 180.0))
 }
 
-fn point(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
-    let intensity = pbrt.scaled_spectrum(list, "I")? * power(list, 4.0 * PI)?;
+fn point(maker: &mut LightMaker, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let intensity = maker.scaled_spectrum(list, "I")? * power(list, 4.0 * PI)?;
     Ok(Some(at_point(from(list, matrix)?, intensity)))
 }
 
-fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+fn distant(
+    maker: &mut LightMaker,
+    list: &ParameterList,
+    matrix: &DMat4,
+) -> Result<Option<Spec>, FormatError> {
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0).unwrap_or(1.0);
-    let irradiance = pbrt.scaled_spectrum(list, "L")? * illuminance;
+    let irradiance = maker.scaled_spectrum(list, "L")? * illuminance;
     // In pbrt, light travels from `from` towards `to`.
     let to = list.triple("to", Vec3::Z)?.as_dvec3();
     let from = list.triple("from", Vec3::ZERO)?.as_dvec3();
@@ -184,50 +108,49 @@ fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Opti
     Ok(Some(spec.with("irradiance", irradiance)))
 }
 
-fn spot(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+fn spot(maker: &mut LightMaker, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
     let outer = list.finite("coneangle", 30.0)?;
     let inner = outer - list.finite("conedeltaangle", 5.0)?;
     let [cos_outer, cos_inner] = [outer, inner].map(|angle| cos_f64(f64::from(angle).to_radians()));
     // The smooth edge emits half of the light of its range of cosines.
     let all = TAU * (1.0 - 0.5 * (cos_inner + cos_outer));
-    let intensity = pbrt.scaled_spectrum(list, "I")? * power(list, all)?;
+    let intensity = maker.scaled_spectrum(list, "I")? * power(list, all)?;
     Ok(Some(cone(from(list, matrix)?, forward(list, matrix)?, intensity, [outer, inner])))
 }
 
-/// The name of a light's image, which version 3 stores under another key.
-pub(super) fn picture_name(list: &ParameterList) -> Result<Option<(String, bool)>, FormatError> {
-    for (name, is_old) in [("filename", false), ("mapname", true)] {
-        if let Some(file) = list.text(name)? {
-            return Ok(Some((file.to_owned(), is_old)));
-        }
-    }
-    Ok(None)
-}
-
 /// A light of equal intensity in all directions: the mean of its image, which is also its mean over the sphere.
-fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+fn goniometric(
+    maker: &mut LightMaker,
+    list: &ParameterList,
+    matrix: &DMat4,
+) -> Result<Option<Spec>, FormatError> {
     let mean = match picture_name(list)? {
         None => 1.0,
         Some((name, _)) => {
             let what = "a goniometric light shines uniformly in all directions, with the mean of its picture";
-            pbrt.oddities.note(what, || list.at.clone());
-            let picture = pbrt.light_file(&name, &list.place("filename"))?;
+            maker.textures.loader.note(what, || list.at.clone());
+            let picture = maker.textures.loader.light_file(&name, &list.place("filename"))?;
             let mean = TextureOrValue::Picture(Arc::new(picture)).mean();
             (mean.r + mean.g + mean.b) / 3.0
         }
     };
-    let intensity = pbrt.scaled_spectrum(list, "I")? * mean * power(list, 4.0 * PI * f64::from(mean))?;
+    let intensity = maker.scaled_spectrum(list, "I")? * mean * power(list, 4.0 * PI * f64::from(mean))?;
     Ok(Some(at_point(from(list, matrix)?, intensity)))
 }
 
 /// A spot light as wide as the image at its middle, with the image's mean intensity.
-fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+fn projection(
+    maker: &mut LightMaker,
+    list: &ParameterList,
+    matrix: &DMat4,
+) -> Result<Option<Spec>, FormatError> {
     let what = "a projection light shines uniformly into a cone, with the mean of its picture";
-    pbrt.oddities.note(what, || list.at.clone());
+    maker.textures.loader.note(what, || list.at.clone());
     let mean = match picture_name(list)? {
-        Some((name, _)) => {
-            TextureOrValue::Picture(Arc::new(pbrt.light_file(&name, &list.place("filename"))?)).mean()
-        }
+        Some((name, _)) => TextureOrValue::Picture(Arc::new(
+            maker.textures.loader.light_file(&name, &list.place("filename"))?,
+        ))
+        .mean(),
         None => {
             let what = "filename (of the projected picture)".to_owned();
             return Err(SceneError::Missing { what, at: list.at.clone() }.into());
@@ -237,7 +160,7 @@ fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<O
     let half = half_tangent(2.0 * half_angle);
     // The power of a square image as seen from the point; see [pbrt 2023, 12.2.2].
     let all = 4.0 * half * half * f64::from(mean.luminance()) / (1.0 + half * half);
-    let intensity = mean * pbrt.light_scale(list)? * power(list, all)?;
+    let intensity = mean * maker.light_scale(list)? * power(list, all)?;
     let position = matrix.transform_point3(DVec3::ZERO);
     let Some(forward) = matrix.transform_vector3(DVec3::Z).try_normalize() else { return Ok(None) };
     Ok(Some(cone(position, forward, intensity, [half_angle, half_angle])))

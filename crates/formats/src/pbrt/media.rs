@@ -1,14 +1,11 @@
 //! Participating media: the same everywhere, or as dense as a grid says.
 
-use super::grid_media::Density;
+use super::grid_media::{Density, GridMaker};
+use super::loader::{Loader, SpectrumType};
 use super::parameters::ParameterList;
-use super::reader::{Pbrt, Piece};
-use super::texture_or_value::SpectrumType;
-use super::unknown;
 use crate::FormatError;
 use bilux_math::{DMat4, Rgb};
 use bilux_scene::{Span, Spec, Value};
-use std::sync::Arc;
 
 /// The supported properties of a medium.
 #[derive(Clone, Debug, Default)]
@@ -67,128 +64,109 @@ pub(super) fn measured(name: &str) -> Option<[Rgb; 2]> {
     Some([Rgb::from_array(*scattering), Rgb::from_array(*absorption)])
 }
 
-impl Pbrt<'_, '_> {
-    /// Defines a medium.
-    pub(super) fn add_medium(&mut self, name: String, list: &ParameterList) -> Result<(), FormatError> {
-        let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
-        let scale = list.finite("scale", 1.0)?;
-        let anisotropy = list.finite("g", 0.0)?;
-        let ([absorption, scattering], density) = match kind.as_str() {
-            "homogeneous" => (self.coefficients(list)?, None),
-            "uniformgrid" => (self.coefficients(list)?, Some(self.uniform_grid(&name, "density", list)?)),
-            "nanovdb" => (self.coefficients(list)?, self.nanovdb(list)?),
-            "cloud" => (self.coefficients(list)?, Some(self.cloud(list)?)),
-            "rgbgrid" => {
-                let (coefficients, density) = self.rgb_grid(&name, list)?;
-                (coefficients, Some(density))
-            }
-            _ => {
-                let what = format!("a medium of type '{kind}' is not supported");
-                self.oddities.note(&what, || list.at.clone());
-                self.media.insert(name.into(), Medium::default());
-                return Ok(());
-            }
-        };
-        let (emission, emission_grid) = self.medium_emission(&name, &kind, list)?;
-        list.report_unused(&mut self.oddities);
-        let (absorption, scattering) = (absorption * scale, scattering * scale);
-        let medium = Medium { absorption, scattering, anisotropy, density, emission, emission_grid };
-        self.media.insert(name.into(), medium);
-        Ok(())
-    }
-
-    /// The radiance of a medium, and the grid that varies it.
-    fn medium_emission(
-        &mut self,
-        name: &str,
-        kind: &str,
-        list: &ParameterList,
-    ) -> Result<(Rgb, Option<Density>), FormatError> {
-        for about_temperature in ["temperaturescale", "temperatureoffset", "temperaturecutoff", "LeScale"] {
-            list.has(about_temperature);
+/// The medium with these parameters, in a space with this transform to world space.
+pub(super) fn read(
+    name: &str,
+    list: &ParameterList,
+    to_world: DMat4,
+    loader: &mut Loader,
+) -> Result<Medium, FormatError> {
+    let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
+    let scale = list.finite("scale", 1.0)?;
+    let anisotropy = list.finite("g", 0.0)?;
+    let mut grids = GridMaker { name, list, to_world, loader };
+    let ([absorption, scattering], density) = match kind.as_str() {
+        "homogeneous" => (coefficients(list, grids.loader)?, None),
+        "uniformgrid" => (coefficients(list, grids.loader)?, Some(grids.uniform("density")?)),
+        "nanovdb" => (coefficients(list, grids.loader)?, grids.nanovdb()?),
+        "cloud" => (coefficients(list, grids.loader)?, Some(grids.cloud()?)),
+        "rgbgrid" => {
+            let (coefficients, density) = grids.coloured()?;
+            (coefficients, Some(density))
         }
-        if list.has("temperature") {
-            let what = "emission by the temperature of a medium is not supported";
-            self.oddities.note(what, || list.place("temperature"));
-        }
-        if kind == "rgbgrid" && list.has("Le") {
-            self.oddities
-                .note("emission by a medium of type 'rgbgrid' is not supported", || list.place("Le"));
-        }
-        if kind == "rgbgrid" || kind == "nanovdb" {
-            list.has("Lescale");
-            return Ok((Rgb::BLACK, None));
-        }
-        let radiance = self.spectrum(list, "Le", SpectrumType::Light)?.unwrap_or(Rgb::BLACK);
-        if kind == "uniformgrid" && list.has("Lescale") {
-            let grid = self.uniform_grid(name, "Lescale", list)?;
-            return Ok((radiance, Some(grid)));
-        }
-        Ok((radiance * list.finite("Lescale", 1.0)?, None))
-    }
-
-    /// Absorption and scattering of a medium, without its scale.
-    fn coefficients(&mut self, list: &ParameterList) -> Result<[Rgb; 2], FormatError> {
-        let preset = list.text("preset")?;
-        let preset = match preset.map(|name| (name, measured(name))) {
-            Some((name, None)) => {
-                let what = format!("the measured medium '{name}' is not known and is ignored");
-                self.oddities.note(&what, || list.place("preset"));
-                None
-            }
-            Some((_, known)) => known,
-            None => None,
-        };
-        if let Some([scattering, absorption]) = preset {
-            return Ok([absorption, scattering]);
-        }
-        let mut given = |name| -> Result<Rgb, FormatError> {
-            Ok(self.spectrum(list, name, SpectrumType::Number)?.unwrap_or(Rgb::WHITE))
-        };
-        Ok([given("sigma_a")?, given("sigma_s")?])
-    }
-
-    /// The medium on one side of a surface; an error if it is not defined.
-    pub(super) fn medium_of(&mut self, name: &Arc<str>, at: &Span) -> Result<Medium, FormatError> {
-        if name.is_empty() {
+        _ => {
+            let what = format!("a medium of type '{kind}' is not supported");
+            grids.loader.note(&what, || list.at.clone());
             return Ok(Medium::default());
         }
-        match self.media.get(name) {
-            Some(medium) => Ok(medium.clone()),
-            None => {
-                let names = self.media.keys().map(|name| &**name);
-                Err(unknown("medium", name, names, at))
-            }
-        }
-    }
+    };
+    let (emission, emission_grid) = emission(&kind, &mut grids)?;
+    list.report_unused(&mut loader.oddities);
+    let (absorption, scattering) = (absorption * scale, scattering * scale);
+    Ok(Medium { absorption, scattering, anisotropy, density, emission, emission_grid })
+}
 
-    /// Fills a material with a medium.
-    pub(super) fn fill(
-        &mut self,
-        spec: &mut Spec,
-        medium: &Medium,
-        to_world: &DMat4,
-        piece: &Piece,
-    ) -> Result<(), FormatError> {
-        let is_interface = spec.kind == "interface";
-        let is_solid_glass = spec.kind == "dielectric" && spec.parameters.find("thin").is_none();
-        if !is_interface && !is_solid_glass {
-            let what = "a medium inside is supported only in dielectrics and interfaces";
-            self.oddities.note(what, || piece.at.clone());
-            return Ok(());
-        }
-        if !is_interface && (medium.density.is_some() || !medium.emission.is_black()) {
-            let what = "a medium that varies or emits light is supported only in interfaces";
-            self.oddities.note(what, || piece.at.clone());
-            return Ok(());
-        }
-        medium.fill(spec);
-        for (key, grid) in [("density", &medium.density), ("medium_emission_grid", &medium.emission_grid)] {
-            let Some(grid) = grid else { continue };
-            if let Some(grid) = self.grid_in(grid, to_world, &piece.at)? {
-                spec.parameters.set(key, Value::Grid(grid));
-            }
-        }
-        Ok(())
+/// The radiance of a medium, and the grid that varies it.
+fn emission(kind: &str, grids: &mut GridMaker) -> Result<(Rgb, Option<Density>), FormatError> {
+    let list = grids.list;
+    for about_temperature in ["temperaturescale", "temperatureoffset", "temperaturecutoff", "LeScale"] {
+        list.has(about_temperature);
     }
+    if list.has("temperature") {
+        let what = "emission by the temperature of a medium is not supported";
+        grids.loader.note(what, || list.place("temperature"));
+    }
+    if kind == "rgbgrid" && list.has("Le") {
+        grids.loader.note("emission by a medium of type 'rgbgrid' is not supported", || list.place("Le"));
+    }
+    if kind == "rgbgrid" || kind == "nanovdb" {
+        list.has("Lescale");
+        return Ok((Rgb::BLACK, None));
+    }
+    let radiance = grids.loader.spectrum(list, "Le", SpectrumType::Light)?.unwrap_or(Rgb::BLACK);
+    if kind == "uniformgrid" && list.has("Lescale") {
+        return Ok((radiance, Some(grids.uniform("Lescale")?)));
+    }
+    Ok((radiance * list.finite("Lescale", 1.0)?, None))
+}
+
+/// Absorption and scattering of a medium, without its scale.
+fn coefficients(list: &ParameterList, loader: &mut Loader) -> Result<[Rgb; 2], FormatError> {
+    let preset = list.text("preset")?;
+    let preset = match preset.map(|name| (name, measured(name))) {
+        Some((name, None)) => {
+            let what = format!("the measured medium '{name}' is not known and is ignored");
+            loader.note(&what, || list.place("preset"));
+            None
+        }
+        Some((_, known)) => known,
+        None => None,
+    };
+    if let Some([scattering, absorption]) = preset {
+        return Ok([absorption, scattering]);
+    }
+    let mut given = |name| -> Result<Rgb, FormatError> {
+        Ok(loader.spectrum(list, name, SpectrumType::Number)?.unwrap_or(Rgb::WHITE))
+    };
+    Ok([given("sigma_a")?, given("sigma_s")?])
+}
+
+/// Fills a material, which is on a shape with this transform to world space, with a medium.
+pub(super) fn fill(
+    spec: &mut Spec,
+    medium: &Medium,
+    to_world: &DMat4,
+    at: &Span,
+    loader: &mut Loader,
+) -> Result<(), FormatError> {
+    let is_interface = spec.kind == "interface";
+    let is_solid_glass = spec.kind == "dielectric" && spec.parameters.find("thin").is_none();
+    if !is_interface && !is_solid_glass {
+        let what = "a medium inside is supported only in dielectrics and interfaces";
+        loader.note(what, || at.clone());
+        return Ok(());
+    }
+    if !is_interface && (medium.density.is_some() || !medium.emission.is_black()) {
+        let what = "a medium that varies or emits light is supported only in interfaces";
+        loader.note(what, || at.clone());
+        return Ok(());
+    }
+    medium.fill(spec);
+    for (key, grid) in [("density", &medium.density), ("medium_emission_grid", &medium.emission_grid)] {
+        let Some(grid) = grid else { continue };
+        if let Some(grid) = grid.within(to_world, at, loader)? {
+            spec.parameters.set(key, Value::Grid(grid));
+        }
+    }
+    Ok(())
 }

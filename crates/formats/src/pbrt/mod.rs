@@ -2,31 +2,42 @@
 
 mod cameras;
 mod colours;
+mod directive;
 mod directives;
+mod document;
+mod entity;
 mod environment;
 mod finish;
 mod grid_media;
 mod gzip;
+mod includes;
 mod lexer;
+mod light_maker;
 mod lights;
+mod loader;
 mod materials;
 mod media;
 mod metals;
+mod motion;
+mod names;
 mod options;
 mod parameters;
+mod parser;
+mod placing;
 mod reader;
+mod scopes;
 mod shapes;
 mod spectra;
 mod state;
+mod surfaces;
 mod texture_or_value;
 mod textures;
 mod transforms;
 mod write;
 
-use crate::FormatError;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
-use bilux_scene::{Axis, SceneError, Span, UpHint};
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -62,23 +73,4 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
 fn sniff(bytes: &[u8]) -> bool {
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
     start.lines().any(|line| line.trim() == "WorldBegin")
-}
-
-/// The error for an unknown name. Names come from untrusted files, so only a few, shortened ones are compared.
-fn unknown<'n>(
-    what: impl Into<String>,
-    name: &str,
-    known: impl IntoIterator<Item = &'n str>,
-    at: &Span,
-) -> FormatError {
-    const MAX: usize = 100;
-    let mut known: Vec<&str> = known.into_iter().filter(|known| known.len() <= MAX).collect();
-    known.sort_unstable();
-    known.truncate(MAX);
-    SceneError::unknown(what, &shortened(name), known, at).into()
-}
-
-/// The beginning of a name.
-fn shortened(name: &str) -> String {
-    name.chars().take(60).collect()
 }

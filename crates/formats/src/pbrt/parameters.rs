@@ -2,7 +2,7 @@
 
 use super::colours::ColourSpace;
 use super::lexer::{Lexer, Token, number_of, shown};
-use super::{shortened, unknown};
+use super::names::{shortened, unknown};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::oddities::Oddities;

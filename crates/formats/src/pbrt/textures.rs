@@ -1,46 +1,45 @@
 //! Named textures. Images stay images; textures that combine others are evaluated, and baked if necessary.
 
+use super::document::NamedTextures;
+use super::entity::Entity;
+use super::loader::{Loader, SpectrumType};
+use super::names::unknown;
 use super::parameters::{Kind, ParameterList};
-use super::reader::{Entity, Pbrt};
-use super::texture_or_value::{SpectrumType, TextureOrValue};
-use super::unknown;
+use super::texture_or_value::{TextureOrValue, by_formula};
 use crate::FormatError;
 use crate::reading::Texels;
+use bilux_math::Rgb;
 use bilux_math::transcendental::powf;
-use bilux_math::{DMat4, Rgb};
 use bilux_scene::texture::{Filter, UvTransform, Wrap};
-use bilux_scene::{SceneError, Span, Texture};
+use bilux_scene::{SceneError, Span, Texture, Value};
 use std::collections::HashMap;
-use std::rc::Rc;
 use std::sync::Arc;
 
-/// Textures by name: those of colours, and those of numbers.
-#[derive(Default)]
-pub(super) struct NamedTextures {
-    named: [HashMap<String, Slot>; 2],
+/// Evaluates parameters that may be textures, and puts those that are used into the scene.
+pub(super) struct Textures<'d, 'o, 'r> {
+    defined: &'d NamedTextures,
+    /// Those evaluated so far.
+    made: [HashMap<String, MadeTexture>; 2],
     /// The number of textures around the one that is being evaluated.
     depth: usize,
+    /// The textures of the scene.
+    pub(super) in_scene: Vec<Arc<Texture>>,
+    /// Their indices.
+    placed: HashMap<*const Texture, usize>,
+    pub(super) loader: Loader<'o, 'r>,
 }
 
-#[derive(Clone)]
-enum Slot {
-    Defined(Rc<Entity>),
+enum MadeTexture {
     /// Currently being evaluated.
     Open,
     Ready(TextureOrValue),
 }
 
-impl NamedTextures {
-    pub(super) fn define(&mut self, name: String, is_number: bool, entity: Entity, _matrix: DMat4) {
-        self.named[usize::from(is_number)].insert(name, Slot::Defined(Rc::new(entity)));
-    }
-}
-
 /// Deeper nesting of textures is refused, since each level uses some of the stack.
 const MAX_DEPTH: usize = 32;
 
-/// Builds a texture.
-type Make = fn(&mut Pbrt, &ParameterList, SpectrumType) -> Result<TextureOrValue, FormatError>;
+/// Makes a texture.
+type Make = fn(&mut Textures, &ParameterList, SpectrumType) -> Result<TextureOrValue, FormatError>;
 
 /// Every supported texture.
 const TEXTURES: &[(&str, Make)] = &[
@@ -64,7 +63,12 @@ const PLAIN: &[(&str, [f32; 3])] = &[
     ("uv", [0.5, 0.5, 0.0]),
 ];
 
-impl Pbrt<'_, '_> {
+impl<'d, 'o, 'r> Textures<'d, 'o, 'r> {
+    pub(super) fn new(defined: &'d NamedTextures, loader: Loader<'o, 'r>) -> Textures<'d, 'o, 'r> {
+        let (made, placed) = (<[HashMap<String, MadeTexture>; 2]>::default(), HashMap::new());
+        Textures { defined, made, depth: 0, placed, in_scene: Vec::new(), loader }
+    }
+
     /// The colour or texture of a parameter.
     pub(super) fn texture_or_value(
         &mut self,
@@ -75,7 +79,7 @@ impl Pbrt<'_, '_> {
         let Some(parameter) = list.find(name) else { return Ok(None) };
         match (parameter.kind, parameter.text()) {
             (Kind::Texture, Some(texture)) => self.texture(texture, meaning, &parameter.at).map(Some),
-            _ => Ok(Some(TextureOrValue::Colour(self.colour_of(parameter, meaning)?))),
+            _ => Ok(Some(TextureOrValue::Colour(self.loader.colour_of(parameter, meaning)?))),
         }
     }
 
@@ -101,29 +105,30 @@ impl Pbrt<'_, '_> {
     ) -> Result<TextureOrValue, FormatError> {
         let wanted = usize::from(meaning == SpectrumType::Number);
         // A colour in place of a number, or the reverse, is better than nothing.
-        let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.named[*i].contains_key(name));
-        let Some(slot) = slot else {
-            let names = self.textures.named.iter().flat_map(|all| all.keys()).map(String::as_str);
+        let slot = [wanted, 1 - wanted].into_iter().find(|i| self.defined[*i].contains_key(name));
+        let defined = slot.and_then(|slot| Some((slot, self.defined[slot].get(name)?)));
+        let Some((slot, entity)) = defined else {
+            let names = self.defined.iter().flat_map(|all| all.keys()).map(String::as_str);
             return Err(unknown("texture", name, names, at));
         };
-        let entity = match self.textures.named[slot].get(name) {
-            Some(Slot::Ready(source)) => return Ok(source.clone()),
-            Some(Slot::Defined(entity)) => entity.clone(),
-            _ => {
+        match self.made[slot].get(name) {
+            Some(MadeTexture::Ready(source)) => return Ok(source.clone()),
+            Some(MadeTexture::Open) => {
                 let message = format!("the texture '{name}' contains itself, directly or through others");
                 return Err(FormatError::malformed(message, at.clone()));
             }
-        };
-        self.textures.named[slot].insert(name.to_owned(), Slot::Open);
+            None => {}
+        }
+        self.made[slot].insert(name.to_owned(), MadeTexture::Open);
         let meaning = if slot == 1 { SpectrumType::Number } else { SpectrumType::Surface };
-        self.textures.depth += 1;
-        if self.textures.depth > MAX_DEPTH {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
             let message = format!("textures are nested more than {MAX_DEPTH} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
-        let source = self.make_texture(&entity, meaning)?;
-        self.textures.depth -= 1;
-        self.textures.named[slot].insert(name.to_owned(), Slot::Ready(source.clone()));
+        let source = self.make_texture(entity, meaning)?;
+        self.depth -= 1;
+        self.made[slot].insert(name.to_owned(), MadeTexture::Ready(source.clone()));
         Ok(source)
     }
 
@@ -135,7 +140,7 @@ impl Pbrt<'_, '_> {
         let list = &entity.parameters;
         if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
             let source = make(self, list, meaning)?;
-            list.report_unused(&mut self.oddities);
+            list.report_unused(&mut self.loader.oddities);
             return Ok(source);
         }
         let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {
@@ -143,7 +148,7 @@ impl Pbrt<'_, '_> {
             return Err(unknown("texture", &entity.kind, names, &entity.at));
         };
         let what = format!("the texture '{}' is not supported: one colour is used instead", entity.kind);
-        self.oddities.note(&what, || entity.at.clone());
+        self.loader.note(&what, || entity.at.clone());
         Ok(TextureOrValue::Colour(Rgb::from_array(*plain)))
     }
 
@@ -168,7 +173,7 @@ impl Pbrt<'_, '_> {
         if mapping != "uv" {
             let what =
                 format!("the mapping '{mapping}' is not supported: the meshes' texture coordinates are used");
-            self.oddities.note(&what, || list.place("mapping"));
+            self.loader.note(&what, || list.place("mapping"));
             for name in ["v1", "v2", "udelta", "vdelta", "uscale", "vscale"] {
                 list.has(name);
             }
@@ -182,129 +187,144 @@ impl Pbrt<'_, '_> {
         ])
     }
 
-    /// An image from a file; a magenta checker, with a warning, if it cannot be read.
-    pub(super) fn file(&mut self, name: &str, holds: Texels, at: &Span) -> Result<Texture, FormatError> {
-        self.file_or(name, holds, at, "a magenta checker", Texture::missing)
-    }
-
-    /// The image of a light; a uniform grey, with a warning, if it cannot be read: any colour would tint the whole
-    /// scene.
-    pub(super) fn light_file(&mut self, name: &str, at: &Span) -> Result<Texture, FormatError> {
-        self.file_or(name, Texels::Colours, at, "a uniform grey of 0.5", Texture::missing_light)
-    }
-
-    fn file_or(
-        &mut self,
-        name: &str,
-        holds: Texels,
-        at: &Span,
-        stands_in: &str,
-        make: fn(&str) -> Texture,
-    ) -> Result<Texture, FormatError> {
-        match self.reading.texture(self.folder.as_deref(), name, holds, at) {
-            Ok(texture) => Ok((*texture).clone()),
-            Err(error @ FormatError::TooLarge { .. }) => Err(error),
-            Err(error) => {
-                let reason = error.without_place();
-                let what = format!("a texture is replaced by {stands_in}: {reason}");
-                self.oddities.note(&what, || at.clone());
-                Ok(make(name))
-            }
+    /// The value of a Bilux parameter.
+    pub(super) fn value(&mut self, source: TextureOrValue) -> Value {
+        match source {
+            TextureOrValue::Colour(colour) => colour.into(),
+            TextureOrValue::Picture(picture) => self.texture_value(picture),
         }
+    }
+
+    /// The value of a Bilux parameter that is a single number.
+    pub(super) fn number_value(&mut self, source: TextureOrValue, [min, max]: [f32; 2]) -> Value {
+        match source {
+            TextureOrValue::Colour(colour) => colour.r.clamp(min, max).into(),
+            TextureOrValue::Picture(picture) => self.texture_value(picture),
+        }
+    }
+
+    /// Adds a texture to the scene once.
+    fn texture_value(&mut self, picture: Arc<Texture>) -> Value {
+        let index = *self.placed.entry(Arc::as_ptr(&picture)).or_insert_with(|| {
+            self.in_scene.push(picture);
+            self.in_scene.len() - 1
+        });
+        Value::Texture(index)
     }
 }
 
 fn constant(
-    pbrt: &mut Pbrt,
+    textures: &mut Textures,
     list: &ParameterList,
     meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
-    pbrt.part(list, "value", meaning, 1.0)
+    textures.part(list, "value", meaning, 1.0)
 }
 
 /// The product of two textures; in version 4, of a texture and a number.
 fn scale(
-    pbrt: &mut Pbrt,
+    textures: &mut Textures,
     list: &ParameterList,
     meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
     let (a, b) = if list.has("tex1") || list.has("tex2") {
-        (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
+        (textures.part(list, "tex1", meaning, 1.0)?, textures.part(list, "tex2", meaning, 1.0)?)
     } else {
-        (pbrt.part(list, "tex", meaning, 1.0)?, pbrt.part(list, "scale", SpectrumType::Number, 1.0)?)
+        (textures.part(list, "tex", meaning, 1.0)?, textures.part(list, "scale", SpectrumType::Number, 1.0)?)
     };
     match (a, b) {
         (TextureOrValue::Colour(colour), other) | (other, TextureOrValue::Colour(colour)) => {
             Ok(other.scaled(colour))
         }
-        (a, b) => pbrt.by_formula("scale", [("a", &a), ("b", &b)], &[], |uv| a.at(uv) * b.at(uv)),
+        (a, b) => {
+            by_formula("scale", [("a", &a), ("b", &b)], &[], |uv| a.at(uv) * b.at(uv), &mut textures.loader)
+        }
     }
 }
 
-fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: SpectrumType) -> Result<TextureOrValue, FormatError> {
-    let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
-    let amount = pbrt.part(list, "amount", SpectrumType::Number, 0.5)?;
+fn mix(
+    textures: &mut Textures,
+    list: &ParameterList,
+    meaning: SpectrumType,
+) -> Result<TextureOrValue, FormatError> {
+    let (a, b) = (textures.part(list, "tex1", meaning, 0.0)?, textures.part(list, "tex2", meaning, 1.0)?);
+    let amount = textures.part(list, "amount", SpectrumType::Number, 0.5)?;
     let blend = |a: Rgb, b: Rgb, t: Rgb| a + (b + a * -1.0) * t;
     match (a, b, amount) {
         (TextureOrValue::Colour(a), TextureOrValue::Colour(b), TextureOrValue::Colour(t)) => {
             Ok(TextureOrValue::Colour(blend(a, b, t)))
         }
-        (a, b, amount) => pbrt.by_formula("mix", [("a", &a), ("b", &b), ("amount", &amount)], &[], |uv| {
-            blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance()))
-        }),
+        (a, b, amount) => by_formula(
+            "mix",
+            [("a", &a), ("b", &b), ("amount", &amount)],
+            &[],
+            |uv| blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance())),
+            &mut textures.loader,
+        ),
     }
 }
 
 /// A mix by the orientation of the surface, approximated by its mean.
 fn direction_mix(
-    pbrt: &mut Pbrt,
+    textures: &mut Textures,
     list: &ParameterList,
     meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
-    let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
+    let (a, b) = (textures.part(list, "tex1", meaning, 0.0)?, textures.part(list, "tex2", meaning, 1.0)?);
     list.has("dir");
     let what = "the texture 'directionmix' is not supported: the mean of its parts is used instead";
-    pbrt.oddities.note(what, || list.at.clone());
+    textures.loader.note(what, || list.at.clone());
     Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5))
 }
 
 fn checkerboard(
-    pbrt: &mut Pbrt,
+    textures: &mut Textures,
     list: &ParameterList,
     meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
-    let (a, b) = (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 0.0)?);
+    let (a, b) = (textures.part(list, "tex1", meaning, 1.0)?, textures.part(list, "tex2", meaning, 0.0)?);
     if list.integer("dimension")?.unwrap_or(2) == 3 {
         let what = "a three-dimensional checkerboard is not supported: the mean of its parts is used instead";
-        pbrt.oddities.note(what, || list.at.clone());
+        textures.loader.note(what, || list.at.clone());
         return Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5));
     }
     list.has("aamode");
-    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
+    let [su, sv, du, dv] = textures.uv_mapping(list)?;
     let placement = [("u_scale", su), ("v_scale", sv), ("u_offset", du), ("v_offset", dv)];
-    pbrt.by_formula("checker", [("a", &a), ("b", &b)], &placement, |uv| {
-        let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
-        if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
-    })
+    by_formula(
+        "checker",
+        [("a", &a), ("b", &b)],
+        &placement,
+        |uv| {
+            let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
+            if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
+        },
+        &mut textures.loader,
+    )
 }
 
 fn bilerp(
-    pbrt: &mut Pbrt,
+    textures: &mut Textures,
     list: &ParameterList,
     meaning: SpectrumType,
 ) -> Result<TextureOrValue, FormatError> {
-    let mut corner = |name, default| Ok::<_, FormatError>(pbrt.part(list, name, meaning, default)?.mean());
+    let mut corner =
+        |name, default| Ok::<_, FormatError>(textures.part(list, name, meaning, default)?.mean());
     let (v00, v01, v10, v11) =
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
-    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
-    let ramp = pbrt.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
+    let [su, sv, du, dv] = textures.uv_mapping(list)?;
+    let ramp = textures.loader.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
     // The centres of the four texels are the corners.
     let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
     let transform = Some(UvTransform::new(offset, 0.0, [0.5 * su, 0.5 * sv]));
     Ok(TextureOrValue::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
 }
 
-fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: SpectrumType) -> Result<TextureOrValue, FormatError> {
+fn image_map(
+    textures: &mut Textures,
+    list: &ParameterList,
+    _: SpectrumType,
+) -> Result<TextureOrValue, FormatError> {
     let Some(name) = list.text("filename")? else {
         let what = "filename (of the picture)".to_owned();
         return Err(SceneError::Missing { what, at: list.at.clone() }.into());
@@ -318,37 +338,37 @@ fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: SpectrumType) -> Result<T
     // A parameter of version 3.
     let is_linear = encoding == "linear" || gamma.is_some() || !list.flag("gamma", true)?;
     let holds = if is_linear { Texels::Numbers(None) } else { Texels::Colours };
-    let mut texture = pbrt.file(name, holds, &at)?;
-    texture.wrap = [wrap(pbrt, list)?; 2];
+    let mut texture = textures.loader.file(name, holds, &at)?;
+    texture.wrap = [wrap(textures, list)?; 2];
     for name in ["maxanisotropy", "trilinear"] {
         list.has(name);
     }
     if list.text("filter")? == Some("point") {
         texture.filter = Filter::Nearest;
     }
-    let [su, sv, du, dv] = pbrt.uv_mapping(list)?;
+    let [su, sv, du, dv] = textures.uv_mapping(list)?;
     if [su, sv, du, dv] != [1.0, 1.0, 0.0, 0.0] {
         // Rows run downwards, but t points upwards.
         texture.transform = Some(UvTransform::new([du, 1.0 - sv - dv], 0.0, [su, sv]));
     }
     let mut source = TextureOrValue::Picture(Arc::new(texture));
     if let Some(gamma) = gamma {
-        source = pbrt.mapped(source, |c| c.map(|c| powf(c.max(0.0), gamma)))?;
+        source = source.mapped(|c| c.map(|c| powf(c.max(0.0), gamma)), &mut textures.loader)?;
     }
     source = source.scaled(Rgb::grey(list.finite("scale", 1.0)?));
     if list.flag("invert", false)? {
-        source = pbrt.mapped(source, |c| c.map(|c| (1.0 - c).max(0.0)))?;
+        source = source.mapped(|c| c.map(|c| (1.0 - c).max(0.0)), &mut textures.loader)?;
     }
     Ok(source)
 }
 
-fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {
+fn wrap(textures: &mut Textures, list: &ParameterList) -> Result<Wrap, FormatError> {
     Ok(match list.text("wrap")?.unwrap_or("repeat") {
         "repeat" => Wrap::Repeat,
         "clamp" => Wrap::Clamp,
         other @ ("black" | "octahedralsphere") => {
             let what = format!("the wrap mode '{other}' is not supported: the texture's edge is repeated");
-            pbrt.oddities.note(&what, || list.place("wrap"));
+            textures.loader.note(&what, || list.place("wrap"));
             Wrap::Clamp
         }
         other => {

@@ -1,9 +1,9 @@
 //! The transform directives.
 
-use super::directives::Directive;
+use super::directive::Directive;
 use super::lexer::{Token, shown};
+use super::names::unknown;
 use super::state::{look_at, rotation};
-use super::unknown;
 use crate::FormatError;
 use bilux_math::glam::DVec4;
 use bilux_math::{DMat4, DVec3};
@@ -13,35 +13,36 @@ impl Directive<'_, '_, '_, '_> {
         match word {
             b"CoordinateSystem" => {
                 let (name, _) = self.lexer.text("the name of a coordinate system")?;
-                self.pbrt.systems.insert(name, self.pbrt.state.matrices);
+                self.parser.graphics.systems.insert(name, self.parser.graphics.state.matrices);
                 return Ok(());
             }
             b"CoordSysTransform" => {
                 let (name, at) = self.lexer.text("the name of a coordinate system")?;
-                let Some(matrices) = self.pbrt.systems.get(&name) else {
-                    let names = self.pbrt.systems.keys().map(String::as_str);
+                let Some(matrices) = self.parser.graphics.systems.get(&name) else {
+                    let names = self.parser.graphics.systems.keys().map(String::as_str);
                     let at = self.lexer.place(at);
                     return Err(unknown("coordinate system", &name, names, &at));
                 };
-                self.pbrt.state.matrices = *matrices;
+                self.parser.graphics.state.matrices = *matrices;
                 return Ok(());
             }
             b"ActiveTransform" => return self.active_transform(),
             b"TransformTimes" => {
-                self.pbrt.options.times = [self.lexer.number("a time")?, self.lexer.number("a time")?];
+                self.parser.document.options.times =
+                    [self.lexer.number("a time")?, self.lexer.number("a time")?];
                 return Ok(());
             }
-            b"Identity" => self.pbrt.state.change(|_| DMat4::IDENTITY),
+            b"Identity" => self.parser.graphics.state.change(|_| DMat4::IDENTITY),
             b"Transform" => {
                 let matrix = self.matrix()?;
-                self.pbrt.state.change(|_| matrix);
+                self.parser.graphics.state.change(|_| matrix);
             }
             _ => {
                 let matrix = self.step(word)?;
-                self.pbrt.state.change(|before| before * matrix);
+                self.parser.graphics.state.change(|before| before * matrix);
             }
         }
-        if self.pbrt.state.matrices.iter().all(DMat4::is_finite) {
+        if self.parser.graphics.state.matrices.iter().all(DMat4::is_finite) {
             return Ok(());
         }
         self.error("this transform overflows")
@@ -49,7 +50,7 @@ impl Directive<'_, '_, '_, '_> {
 
     fn active_transform(&mut self) -> Result<(), FormatError> {
         let (token, at) = self.lexer.need("All, StartTime or EndTime")?;
-        self.pbrt.state.is_active = match token {
+        self.parser.graphics.state.is_active = match token {
             Token::Word(b"All") => [true, true],
             Token::Word(b"StartTime") => [true, false],
             Token::Word(b"EndTime") => [false, true],
@@ -120,7 +121,7 @@ impl Directive<'_, '_, '_, '_> {
             return matrix;
         }
         let what = "a matrix does not end in the row 0 0 0 1: its affine part is used";
-        self.pbrt.oddities.note(what, || self.at.clone());
+        self.parser.loader.note(what, || self.at.clone());
         // Points are divided by their homogeneous coordinate, so a single number there scales all of them.
         let is_scale = last.truncate() == DVec3::ZERO && last.w != 0.0;
         let affine = if is_scale { matrix * last.w.recip() } else { matrix };

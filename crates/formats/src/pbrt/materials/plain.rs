@@ -1,40 +1,43 @@
 //! Materials with one layer.
 
+use super::super::loader::SpectrumType;
 use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
-use super::super::reader::Pbrt;
 use super::super::spectra::{Named, named};
-use super::super::texture_or_value::{SpectrumType, TextureOrValue};
+use super::super::texture_or_value::TextureOrValue;
+use super::maker::MaterialMaker;
 use super::roughness::{Names, OWN, PLAIN};
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
-pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflectance = pbrt
+pub(super) fn diffuse(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let reflectance = maker
+        .textures
         .texture_or_value(list, "reflectance", SpectrumType::Surface)?
         .unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let mut spec = Spec::new("", "diffuse");
-    pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
+    maker.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
     Ok(Some(spec))
 }
 
 /// An interface is invisible; only the media on its two sides may differ.
-pub(super) fn interface(_: &mut Pbrt, _: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn interface(_: &mut MaterialMaker, _: &ParameterList) -> Result<Option<Spec>, FormatError> {
     Ok(None)
 }
 
 /// A thin diffuse sheet without a boundary, which also transmits scattered light.
 pub(super) fn diffuse_transmission(
-    pbrt: &mut Pbrt,
+    maker: &mut MaterialMaker,
     list: &ParameterList,
 ) -> Result<Option<Spec>, FormatError> {
     let scale = Rgb::grey(list.finite("scale", 1.0)?);
     let source = |found: Option<TextureOrValue>| {
         found.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.25))).scaled(scale)
     };
-    let reflectance = source(pbrt.texture_or_value(list, "reflectance", SpectrumType::Surface)?);
-    let transmittance = source(pbrt.texture_or_value(list, "transmittance", SpectrumType::Surface)?);
+    let reflectance = source(maker.textures.texture_or_value(list, "reflectance", SpectrumType::Surface)?);
+    let transmittance =
+        source(maker.textures.texture_or_value(list, "transmittance", SpectrumType::Surface)?);
     let share = transmitted_fraction(&reflectance, &transmittance);
     let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
     spec.parameters.set("diffuse_transmission_weight", share);
@@ -49,7 +52,7 @@ pub(super) fn diffuse_transmission(
             TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour.clamp(0.0, 1.0)),
             picture => picture,
         };
-        pbrt.set(&mut spec, key, held, list.place(name));
+        maker.set(&mut spec, key, held, list.place(name));
     }
     Ok(Some(spec))
 }
@@ -65,45 +68,53 @@ fn transmitted_fraction(reflectance: &TextureOrValue, transmittance: &TextureOrV
     }
 }
 
-pub(super) fn dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let mut spec = glass(pbrt, list)?;
-    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
+pub(super) fn dielectric(
+    maker: &mut MaterialMaker,
+    list: &ParameterList,
+) -> Result<Option<Spec>, FormatError> {
+    let mut spec = glass(maker, list)?;
+    maker.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
     Ok(Some(spec))
 }
 
-pub(super) fn thin_dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    Ok(Some(glass(pbrt, list)?.with("thin", true)))
+pub(super) fn thin_dielectric(
+    maker: &mut MaterialMaker,
+    list: &ParameterList,
+) -> Result<Option<Spec>, FormatError> {
+    Ok(Some(glass(maker, list)?.with("thin", true)))
 }
 
-fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
-    let (index, dispersion) = pbrt.refraction(list, "eta")?.unwrap_or((1.5, Some(0.0)));
-    let spec = Spec::new("", "dielectric").with("eta", pbrt.clamped_index(index, list));
+fn glass(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Spec, FormatError> {
+    let (index, dispersion) = maker.refraction(list, "eta")?.unwrap_or((1.5, Some(0.0)));
+    let spec = Spec::new("", "dielectric").with("eta", maker.clamped_index(index, list));
     Ok(match dispersion {
         Some(0.0) => spec,
         Some(dispersion) => spec.with("dispersion", dispersion),
         None => {
-            pbrt.refracts_alike(list, "eta");
+            maker.refracts_alike(list, "eta");
             spec
         }
     })
 }
 
-impl Pbrt<'_, '_> {
+impl MaterialMaker<'_, '_, '_> {
     /// The index of refraction, clamped to the supported range.
     pub(super) fn clamped_index(&mut self, index: f32, list: &ParameterList) -> f32 {
         let held = if index.is_finite() { index.clamp(0.1, 10.0) } else { 1.5 };
         if held != index {
-            self.oddities
-                .note("a refractive index is out of range: it is limited to 0.1 to 10", || list.place("eta"));
+            self.note("a refractive index is out of range: it is limited to 0.1 to 10", || list.place("eta"));
         }
         held
     }
 }
 
-pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn conductor(
+    maker: &mut MaterialMaker,
+    list: &ParameterList,
+) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "conductor");
-    pbrt.set_metal(&mut spec, list, ["eta", "k"])?;
-    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
+    maker.set_metal(&mut spec, list, ["eta", "k"])?;
+    maker.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
     Ok(Some(spec))
 }
 
@@ -115,7 +126,7 @@ pub(super) enum Metal {
     Indices([Rgb; 2]),
 }
 
-impl Pbrt<'_, '_> {
+impl MaterialMaker<'_, '_, '_> {
     /// Reads a metal; `names` are the parameters of its index of refraction and of its extinction.
     pub(super) fn metal(
         &mut self,
@@ -123,7 +134,9 @@ impl Pbrt<'_, '_> {
         [eta_name, k_name]: [&'static str; 2],
     ) -> Result<Metal, FormatError> {
         let given = list.has(eta_name) || list.has(k_name);
-        if let Some(reflectance) = self.texture_or_value(list, "reflectance", SpectrumType::Surface)? {
+        if let Some(reflectance) =
+            self.textures.texture_or_value(list, "reflectance", SpectrumType::Surface)?
+        {
             if given {
                 let message =
                     "'reflectance' and a refractive index both define the metal: remove one of them";
@@ -144,23 +157,23 @@ impl Pbrt<'_, '_> {
             return Ok(Metal::Indices(metals::indices(metal)));
         }
         let spectra = match (list.find(eta_name), list.find(k_name)) {
-            (Some(eta), Some(k)) => (self.whole_spectrum(eta)?, self.whole_spectrum(k)?),
+            (Some(eta), Some(k)) => (self.loader().whole_spectrum(eta)?, self.loader().whole_spectrum(k)?),
             _ => (None, None),
         };
         if let (Some(eta), Some(k)) = spectra {
             let Reduced { indices, is_cut } = metals::from_spectra(&eta, &k);
             if is_cut {
                 let what = "a metal's colour lies outside sRGB: the nearest sRGB colour is used";
-                self.oddities.note(what, || list.place(eta_name));
+                self.note(what, || list.place(eta_name));
             }
             return Ok(Metal::Indices(indices));
         }
         let [eta, k] = metals::indices("copper");
         let mut part = |name, default| {
-            let source = self.texture_or_value(list, name, SpectrumType::Number)?;
+            let source = self.textures.texture_or_value(list, name, SpectrumType::Number)?;
             if let Some(TextureOrValue::Picture(_)) = &source {
                 let what = "a refractive index from a texture is not supported: its mean is used";
-                self.oddities.note(what, || list.place(name));
+                self.note(what, || list.place(name));
             }
             Ok::<_, FormatError>(source.map_or(default, |source| source.mean()))
         };
@@ -207,21 +220,21 @@ pub(in crate::pbrt) fn extinction_of(reflectance: Rgb) -> Rgb {
     })
 }
 
-pub(super) fn measured(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn measured(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let what = "measured materials are not supported: a grey one is used instead";
-    pbrt.oddities.note(what, || list.at.clone());
+    maker.note(what, || list.at.clone());
     for name in ["filename", "bsdffile"] {
         list.has(name);
     }
     Ok(Some(Spec::new("", "diffuse").with("reflectance", 0.5f32)))
 }
 
-pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn hair(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let what = "hair is shown as opaque glossy fibres";
-    pbrt.oddities.note(what, || list.at.clone());
+    maker.note(what, || list.at.clone());
     let mut colour = None;
     for name in ["reflectance", "color"] {
-        colour = colour.or(pbrt.texture_or_value(list, name, SpectrumType::Surface)?);
+        colour = colour.or(maker.textures.texture_or_value(list, name, SpectrumType::Surface)?);
     }
     for name in ["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"] {
         list.has(name);
@@ -229,7 +242,7 @@ pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>
     // Brown, as is pbrt's default.
     let colour = colour.unwrap_or(TextureOrValue::Colour(Rgb::new(0.16, 0.08, 0.04)));
     let mut spec = Spec::new("", "principled").with("specular_roughness", 0.4f32);
-    pbrt.set(&mut spec, "base_color", colour, list.at.clone());
+    maker.set(&mut spec, "base_color", colour, list.at.clone());
     Ok(Some(spec))
 }
 

@@ -2,8 +2,8 @@
 //! and an anisotropy that reduces it along the direction of brushing.
 
 use super::super::parameters::ParameterList;
-use super::super::reader::Pbrt;
 use super::super::texture_or_value::TextureOrValue;
+use super::maker::MaterialMaker;
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
@@ -43,7 +43,7 @@ impl Remap {
     }
 }
 
-impl Pbrt<'_, '_> {
+impl MaterialMaker<'_, '_, '_> {
     /// Sets the roughness of a spec.
     pub(super) fn set_roughness(
         &mut self,
@@ -59,9 +59,10 @@ impl Pbrt<'_, '_> {
             (true, false) => Remap::Root,
             (true, true) => Remap::Polynomial,
         };
-        let even = self.float_texture(list, both)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
-        let u = self.float_texture(list, along)?.unwrap_or_else(|| even.clone());
-        let v = self.float_texture(list, across)?.unwrap_or(even);
+        let even =
+            self.textures.float_texture(list, both)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
+        let u = self.textures.float_texture(list, along)?.unwrap_or_else(|| even.clone());
+        let v = self.textures.float_texture(list, across)?.unwrap_or(even);
         let at = list.place(both);
         let ([roughness, anisotropy, rotation], quarter) = keys;
         if let (TextureOrValue::Colour(u), TextureOrValue::Colour(v)) = (&u, &v) {
@@ -84,9 +85,10 @@ impl Pbrt<'_, '_> {
         if !is_same {
             let what =
                 "roughness that differs along u and v is supported only for numbers: the one along u is used";
-            self.oddities.note(what, || at.clone());
+            self.note(what, || at.clone());
         }
-        let source = self.mapped(u, |c| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt()))?;
+        let root = |c: Rgb| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt());
+        let source = u.mapped(root, self.loader())?;
         self.set(spec, roughness, source, at);
         Ok(())
     }

@@ -1,15 +1,16 @@
 //! Materials that exist only in version 3.
 
+use super::super::loader::SpectrumType;
 use super::super::parameters::ParameterList;
-use super::super::reader::Pbrt;
-use super::super::texture_or_value::{SpectrumType, TextureOrValue};
+use super::super::texture_or_value::TextureOrValue;
+use super::maker::MaterialMaker;
 use super::plain::Metal;
 use super::roughness::{OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
-impl Pbrt<'_, '_> {
+impl MaterialMaker<'_, '_, '_> {
     fn texture_or(
         &mut self,
         list: &ParameterList,
@@ -17,6 +18,7 @@ impl Pbrt<'_, '_> {
         default: f32,
     ) -> Result<TextureOrValue, FormatError> {
         Ok(self
+            .textures
             .texture_or_value(list, name, SpectrumType::Surface)?
             .unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
@@ -29,101 +31,104 @@ impl Pbrt<'_, '_> {
     }
 }
 
-pub(super) fn matte(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kd = pbrt.texture_or(list, "Kd", 0.5)?;
+pub(super) fn matte(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let kd = maker.texture_or(list, "Kd", 0.5)?;
     if list.number("sigma")?.unwrap_or(0.0) != 0.0 {
         let what = "'sigma' of a matte material is not supported: the surface is Lambertian";
-        pbrt.oddities.note(what, || list.place("sigma"));
+        maker.note(what, || list.place("sigma"));
     }
     let mut spec = Spec::new("", "diffuse");
-    pbrt.set(&mut spec, "reflectance", kd, list.place("Kd"));
+    maker.set(&mut spec, "reflectance", kd, list.place("Kd"));
     Ok(Some(spec))
 }
 
 /// A diffuse base below a dielectric boundary; `Ks` scales the reflection of the boundary.
-pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kd = pbrt.texture_or(list, "Kd", 0.25)?;
-    let weight = pbrt.texture_or(list, "Ks", 0.25)?.mean().luminance();
-    let index = pbrt.old_index(list)?.max(1.0);
+pub(super) fn plastic(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let kd = maker.texture_or(list, "Kd", 0.25)?;
+    let weight = maker.texture_or(list, "Ks", 0.25)?.mean().luminance();
+    let index = maker.old_index(list)?.max(1.0);
     for name in ["Kr", "Kt", "mfp"] {
         if list.has(name) {
             let what = format!("'{name}' of a pbrt-v3 material is not supported");
-            pbrt.oddities.note(&what, || list.place(name));
+            maker.note(&what, || list.place(name));
         }
     }
     let mut spec = Spec::new("", "principled").with("specular_ior", index);
-    pbrt.set(&mut spec, "base_color", kd, list.place("Kd"));
+    maker.set(&mut spec, "base_color", kd, list.place("Kd"));
     spec.parameters.set("specular_weight", weight.clamp(0.0, 1.0));
-    if let Some(opacity) = pbrt.texture_or_value(list, "opacity", SpectrumType::Surface)? {
-        let grey = pbrt.mapped(opacity, |c| Rgb::grey(c.luminance()))?;
-        let value = pbrt.number_value(grey, [0.0, 1.0]);
+    if let Some(opacity) = maker.textures.texture_or_value(list, "opacity", SpectrumType::Surface)? {
+        let grey = opacity.mapped(|c| Rgb::grey(c.luminance()), maker.loader())?;
+        let value = maker.textures.number_value(grey, [0.0, 1.0]);
         spec.parameters.set_at("opacity", value, list.place("opacity"));
     }
-    pbrt.set_roughness(&mut spec, list, OWN, 0.1, true, PRINCIPLED)?;
+    maker.set_roughness(&mut spec, list, OWN, 0.1, true, PRINCIPLED)?;
     Ok(Some(spec))
 }
 
-pub(super) fn metal(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn metal(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "conductor");
-    match pbrt.metal(list, ["eta", "k"])? {
-        Metal::Reflectance(source) => pbrt.set_reflectance(&mut spec, source, list),
+    match maker.metal(list, ["eta", "k"])? {
+        Metal::Reflectance(source) => maker.set_reflectance(&mut spec, source, list),
         Metal::Indices([eta, k]) => {
             spec.parameters.set("eta", eta);
             spec.parameters.set("k", k);
         }
     }
-    pbrt.set_roughness(&mut spec, list, OWN, 0.01, true, PLAIN)?;
+    maker.set_roughness(&mut spec, list, OWN, 0.01, true, PLAIN)?;
     Ok(Some(spec))
 }
 
-pub(super) fn mirror(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kr = pbrt.texture_or(list, "Kr", 0.9)?;
+pub(super) fn mirror(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let kr = maker.texture_or(list, "Kr", 0.9)?;
     let mut spec = Spec::new("", "mirror");
-    pbrt.set(&mut spec, "reflectance", kr, list.place("Kr"));
+    maker.set(&mut spec, "reflectance", kr, list.place("Kr"));
     Ok(Some(spec))
 }
 
-pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let (kr, kt) = (pbrt.texture_or(list, "Kr", 1.0)?, pbrt.texture_or(list, "Kt", 1.0)?);
+pub(super) fn glass(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let (kr, kt) = (maker.texture_or(list, "Kr", 1.0)?, maker.texture_or(list, "Kt", 1.0)?);
     if kr.mean() != kt.mean() {
         let what = "glass with different colours for reflection and transmission uses the transmitted colour for both";
-        pbrt.oddities.note(what, || list.place("Kt"));
+        maker.note(what, || list.place("Kt"));
     }
-    let index = pbrt.old_index(list)?;
+    let index = maker.old_index(list)?;
     let mut spec = Spec::new("", "dielectric").with("eta", index);
-    pbrt.set(&mut spec, "tint", kt, list.place("Kt"));
+    maker.set(&mut spec, "tint", kt, list.place("Kt"));
     // Here zero means smooth, despite the polynomial.
     let is_smooth = ["roughness", "uroughness", "vroughness"].iter().all(|name| !list.has(name))
         || (list.texture("uroughness").is_none() && list.number("uroughness")?.unwrap_or(0.0) == 0.0);
     if !is_smooth {
-        pbrt.set_roughness(&mut spec, list, OWN, 0.0, true, PLAIN)?;
+        maker.set_roughness(&mut spec, list, OWN, 0.0, true, PLAIN)?;
     }
     list.has("remaproughness");
     Ok(Some(spec))
 }
 
-pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflect = pbrt.texture_or(list, "reflect", 0.5)?.mean();
+pub(super) fn translucent(
+    maker: &mut MaterialMaker,
+    list: &ParameterList,
+) -> Result<Option<Spec>, FormatError> {
+    let reflect = maker.texture_or(list, "reflect", 0.5)?.mean();
     let what = "diffuse transmission is not supported here";
-    pbrt.oddities.note(what, || list.at.clone());
+    maker.note(what, || list.at.clone());
     list.has("transmit");
-    let mut spec = match plastic(pbrt, list)? {
+    let mut spec = match plastic(maker, list)? {
         Some(spec) => spec,
         None => return Ok(None),
     };
     let weight = reflect.luminance();
     if let Some((bilux_scene::Value::List(_), _)) = spec.parameters.find("base_color") {
-        let kd = pbrt.texture_or(list, "Kd", 0.25)?.scaled(Rgb::grey(weight));
-        pbrt.set(&mut spec, "base_color", kd, list.place("Kd"));
+        let kd = maker.texture_or(list, "Kd", 0.25)?.scaled(Rgb::grey(weight));
+        maker.set(&mut spec, "base_color", kd, list.place("Kd"));
     }
     Ok(Some(spec))
 }
 
 /// Maps the parameters that the Disney material shares with `principled`.
-pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+pub(super) fn disney(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "principled");
-    let colour = pbrt.texture_or(list, "color", 0.5)?;
-    pbrt.set(&mut spec, "base_color", colour, list.place("color"));
+    let colour = maker.texture_or(list, "color", 0.5)?;
+    maker.set(&mut spec, "base_color", colour, list.place("color"));
     for (theirs, ours, default) in [
         ("metallic", "base_metalness", 0.0),
         ("roughness", "specular_roughness", 0.5),
@@ -131,11 +136,12 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
         ("spectrans", "transmission_weight", 0.0),
         ("clearcoat", "coat_weight", 0.0),
     ] {
-        let source = pbrt.float_texture(list, theirs)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
-        let value = pbrt.number_value(source, [0.0, 1.0]);
+        let source =
+            maker.textures.float_texture(list, theirs)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
+        let value = maker.textures.number_value(source, [0.0, 1.0]);
         spec.parameters.set_at(ours, value, list.place(theirs));
     }
-    let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
+    let index = maker.index(list, "eta")?.unwrap_or(1.5);
     spec.parameters.set("specular_ior", index.clamp(1.0, 10.0));
     let gloss = list.finite("clearcoatgloss", 1.0)?.clamp(0.0, 1.0);
     // The alpha of its clear coat ranges from a tenth to a thousandth.
@@ -144,7 +150,7 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
     for name in ["speculartint", "sheen", "sheentint", "flatness", "difftrans", "scatterdistance", "thin"] {
         if list.has(name) {
             let what = format!("'{name}' of a pbrt-v3 material is not supported");
-            pbrt.oddities.note(&what, || list.place(name));
+            maker.note(&what, || list.place(name));
         }
     }
     Ok(Some(spec))

@@ -1,8 +1,8 @@
 //! `bilinearmesh`: bilinear patches with four corners.
 
+use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
-use super::super::reader::{Pbrt, ShapeGeometry};
-use super::{corners, needed_points};
+use super::maker::{ShapeMaker, corners, needed_points};
 use crate::FormatError;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;
@@ -14,28 +14,31 @@ const COARSE: u32 = 2;
 /// The number of patches from which on `COARSE` applies.
 const MANY: usize = 10_000;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
+pub(super) fn make(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
     let points = needed_points(list)?;
     let patches = corners::<4>(list, points.len())?;
-    let normals = pbrt.normals_of(list, points.len())?;
-    let uvs = pbrt.uvs_of(list, points.len())?;
+    let normals = maker.normals_of(list, points.len())?;
+    let uvs = maker.uvs_of(list, points.len())?;
     list.has("faceIndices");
     if list.has("emissionfilename") {
         let what = "'emissionfilename' is not used: give the area light a 'filename'";
-        pbrt.oddities.note(what, || list.place("emissionfilename"));
+        maker.loader.note(what, || list.place("emissionfilename"));
     }
     let cuts = if patches.len() > MANY { COARSE } else { FINE };
     let mut mesh = Mesh::default();
     for patch in patches {
         let corner = patch.map(|i| points[i as usize]);
         let cuts = if is_parallelogram(corner) { 1 } else { cuts };
-        pbrt.reading.budget.take::<[f32; 14]>(((cuts + 1) * (cuts + 1)) as usize, &list.at.file)?;
+        maker.loader.reading.budget.take::<[f32; 14]>(((cuts + 1) * (cuts + 1)) as usize, &list.at.file)?;
         let of = patch.map(|i| i as usize);
         let uv = if uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE] } else { of.map(|i| uvs[i]) };
         let normal = (!normals.is_empty()).then(|| of.map(|i| normals[i]));
         add(&mut mesh, corner, uv, normal, cuts);
     }
-    pbrt.finished(mesh, list)
+    maker.finished(mesh, list)
 }
 
 /// True if two flat triangles represent the patch exactly, including its texture coordinates.

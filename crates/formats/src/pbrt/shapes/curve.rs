@@ -1,9 +1,9 @@
 //! `curve`: hair and grass as tubes of triangles, and ribbons as strips.
 
+use super::super::document::ShapeGeometry;
+use super::super::names::unknown;
 use super::super::parameters::ParameterList;
-use super::super::reader::{Pbrt, ShapeGeometry};
-use super::super::unknown;
-use super::needed_points;
+use super::maker::{ShapeMaker, needed_points};
 use crate::FormatError;
 use bilux_math::glam::DVec3;
 use bilux_math::transcendental::sin_cos_f64;
@@ -18,7 +18,10 @@ const COARSE: (u32, u32) = (4, 3);
 /// The number of curves from which on `COARSE` applies.
 const MANY: usize = 2000;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
+pub(super) fn make(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
     let points: Vec<DVec3> = needed_points(list)?.iter().map(|p| p.as_dvec3()).collect();
     let segments = segments(list, &points)?;
     let width = list.finite("width", 1.0)?;
@@ -33,19 +36,20 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     let is_ribbon = kind == "ribbon" && normals.len() == segments.len() + 1;
     if kind == "ribbon" && !is_ribbon {
         let what = "a ribbon needs a normal at each end of its segments; without them it is rendered as a round curve";
-        pbrt.oddities.note(what, || list.place("N"));
+        maker.loader.note(what, || list.place("N"));
     }
     if kind == "flat" {
-        pbrt.oddities
+        maker
+            .loader
             .note("flat curves that face the viewer are rendered as round curves", || list.at.clone());
     }
-    pbrt.cache.curves += 1;
-    let (along, around) = if pbrt.cache.curves > MANY { COARSE } else { FINE };
+    maker.cache.curves += 1;
+    let (along, around) = if maker.cache.curves > MANY { COARSE } else { FINE };
     let rows = segments.len() * along as usize + 1;
-    pbrt.reading.budget.take::<[f32; 14]>(rows * (around as usize + 1), &list.at.file)?;
+    maker.loader.reading.budget.take::<[f32; 14]>(rows * (around as usize + 1), &list.at.file)?;
     let spine = spine(&segments, along);
     let mesh = if is_ribbon { strip(&spine, widths, &normals) } else { tube(&spine, widths, around) };
-    pbrt.finished(mesh, list)
+    maker.finished(mesh, list)
 }
 
 /// The cubic Bézier segments of a curve of any basis and degree.

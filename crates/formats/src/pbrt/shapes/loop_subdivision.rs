@@ -1,8 +1,8 @@
 //! `loopsubdiv`: Loop subdivision, which splits each triangle into four per level. [Loop 1987]
 
+use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
-use super::super::reader::{Pbrt, ShapeGeometry};
-use super::{corners, needed_points};
+use super::maker::{ShapeMaker, corners, needed_points};
 use crate::FormatError;
 use bilux_math::Vec3;
 use bilux_math::glam::DVec3;
@@ -14,7 +14,10 @@ use std::f64::consts::TAU;
 /// More levels would be finer than any image.
 const MAX_LEVELS: i32 = 8;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
+pub(super) fn make(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
     let points = needed_points(list)?;
     let triangles = corners::<3>(list, points.len())?;
     // Version 3 calls the parameter nlevels; the scheme is always this one.
@@ -25,12 +28,12 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     list.has("scheme");
     if levels > MAX_LEVELS {
         let what = format!("a mesh is subdivided at most {MAX_LEVELS} times");
-        pbrt.oddities.note(&what, || list.place("levels"));
+        maker.loader.note(&what, || list.place("levels"));
     }
     let mut cage = Cage { points: points.iter().map(|p| p.as_dvec3()).collect(), triangles };
     for _ in 0..levels.clamp(0, MAX_LEVELS) {
         // Each triangle becomes four, with about half as many points, plus the edges during construction.
-        pbrt.reading.budget.take::<[u32; 40]>(cage.triangles.len() * 2, &list.at.file)?;
+        maker.loader.reading.budget.take::<[u32; 40]>(cage.triangles.len() * 2, &list.at.file)?;
         cage = cage.refined();
     }
     let limit = cage.limit();
@@ -40,7 +43,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
         ..Mesh::default()
     };
     mesh.normals = mesh.smooth_normals();
-    pbrt.finished(mesh, list)
+    maker.finished(mesh, list)
 }
 
 struct Cage {

@@ -1,8 +1,9 @@
 //! `sphere`, `disk` and `cylinder`, around the z axis.
 
+use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
-use super::super::reader::{Pbrt, ShapeGeometry};
 use super::grid;
+use super::maker::{ShapeCache, ShapeMaker, reversed};
 use crate::FormatError;
 use bilux_math::glam::DVec3;
 use bilux_math::transcendental::{acos_f64, sin_cos_f64};
@@ -22,32 +23,39 @@ fn turn(list: &ParameterList) -> Result<(f64, u32), FormatError> {
 }
 
 /// A radius above 0; `None`, with a warning, if it is zero.
-fn radius(pbrt: &mut Pbrt, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
+fn radius(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+    name: &'static str,
+) -> Result<Option<f32>, FormatError> {
     let radius = list.finite(name, 1.0)?;
     if radius.abs() > 0.0 {
         return Ok(Some(radius.abs()));
     }
-    pbrt.oddities.note("a shape of zero size is left out", || list.place(name));
+    maker.loader.note("a shape of zero size is left out", || list.place(name));
     Ok(None)
 }
 
-fn key(pbrt: &Pbrt, shape: u32, numbers: &[f64]) -> Vec<u32> {
+fn key(maker: &ShapeMaker, shape: u32, numbers: &[f64]) -> Vec<u32> {
     let bits = numbers.iter().map(|n| (*n as f32).to_bits());
-    [shape, u32::from(pbrt.state.reverses)].into_iter().chain(bits).collect()
+    [shape, u32::from(maker.reverses)].into_iter().chain(bits).collect()
 }
 
-pub(super) fn sphere(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
-    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+pub(super) fn sphere(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
+    let Some(radius) = radius(maker, list, "radius")? else { return Ok(None) };
     let (bottom, top) = (list.finite("zmin", -radius)?, list.finite("zmax", radius)?);
     let (bottom, top) = (bottom.min(top).max(-radius), bottom.max(top).min(radius));
     let (turn, around) = turn(list)?;
     if turn == 1.0 && bottom == -radius && top == radius {
-        return Ok(Some(ShapeGeometry::Sphere { radius, reversed: pbrt.state.reverses }));
+        return Ok(Some(ShapeGeometry::Sphere { radius, reversed: maker.reverses }));
     }
     let radius = f64::from(radius);
     let angle = |z: f32| acos_f64((f64::from(z) / radius).clamp(-1.0, 1.0));
     let (from, to) = (angle(bottom), angle(top));
-    pbrt.round(list, key(pbrt, 0, &[radius, from, to, turn]), || {
+    maker.round(list, key(maker, 0, &[radius, from, to, turn]), || {
         part_of_sphere(radius, [from, to], turn, around)
     })
 }
@@ -71,25 +79,26 @@ fn part_of_sphere(radius: f64, [from, to]: [f64; 2], turn: f64, around: u32) -> 
     mesh
 }
 
-impl Pbrt<'_, '_> {
-    /// The sphere of radius 1.
-    pub(in super::super) fn unit_sphere(&mut self, is_reversed: bool) -> Arc<Mesh> {
-        let slot = &mut self.cache.unit_spheres[usize::from(is_reversed)];
-        let make = || {
-            let mesh = part_of_sphere(1.0, [PI, 0.0], 1.0, AROUND);
-            Arc::new(if is_reversed { super::reversed(mesh) } else { mesh })
-        };
-        slot.get_or_insert_with(make).clone()
-    }
+/// The sphere of radius 1.
+pub(in super::super) fn unit_sphere(is_reversed: bool, cache: &mut ShapeCache) -> Arc<Mesh> {
+    let slot = &mut cache.unit_spheres[usize::from(is_reversed)];
+    let make = || {
+        let mesh = part_of_sphere(1.0, [PI, 0.0], 1.0, AROUND);
+        Arc::new(if is_reversed { reversed(mesh) } else { mesh })
+    };
+    slot.get_or_insert_with(make).clone()
 }
 
-pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
-    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+pub(super) fn disk(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
+    let Some(radius) = radius(maker, list, "radius")? else { return Ok(None) };
     let radius = f64::from(radius);
     let inner = f64::from(list.finite("innerradius", 0.0)?).clamp(0.0, radius);
     let height = f64::from(list.finite("height", 0.0)?);
     let (turn, around) = turn(list)?;
-    pbrt.round(list, key(pbrt, 1, &[radius, inner, height, turn]), || {
+    maker.round(list, key(maker, 1, &[radius, inner, height, turn]), || {
         let mut mesh = Mesh { name: "disk".to_owned(), ..Mesh::default() };
         grid::add(&mut mesh, around, 1, turn == 1.0, &|u, v| {
             let (sin, cos) = sin_cos_f64(2.0 * PI * turn * u);
@@ -100,13 +109,16 @@ pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     })
 }
 
-pub(super) fn cylinder(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
-    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+pub(super) fn cylinder(
+    maker: &mut ShapeMaker,
+    list: &ParameterList,
+) -> Result<Option<ShapeGeometry>, FormatError> {
+    let Some(radius) = radius(maker, list, "radius")? else { return Ok(None) };
     let radius = f64::from(radius);
     let (a, b) = (list.finite("zmin", -1.0)?, list.finite("zmax", 1.0)?);
     let (bottom, top) = (f64::from(a.min(b)), f64::from(a.max(b)));
     let (turn, around) = turn(list)?;
-    pbrt.round(list, key(pbrt, 2, &[radius, bottom, top, turn]), || {
+    maker.round(list, key(maker, 2, &[radius, bottom, top, turn]), || {
         let mut mesh = Mesh { name: "cylinder".to_owned(), ..Mesh::default() };
         grid::add(&mut mesh, around, 1, turn == 1.0, &|u, v| {
             let (sin, cos) = sin_cos_f64(2.0 * PI * turn * u);

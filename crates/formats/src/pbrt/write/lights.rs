@@ -1,7 +1,6 @@
 //! Writes lights; area and sphere lights become black emissive shapes.
 
-use super::view::from_to;
-use super::{Document, float, numbers, point, rgb};
+use super::document::{Document, float, from_to, numbers, point, rgb};
 use crate::FormatError;
 use crate::pbrt::environment::on_the_sphere;
 use crate::values::{colour, number, texture, vector};

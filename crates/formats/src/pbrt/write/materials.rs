@@ -1,10 +1,9 @@
 //! Writes pbrt materials: the inverse of [`super::super::materials`].
 
 use super::super::media::Medium;
+use super::document::{Document, float, rgb};
 use super::material_parameters::HOLDS;
-use super::shape_attributes::AS_IT_IS;
-use super::textures::{Change, TexelMeaning};
-use super::{Document, float, rgb};
+use super::textures::{AS_IT_IS, Change, TexelMeaning};
 use crate::FormatError;
 use crate::pbrt::materials::{extinction_of, reflected_inside};
 use crate::pbrt::spectra::GLASSES;

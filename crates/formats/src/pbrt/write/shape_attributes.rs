@@ -1,8 +1,8 @@
 //! What a material adds to its shapes: its name, interior medium, emission and opacity mask.
 
+use super::document::{Document, float, rgb};
 use super::lights::area_light;
-use super::textures::{Change, TexelMeaning};
-use super::{Document, float, rgb};
+use super::textures::{AS_IT_IS, TexelMeaning};
 use crate::FormatError;
 use crate::values::{colour, number, texture};
 use crate::writing::Writing;
@@ -19,9 +19,6 @@ pub(super) struct ShapeAttributes {
     pub(super) alpha: String,
     pub(super) glows: bool,
 }
-
-/// No change.
-pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
 
 impl Document<'_> {
     /// Writes a material; returns what it adds to its shapes.

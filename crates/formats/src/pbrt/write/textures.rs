@@ -1,6 +1,6 @@
 //! Writes textures.
 
-use super::Document;
+use super::document::Document;
 use crate::FormatError;
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec2};
@@ -16,6 +16,9 @@ pub(super) struct Change<'c> {
     pub(super) name: &'static str,
     pub(super) of: &'c dyn Fn(Rgb) -> Rgb,
 }
+
+/// No change.
+pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
 
 /// How the texels of a texture are interpreted.
 #[derive(Clone, Copy, PartialEq, Eq)]

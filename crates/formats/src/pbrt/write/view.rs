@@ -1,6 +1,6 @@
 //! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
-use super::{Document, float, numbers, point};
+use super::document::{Document, float, numbers};
 use crate::values::{number, vector};
 use crate::writing::Writing;
 use bilux_math::Vec3;
@@ -110,9 +110,4 @@ impl Document<'_> {
 
 fn is_switched_on(spec: &Spec, key: &str) -> bool {
     matches!(spec.parameters.find(key), Some((Value::Bool(true), _)))
-}
-
-/// The `from` and `to` parameters of a light.
-pub(super) fn from_to(from: Vec3, to: Vec3) -> String {
-    point("from", from) + &point("to", to)
 }
