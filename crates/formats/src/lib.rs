@@ -12,6 +12,7 @@ mod budget;
 mod cloud;
 mod colours;
 mod error;
+mod files;
 mod float;
 mod formats;
 mod gltf;
@@ -41,9 +42,8 @@ mod writing;
 mod xyz;
 
 pub use error::FormatError;
-pub use formats::{
-    SCENE_FORMATS, SceneFormatEntry, check_not_read, format_named, format_of_path, read, read_bytes, write,
-};
+pub use files::{check_not_read, read, read_bytes, write};
+pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path};
 pub use grids::{GridOfFile, read_grid, read_grids};
 pub use native::{SHAPES, ShapeEntry, overlay, toml_schema};
 pub use options::{Glass, ReadOptions, WriteOptions};

@@ -2,7 +2,6 @@
 //! Nothing outside the scene's folder is opened, or listed.
 
 use crate::FormatError;
-use crate::reading::{Reading, non_empty};
 use bilux_scene::{SceneBuilder, Span, Warning};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -12,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// What is known of names that differ from those on the disk in upper and lower case.
 #[derive(Default)]
-pub(crate) struct Names {
+struct Names {
     /// The names in a folder, by their lower-case form; of several the first.
     listings: RefCell<HashMap<PathBuf, BTreeMap<String, OsString>>>,
     /// Names in the scene, the files that were found for them, and where the scene refers to them.
@@ -23,8 +22,7 @@ pub(crate) struct Names {
 const MAX_LISTED: usize = 100_000;
 
 impl Names {
-    /// Adds a note to the scene for each file that was found under a name in other letters.
-    pub(crate) fn into_notes(self, scene: &mut SceneBuilder) {
+    fn into_notes(self, scene: &mut SceneBuilder) {
         for (name, (found, at)) in self.renamed.into_inner() {
             let found = found.file_name().unwrap_or_default().to_string_lossy();
             let message =
@@ -48,7 +46,29 @@ impl Names {
     }
 }
 
-impl Reading<'_> {
+/// Where files may be.
+pub(crate) struct Locator {
+    /// Nothing outside this folder is opened, except files in [`Locator::working_folder`].
+    root: Option<PathBuf>,
+    allow_outside: bool,
+    /// A second folder where the current format looks for files.
+    pub(crate) working_folder: Option<PathBuf>,
+    /// What was found under other names.
+    names: Names,
+}
+
+impl Locator {
+    /// For what files in a folder refer to.
+    pub(crate) fn new(folder: Option<&Path>, allow_outside: bool) -> Locator {
+        let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
+        Locator { root, allow_outside, working_folder: None, names: Names::default() }
+    }
+
+    /// Adds a note to the scene for each file that was found under a name in other letters.
+    pub(crate) fn into_notes(self, scene: &mut SceneBuilder) {
+        self.names.into_notes(scene);
+    }
+
     /// Finds a referenced file, if it exists and may be opened.
     pub(crate) fn locate(
         &self,
@@ -76,7 +96,7 @@ impl Reading<'_> {
         Err(first.unwrap_or_else(|| FormatError::malformed("a file name is missing here", at.clone())))
     }
 
-    /// The same as [`Reading::locate`], but finds the files in `open`, which are being read, only under their full names.
+    /// The same as [`Locator::locate`], but finds the files in `open`, which are being read, only under their full names.
     pub(crate) fn locate_except(
         &self,
         folder: Option<&Path>,
@@ -117,8 +137,8 @@ impl Reading<'_> {
             .filter(|path| path.is_file())
             .ok_or_else(missing)?;
         match &self.root {
-            Some(root) if found.starts_with(root) || self.options.allow_outside => Ok(found),
-            None if self.options.allow_outside => Ok(found),
+            Some(root) if found.starts_with(root) || self.allow_outside => Ok(found),
+            None if self.allow_outside => Ok(found),
             _ => Err(FormatError::Outside { name: name.to_owned(), at: at.clone() }),
         }
     }
@@ -138,7 +158,7 @@ impl Reading<'_> {
                 Component::RootDir | Component::Prefix(_) => return None,
             };
             let is_allowed = self.root.as_ref().is_some_and(|root| path.starts_with(root));
-            if !is_allowed && !self.options.allow_outside {
+            if !is_allowed && !self.allow_outside {
                 return None;
             }
             let exact = path.join(part);
@@ -156,6 +176,10 @@ impl Reading<'_> {
         let found = fs::canonicalize(folder.join(name)).ok()?;
         (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
+}
+
+fn non_empty(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// The path of a `file:` URI, without its host; other names stay as they are. [Kerwin 2017]

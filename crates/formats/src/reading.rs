@@ -2,7 +2,7 @@
 
 use crate::budget::Budget;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
-use crate::locating::Names;
+use crate::locating::Locator;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
@@ -51,10 +51,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) crease_angle: f32,
     /// The origin of positions, if the file's coordinates are large compared with their differences.
     pub(crate) origin: DVec3,
-    /// Nothing outside this folder is opened, except files in [`Reading::working_folder`].
-    pub(crate) root: Option<PathBuf>,
-    /// A second folder where the current format looks for files.
-    pub(crate) working_folder: Option<PathBuf>,
+    /// Finds what files refer to.
+    pub(crate) locator: Locator,
     /// By file, layer and meaning.
     textures: HashMap<(PathBuf, Option<String>, Texels), Arc<Texture>>,
     /// By file and name.
@@ -73,8 +71,6 @@ pub(crate) struct Reading<'o> {
     pub(crate) open: Vec<PathBuf>,
     /// Every file that was opened, by its full name.
     pub(crate) files: BTreeSet<PathBuf>,
-    /// What was found under other names.
-    pub(crate) names: Names,
 }
 
 /// The memory that counts as held at some moment.
@@ -91,14 +87,12 @@ const MAX_CHAIN: usize = 16;
 
 impl<'o> Reading<'o> {
     pub(crate) fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
-        let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
         Reading {
             options,
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,
             origin: DVec3::ZERO,
-            root,
-            working_folder: None,
+            locator: Locator::new(folder, options.allow_outside),
             textures: HashMap::new(),
             grids: HashMap::new(),
             texture_bytes: 0,
@@ -108,7 +102,6 @@ impl<'o> Reading<'o> {
             counted: HashSet::new(),
             open: Vec::new(),
             files: BTreeSet::new(),
-            names: Names::default(),
         }
     }
 
@@ -146,7 +139,7 @@ impl<'o> Reading<'o> {
     pub(crate) fn complete(self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
         scene.files = self.files;
         scene.warnings.extend(self.picture_faults);
-        self.names.into_notes(&mut scene);
+        self.locator.into_notes(&mut scene);
         match scene.warnings.first() {
             Some(first) if self.options.strict => Err(FormatError::Strict(first.clone())),
             _ => Ok(scene),
@@ -307,7 +300,7 @@ impl<'o> Reading<'o> {
         holds: Texels,
         at: &Span,
     ) -> Result<Arc<Texture>, FormatError> {
-        let path = self.locate(folder, name, at)?;
+        let path = self.locator.locate(folder, name, at)?;
         let key = (path.clone(), layer.map(str::to_owned), holds);
         if let Some(texture) = self.textures.get(&key) {
             return Ok(texture.clone());
@@ -335,10 +328,6 @@ fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
         return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
     }
     Ok((file, metadata.len()))
-}
-
-pub(crate) fn non_empty(folder: &Path) -> &Path {
-    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// The material of files that do not describe any.

@@ -1,7 +1,6 @@
 //! Lines and words of a text file with their locations. Lines end at CR, LF or both.
 
 use crate::FormatError;
-use crate::reading::Source;
 use bilux_scene::Span;
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -292,10 +291,10 @@ pub(crate) fn is_comment(line: &[u8]) -> bool {
 }
 
 /// The error for a file that should be text; reports binary data as such.
-pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
+pub(crate) fn no_text(error: FormatError, bytes: &[u8]) -> FormatError {
     match error {
         // Trailing zeros, which some programs leave, count as spaces.
-        FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
+        FormatError::Malformed { message, at } if bytes.iter().take(4096).any(|&b| b == 0) => {
             let message = format!("this file is not plain text, but binary ({message})");
             FormatError::Malformed { message, at }
         }

@@ -1,6 +1,5 @@
 //! The state of one write: files are built in memory, and reach the disk only when all are complete.
 
-use crate::grids::npy_of;
 use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{ColourSpace, Picture, write_atomically};
@@ -9,9 +8,6 @@ use bilux_scene::{SceneBuilder, Span, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// The largest number of voxels of a grid that is written: 1 GiB of halves.
-const MAX_VOXELS: usize = 1 << 29;
 
 /// The files of a scene under construction.
 pub(crate) struct Writing<'o> {
@@ -31,7 +27,7 @@ pub(crate) struct Writing<'o> {
     /// Textures written so far, and the files of each.
     textures: Vec<(Texture, String)>,
     /// Grids written so far, and the file of each.
-    grids: Vec<(Arc<Grid>, String)>,
+    pub(crate) grids: Vec<(Arc<Grid>, String)>,
     /// Everything that the format could not hold.
     pub(crate) warnings: Vec<Warning>,
 }
@@ -81,25 +77,6 @@ impl<'o> Writing<'o> {
         let name = self.add_numbered("texture", self.textures.len() + 1, format, bytes);
         self.textures.push((texture.clone(), name.clone()));
         Ok(name)
-    }
-
-    /// The file name of a grid next to the scene, written on first use; `None` for one of so many voxels, most of them empty, that
-    /// nobody would want the file.
-    pub(crate) fn grid_file(&mut self, grid: &Arc<Grid>) -> Option<String> {
-        if let Some((_, name)) = self.grids.iter().find(|(known, _)| Arc::ptr_eq(known, grid)) {
-            return Some(name.clone());
-        }
-        let voxels: usize = grid.size().iter().product();
-        if voxels > MAX_VOXELS {
-            self.warn(format!(
-                "the grid '{}' has {voxels} voxels, and at most {MAX_VOXELS} are written: it is left out",
-                grid.name()
-            ));
-            return None;
-        }
-        let name = self.add_numbered("grid", self.grids.len() + 1, "npy", npy_of(grid));
-        self.grids.push((grid.clone(), name.clone()));
-        Some(name)
     }
 
     /// Adds an accompanying file and returns its name: `STEM.EXTENSION`, or with a number that makes it new.

@@ -30,7 +30,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         group: Group { name: source.stem(), ..Group::default() },
         materials: HashMap::new(),
     };
-    reader.groups().map_err(|error| no_text(error, source))?;
+    reader.groups().map_err(|error| no_text(error, source.bytes))?;
     let Asc { mut scene, oddities, places, .. } = reader;
     if scene.objects.is_empty() {
         let message = "it contains no triangles: each is a line with a word, then three lines of 8 numbers \

@@ -138,7 +138,7 @@ pub(super) fn encoded<'s, 'd>(
     Ok(match uri::resolve(reading, place)? {
         Resource::Data(bytes) => (image.name().to_owned(), Cow::Owned(bytes)),
         Resource::File(names) => {
-            let path = reading.locate_any(document.folder(), &names, &place.at())?;
+            let path = reading.locator.locate_any(document.folder(), &names, &place.at())?;
             let bytes = reading.load(&path)?;
             (names.into_iter().next().unwrap_or_default(), Cow::Owned(bytes))
         }

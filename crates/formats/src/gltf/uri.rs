@@ -117,7 +117,7 @@ pub(super) fn load(reading: &mut Reading, source: &Source, node: JsonNode) -> Re
     match resolve(reading, node)? {
         Resource::Data(bytes) => Ok(bytes),
         Resource::File(names) => {
-            let path = reading.locate_any(source.folder, &names, &node.at())?;
+            let path = reading.locator.locate_any(source.folder, &names, &node.at())?;
             reading.load(&path)
         }
     }

@@ -1,14 +1,15 @@
 //! Files of numbers in space: the density of smoke and the like. The table is [`GRID_FORMATS`].
 
 mod bytes;
+mod file;
 mod model;
 mod npy;
 mod sparse;
 mod vol;
 
 pub(crate) use bytes::Bytes;
+pub(crate) use file::file_of;
 pub(crate) use model::ENTRY;
-pub(crate) use npy::write as npy_of;
 pub(crate) use sparse::{LeafMask, LeafValues, Placed, Sparse};
 
 use crate::budget::Budget;
@@ -23,11 +24,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// All formats of grids.
-pub(crate) const GRID_FORMATS: &[GridFormat] = &[vdb::OPEN, vdb::NANO, npy::FORMAT, vol::FORMAT];
+pub(crate) const GRID_FORMATS: &[GridFormatEntry] = &[vdb::OPEN, vdb::NANO, npy::FORMAT, vol::FORMAT];
 
 /// A row of [`GRID_FORMATS`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct GridFormat {
+pub(crate) struct GridFormatEntry {
     /// True if the bytes look like this format.
     pub(crate) sniff: fn(&[u8]) -> bool,
     /// What is in a file.
@@ -170,7 +171,7 @@ impl Catalogue {
 }
 
 /// The format of a file of grids.
-pub(crate) fn format_of(source: &Source) -> Result<&'static GridFormat, FormatError> {
+pub(crate) fn format_of(source: &Source) -> Result<&'static GridFormatEntry, FormatError> {
     GRID_FORMATS.iter().find(|row| (row.sniff)(source.bytes)).ok_or_else(|| {
         let message = "this is no file of grids: known are OpenVDB (.vdb), NanoVDB (.nvdb), numpy's .npy and Mitsuba's .vol";
         FormatError::malformed(message, whole_file(source.name))
@@ -219,7 +220,7 @@ impl Reading<'_> {
         (file, name): (&str, &str),
         at: &Span,
     ) -> Result<Arc<Grid>, FormatError> {
-        let path = self.locate(folder, file, at)?;
+        let path = self.locator.locate(folder, file, at)?;
         let key = (path.clone(), name.to_owned());
         if let Some(grid) = self.grids.get(&key) {
             return Ok(grid.clone());
@@ -243,7 +244,7 @@ impl Reading<'_> {
     /// Reads one of the grids of a file, unless it cannot be a density.
     fn grid_of_file(
         &mut self,
-        format: &GridFormat,
+        format: &GridFormatEntry,
         source: &Source,
         listed: Listed,
     ) -> Result<GridOfFile, FormatError> {
@@ -258,7 +259,7 @@ impl Reading<'_> {
     /// Reads one of the grids of a file, and charges it for good.
     pub(crate) fn volume(
         &mut self,
-        format: &GridFormat,
+        format: &GridFormatEntry,
         source: &Source,
         listed: &Listed,
     ) -> Result<Volume, FormatError> {

@@ -1,6 +1,6 @@
 //! Arrays of numpy, with the indices [z][y][x]. [Kern 2007]
 
-use super::{Bytes, Catalogue, GridFormat, Listed, Volume, dense};
+use super::{Bytes, Catalogue, GridFormatEntry, Listed, Volume, dense};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Source;
@@ -10,7 +10,8 @@ use bilux_scene::media::Grid;
 /// The first bytes; the version follows.
 pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";
 
-pub(super) const FORMAT: GridFormat = GridFormat { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+pub(super) const FORMAT: GridFormatEntry =
+    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
 
 /// Turns the bytes of a number into a value.
 type Value = fn(&[u8]) -> f32;

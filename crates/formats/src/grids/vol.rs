@@ -1,6 +1,6 @@
 //! Mitsuba's `.vol`: a number for each voxel of a box. [Jakob 2022]
 
-use super::{Bytes, Catalogue, GridFormat, Listed, Volume, dense};
+use super::{Bytes, Catalogue, GridFormatEntry, Listed, Volume, dense};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Source;
@@ -14,7 +14,8 @@ const FLOAT32: i32 = 1;
 const FLOAT16: i32 = 2;
 const UINT8: i32 = 3;
 
-pub(super) const FORMAT: GridFormat = GridFormat { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+pub(super) const FORMAT: GridFormatEntry =
+    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
 
 fn list(source: &Source) -> Result<Catalogue, FormatError> {
     let mut bytes = Bytes::new(source.bytes, source.name);

@@ -1,6 +1,6 @@
 //! Colours of faces, each distinct one once: vertices are shared by the faces of one colour only.
 
-use super::NONE;
+use super::corners::NONE;
 use crate::colours::{Stored, decode};
 use bilux_math::Rgb;
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
 //! A list of faces that is freed chunk by chunk, and a compact list of one number per face.
 
-use super::Corner;
+use super::corners::Corner;
 
 /// The corners of faces, in chunks, so that a consumer can free each chunk once it has been read.
 #[derive(Debug, Default)]

@@ -1,22 +1,18 @@
 //! The data model that OBJ, PLY and OFF share, and its conversion to meshes.
 
 mod assemble;
+mod corners;
 mod face_colours;
 mod faces;
 
 pub(crate) use assemble::{assemble, material_of};
+pub(crate) use corners::{Corner, NONE};
 pub(crate) use face_colours::{FaceColour, FaceColours};
 pub(crate) use faces::{FaceList, Steps};
 
 use crate::FormatError;
 use crate::normals::Smoothing;
 use bilux_math::{Rgb, Vec2, Vec3};
-
-/// A missing index.
-pub(crate) const NONE: u32 = u32::MAX;
-
-/// Position, texture coordinates and normal of a corner, as indices from 0 or [`NONE`].
-pub(crate) type Corner = [u32; 3];
 
 /// Faces with lists of positions, texture coordinates and normals, before they are split into objects.
 #[derive(Default)]

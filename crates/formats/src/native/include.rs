@@ -57,7 +57,7 @@ impl Gathering<'_, '_> {
         from: &Arc<str>,
         folder: Option<&Path>,
     ) -> Result<(), FormatError> {
-        let path = self.reading.locate(folder, file, at)?;
+        let path = self.reading.locator.locate(folder, file, at)?;
         if self.open.contains(&path) {
             let message =
                 format!("'{file}' includes itself, directly or through other files: remove it here");

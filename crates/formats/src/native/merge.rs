@@ -1,6 +1,6 @@
 //! Merges one scene into another.
 
-use super::scene::Native;
+use super::reader::Native;
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 impl Native<'_, '_> {

@@ -10,11 +10,14 @@ mod model;
 mod overlay;
 mod pictures;
 mod place;
+mod plain;
+mod reader;
 mod replace;
 mod scene;
 mod schema;
 mod shapes;
 mod specs;
+mod words;
 mod write;
 
 pub use overlay::overlay;

@@ -3,11 +3,12 @@
 use super::document::{Item, Table, TomlValue};
 use super::include::Part;
 use super::place::{self, motion};
-use super::scene::{MAX_NAMES, Native};
+use super::plain::{missing, plain_value};
+use super::reader::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
-use super::specs::{missing, plain_value};
 use crate::FormatError;
-use crate::formats::{format_named, read_file, unknown};
+use crate::files::read_file;
+use crate::formats::{format_named, unknown};
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_math::{DMat4, Motion, Transform};
 use bilux_scene::generators::GENERATORS;
@@ -101,7 +102,7 @@ impl Native<'_, '_> {
     fn path_of_model(&self, table: &Table, item: &Item, part: &Part) -> Result<PathBuf, FormatError> {
         table.check_keys("a model", KEYS.into_iter().chain(place::KEYS))?;
         let name = item.text("file")?;
-        let path = self.reading.locate(part.folder.as_deref(), name, &item.at)?;
+        let path = self.reading.locator.locate(part.folder.as_deref(), name, &item.at)?;
         if self.reading.open.contains(&path) {
             let message =
                 format!("'{name}' contains itself, directly or through other files: remove it here");

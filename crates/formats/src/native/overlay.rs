@@ -2,11 +2,12 @@
 
 use super::document::{Item, Table, TomlValue};
 use super::include::Part as FilePart;
-use super::scene::Native;
-use super::specs::{missing, plain_value};
-use super::write::{is_bare, number, quoted};
+use super::plain::{missing, plain_value};
+use super::reader::Native;
+use super::words::{is_bare, number, quoted};
 use crate::FormatError;
-use crate::formats::{format_named, read_file, unknown};
+use crate::files::read_file;
+use crate::formats::{format_named, unknown};
 use crate::reading::Reading;
 use bilux_scene::change::{Change, Part, Which};
 use bilux_scene::{Parameters, SceneBuilder, SceneError, Value};
@@ -31,7 +32,7 @@ pub(super) fn base(
     };
     part.root.check_keys("a scene with a base", KEYS.into_iter())?;
     let name = item.text("base")?;
-    let path = reading.locate(part.folder.as_deref(), name, &item.at)?;
+    let path = reading.locator.locate(part.folder.as_deref(), name, &item.at)?;
     if reading.open.contains(&path) {
         let message = format!("'{name}' is based on itself: name another file");
         return Err(FormatError::malformed(message, item.at.clone()));

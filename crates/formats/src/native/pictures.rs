@@ -1,7 +1,7 @@
 //! Image textures: their placement, wrapping and filtering.
 
 use super::document::Table;
-use super::specs::plain_value;
+use super::plain::plain_value;
 use crate::FormatError;
 use bilux_math::Vec2;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};

@@ -1,7 +1,7 @@
 //! Placement of models: translation, rotation and scale, or a matrix; and keyframes of these.
 
 use super::document::{Item, Table, TomlValue};
-use super::specs::missing;
+use super::plain::missing;
 use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
 use bilux_math::transcendental::sin_cos_f64;

@@ -1,8 +1,8 @@
 //! `[[replace]]`: replaces materials of models by name.
 
 use super::document::Table;
-use super::scene::{MAX_NAMES, Native};
-use super::specs::missing;
+use super::plain::missing;
+use super::reader::{MAX_NAMES, Native};
 use crate::FormatError;
 use bilux_scene::SceneError;
 use std::collections::BTreeSet;

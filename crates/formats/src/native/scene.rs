@@ -1,18 +1,15 @@
 //! The top level of a scene file.
 
-use super::document::{Item, Table};
+use super::document::Table;
 use super::include::{Part, gather};
-use super::{overlay, specs};
+use super::overlay;
+use super::plain::plain_value;
+use super::reader::Native;
 use crate::FormatError;
-use crate::reading::{Reading, Source, default_material};
+use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use bilux_scene::presets::mentions_light;
-use bilux_scene::{SceneBuilder, SceneError, Span};
-use std::collections::HashMap;
-use std::path::PathBuf;
-
-/// The maximum number of names that an error about an unknown name lists.
-pub(super) const MAX_NAMES: usize = 100;
+use bilux_scene::{SceneBuilder, SceneError};
 
 /// More settings than any render has; each one is compared with all others.
 const MAX_SETTINGS: usize = 1000;
@@ -27,13 +24,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         Some(item) => overlay::base(reading, item, &parts)?,
         None => SceneBuilder::default(),
     };
-    let mut native = Native {
-        reading,
-        scene: base,
-        materials: HashMap::new(),
-        default_material: None,
-        brought: HashMap::new(),
-    };
+    let mut native = Native::new(reading, base);
     for part in &parts {
         part.root.check_keys("a scene", KEYS.into_iter())?;
         native.settings(&part.root)?;
@@ -66,17 +57,6 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(scene)
 }
 
-/// The state while a scene file is converted to a scene.
-pub(super) struct Native<'o, 'r> {
-    pub(super) reading: &'r mut Reading<'o>,
-    pub(super) scene: SceneBuilder,
-    /// The index and location of each named material.
-    materials: HashMap<String, (usize, Span)>,
-    default_material: Option<usize>,
-    /// The index of the first material of each model file.
-    pub(super) brought: HashMap<PathBuf, usize>,
-}
-
 impl Native<'_, '_> {
     /// `[render]`: passed on unchanged.
     fn settings(&mut self, root: &Table) -> Result<(), FormatError> {
@@ -86,26 +66,8 @@ impl Native<'_, '_> {
                     let message = format!("there are more than {MAX_SETTINGS} settings: remove some");
                     return Err(SceneError::invalid(message, at).into());
                 }
-                let value = specs::plain_value(key, item)?;
+                let value = plain_value(key, item)?;
                 self.scene.settings.set_at(key, value, at.clone());
-            }
-        }
-        Ok(())
-    }
-
-    /// Collects names first, since materials may refer to each other in any order.
-    fn names_of_materials(&mut self, part: &Part) -> Result<(), FormatError> {
-        for table in part.root.tables("material")? {
-            let (name, at) = (table.text("name")?.unwrap_or_default(), table.at.clone());
-            if name.is_empty() {
-                let what = "name (what models call the material)".to_owned();
-                return Err(SceneError::Missing { what, at }.into());
-            }
-            let index = self.materials.len();
-            if let Some((_, first)) = self.materials.insert(name.to_owned(), (index, at.clone())) {
-                let message =
-                    format!("there is already a material '{name}', at {first}: give this one another name");
-                return Err(SceneError::invalid(message, &at).into());
             }
         }
         Ok(())
@@ -129,26 +91,5 @@ impl Native<'_, '_> {
             self.scene.cameras.push(camera);
         }
         Ok(())
-    }
-
-    /// The index of the material with this name.
-    pub(super) fn material_named(&self, item: &Item) -> Result<usize, FormatError> {
-        let name = item.text("material")?;
-        let known = || self.materials.keys().map(String::as_str).take(MAX_NAMES);
-        match self.materials.get(name) {
-            Some(&(index, _)) => Ok(index),
-            None => Err(SceneError::unknown("material", name, known(), &item.at).into()),
-        }
-    }
-
-    /// The number of materials, the first ones, that belong to the scene file itself.
-    pub(super) fn own_materials(&self) -> usize {
-        self.materials.len()
-    }
-
-    /// The material of models that neither select nor contain one.
-    pub(super) fn default_material(&mut self) -> usize {
-        let scene = &mut self.scene;
-        *self.default_material.get_or_insert_with(|| scene.add_material(default_material()))
     }
 }

@@ -3,7 +3,8 @@
 use super::document::{Item, Table, TomlValue};
 use super::include::Part;
 use super::pictures::{PICTURE, placed};
-use super::scene::Native;
+use super::plain::{missing, plain_value};
+use super::reader::Native;
 use crate::FormatError;
 use crate::reading::Texels;
 use bilux_math::glam::DVec4;
@@ -261,25 +262,6 @@ fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
         Some(index) => Ok(Some([Channel::R, Channel::G, Channel::B, Channel::A][index])),
         None => Err(SceneError::unknown("channel", name, CHANNELS, &item.at).into()),
     }
-}
-
-/// A value that contains no table.
-pub(super) fn plain_value(key: &str, item: &Item) -> Result<Value, FormatError> {
-    Ok(match &item.node {
-        TomlValue::Bool(b) => Value::Bool(*b),
-        TomlValue::Integer(i) => Value::Integer(*i),
-        TomlValue::Number(x) => Value::Number(*x),
-        TomlValue::Text(text) => Value::Text(text.clone()),
-        TomlValue::List(items) => {
-            Value::List(items.iter().map(|item| plain_value(key, item)).collect::<Result<_, _>>()?)
-        }
-        TomlValue::Table(_) => return Err(item.wrong(key, "a value, or a list of values")),
-    })
-}
-
-/// The error for a table without a required key.
-pub(super) fn missing(what: &str, table: &Table) -> FormatError {
-    SceneError::Missing { what: what.to_owned(), at: table.at.clone() }.into()
 }
 
 fn missing_kind<'k>(what: &str, kinds: impl Iterator<Item = &'k str>, table: &Table) -> FormatError {

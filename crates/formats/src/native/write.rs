@@ -1,8 +1,10 @@
 //! Writes the native scene file, with its meshes as PLY files and its textures as PNG or EXR files.
 
 use super::pictures::placement_keys;
+use super::words::{is_bare, number, quoted};
 use crate::FormatError;
 use crate::bake::name_of;
+use crate::grids::file_of;
 use crate::ply::encode;
 use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
@@ -73,11 +75,6 @@ fn parameters(
         }
     }
     Ok(())
-}
-
-/// True if a key needs no quotes.
-pub(super) fn is_bare(key: &str) -> bool {
-    key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') && !key.is_empty()
 }
 
 fn write_camera(
@@ -222,7 +219,7 @@ fn grid_text(
         }
         out
     } else {
-        let Some(name) = writing.grid_file(grid) else { return Ok(None) };
+        let Some(name) = file_of(grid, writing) else { return Ok(None) };
         format!("grid = {}", quoted(&name))
     };
     let has_its_place = |formula: &Spec| {
@@ -271,29 +268,4 @@ fn texture_text(
     }
     out.push_str(" }");
     Ok(out)
-}
-
-/// The shortest text of a number that parses back to the same value; as an f32 if it is one.
-pub(super) fn number(x: f64) -> String {
-    let narrow = x as f32;
-    match x {
-        x if x.is_nan() => "nan".to_owned(),
-        x if f64::from(narrow) == x => format!("{narrow:?}"),
-        x => format!("{x:?}"),
-    }
-}
-
-/// Text in quotes, as TOML requires.
-pub(super) fn quoted(text: &str) -> String {
-    let mut out = String::from('"');
-    for letter in text.chars() {
-        match letter {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            c if c.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(c))),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
 }

@@ -1,39 +1,16 @@
 //! Textures of MTL: their options, and the parameters that they replace.
 
-use super::mtl::{Draft, Library};
+use super::draft::{Draft, Map};
+use super::library::Library;
 use super::surface::NUMBERS;
 use crate::FormatError;
 use crate::float::parse_f32;
 use crate::reading::Texels;
 use crate::text::{in_quotes, name_of};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::texture::{Channel, Image, Texels as Held, UvTransform, Wrap};
+use bilux_scene::texture::{Channel, Image, Texels as Held};
 use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
 use std::sync::Arc;
-
-/// A texture as a line describes it.
-pub(super) struct Map {
-    pub(super) file: String,
-    pub(super) at: Span,
-    offset: [f32; 2],
-    scale: [f32; 2],
-    is_clamped: bool,
-    /// The bump multiplier.
-    bump: f32,
-    /// The selected channel.
-    channel: Option<Channel>,
-}
-
-impl Map {
-    /// Places the texture: scales texture coordinates, with v upwards, then shifts them.
-    fn placed(&self, texture: Texture) -> Texture {
-        let ([x, y], [u, v]) = (self.scale, self.offset);
-        let lies = (self.scale, self.offset) != ([1.0; 2], [0.0; 2]);
-        let transform = lies.then(|| UvTransform::new([u, 1.0 - y - v], 0.0, [x, y]));
-        let wrap = if self.is_clamped { [Wrap::Clamp; 2] } else { texture.wrap };
-        Texture { transform, wrap, ..texture }
-    }
-}
 
 impl Library<'_, '_, '_> {
     /// Reads a file name and its options, which belong before it, but which some programs write after it.
@@ -73,7 +50,7 @@ impl Library<'_, '_, '_> {
     /// A name without a comment after it, if there is no file with the whole name.
     fn without_comment(&self, name: String) -> String {
         let Some((before, _)) = name.split_once(" #") else { return name };
-        match self.reading.locate(self.source.folder, &name, &Span::default()) {
+        match self.reading.locator.locate(self.source.folder, &name, &Span::default()) {
             Ok(_) => name,
             Err(_) => before.trim_end().to_owned(),
         }

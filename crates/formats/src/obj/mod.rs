@@ -1,11 +1,14 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
 mod block;
+mod draft;
 mod index;
+mod library;
 mod maps;
 mod mtl;
 mod mtl_write;
 mod read;
+mod statements;
 mod strokes;
 mod surface;
 mod transparency;

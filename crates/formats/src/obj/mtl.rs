@@ -1,15 +1,16 @@
 //! Reads MTL: maps its materials, which date from the 1990s, to Bilux's as `docs/formats/obj.md` describes. A line that
 //! cannot be read costs only itself.
 
-use super::maps::Map;
-use super::surface::{material, unit};
+use super::draft::Draft;
+use super::library::Library;
+use super::surface::material;
 use crate::FormatError;
 use crate::float::parse_f32;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
 use crate::text::{Cursor, Places, name_of, quoted, unquoted};
 use bilux_math::Rgb;
-use bilux_scene::{SceneBuilder, Span};
+use bilux_scene::SceneBuilder;
 use std::collections::HashMap;
 
 /// Adds every material of a library to the scene and its index to `by_name`; the first material of a name wins.
@@ -62,72 +63,6 @@ pub(super) fn read_library(
     Ok(())
 }
 
-/// A material while its lines are read; `None` stands for what no line states.
-#[derive(Default)]
-pub(super) struct Draft {
-    pub(super) name: String,
-    pub(super) span: Span,
-    /// Where it begins in the file.
-    start: usize,
-    colours: HashMap<&'static str, (Rgb, usize)>,
-    numbers: HashMap<&'static str, (f32, usize)>,
-    pub(super) maps: HashMap<&'static str, Map>,
-    /// The opacity, from 0 to 1, once the whole library is known.
-    pub(super) opacity: f32,
-    /// Whether light enters the surface and is refracted, once the whole library is known.
-    pub(super) is_glass: bool,
-}
-
-impl Draft {
-    fn new(name: String, span: Span, start: usize) -> Draft {
-        Draft { name, span, start, opacity: 1.0, ..Draft::default() }
-    }
-
-    pub(super) fn colour(&self, key: &str) -> Option<Rgb> {
-        self.colours.get(key).map(|(colour, _)| *colour)
-    }
-
-    pub(super) fn number(&self, key: &str) -> Option<f32> {
-        self.numbers.get(key).map(|(number, _)| *number)
-    }
-
-    /// True if a line gives this number or colour.
-    pub(super) fn states(&self, key: &str) -> bool {
-        self.numbers.contains_key(key) || self.colours.contains_key(key)
-    }
-
-    /// Where the line of a number or a colour begins; where the material does, if there is none.
-    pub(super) fn offset(&self, key: &str) -> usize {
-        let number = self.numbers.get(key).map(|(_, at)| *at);
-        number.or(self.colours.get(key).map(|(_, at)| *at)).unwrap_or(self.start)
-    }
-
-    pub(super) fn illum(&self) -> i32 {
-        self.number("illum").map_or(2, |n| n as i32)
-    }
-
-    /// True if nothing is specular: by the illumination model, or by an exponent of 0. By Phong's formula that would be a
-    /// highlight as wide as the whole surface, which nobody means, unless the surface mirrors, or says how much.
-    pub(super) fn lacks_highlight(&self) -> bool {
-        let mirrors = matches!(self.illum(), 3 | 5 | 8) || self.colour("Kr").is_some();
-        self.illum() < 2 || (self.has_exponent_of_zero() && !mirrors)
-    }
-
-    fn has_exponent_of_zero(&self) -> bool {
-        self.number("Ns").is_some_and(|exponent| exponent <= 0.0)
-    }
-
-    /// The index of refraction, if a valid one is given.
-    pub(super) fn eta(&self) -> Option<f32> {
-        self.number("Ni").filter(|&n| n > 0.0).map(|n| n.clamp(0.1, 10.0))
-    }
-
-    /// The diffuse colour; white if there is only a texture.
-    pub(super) fn diffuse(&self) -> Option<Rgb> {
-        self.colour("Kd").map(unit).or(self.maps.contains_key("map_Kd").then_some(Rgb::WHITE))
-    }
-}
-
 /// The supported keywords, by the type of their values.
 const COLOURS: [&str; 6] = ["Kd", "Ks", "Ke", "Tf", "Kt", "Kr"];
 const NUMBERS: [&str; 12] =
@@ -143,14 +78,6 @@ const ALIASES: [(&str, &str); 4] =
 const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
 /// What one would see if Bilux had it.
 const NOT_SHOWN: [&str; 6] = ["refl", "map_refl", "disp", "decal", "map_Ns", "map_Tr"];
-
-pub(super) struct Library<'a, 'o, 'r> {
-    pub(super) reading: &'r mut Reading<'o>,
-    pub(super) source: &'a Source<'a>,
-    pub(super) cursor: Cursor<'a>,
-    pub(super) places: Places<'a>,
-    pub(super) oddities: Oddities,
-}
 
 impl Library<'_, '_, '_> {
     fn statement(&mut self, key: &[u8], start: usize, draft: &mut Draft) -> Result<(), FormatError> {

@@ -1,7 +1,6 @@
 //! Writes MTL so that [`super::mtl`] reads the same material back.
 
 use super::surface::NUMBERS;
-use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
@@ -245,4 +244,9 @@ fn push_number(out: &mut Vec<u8>, key: &str, number: f32) {
     out.push(b' ');
     push_f32(out, number);
     out.push(b'\n');
+}
+
+/// A name on a single line, since names end at the end of the line.
+pub(super) fn one_line(name: &str) -> String {
+    name.replace(['\n', '\r', '\0'], " ").trim().to_owned()
 }

@@ -1,8 +1,9 @@
 //! Reads an OBJ file block by block.
 
-use super::block::{BACKWARD_LEFT_OUT, Block, StateChange, bad_corner, read_block};
+use super::block::{Block, StateChange, Stroke};
 use super::mtl::read_library;
-use super::strokes::{Stroke, Strokes};
+use super::statements::{BACKWARD_LEFT_OUT, bad_corner, read_block};
+use super::strokes::Strokes;
 use crate::FormatError;
 use crate::blocks::Blocks;
 use crate::colours::{Stored, UNCOLOURED, decode};
@@ -54,7 +55,7 @@ fn read_in_blocks(
         in_run: false,
         strokes: Strokes::default(),
     };
-    reader.blocks(&mut Blocks::new(from, size)).map_err(|error| no_text(error, source))?;
+    reader.blocks(&mut Blocks::new(from, size)).map_err(|error| no_text(error, source.bytes))?;
     reader.finish()
 }
 
@@ -264,12 +265,12 @@ impl Obj<'_, '_, '_> {
     fn libraries(&mut self, line: String, at: &Span) -> Result<(), FormatError> {
         let folder = self.source.folder;
         let whole = String::from_utf8_lossy(unquoted(line.as_bytes())).into_owned();
-        let names = match self.reading.locate(folder, &whole, at) {
+        let names = match self.reading.locator.locate(folder, &whole, at) {
             Ok(_) => vec![whole],
             Err(_) => split_names(&line),
         };
         for name in names {
-            let located = self.reading.locate(folder, &name, at);
+            let located = self.reading.locator.locate(folder, &name, at);
             let loaded = located.and_then(|path| Ok((self.reading.load_text(&path)?, path)));
             let (bytes, path) = match loaded {
                 Ok(loaded) => loaded,

@@ -1,76 +1,14 @@
 //! Points and lines of an OBJ file.
 
-use super::block::Reader;
-use super::index::{Index, index};
+use super::block::{End, Stroke};
 use crate::FormatError;
 use crate::indexed_faces::{IndexedFaces, NONE, Run, material_of};
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
-use crate::text::{TextPosition, quoted};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// A point, or a line between two vertices.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
-    /// The number of state changes before it.
-    pub(super) turns: usize,
-    /// Both ends are the same for a point.
-    pub(super) ends: [End; 2],
-    pub(super) is_point: bool,
-    pub(super) place: TextPosition,
-}
-
-/// A vertex of a point or a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
-    /// An index from 0.
-    Whole(u32),
-    /// An index relative to the first vertex of the block; negative for earlier blocks.
-    OfBlock(i64),
-}
-
-impl Reader<'_> {
-    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
-    pub(super) fn strokes(&mut self, place: TextPosition, are_points: bool) -> Result<(), FormatError> {
-        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
-        loop {
-            let word = self.cursor.word();
-            if word.is_empty() || word.starts_with(b"#") {
-                break;
-            }
-            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
-            let end = match index(digits) {
-                Some(Index::Forward(index)) => End::Whole(index),
-                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
-                None => {
-                    let at = self.at(self.cursor.offset() - word.len());
-                    let message = format!(
-                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
-                        quoted(word)
-                    );
-                    self.block.strokes.truncate(first);
-                    self.fault(message, ": this point or line is left out", at);
-                    return Ok(());
-                }
-            };
-            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
-            if let Some(ends) = ends {
-                self.budget.take::<Stroke>(1, self.file)?;
-                let turns = self.block.turns.len();
-                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
-            }
-            last = Some(end);
-            count += 1;
-        }
-        if count < 2 - usize::from(are_points) {
-            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
-        }
-        Ok(())
-    }
-}
 
 /// All points and lines of a file, grouped by name and material.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Converts MTL materials to those of Bilux, as `docs/formats/obj.md` describes.
 
-use super::mtl::Draft;
+use super::draft::{Draft, unit};
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Value};
 
@@ -121,8 +121,4 @@ fn principled(draft: &Draft) -> Spec {
         }
     }
     spec
-}
-
-pub(super) fn unit(c: Rgb) -> Rgb {
-    c.clamp(0.0, 1.0)
 }

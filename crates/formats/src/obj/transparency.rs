@@ -1,7 +1,8 @@
 //! What lets light through. Exporters write `d`, `Tr`, `Tf` and `illum` in ways that contradict each other, so that a
 //! library is interpreted as a whole, as `docs/formats/obj.md` describes.
 
-use super::mtl::{Draft, Library};
+use super::draft::Draft;
+use super::library::Library;
 use super::surface::is_of_pbr_extension;
 use bilux_math::Rgb;
 

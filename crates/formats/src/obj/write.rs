@@ -1,6 +1,6 @@
 //! Writes OBJ.
 
-use super::mtl_write::write_library;
+use super::mtl_write::{one_line, write_library};
 use crate::FormatError;
 use crate::bake::{in_place, name_of, warn_of_scene};
 use crate::colours::encoded;
@@ -35,11 +35,6 @@ struct Counts {
     positions: usize,
     uvs: usize,
     normals: usize,
-}
-
-/// A name on a single line, since names end at the end of the line.
-pub(super) fn one_line(name: &str) -> String {
-    name.replace(['\n', '\r', '\0'], " ").trim().to_owned()
 }
 
 fn vertices(mesh: &Mesh, out: &mut Vec<u8>) {

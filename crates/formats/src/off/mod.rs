@@ -1,12 +1,13 @@
 //! OFF, the object file format of Geomview, in its text form. See `docs/formats/off.md`.
 
+mod columns;
 mod read;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
-use read::Columns;
+use columns::Columns;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -24,6 +25,3 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };
-
-/// The comment that keeps faces without normals flat when Bilux reads its own files.
-const FLAT_COMMENT: &[u8] = b"shading flat";

@@ -1,6 +1,6 @@
 //! Reads OFF.
 
-use super::FLAT_COMMENT;
+use super::columns::{Columns, FLAT_COMMENT};
 use crate::FormatError;
 use crate::colours::{Stored, decode};
 use crate::float::{parse_f32, parse_relative};
@@ -24,39 +24,11 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         smoothing: BY_ANGLE,
         oddities: Oddities::default(),
     };
-    let columns = reader.first_word().map_err(|error| no_text(error, source))?;
+    let columns = reader.first_word().map_err(|error| no_text(error, source.bytes))?;
     let [vertices, faces] = reader.counts()?;
     reader.vertices(vertices, columns)?;
     reader.faces(faces, columns)?;
     reader.finish()
-}
-
-/// The columns after the position on the line of a vertex, in this order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Columns {
-    pub(super) normals: bool,
-    pub(super) colours: bool,
-    pub(super) uvs: bool,
-}
-
-impl Columns {
-    /// The columns that the first word `[ST][C][N]OFF` states, and its length; counts may follow without a space.
-    pub(super) fn of_word(word: &[u8]) -> Option<(Columns, usize)> {
-        let mut rest = word;
-        let mut takes = |prefix: &[u8]| {
-            let found = rest.strip_prefix(prefix);
-            rest = found.unwrap_or(rest);
-            found.is_some()
-        };
-        let columns = Columns { uvs: takes(b"ST"), colours: takes(b"C"), normals: takes(b"N") };
-        let is_off = takes(b"OFF") && rest.iter().all(u8::is_ascii_digit);
-        is_off.then_some((columns, word.len() - rest.len()))
-    }
-
-    /// The count of numbers of a vertex, without the optional opacity of its colour.
-    fn width(self) -> usize {
-        3 + 3 * usize::from(self.normals) + 3 * usize::from(self.colours) + 2 * usize::from(self.uvs)
-    }
 }
 
 struct Off<'a, 'o, 'r> {

@@ -1,7 +1,6 @@
 //! Writes OFF.
 
-use super::FLAT_COMMENT;
-use super::read::Columns;
+use super::columns::{Columns, FLAT_COMMENT};
 use crate::FormatError;
 use crate::bake::{in_place, warn_of_materials, warn_of_scene};
 use crate::colours::encoded;

@@ -43,7 +43,7 @@ impl Includes {
         loader: &mut Loader,
     ) -> Result<Included, FormatError> {
         let reading = &mut *loader.reading;
-        let path = reading.locate_except(loader.folder.as_deref(), name, &self.open, at)?;
+        let path = reading.locator.locate_except(loader.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {
             let message =
                 format!("'{name}' includes itself, directly or through other files: remove it here");

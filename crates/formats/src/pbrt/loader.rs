@@ -131,7 +131,7 @@ impl<'o, 'r> Loader<'o, 'r> {
             let names: Vec<String> = spectra::names().collect();
             unknown("spectrum or file", name, names.iter().map(String::as_str), &parameter.at)
         };
-        let path = match self.reading.locate(self.folder.as_deref(), name, &parameter.at) {
+        let path = match self.reading.locator.locate(self.folder.as_deref(), name, &parameter.at) {
             Ok(path) => path,
             Err(error @ FormatError::Outside { .. }) => return Err(error),
             Err(_) => return Err(unknown()),

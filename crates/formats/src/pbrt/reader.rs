@@ -14,9 +14,9 @@ use std::path::Path;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let working_folder = reading.options.working_folder.clone();
-    let before = std::mem::replace(&mut reading.working_folder, working_folder);
+    let before = std::mem::replace(&mut reading.locator.working_folder, working_folder);
     let scene = read_whole(reading, source);
-    reading.working_folder = before;
+    reading.locator.working_folder = before;
     scene
 }
 

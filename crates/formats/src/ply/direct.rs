@@ -3,7 +3,7 @@
 
 use super::body::Body;
 use super::header::{Element, Scalar};
-use super::read::Ply;
+use super::reader::Ply;
 use super::slots::lists_vertices;
 use crate::FormatError;
 use crate::indexed_faces::NONE;

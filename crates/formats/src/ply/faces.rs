@@ -1,7 +1,7 @@
 //! Faces and triangle strips, with what each face and each corner has of its own.
 
 use super::header::{Element, Property, Scalar};
-use super::read::Ply;
+use super::reader::Ply;
 use super::slots::{FaceSlots, lists_uvs, lists_vertices};
 use crate::FormatError;
 use crate::indexed_faces::{Corner, FaceColour, NONE};

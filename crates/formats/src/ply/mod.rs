@@ -5,6 +5,7 @@ mod direct;
 mod faces;
 mod header;
 mod read;
+mod reader;
 mod slots;
 mod splats;
 mod strokes;

@@ -2,14 +2,15 @@
 
 use super::body::Body;
 use super::direct::can_be;
-use super::header::{Element, Property, read_header};
+use super::header::{Element, read_header};
+use super::reader::Ply;
 use super::slots::{MEANINGS, Slots};
-use super::splats::{self, Splats};
+use super::splats;
 use super::strokes;
 use crate::FormatError;
-use crate::colours::{Stored, decode};
+use crate::colours::decode;
 use crate::indexed_faces::{IndexedFaces, NONE, assemble};
-use crate::normals::{BY_ANGLE, FLAT, Smoothing};
+use crate::normals::{BY_ANGLE, FLAT};
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
 use crate::text::{Places, quoted};
@@ -55,33 +56,6 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     reader.finish(&header.textures, SceneBuilder::default())
 }
 
-pub(super) struct Ply<'a, 'o, 'r> {
-    pub(super) reading: &'r mut Reading<'o>,
-    pub(super) source: &'a Source<'a>,
-    pub(super) places: &'a Places<'a>,
-    pub(super) body: Body<'a>,
-    pub(super) indexed: IndexedFaces,
-    /// All triangles, if nothing has to be welded.
-    triangles: Option<Vec<[u32; 3]>>,
-    /// Edges, as pairs of vertices.
-    pub(super) edges: Vec<[u32; 2]>,
-    /// The opacity and the width of each vertex that is a splat.
-    pub(super) splats: Option<Splats>,
-    /// How colours of faces are stored, if there are any.
-    pub(super) face_colours: Option<Stored>,
-    /// The number of each face's texture.
-    pub(super) face_textures: Vec<u32>,
-    has_normals: bool,
-    has_uvs: bool,
-    /// Distinct texture coordinates of corners, as opposed to vertices.
-    pub(super) wedge_uvs: Vec<Vec2>,
-    /// The index of each of these, by its bits.
-    pub(super) wedges: HashMap<[u32; 2], u32>,
-    /// The smoothing of faces without normals.
-    pub(super) smoothing: Smoothing,
-    pub(super) oddities: Oddities,
-}
-
 impl Ply<'_, '_, '_> {
     fn element(&mut self, element: &Element) -> Result<(), FormatError> {
         if element.properties.is_empty() {
@@ -111,14 +85,6 @@ impl Ply<'_, '_, '_> {
             self.body.end_row();
         }
         Ok(())
-    }
-
-    pub(super) fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
-        let count = match property.count {
-            Some(scalar) => self.body.integer(scalar)?,
-            None => 1,
-        };
-        self.body.skip(property.scalar, count)
     }
 
     fn vertices(&mut self, element: &Element) -> Result<(), FormatError> {
@@ -174,22 +140,6 @@ impl Ply<'_, '_, '_> {
         decode(&mut self.indexed.colours, slots.stored[0]);
         decode(&mut self.indexed.specular, slots.stored[1]);
         Ok(())
-    }
-
-    /// Names the properties that the picture does not show.
-    pub(super) fn report_unused(&mut self, element: &Element, is_used: impl Fn(usize) -> bool) {
-        let places = self.places;
-        for (_, unused) in element.properties.iter().enumerate().filter(|(p, _)| !is_used(*p)) {
-            let what = format!("{} of each {}", quoted(unused.name.as_bytes()), element.name);
-            self.oddities.not_used(&what, || places.at(element.offset));
-        }
-    }
-
-    pub(super) fn end_row(&mut self, start: usize) {
-        if self.body.end_row() {
-            let places = self.places;
-            self.oddities.note("a line has more values than the header declares", || places.at(start));
-        }
     }
 
     fn reserve(&mut self, slots: &Slots, count: usize) {

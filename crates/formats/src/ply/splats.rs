@@ -2,24 +2,13 @@
 //! rotation and an opacity. Each becomes a ball. [Kerbl 2023]
 
 use super::header::Element;
-use super::read::Ply;
+use super::reader::{Ply, Splats};
 use crate::FormatError;
 use crate::colours::{decode, decoded};
 use crate::indexed_faces::NONE;
 use bilux_math::transcendental::exp;
 use bilux_math::{DVec3, Rgb, Vec3};
 use std::ops::Range;
-
-/// What a splat is to a ball, by vertex.
-#[derive(Default)]
-pub(super) struct Splats {
-    pub(super) opacities: Vec<f32>,
-    pub(super) widths: Vec<f32>,
-    /// Whether they have plain colours, which are kept as stored until all are known.
-    are_plain: bool,
-    /// The number of scales: flat splats have two.
-    scales: usize,
-}
 
 /// The properties that are used, in this order.
 const PROPERTIES: [&str; 13] = [

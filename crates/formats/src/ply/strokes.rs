@@ -1,7 +1,7 @@
 //! Vertices without faces: lines along edges, or a point cloud.
 
 use super::header::Element;
-use super::read::Ply;
+use super::reader::Ply;
 use crate::FormatError;
 use crate::indexed_faces::NONE;
 use crate::reading::plain_material;

@@ -1,6 +1,6 @@
 //! The textures of a mesh, which comments of the header name.
 
-use super::read::Ply;
+use super::reader::Ply;
 use crate::FormatError;
 use crate::indexed_faces::{NONE, Run};
 use crate::reading::{Texels, plain_material};

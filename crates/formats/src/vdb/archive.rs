@@ -1,6 +1,6 @@
 //! What comes before the trees of an OpenVDB file: its header, the list of its grids, and their metadata.
 
-use super::LEVEL_SET;
+use super::level_sets::LEVEL_SET;
 use crate::FormatError;
 use crate::grids::{Bytes, Catalogue, Listed};
 use crate::reading::Source;

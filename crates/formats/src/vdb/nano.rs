@@ -1,7 +1,7 @@
 //! NanoVDB: the same trees, laid out in memory as they are in the file. [Museth 2021]
 
-use super::LEVEL_SET;
-use super::nano_tree::{Numbers, Tree, leaf};
+use super::level_sets::LEVEL_SET;
+use super::nano_tree::{GRID, Numbers, Tree, leaf};
 use super::packing::{unblosc, unzip};
 use crate::FormatError;
 use crate::budget::Budget;
@@ -25,8 +25,7 @@ const LARGEST_RUN: usize = 1 << 30;
 
 /// Bytes of the description of a grid in a file, without its name.
 const DESCRIPTION: usize = 176;
-/// The bytes of a grid before its tree, and the places of its name, its map, its class and the type of its values there.
-pub(super) const GRID: usize = 672;
+/// The places of the name of a grid, its map, its class and the type of its values.
 const NAME: usize = 40;
 const NAME_BYTES: usize = 256;
 const MAP: usize = 296 + 22 * size_of::<f32>();

@@ -1,12 +1,13 @@
 //! The trees of NanoVDB: nodes refer to others by distances in bytes.
 
-use super::nano::GRID;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::grids::{Bytes, LeafMask, LeafValues, Sparse};
 use crate::reading::Source;
 use bilux_scene::media::BLOCK_VOXELS;
 
+/// The bytes of a grid before its tree.
+pub(super) const GRID: usize = 672;
 /// Where the children of an inner node begin.
 const UPPER: Level = Level { bits: 5, side: 128 };
 const LOWER: Level = Level { bits: 4, side: 8 };

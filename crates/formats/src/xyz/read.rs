@@ -25,7 +25,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         intensities: Vec::new(),
         oddities: Oddities::default(),
     };
-    reader.lines().map_err(|error| no_text(error, source))?;
+    reader.lines().map_err(|error| no_text(error, source.bytes))?;
     reader.finish()
 }
 

@@ -5,7 +5,7 @@ use super::super::gzip;
 use super::super::parameters::ParameterList;
 use super::maker::ShapeMaker;
 use crate::FormatError;
-use crate::formats::read_source;
+use crate::files::read_source;
 use crate::reading::Source;
 use bilux_scene::{Mesh, SceneError};
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(super) fn make(
         maker.loader.note("displacement of a mesh is not supported", || list.place("displacement"));
         list.has("edgelength");
     }
-    let path = maker.loader.reading.locate(maker.loader.folder.as_deref(), name, &at)?;
+    let path = maker.loader.reading.locator.locate(maker.loader.folder.as_deref(), name, &at)?;
     let key = (path.clone(), maker.reverses);
     if let Some(mesh) = maker.cache.files.get(&key) {
         return Ok(Some(ShapeGeometry::Mesh(mesh.clone())));
