@@ -220,7 +220,7 @@ impl Picture {
         let shown = self.main().into_srgb();
         let [r, g, b] = shown.rgb_planes()?;
         let alpha = shown.channel("A");
-        let byte = |sample: f32| crate::formats::quantise(sample, 255.0) as u8;
+        let byte = |sample: f32| quantise(sample, 255.0) as u8;
         let pixel = |i: usize| [byte(r[i]), byte(g[i]), byte(b[i]), alpha.map_or(255, |a| byte(a[i]))];
         Some((0..self.pixel_count()).flat_map(pixel).collect())
     }
@@ -357,6 +357,11 @@ const PIECE: usize = 1 << 14;
 /// Clamps a sample to 0..=`most`; NaN becomes 0, whereas `clamp` would keep it.
 pub(crate) fn clamp_sample(sample: f32, most: f32) -> f32 {
     if sample > 0.0 { sample.min(most) } else { 0.0 }
+}
+
+/// Quantises a sample of 0..=1 to `steps`, rounded half up. In f64, so that every step survives a round trip.
+pub(crate) fn quantise(sample: f32, steps: f64) -> u32 {
+    (f64::from(clamp_sample(sample, 1.0)) * steps + 0.5).floor() as u32
 }
 
 /// A layer's channel: "albedo" and "R" make "albedo.R", "" and "R" make "R".

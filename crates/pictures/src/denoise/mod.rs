@@ -8,42 +8,18 @@
 mod builtin;
 mod noisy;
 mod oidn;
+mod task;
 
 use crate::error::nearest;
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
-use bilux_math::registry::Entry;
 pub use noisy::{Layer, Noisy, Source};
 use std::thread::JoinHandle;
 use std::time::Duration;
+pub use task::{Denoiser, DenoiserEntry, Task};
 
 /// Every available denoiser, best first.
 pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
-
-/// A row of [`DENOISERS`].
-#[derive(Clone, Copy, Debug)]
-pub struct DenoiserEntry {
-    /// Name, summary, source and parameters.
-    pub entry: Entry,
-    /// Approximate run time, where the task leaves the choice to the denoiser.
-    pub time: fn(&Task) -> Duration,
-    /// True for an external library, which is searched for in folders outside the project and loaded at run time.
-    pub is_library: bool,
-    /// Prepares the denoiser, or says what is missing and how to get it.
-    pub find: fn(&Task) -> Result<Box<dyn Denoiser>, String>,
-}
-
-/// A denoiser that is ready to run.
-pub trait Denoiser: Send + Sync {
-    /// Its name and location, for the user.
-    fn describe(&self) -> String;
-
-    /// The denoised picture, row by row. The result is the same for any number of threads.
-    ///
-    /// # Errors
-    /// Returns an error when the machine has no memory left, or the denoiser fails.
-    fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError>;
-}
 
 /// A chosen denoiser, with its expected time and advice.
 pub struct DenoiserChoice {
@@ -55,32 +31,6 @@ pub struct DenoiserChoice {
     pub time: Duration,
     /// How to get a better denoiser, if there is one.
     pub advice: Option<String>,
-}
-
-/// The denoising task, and how long it may take.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Task {
-    /// Width and height in pixels, where known.
-    pub size: (usize, usize),
-    /// Number of threads; 0 means one per core.
-    pub threads: usize,
-    /// Maximum time for the best denoiser, if there is a limit: it does as well as it can within that time.
-    pub time: Option<Duration>,
-    /// No external library may be loaded; one that [`preload`] has loaded before may be used.
-    pub sandboxed: bool,
-}
-
-impl Task {
-    /// Total number of pixels.
-    pub fn pixels(&self) -> u64 {
-        self.size.0 as u64 * self.size.1 as u64
-    }
-
-    /// Number of threads, at least 1.
-    pub fn thread_count(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        if self.threads == 0 { cores() } else { self.threads }
-    }
 }
 
 /// Libraries that are being loaded on a separate thread.

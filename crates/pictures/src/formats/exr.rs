@@ -1,5 +1,6 @@
 //! OpenEXR: any number of named planes of halves, floats or integers, and text attributes. [OpenEXR]
 
+use super::exr_write::FORMAT;
 use super::faults::exr::explain;
 use super::guard::guarded;
 use super::primaries::{REC709, luminance, to_rec709};
@@ -31,11 +32,10 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits, Wanted::DisplayWindow)),
+    read_crop: Some(read_crop),
     read_rgba8: None,
     write: Some(exr_write::write),
 };
-
-pub(super) const FORMAT: &str = "EXR";
 
 /// No renderer writes this many, and each of them costs time whatever its size.
 const MAX_CHANNELS: usize = 4096;

@@ -4,7 +4,6 @@
 //! change from run to run, and the same picture must always give the same bytes.
 
 use super::WriteOptions;
-use super::exr::FORMAT;
 use super::primaries::REC709;
 use crate::limits::MAX_SIDE;
 use crate::{Alpha, ColourSpace, Crop, Picture, PictureError};
@@ -14,6 +13,8 @@ use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, LineOrder, SampleType, Text};
 use ::exr::meta::header::{Header, standard_names};
 use std::borrow::Cow;
+
+pub(super) const FORMAT: &str = "EXR";
 
 /// A plane of any type.
 struct Plane<'a> {

@@ -23,6 +23,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(b"#?"),
     read,
+    read_crop: None,
     read_rgba8: None,
     write: Some(write),
 };

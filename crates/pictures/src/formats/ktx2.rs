@@ -21,6 +21,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(MAGIC),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_crop: None,
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
     write: None,
 };

@@ -19,6 +19,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'F' | b'f', blank, ..] if blank.is_ascii_whitespace()),
     read,
+    read_crop: None,
     read_rgba8: None,
     write: Some(write),
 };

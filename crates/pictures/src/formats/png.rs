@@ -3,8 +3,9 @@
 use super::faults::png::explain;
 use super::guard::guarded;
 use super::orientation::Orientation;
+use super::planes::planes_of;
 use super::rgba8::Interleaved;
-use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
+use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use ::png::{ColorType, Compression, Decoder, Encoder, Info, SrgbRenderingIntent, Transformations};
@@ -24,6 +25,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(b"\x89PNG"),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_crop: None,
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
     write: Some(write),
 };

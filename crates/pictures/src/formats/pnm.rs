@@ -19,6 +19,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'1'..=b'6', next, ..] if next.is_ascii_whitespace() || *next == b'#'),
     read,
+    read_crop: None,
     read_rgba8: None,
     write: Some(write),
 };

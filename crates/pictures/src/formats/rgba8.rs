@@ -1,7 +1,7 @@
 //! Pictures as bytes: textures take four per pixel, without a detour through planes.
 
-use super::{planes_of, row_of};
-use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use super::planes::planes_of;
+use crate::{Alpha, ColourSpace, Picture, PictureError};
 
 /// Bytes of an sRGB picture with straight alpha.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,15 +14,6 @@ pub struct Rgba8 {
     pub texels: Vec<[u8; 4]>,
     /// What is wrong with the file, though it could be read.
     pub warnings: Vec<String>,
-}
-
-/// Decodes a picture that is stored in sRGB bytes. Returns `None` for any other picture, which [`super::read_bytes`]
-/// reads. Where both apply, they give the same result, and this function takes a quarter of the memory.
-///
-/// # Errors
-/// As [`super::read_bytes`].
-pub fn read_rgba8(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
-    row_of(bytes, hint)?.read_rgba8.map_or(Ok(None), |read| read(bytes, limits))
 }
 
 /// Interleaved bytes of one to four channels (grey, grey and alpha, colour, colour and alpha), in sRGB with straight

@@ -20,6 +20,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |_| false,
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read_crop: None,
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
     write: None,
 };

@@ -27,6 +27,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].into_iter().any(|mark| bytes.starts_with(mark)),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_crop: None,
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
     write: None,
 };

@@ -24,6 +24,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read_crop: None,
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
     write: Some(write),
 };

@@ -50,7 +50,7 @@ pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Res
         return Err(PictureError::Malformed(what.to_owned()));
     }
     let shown = picture.main();
-    if exposure == 0.0 && curve.entry.name == none::ENTRY.entry.name {
+    if exposure == 0.0 && curve.entry.name == TONEMAPS[0].entry.name {
         return Ok(shown.into_srgb());
     }
     let mut shown = shown.into_linear();

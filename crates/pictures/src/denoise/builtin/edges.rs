@@ -4,7 +4,7 @@
 //! to the denoised pixels around it predicts the light of the mixture. [Moon 2014; Bitterli 2016, eq. 4]
 
 use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
-use super::planes::Planes;
+use super::planes::{MARGIN, Planes};
 use crate::PictureError;
 use crate::limits::zeroed;
 use bilux_math::Rgb;
@@ -66,12 +66,12 @@ fn edges(guides: &Guides) -> Vec<bool> {
     let planes = &guides.planes;
     let (stride, width) = (planes.stride(), planes.width);
     let mut edges = vec![false; planes.planes[ALBEDO].len()];
-    let (first, last) = (planes.index(0, 0) - super::MARGIN, planes.index(0, planes.height) - super::MARGIN);
+    let (first, last) = (planes.index(0, 0) - MARGIN, planes.index(0, planes.height) - MARGIN);
     edges[first..last].par_chunks_mut(stride).enumerate().for_each(|(y, row)| {
         let p = planes.index(0, y);
         for offset in [1, stride - 1, stride, stride + 1] {
             for q in [p - offset, p + offset] {
-                apart(guides, p, q, &mut row[super::MARGIN..super::MARGIN + width]);
+                apart(guides, p, q, &mut row[MARGIN..MARGIN + width]);
             }
         }
     });

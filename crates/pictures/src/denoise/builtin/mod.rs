@@ -12,7 +12,8 @@ mod outliers;
 mod pass;
 mod planes;
 
-use super::{Denoiser, DenoiserEntry, Noisy, Source, noisy};
+use super::noisy::{self, Noisy, Source};
+use super::task::{Denoiser, DenoiserEntry};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
@@ -41,9 +42,6 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
 
 /// Distance between neighbours in pixels, pass by pass.
 const STEPS: [usize; 4] = [1, 2, 4, 8];
-
-/// The maximum reach of a pass: two steps and half a patch.
-const MARGIN: usize = 2 * 8 + 1;
 
 /// Rows that are filtered at a time: a picture of any height takes no more memory than this many rows.
 const MAX_ROWS: usize = 288;

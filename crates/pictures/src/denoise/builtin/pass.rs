@@ -1,9 +1,8 @@
 //! One à-trous pass over all pixels: each becomes a weighted mean of 5 × 5 pixels that are `step` pixels apart.
 
-use super::MARGIN;
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
 use super::linear::Moments;
-use super::planes::{Light, Planes};
+use super::planes::{Light, MARGIN, Planes};
 use rayon::prelude::*;
 
 /// Rows that one thread processes at a time.

@@ -1,11 +1,14 @@
 //! Planes with a margin around them, so that neighbours beyond the edge need no special case.
 
-use super::{MARGIN, outliers};
+use super::outliers;
 use crate::PictureError;
 use crate::denoise::Layer;
 use crate::limits::zeroed;
 use bilux_math::Rgb;
 use rayon::prelude::*;
+
+/// The maximum reach of a pass: two steps and half a patch.
+pub(super) const MARGIN: usize = 2 * 8 + 1;
 
 /// Planes of a picture, each with a margin that repeats its edge.
 #[derive(Clone)]

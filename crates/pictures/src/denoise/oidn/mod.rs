@@ -8,7 +8,8 @@ mod python;
 mod shared;
 
 use super::builtin::Builtin;
-use super::{Denoiser, DenoiserEntry, Noisy, Source, Task, noisy};
+use super::noisy::{self, Noisy, Source};
+use super::task::{Denoiser, DenoiserEntry, Task};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
