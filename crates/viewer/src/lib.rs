@@ -20,6 +20,7 @@ mod secret;
 mod server;
 mod settings;
 mod stage;
+mod threads;
 mod turns;
 mod visitors;
 mod watch;

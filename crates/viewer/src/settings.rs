@@ -1,6 +1,5 @@
 //! The settings of a session: what the user asks for, what a viewer needs, and what small pictures change.
 
-use crate::open_scene::Version;
 use bilux::scene::{Parameters, Value};
 use bilux::transport::integrators::INTEGRATORS;
 use bilux::{JobRequest, Settings};
@@ -53,10 +52,10 @@ pub(crate) fn forget_camera(user: &mut Parameters) {
     user.0.retain(|(key, ..)| !OF_THE_CAMERA.contains(&key.as_str()));
 }
 
-/// Settings at the time that a version of the scene shows.
-pub(crate) fn at_time(user: &Parameters, version: &Version) -> Parameters {
+/// Settings at a time, if one is given.
+pub(crate) fn at_time(user: &Parameters, time: Option<&Value>) -> Parameters {
     let mut all = user.clone();
-    if let Some(time) = &version.time {
+    if let Some(time) = time {
         all.set("time", time.clone());
     }
     all

@@ -181,7 +181,7 @@ fn begin(common: &Arc<Common>, view: &View) -> Result<JoinHandle<()>, ViewerErro
             outlets.progress.send_replace(problem.to_string().into());
         }
     };
-    crate::server::start("view", render)
+    crate::threads::start("view", render)
 }
 
 #[cfg(test)]

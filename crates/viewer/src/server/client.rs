@@ -1,6 +1,6 @@
 //! One browser: what it says goes to the inbox, and it gets the newest frame whenever it has seen the ones before.
 
-use super::Shared;
+use super::shared::Shared;
 use crate::frame::Frame;
 use crate::message::{Answers, Message, parse};
 use crate::visitors::Connection;

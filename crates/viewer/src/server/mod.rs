@@ -3,6 +3,7 @@
 mod client;
 mod guard;
 mod page;
+mod shared;
 mod upload;
 
 use crate::ViewerError;
@@ -11,6 +12,7 @@ use crate::common::Common;
 use crate::message::{LONGEST, Question, Request};
 use crate::open_scene::{Keeper, OpenScene};
 use crate::options::Options;
+use crate::threads::start;
 use crate::visitors::Visitors;
 use crate::watch;
 use axum::Router;
@@ -21,6 +23,7 @@ use axum::routing::{get, post};
 use axum::serve::ListenerExt;
 use bilux::watch::Watched;
 use guard::Guard;
+use shared::Shared;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -41,17 +44,6 @@ pub struct Server {
     guard: Guard,
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,
-}
-
-/// What all connections share.
-struct Shared {
-    open: Arc<OpenScene>,
-    visitors: Arc<Visitors>,
-    catalogue: String,
-    /// Whether files may be dropped in.
-    may_drop: bool,
-    /// Files that are dropped in come one at a time: each may be large.
-    opening: tokio::sync::Mutex<()>,
 }
 
 impl Server {
@@ -126,18 +118,6 @@ impl Server {
         }
         served.map_err(failed)
     }
-}
-
-impl Drop for Shared {
-    fn drop(&mut self) {
-        self.open.end();
-        self.visitors.end();
-    }
-}
-
-pub(crate) fn start(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, ViewerError> {
-    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(work);
-    thread.map_err(|error| ViewerError::Start(error.to_string()))
 }
 
 /// Listens, and says where.

@@ -1,6 +1,7 @@
 //! Files that are dropped into the page.
 
-use super::{Shared, guard};
+use super::guard;
+use super::shared::Shared;
 use crate::dropped::{Dropped, Incoming, LARGEST};
 use crate::message::SceneRequest;
 use axum::body::Body;

@@ -1,7 +1,7 @@
 //! The picture that the picture is compared with.
 
-use super::refining::{Interruptible, STEP};
 use super::show::{FOR_DENOISERS, Shown};
+use super::steps::{Interruptible, STEP};
 use crate::frame::Facts;
 use crate::inbox::Inbox;
 use crate::message::Other;

@@ -7,6 +7,7 @@ mod answers;
 mod command;
 mod comparing;
 mod comparison;
+mod denoisers;
 mod denoising;
 mod json;
 mod measure;
@@ -21,6 +22,7 @@ mod requests;
 mod scene;
 mod show;
 mod state;
+mod steps;
 mod viewpoint;
 mod visits;
 
@@ -33,7 +35,7 @@ use bilux::Session;
 use bilux::scene::Parameters;
 use bilux::transport::aovs::Aov;
 use comparison::Comparison;
-use denoising::Denoisers;
+use denoisers::Denoisers;
 pub(crate) use publisher::Outlets;
 use publisher::Publisher;
 use questions::Questions;
@@ -85,7 +87,7 @@ impl Stage {
         common.open.attach(&inbox);
         let version = common.open.newest().ok_or_else(closed)?;
         let user = common.settings.clone();
-        let request = settings::request(&settings::at_time(&user, &version), common.max_memory);
+        let request = settings::request(&settings::at_time(&user, version.time.as_ref()), common.max_memory);
         let (scene, built) = (version.scene.clone(), version.built.clone());
         let session = Session::sharing(scene, request, built)?;
         let settings = session.job().settings();
@@ -188,21 +190,9 @@ impl Stage {
         }
     }
 
-    /// Publishes the state.
-    fn publish_state(&self) {
-        self.publisher.state(&state::state(self));
-    }
-
-    /// Says how far the picture is.
-    fn publish_progress(&mut self) {
-        if self.refinement.rests || self.publisher.is_progress_due() {
-            self.publisher.progress(&state::progress(self));
-        }
-    }
-
     /// The settings that those who watch have asked for, with the camera where they have moved it.
     fn asked(&self) -> Parameters {
-        let mut all = settings::at_time(&self.user, &self.version);
+        let mut all = settings::at_time(&self.user, self.version.time.as_ref());
         self.viewpoint.place(&mut all);
         all
     }

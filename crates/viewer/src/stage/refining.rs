@@ -2,17 +2,14 @@
 
 use super::Stage;
 use super::show::{FOR_DENOISERS, Shown};
+use super::steps::{Interruptible, STEP};
 use crate::frame::Facts;
-use crate::inbox::Inbox;
 use crate::settings::{Level, divided};
 use bilux::pictures::{Picture, WriteOptions};
-use bilux::transport::Progress;
 use bilux::transport::aovs::Aov;
 use bilux::{Budget, Edit, Error, Outcome, Settings};
 use std::time::{Duration, Instant};
 
-/// How long a step of the picture takes: then requests are looked at.
-pub(super) const STEP: Duration = Duration::from_millis(60);
 /// How often a picture that gets better is shown.
 const SHOWN_EVERY: Duration = Duration::from_millis(250);
 /// How long nothing has changed when the picture itself is begun: some integrators then choose their strategies first.
@@ -24,19 +21,6 @@ const CLEAN_SAMPLES: u32 = 16;
 const SHARE: u32 = 4;
 /// How often a picture that is denoised is shown.
 const CLEANED_EVERY: Duration = Duration::from_secs(2);
-
-/// Stops a step whose picture is out of date.
-pub(super) struct Interruptible<'a>(pub(super) &'a Inbox);
-
-impl Progress for Interruptible<'_> {
-    fn begin(&self, _samples: u64) {}
-
-    fn advance(&self, _samples: u64, _rays: u64) {}
-
-    fn is_cancelled(&self) -> bool {
-        self.0.interrupts()
-    }
-}
 
 impl Stage {
     /// Begins the picture anew, with small pictures first, unless what has changed is only how it is displayed.

@@ -60,7 +60,7 @@ impl Stage {
 
     /// Where the scene has its camera in a window of this shape.
     pub(super) fn home(&self) -> Option<Eye> {
-        let mut asked = settings::with_defaults(&settings::at_time(&self.user, &self.version));
+        let mut asked = settings::with_defaults(&settings::at_time(&self.user, self.version.time.as_ref()));
         let scene = self.session.scene();
         settings::set_level(&mut asked, &scene.settings, self.viewpoint.size, Level::Full);
         Eye::at_home(self.session.job(), scene, &asked)

@@ -11,8 +11,22 @@ use bilux::settings::RENDER;
 use bilux::transport::integrators::INTEGRATORS;
 use serde_json::{Map, Value, json};
 
+impl Stage {
+    /// Publishes the state.
+    pub(super) fn publish_state(&self) {
+        self.publisher.state(&state(self));
+    }
+
+    /// Says how far the picture is.
+    pub(super) fn publish_progress(&mut self) {
+        if self.refinement.rests || self.publisher.is_progress_due() {
+            self.publisher.progress(&progress(self));
+        }
+    }
+}
+
 /// The state of the stage, for the page.
-pub(super) fn state(stage: &Stage) -> Value {
+fn state(stage: &Stage) -> Value {
     let job = stage.session.job();
     let (scene, used) = (job.completed_scene(), job.settings());
     let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles.len()).sum();
@@ -55,7 +69,7 @@ pub(super) fn state(stage: &Stage) -> Value {
 }
 
 /// How far the picture is, and the one that it is compared with, for the page.
-pub(super) fn progress(stage: &Stage) -> Value {
+fn progress(stage: &Stage) -> Value {
     let (session, level) = (&stage.session, stage.refinement.level);
     let other = stage
         .comparison
