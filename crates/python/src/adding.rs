@@ -1,9 +1,8 @@
 //! What is added to a scene: meshes from arrays, and the materials and textures that specs name.
 
 use crate::arrays;
-use crate::spec::Spec;
 use crate::texture::Texture;
-use crate::values::Resolve;
+use crate::values::{Resolve, Spec};
 use bilux::scene::{Mesh, Object, SceneBuilder};
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;

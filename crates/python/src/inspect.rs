@@ -3,7 +3,7 @@
 use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{build, interrupted};
+use crate::render::{build, check_strategies, interrupted};
 use crate::scene::Scene;
 use crate::values;
 use crate::watch::{Stopped, follow};
@@ -80,17 +80,4 @@ pub(crate) fn strategies(
         Ok((strategy.to_string(), strategy.s, strategy.t(), strategy.merges, weighted?, unweighted?))
     };
     (0..found.pictures.len()).map(one).collect::<PyResult<_>>().map(Some)
-}
-
-/// Refuses an integrator without strategies.
-pub(crate) fn check_strategies(job: &Job) -> Result<(), Error> {
-    if job.has_strategies() {
-        return Ok(());
-    }
-    let name = job.settings().integrator.entry.name;
-    let others = bilux::transport::integrators::with_strategies();
-    Err(Error::Settings(format!(
-        "integrator: '{name}' has no separate strategies: choose one of {}",
-        others.collect::<Vec<_>>().join(", ")
-    )))
 }

@@ -66,11 +66,13 @@ mod _bilux {
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]
-    use crate::spec::{Spec, rows};
+    use crate::spec::rows;
     #[pymodule_export]
     use crate::texture::Texture;
     #[pymodule_export]
     use crate::turntable::Turntable;
+    #[pymodule_export]
+    use crate::values::Spec;
 
     /// The licences of Bilux, and of everything in this package that others wrote.
     ///

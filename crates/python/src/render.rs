@@ -1,7 +1,6 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
 use crate::errors::{Error, exception, of_scene, warn};
-use crate::inspect::check_strategies;
 use crate::loading::Origin;
 use crate::memory;
 use crate::picture::Picture;
@@ -314,6 +313,19 @@ fn push_made_later(
     let names: Vec<&str> = missing.iter().map(|row| row.entry.name).collect();
     let message = format!("the render was stopped, so these layers are missing: {}", names.join(", "));
     Ok((!names.is_empty()).then(|| Warning { message, at: Span::default() }))
+}
+
+/// Refuses an integrator without strategies.
+pub(crate) fn check_strategies(job: &Job) -> Result<(), bilux::Error> {
+    if job.has_strategies() {
+        return Ok(());
+    }
+    let name = job.settings().integrator.entry.name;
+    let others = bilux::transport::integrators::with_strategies();
+    Err(bilux::Error::Settings(format!(
+        "integrator: '{name}' has no separate strategies: choose one of {}",
+        others.collect::<Vec<_>>().join(", ")
+    )))
 }
 
 /// Adds what each strategy finds: `strategy_NAME`, weighted, whose sum is the picture, and `unweighted_NAME`.

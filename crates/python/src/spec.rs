@@ -1,35 +1,13 @@
 //! Materials, lights and cameras as users name them: a row of a table, and values of its parameters.
 
 use crate::errors::of_scene;
-use crate::values::{self, Resolve, Unresolved};
+use crate::values::{self, Spec, Unresolved};
 use bilux::math::registry::Entry;
 use bilux::scene::{Reader, SceneBuilder, SceneError, Span};
 use bilux::tables::{TABLES, values as values_of};
 use bilux::wording::in_python;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-
-/// A material, a light or a camera: the name of a row of a table, and parameters.
-///
-/// Make one with `bilux.materials`, `bilux.lights` or `bilux.cameras`. It never changes; `with_` makes another one.
-///
-/// Example:
-///     >>> red = bilux.materials.diffuse(reflectance=(0.8, 0.1, 0.1))
-///     >>> red.kind, red.parameters["reflectance"]
-///     ('diffuse', (0.8, 0.1, 0.1))
-#[pyclass(frozen, module = "bilux")]
-pub(crate) struct Spec {
-    /// Its table: "materials", "lights" or "cameras".
-    #[pyo3(get)]
-    pub(crate) table: String,
-    /// The name of its row, such as "dielectric".
-    #[pyo3(get)]
-    pub(crate) kind: String,
-    /// The name in the scene; may be empty.
-    #[pyo3(get)]
-    pub(crate) name: String,
-    parameters: Py<PyDict>,
-}
 
 /// The row of a table.
 fn entry(table: &str, kind: &str) -> Result<Entry, SceneError> {
@@ -106,30 +84,6 @@ impl Spec {
             words.push(format!("{key}={}", value.repr()?));
         }
         Ok(format!("bilux.{}.{}({})", self.table, self.kind, words.join(", ")))
-    }
-}
-
-impl Spec {
-    /// The spec of a scene.
-    pub(crate) fn of(
-        py: Python<'_>,
-        table: &str,
-        spec: &bilux::scene::Spec,
-        scene: &SceneBuilder,
-    ) -> PyResult<Spec> {
-        Ok(Spec {
-            table: table.to_owned(),
-            kind: spec.kind.clone(),
-            name: spec.name.clone(),
-            parameters: values::dictionary(py, &spec.parameters, scene)?.unbind(),
-        })
-    }
-
-    /// The same for a scene, with textures and materials as indices.
-    pub(crate) fn resolved(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<bilux::scene::Spec> {
-        let mut spec = bilux::scene::Spec::new(&self.name, &self.kind);
-        spec.parameters = values::parameters(self.parameters.bind(py), resolve)?;
-        Ok(spec)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Python's values as parameters of a scene, and back.
+//! Python's values as parameters of a scene, and back. A material may be a value, and has values itself.
 
 use crate::grid::Grid;
 use crate::texture::Texture;
@@ -8,12 +8,34 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
+/// A material, a light or a camera: the name of a row of a table, and parameters.
+///
+/// Make one with `bilux.materials`, `bilux.lights` or `bilux.cameras`. It never changes; `with_` makes another one.
+///
+/// Example:
+///     >>> red = bilux.materials.diffuse(reflectance=(0.8, 0.1, 0.1))
+///     >>> red.kind, red.parameters["reflectance"]
+///     ('diffuse', (0.8, 0.1, 0.1))
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Spec {
+    /// Its table: "materials", "lights" or "cameras".
+    #[pyo3(get)]
+    pub(crate) table: String,
+    /// The name of its row, such as "dielectric".
+    #[pyo3(get)]
+    pub(crate) kind: String,
+    /// The name in the scene; may be empty.
+    #[pyo3(get)]
+    pub(crate) name: String,
+    pub(crate) parameters: Py<PyDict>,
+}
+
 /// Where values may name textures and materials.
 pub(crate) trait Resolve {
     /// The index of a texture.
     fn texture(&mut self, texture: &Texture) -> usize;
     /// The index of a material.
-    fn material(&mut self, material: &Bound<'_, crate::spec::Spec>) -> PyResult<usize>;
+    fn material(&mut self, material: &Bound<'_, Spec>) -> PyResult<usize>;
 }
 
 /// Resolves everything to index 0, for checking kinds of values.
@@ -23,8 +45,32 @@ impl Resolve for Unresolved {
     fn texture(&mut self, _: &Texture) -> usize {
         0
     }
-    fn material(&mut self, _: &Bound<'_, crate::spec::Spec>) -> PyResult<usize> {
+    fn material(&mut self, _: &Bound<'_, Spec>) -> PyResult<usize> {
         Ok(0)
+    }
+}
+
+impl Spec {
+    /// The spec of a scene.
+    pub(crate) fn of(
+        py: Python<'_>,
+        table: &str,
+        spec: &bilux::scene::Spec,
+        scene: &SceneBuilder,
+    ) -> PyResult<Spec> {
+        Ok(Spec {
+            table: table.to_owned(),
+            kind: spec.kind.clone(),
+            name: spec.name.clone(),
+            parameters: dictionary(py, &spec.parameters, scene)?.unbind(),
+        })
+    }
+
+    /// The same for a scene, with textures and materials as indices.
+    pub(crate) fn resolved(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<bilux::scene::Spec> {
+        let mut spec = bilux::scene::Spec::new(&self.name, &self.kind);
+        spec.parameters = parameters(self.parameters.bind(py), resolve)?;
+        Ok(spec)
     }
 }
 
@@ -58,7 +104,7 @@ pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn R
     if let Ok(grid) = argument.cast::<Grid>() {
         return Ok(Value::Grid(grid.get().0.clone()));
     }
-    if let Ok(material) = argument.cast::<crate::spec::Spec>() {
+    if let Ok(material) = argument.cast::<Spec>() {
         return Ok(Value::Material(resolve.material(material)?));
     }
     if argument.is_instance_of::<PyBool>() {
@@ -123,7 +169,7 @@ fn object<'py>(py: Python<'py>, value: &Value, scene: &SceneBuilder) -> PyResult
         },
         Value::Grid(grid) => Bound::new(py, Grid(grid.clone()))?.into_any(),
         Value::Material(index) => match scene.materials.get(*index) {
-            Some(spec) => Bound::new(py, crate::spec::Spec::of(py, "materials", spec, scene)?)?.into_any(),
+            Some(spec) => Bound::new(py, Spec::of(py, "materials", spec, scene)?)?.into_any(),
             None => py.None().into_bound(py),
         },
     })
