@@ -1,6 +1,7 @@
 //! The package for Debian and its relatives, by their own tool, `dpkg-deb`: the same files as in the archive, where that system
 //! expects them.
 
+use super::contents::{PAGES, SCENES};
 use crate::process::{output, run};
 use anyhow::{Context, Result};
 use std::fs;
@@ -64,7 +65,7 @@ fn control(package: &Package, kilobytes: u64) -> String {
 fn lay_out(folder: &Path, tree: &Path) -> Result<()> {
     let doc = tree.join("usr/share/doc/bilux");
     copy(&folder.join("bilux"), &tree.join("usr/bin/bilux"))?;
-    for page in super::PAGES {
+    for page in PAGES {
         copy(&folder.join(page), &doc.join(page))?;
     }
     copy(&folder.join("LICENSE-MIT"), &doc.join("copyright"))?;
@@ -76,7 +77,7 @@ fn lay_out(folder: &Path, tree: &Path) -> Result<()> {
         copy(&folder.join(format!("completions/bilux.{shell}")), &tree.join("usr/share").join(place))?;
     }
     copy_all(&folder.join("man"), &tree.join("usr/share/man/man1"))?;
-    copy_all(&folder.join(super::SCENES), &tree.join("usr/share/bilux/scenes"))?;
+    copy_all(&folder.join(SCENES), &tree.join("usr/share/bilux/scenes"))?;
     let mut zip = Command::new("gzip");
     zip.args(["-n9", "-r"]).arg(tree.join("usr/share/man"));
     run(&mut zip)

@@ -6,23 +6,18 @@
 //! builds them.
 
 mod container;
+mod contents;
 mod debian;
 mod elf;
 mod started;
 
-use crate::licences::PAGE as NOTICES;
 use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
+use contents::{PAGES, SCENES};
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-/// The files that accompany the binary.
-const PAGES: &[&str] = &["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICES];
-
-/// The scenes that the commands on the front page use.
-const SCENES: &str = "scenes";
 
 const SHELLS: &[&str] = &["bash", "zsh", "fish", "powershell", "elvish"];
 

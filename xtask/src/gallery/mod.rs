@@ -13,27 +13,10 @@ use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use table::{HEAT_MAPS, PICTURES};
+use table::{HEAT_MAPS, PICTURES, Scene};
 
 /// The folder of the pictures, relative to the root of the repository.
 const FOLDER: &str = "docs/gallery";
-
-/// What a picture shows.
-#[derive(Clone, Copy)]
-enum Scene {
-    /// A built-in scene, by the name of the file that `bilux generate` writes.
-    BuiltIn(&'static str),
-    /// A scene file of the repository.
-    Repository(&'static str),
-    /// A scene file of the repository, converted to a file of this name.
-    Converted(&'static str, &'static str),
-    /// A file that a page of the manual tells its readers to write: the page, and the file.
-    Page(&'static str, &'static str),
-    /// A model that is not ours, in the folder of models: a file, or the folder of a glTF sample model.
-    Model(&'static str),
-    /// A file that this chore makes.
-    Made(&'static str),
-}
 
 /// Where things are.
 struct Studio {

@@ -1,6 +1,23 @@
 //! The pictures of the manual: one line each.
 
-use super::Scene::{self, BuiltIn, Converted, Made, Model, Page, Repository};
+use Scene::{BuiltIn, Converted, Made, Model, Page, Repository};
+
+/// What a picture shows.
+#[derive(Clone, Copy)]
+pub(super) enum Scene {
+    /// A built-in scene, by the name of the file that `bilux generate` writes.
+    BuiltIn(&'static str),
+    /// A scene file of the repository.
+    Repository(&'static str),
+    /// A scene file of the repository, converted to a file of this name.
+    Converted(&'static str, &'static str),
+    /// A file that a page of the manual tells its readers to write: the page, and the file.
+    Page(&'static str, &'static str),
+    /// A model that is not ours, in the folder of models: a file, or the folder of a glTF sample model.
+    Model(&'static str),
+    /// A file that this chore makes.
+    Made(&'static str),
+}
 
 /// A picture.
 pub(super) struct Picture {

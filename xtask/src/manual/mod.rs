@@ -4,23 +4,20 @@
 
 mod links;
 mod page;
+mod paths;
 mod sources;
 mod summary;
 mod theme;
 
 use crate::process::{root, target_folder};
 use anyhow::{Context, Result, bail};
-use links::{Problem, output_path};
+use links::Problem;
 use page::Page;
-use std::collections::{BTreeMap, BTreeSet};
+use paths::{Files, output_path};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-
-/// The list of chapters.
-pub(crate) const SUMMARY: &str = "docs/SUMMARY.md";
-
-/// Everything that is written: the path from the folder of the manual, and the bytes.
-type Files = BTreeMap<String, Vec<u8>>;
+pub(crate) use summary::SUMMARY;
 
 /// Builds the manual, and writes it unless it is only to be checked.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
@@ -70,7 +67,7 @@ fn build(root: &Path) -> Result<(Files, usize)> {
     report(&problems)?;
     let mut files = theme::files(&summary, &pages);
     for target in targets.iter().filter(|target| pages.iter().all(|page| page.path != **target)) {
-        if links::is_picture(target) {
+        if paths::is_picture(target) {
             files.insert(output_path(target), fs::read(root.join(target)).with_context(|| target.clone())?);
         } else {
             files.extend(sources::files(root, target, &summary)?);

@@ -1,6 +1,6 @@
 //! A page of the manual: what its Markdown says, and its HTML.
 
-use super::links::rewritten;
+use super::paths::rewritten;
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! Files of the repository that a chapter links to, shown as they are, so that the manual works without the repository.
 
-use super::links::source_path;
 use super::page::escaped;
+use super::paths::{Files, source_path};
 use super::summary::Summary;
-use super::{Files, theme};
+use super::theme;
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::Path;

@@ -1,7 +1,10 @@
 //! `docs/SUMMARY.md`: the chapters of the manual, in the form that mdBook reads.
 
-use super::links::resolve;
+use super::paths::resolve;
 use anyhow::{Result, bail};
+
+/// The list of chapters.
+pub(crate) const SUMMARY: &str = "docs/SUMMARY.md";
 
 /// The chapters, in parts.
 #[derive(Debug, Default, PartialEq)]
@@ -42,10 +45,10 @@ pub(super) fn read(text: &str) -> Result<Summary> {
             summary.parts.push(Part { title: title.to_owned(), chapters: Vec::new() });
         } else if !line.trim().is_empty() {
             let Some(chapter) = chapter(line) else {
-                bail!("{}:{}: this is no chapter: `- [Title](page.md)` is one", super::SUMMARY, number + 1);
+                bail!("{}:{}: this is no chapter: `- [Title](page.md)` is one", SUMMARY, number + 1);
             };
             if summary.chapters().any(|other| other.path == chapter.path) {
-                bail!("{}:{}: {} is listed twice", super::SUMMARY, number + 1, chapter.path);
+                bail!("{}:{}: {} is listed twice", SUMMARY, number + 1, chapter.path);
             }
             if let Some(part) = summary.parts.last_mut() {
                 part.chapters.push(chapter);
@@ -59,7 +62,7 @@ fn chapter(line: &str) -> Option<Chapter> {
     let depth = (line.len() - line.trim_start().len()) / 2;
     let link = line.trim().trim_start_matches("- ").strip_prefix('[')?.strip_suffix(')')?;
     let (title, path) = link.split_once("](")?;
-    Some(Chapter { title: title.to_owned(), path: resolve(super::SUMMARY, path), depth })
+    Some(Chapter { title: title.to_owned(), path: resolve(SUMMARY, path), depth })
 }
 
 #[cfg(test)]

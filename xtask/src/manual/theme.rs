@@ -1,9 +1,8 @@
 //! The frame around each page: chapters at the side, search, and what is before and after. Everything is in the folder of
 //! the manual, so that it works without a network, and without a server.
 
-use super::Files;
-use super::links::{output_path, relative};
 use super::page::{Page, escaped};
+use super::paths::{Files, output_path, relative};
 use super::summary::{Chapter, Summary};
 
 const STYLE: &str = include_str!("manual.css");

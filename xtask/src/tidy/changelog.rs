@@ -1,7 +1,7 @@
 //! The change log has a section for what is not released yet.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const LOG: &str = "CHANGELOG.md";
 

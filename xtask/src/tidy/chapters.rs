@@ -1,8 +1,8 @@
 //! Every page of `docs` is a chapter of the manual: a page that no list leads to is not read. To satisfy it, add the page
 //! to `docs/SUMMARY.md`.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 use crate::manual::{SUMMARY, unlisted};
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {

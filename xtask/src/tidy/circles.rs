@@ -6,9 +6,9 @@
 //! (`&[LightEntry]`) may name the files of its rows, which use what the table's module defines. Tests may use everything.
 //! Move what both sides need into a module below them.
 
-use super::Violation;
 use super::modules::{Module, Modules};
 use super::repository::Repository;
+use super::violation::Violation;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The crates that have none.

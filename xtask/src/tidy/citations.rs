@@ -2,8 +2,8 @@
 //! its source, has a line in `REFERENCES.md` that begins `- **[Woop 2013]**`; and every entry there is cited by some
 //! code file.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 use std::collections::BTreeSet;
 
 const LIST: &str = "REFERENCES.md";

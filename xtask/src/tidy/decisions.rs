@@ -1,7 +1,7 @@
 //! A decision record begins with its decision: a paragraph comes right after the title.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const FOLDER: &str = "docs/adr/";
 

@@ -2,8 +2,8 @@
 //! `` | `name` | ``; some crate uses it; and no line there is about a dependency that is gone. If a crate declares a
 //! dependency, its code names it.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 use crate::process::root;
 use crate::workspace::Package;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Which crate may depend on which: the direction rules of `ARCHITECTURE.md`, for every kind of dependency.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 use crate::workspace::Package;
 
 /// Each crate, and what it may use of the workspace. Lower crates come first.

@@ -1,7 +1,7 @@
 //! Figures of speed name their machine and day, and the pages agree: `cargo xtask performance` writes them.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 use crate::performance::{PAGES, all, named};
 use std::collections::HashMap;
 

@@ -1,8 +1,8 @@
 //! A file can be read in one sitting: at most 400 lines before its tests. Split a longer one along its concepts; a
 //! table of data may go on the list of exceptions, with the reason.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const LONGEST: usize = 400;
 

@@ -1,8 +1,8 @@
 //! Words that never belong in the repository: marks of unfinished work, paths of one machine, host names of package
 //! registries, and names that were replaced.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const UNFINISHED: &str = "finish it, or leave it out";
 const ONE_MACHINE: &str = "the path of one machine";

@@ -1,8 +1,8 @@
 //! The README has exactly two commands for a fresh machine, each alone in its block, and continuous integration runs
 //! the second of them and nothing else.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const README: &str = "README.md";
 const CI: &str = ".ci/run";

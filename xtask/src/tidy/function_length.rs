@@ -1,7 +1,7 @@
 //! A function fits on a screen: about 60 lines, and never more than 80. Split a longer one into named parts.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const LONGEST: usize = 80;
 

@@ -1,7 +1,7 @@
 //! No test is ignored: a long test has its own command, and a wrong one is fixed or deleted.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut violations = Vec::new();

@@ -1,8 +1,8 @@
 //! Every relative link of a page leads to a file of the repository, and every decision record is linked from the
 //! records' own front page.
 
-use super::Violation;
 use super::repository::{Repository, TextFile};
+use super::violation::Violation;
 use crate::process::root;
 
 const RECORDS: &str = "docs/adr/";

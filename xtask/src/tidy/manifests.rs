@@ -1,7 +1,7 @@
 //! Every crate inherits its version, edition, licence and lints from the workspace.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const INHERITED: &[&str] = &[
     "version.workspace = true",

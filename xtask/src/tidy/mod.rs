@@ -23,10 +23,11 @@ mod repository;
 mod rust_text;
 mod test_suites;
 mod unsafe_code;
+mod violation;
 
 use anyhow::{Result, bail};
 use repository::Repository;
-use std::fmt;
+use violation::Violation;
 
 /// One rule.
 struct Rule {
@@ -57,30 +58,6 @@ const RULES: &[Rule] = &[
     Rule { name: "figures", check: figures::check },
     Rule { name: "decisions", check: decisions::check },
 ];
-
-/// A violation of a rule.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Violation {
-    path: String,
-    /// From 1; 0 for the whole file.
-    line: usize,
-    message: String,
-}
-
-impl Violation {
-    fn new(path: &str, line: usize, message: impl Into<String>) -> Violation {
-        Violation { path: path.to_owned(), line, message: message.into() }
-    }
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            0 => write!(out, "{}: {}", self.path, self.message),
-            line => write!(out, "{}:{line}: {}", self.path, self.message),
-        }
-    }
-}
 
 /// Applies every rule to the repository as it is on disk.
 pub(crate) fn run(_: &[String]) -> Result<()> {

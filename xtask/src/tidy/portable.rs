@@ -1,8 +1,8 @@
 //! What goes into a wheel or a program compiles on Linux, macOS and Windows: the modules of one system alone are listed here, and
 //! their callers have another way for the others.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 /// What only some systems have.
 const SYSTEMS: &[&str] = &["std::os::unix", "std::os::linux", "std::os::windows", "std::os::fd", "libc::"];

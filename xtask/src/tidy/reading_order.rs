@@ -1,10 +1,10 @@
 //! `ARCHITECTURE.md` lists the modules of some crates from the bottom up: every module stands in its crate's list, after all
 //! that it uses.
 
-use super::Violation;
 use super::circles::arrows;
 use super::modules::Modules;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const PAGE: &str = "ARCHITECTURE.md";
 

@@ -1,7 +1,7 @@
 //! Every table of variants is named in `ARCHITECTURE.md`, so that readers find where to add one.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 const PAGE: &str = "ARCHITECTURE.md";
 

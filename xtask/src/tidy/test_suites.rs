@@ -1,8 +1,8 @@
 //! Each crate has one binary of tests, `tests/suite`, which compiles generic code and links once for all of them, and every
 //! file of it is a module: one that no module names would never run.
 
-use super::Violation;
 use super::repository::{Repository, TextFile};
+use super::violation::Violation;
 
 /// Binaries of their own, and the reason.
 const SEPARATE: &[(&str, &str)] =

@@ -1,8 +1,8 @@
 //! `unsafe` appears only in the modules listed below, and each use has its `// SAFETY:` comment (or, on the declaration
 //! of an unsafe function, its `# Safety` section) in the lines just above. ARCHITECTURE.md names all of these modules.
 
-use super::Violation;
 use super::repository::Repository;
+use super::violation::Violation;
 
 /// A path or its beginning, and the reason.
 const ALLOWED: &[(&str, &str)] = &[
