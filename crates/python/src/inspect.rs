@@ -9,7 +9,6 @@ use crate::values;
 use crate::watch::{Stopped, follow};
 use bilux::strategies::Light;
 use bilux::transport::Strategies;
-use bilux::{Error, Job};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

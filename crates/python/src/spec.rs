@@ -3,7 +3,7 @@
 use crate::errors::of_scene;
 use crate::values::{self, Spec, Unresolved};
 use bilux::math::registry::Entry;
-use bilux::scene::{Reader, SceneBuilder, SceneError, Span};
+use bilux::scene::{Reader, SceneError, Span};
 use bilux::tables::{TABLES, values as values_of};
 use bilux::wording::in_python;
 use pyo3::prelude::*;

@@ -4,14 +4,9 @@ use super::Stage;
 use super::denoisers::{Cleaned, Denoising};
 use super::refinement::Refinement;
 use crate::frame::Facts;
-use crate::inbox::Inbox;
 use crate::settings::{Level, denoiser_of};
-use bilux::pictures::Picture;
 use bilux::pictures::denoise::{DenoiserChoice, Task, denoiser};
-use bilux::{Error, Outcome, Settings};
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use bilux::{Error, Settings};
 
 impl Stage {
     /// Looks for the denoiser that the settings ask for.
