@@ -2,6 +2,7 @@
 
 use bilux_math::Rgb;
 use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
+use bilux_scene::Texture;
 use bilux_scene::texture::{Image, Texels};
 
 /// How to interpret the samples of a picture file.
@@ -130,6 +131,18 @@ fn bytes([r, g, b]: [&[f32]; 3], alpha: Option<&[f32]>) -> Vec<[u8; 4]> {
         Some(alpha) => colours.zip(alpha).map(|(rgb, &a)| with(rgb, byte(a))).collect(),
         None => colours.map(|rgb| with(rgb, 255)).collect(),
     }
+}
+
+/// The mean of a texture: of its texels, or of many points of a procedural one.
+pub(crate) fn mean(texture: &Texture) -> Rgb {
+    let sum = |(sums, count): ([f64; 3], usize), texel: Rgb| {
+        (std::array::from_fn(|c| sums[c] + f64::from(texel[c])), count + 1)
+    };
+    let (sums, count) = match texture.formula() {
+        Some(_) => texture.spread(64).fold(([0.0; 3], 0), sum),
+        None => texture.texels().fold(([0.0; 3], 0), sum),
+    };
+    Rgb::from_array(sums.map(|sum| (sum / count.max(1) as f64) as f32))
 }
 
 /// True for texels that do not fit into an 8-bit image.

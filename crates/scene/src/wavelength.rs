@@ -104,11 +104,23 @@ pub(crate) fn sensitivity(nm: f32) -> Rgb {
     )
 }
 
+/// hc/k, in nm K.
+const SECOND: f32 = 1.438_776_9e7;
+
+/// The colour of a black body whose spectrum is scaled to a maximum of 1, wherever that is: in Rec. 709, the luminance a sum over
+/// steps of 1 nm, up to 107. [Planck 1901; pbrt 2023]
+pub fn black_body_of_peak_one(kelvin: f32) -> Rgb {
+    /// hc/(kT) over the wavelength of the maximum, and exp of it, minus 1.
+    const WIEN: f32 = 4.965_114;
+    const OCCUPIED: f32 = 142.325;
+    let w = SECOND / (WIEN * kelvin.max(f32::MIN_POSITIVE) * 555.0);
+    let colour = black_body(kelvin) * (w * w * w * w * w * OCCUPIED);
+    if colour.is_finite() { colour } else { Rgb::BLACK }
+}
+
 /// The colour of a black body at a temperature in kelvin, in Rec. 709, up to a factor that is the same for all; black where that is beyond
 /// the range of numbers. [Planck 1901]
 pub(crate) fn black_body(kelvin: f32) -> Rgb {
-    /// hc/k, in nm K.
-    const SECOND: f32 = 1.438_776_9e7;
     let part = |step: usize| {
         let nm = SHORTEST + step as f32 + 0.5;
         let w = nm / 555.0;
@@ -140,6 +152,17 @@ mod tests {
             assert!((sum - 3.0).abs() < 1e-5, "{one:?}: no weight is above 3");
             assert_eq!(one, Wavelength::of(one.nm));
         }
+    }
+
+    /// By another program, in double precision, from the same curve of the observer.
+    #[test]
+    fn black_bodies_of_peak_one_have_the_luminance_of_their_spectrum() {
+        for (kelvin, wanted) in [(1500.0, 0.36595), (2856.0, 37.217), (5500.0, 104.72), (9000.0, 58.859)] {
+            let found = black_body_of_peak_one(kelvin).luminance();
+            // Blue that would be negative is 0, which adds a little to red light.
+            assert!((found - wanted).abs() < 1e-2 * wanted, "{found} for {wanted} at {kelvin} K");
+        }
+        assert_eq!([0.0, 1.0, -5.0].map(black_body_of_peak_one), [Rgb::BLACK; 3]);
     }
 
     #[test]

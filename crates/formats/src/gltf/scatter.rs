@@ -3,7 +3,9 @@
 
 use super::draft::Draft;
 use super::json::JsonNode;
+use super::textures::ChannelSelection;
 use crate::FormatError;
+use crate::images::mean;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Value;
@@ -28,10 +30,8 @@ pub(super) fn scatter<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Resu
         Some(newer) => newer.number("scatterStrengthFactor")?.unwrap_or(0.0) as f32,
         None => 1.0,
     };
-    let is_textured =
-        ["scatterStrengthTexture", "multiscatterColorTexture"].iter().any(|key| extension.get(key).is_some());
-    if is_textured {
-        let what = "textures of scattering are not used: their factors count everywhere";
+    if extension.get("scatterStrengthTexture").is_some() {
+        let what = "a texture of the strength of scattering is not used: its factor counts everywhere";
         draft.note(what, || extension.at());
     }
     let factor = extension.numbers::<3>("multiscatterColorFactor")?;
@@ -46,11 +46,8 @@ pub(super) fn scatter<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Resu
     let volume = node.extension("KHR_materials_volume");
     let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
     match volume.filter(|_| thickness > 0.0) {
-        Some(volume) => scatter_inside(volume, extension, &found, draft),
-        None if newer.is_some() => {
-            scatter_in_wall(extension, &found, draft);
-            Ok(())
-        }
+        Some(volume) => scatter_inside(volume, extension, found, draft),
+        None if newer.is_some() => scatter_in_wall(extension, &found, draft),
         None => {
             let what = "scattering in a material without a volume has no effect";
             draft.note(what, || extension.at());
@@ -60,11 +57,11 @@ pub(super) fn scatter<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Resu
 }
 
 /// The attenuation of the volume is by absorption and scattering together.
-fn scatter_inside(
-    volume: JsonNode,
-    extension: JsonNode,
-    found: &Scattering,
-    draft: &mut Draft,
+fn scatter_inside<'d>(
+    volume: JsonNode<'d>,
+    extension: JsonNode<'d>,
+    mut found: Scattering,
+    draft: &mut Draft<'d, '_>,
 ) -> Result<(), FormatError> {
     let depth = volume.number("attenuationDistance")?.filter(|depth| *depth > 0.0 && depth.is_finite());
     let Some(depth) = depth else {
@@ -72,6 +69,12 @@ fn scatter_inside(
         draft.note(what, || extension.at());
         return Ok(());
     };
+    if let Some(picture) = extension.get("multiscatterColorTexture") {
+        let what = "an inside scatters the same everywhere: of a texture of its colour, the mean counts";
+        draft.note(what, || picture.at());
+        let texture = draft.looked_up(picture, ChannelSelection::colours(found.colour))?;
+        found.colour = mean(&texture).clamp(0.0, 1.0);
+    }
     let colour = volume.numbers::<3>("attenuationColor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
     let attenuation = Rgb::from_array(colour).map(|c| -ln(c.clamp(1e-6, 1.0)));
     let albedo = (found.colour * found.strength).map(|colour| {
@@ -87,8 +90,12 @@ fn scatter_inside(
 }
 
 /// Of what a thin wall transmits, a part is scattered to both sides.
-fn scatter_in_wall(extension: JsonNode, found: &Scattering, draft: &mut Draft) {
-    let Some(weight) = draft.value("transmission_weight").cloned() else { return };
+fn scatter_in_wall<'d>(
+    extension: JsonNode<'d>,
+    found: &Scattering,
+    draft: &mut Draft<'d, '_>,
+) -> Result<(), FormatError> {
+    let Some(weight) = draft.value("transmission_weight").cloned() else { return Ok(()) };
     let at = extension.at();
     let (straight, scattered) = match (weight, found.strength.min(1.0)) {
         (Value::Number(weight), strength) => {
@@ -106,9 +113,10 @@ fn scatter_in_wall(extension: JsonNode, found: &Scattering, draft: &mut Draft) {
     let straight = Value::Number(straight);
     draft.set("transmission_weight", straight, at.clone());
     draft.set("subsurface_weight", scattered, at.clone());
-    draft.set("subsurface_color", found.colour, at.clone());
+    draft.colour("subsurface_color", found.colour, extension.get("multiscatterColorTexture"), &at)?;
     draft.set("subsurface_scatter_anisotropy", found.anisotropy.clamp(-1.0, 1.0), at.clone());
     draft.set("thin_walled", true, at);
+    Ok(())
 }
 
 impl Scattering {

@@ -220,25 +220,41 @@ impl Reading<'_> {
         (file, name): (&str, &str),
         at: &Span,
     ) -> Result<Arc<Grid>, FormatError> {
+        let found = self.grid_if_there(folder, (file, name), at)?;
+        found.map_err(|message| FormatError::malformed(message, at.clone()))
+    }
+
+    /// The same, or why there is no such grid in the file.
+    pub(crate) fn grid_if_there(
+        &mut self,
+        folder: Option<&Path>,
+        (file, name): (&str, &str),
+        at: &Span,
+    ) -> Result<Result<Arc<Grid>, String>, FormatError> {
         let path = self.locator.locate(folder, file, at)?;
         let key = (path.clone(), name.to_owned());
         if let Some(grid) = self.grids.get(&key) {
-            return Ok(grid.clone());
+            return Ok(Ok(grid.clone()));
         }
         let bytes = self.load(&path)?;
         let shown: Arc<str> = path.display().to_string().into();
         let source = Source { bytes: &bytes, name: &shown, folder: None };
         let format = format_of(&source)?;
         let catalogue = (format.list)(&source)?;
-        let listed =
-            catalogue.named(name, file).map_err(|message| FormatError::malformed(message, at.clone()))?;
+        let listed = match catalogue.named(name, file) {
+            Ok(listed) => listed,
+            Err(message) => {
+                self.release(bytes);
+                return Ok(Err(message));
+            }
+        };
         let volume = self.volume(format, &source, listed)?;
         self.note_faults(&format!("the grid '{}' of '{file}'", listed.name), &volume.faults.sentences(), at);
         self.release(bytes);
         let grid = Arc::new(volume.grid);
         self.keep(&grid);
         self.grids.insert(key, grid.clone());
-        Ok(grid)
+        Ok(Ok(grid))
     }
 
     /// Reads one of the grids of a file, unless it cannot be a density.

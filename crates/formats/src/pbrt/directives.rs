@@ -111,12 +111,25 @@ pub(super) fn run(parser: &mut Parser, lexer: &mut Lexer) -> Result<(), FormatEr
 }
 
 impl Directive<'_, '_, '_, '_> {
+    /// Includes a file. Parameters that follow belong to its last directive, as for pbrt, which has one stream of tokens.
     fn include(&mut self) -> Result<(), FormatError> {
         let (name, at) = self.lexer.text("the name of a file")?;
         let at = self.lexer.place(at);
         let Parser { includes, loader, .. } = &mut *self.parser;
-        let file = includes.open(&name, &at, loader)?;
-        run(self.parser, &mut Lexer::new(&file.name, &file.bytes))?;
+        let mut file = includes.open(&name, &at, loader)?;
+        let begins = file.bytes.len() + 1;
+        let more = self.lexer.skip_parameters()?;
+        if let Some((_, text)) = more {
+            loader.reading.budget.take_bytes(text.len() as u64 + 1, &file.name)?;
+            file.bytes.push(b'\n');
+            file.bytes.extend_from_slice(text);
+        }
+        let lexer = Lexer::new(&file.name, &file.bytes);
+        let mut lexer = match more {
+            Some((offset, _)) => lexer.going_on(begins, self.lexer, offset),
+            None => lexer,
+        };
+        run(self.parser, &mut lexer)?;
         self.parser.includes.close(file, &mut self.parser.loader);
         Ok(())
     }

@@ -4,7 +4,8 @@ use super::loader::Loader;
 use super::parameters::ParameterList;
 use crate::FormatError;
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
-use bilux_scene::media::Grid;
+use bilux_scene::media::{BLOCK_VOXELS, Grid};
+use bilux_scene::wavelength::black_body_of_peak_one;
 use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
@@ -13,6 +14,21 @@ use std::sync::Arc;
 pub(super) struct Density {
     grid: Arc<Grid>,
     to_world: DMat4,
+}
+
+/// Temperatures of a medium, whose light has the spectrum of a black body with a maximum of 1.
+#[derive(Clone, Debug)]
+pub(super) struct Temperature {
+    pub(super) grid: Density,
+    /// Kelvins for each unit.
+    pub(super) scale: f32,
+}
+
+impl Temperature {
+    /// The luminance of its hottest place.
+    pub(super) fn brightest(&self) -> f32 {
+        black_body_of_peak_one(self.grid.grid.maximum() * self.scale).luminance()
+    }
 }
 
 impl Density {
@@ -150,8 +166,51 @@ impl GridMaker<'_, '_, '_> {
         Ok(Density { grid, to_world: self.to_world })
     }
 
-    /// A grid of a file; `None`, with a warning, if that cannot be read.
-    pub(super) fn nanovdb(&mut self) -> Result<Option<Density>, FormatError> {
+    /// The temperatures of a medium, if it has any: in the list, or beside the density in its file.
+    pub(super) fn temperature(&mut self, kind: &str) -> Result<Option<Temperature>, FormatError> {
+        let list = self.list;
+        let cutoff = list.finite("temperaturecutoff", 0.0)?;
+        let offset = list.finite("temperatureoffset", cutoff)?;
+        let scale = list.finite("temperaturescale", 1.0)?;
+        let found = match kind {
+            "uniformgrid" if list.has("temperature") => Some(self.uniform("temperature")?),
+            "nanovdb" => {
+                let key = list.text("temperaturename")?.unwrap_or("temperature");
+                let file = list.text("filename")?.unwrap_or_default();
+                let at = list.place("filename");
+                let folder = self.loader.folder.as_deref();
+                let grid = self.loader.reading.grid_if_there(folder, (file, key), &at)?;
+                grid.ok().map(|grid| Density { grid, to_world: self.to_world })
+            }
+            _ => None,
+        };
+        let Some(mut grid) = found.filter(|_| scale > 0.0) else { return Ok(None) };
+        if offset != 0.0 {
+            grid.grid = self.lowered(&grid.grid, offset)?;
+        }
+        Ok((grid.grid.maximum() > 0.0).then_some(Temperature { grid, scale }))
+    }
+
+    /// A grid of numbers that are less by this much, and 0 where they would be negative.
+    fn lowered(&mut self, grid: &Grid, by: f32) -> Result<Arc<Grid>, FormatError> {
+        let (size, at) = (grid.size(), &self.list.at);
+        // A warm background makes all blocks count, as floats in a list that grows by doubling.
+        let bytes =
+            size.iter().fold(8, |bytes: u64, side| bytes.saturating_mul(side.next_multiple_of(8) as u64));
+        self.loader.reading.budget.take_bytes(bytes, &at.file)?;
+        let lowered = Grid::new(grid.name(), size, &grid.to_object(), |at, block| {
+            let values = grid.block(at).unwrap_or([0.0; BLOCK_VOXELS]);
+            *block = values.map(|value| (value - by).max(0.0));
+            block.iter().any(|value| *value > 0.0)
+        });
+        let lowered = lowered.map_err(|error| FormatError::malformed(error.to_string(), at.clone()))?;
+        self.loader.reading.budget.release(bytes);
+        self.loader.reading.charge_grid(&lowered, &at.file)?;
+        Ok(Arc::new(lowered))
+    }
+
+    /// A grid of a file.
+    pub(super) fn nanovdb(&mut self) -> Result<Density, FormatError> {
         let list = self.list;
         let Some(file) = list.text("filename")? else {
             return Err(FormatError::malformed(
@@ -159,11 +218,8 @@ impl GridMaker<'_, '_, '_> {
                 list.at.clone(),
             ));
         };
-        let grid = self.loader.reading.grid(
-            self.loader.folder.as_deref(),
-            (file, "density"),
-            &list.place("filename"),
-        )?;
-        Ok(Some(Density { grid, to_world: self.to_world }))
+        let (name, at) = (list.text("gridname")?.unwrap_or("density"), list.place("filename"));
+        let grid = self.loader.reading.grid(self.loader.folder.as_deref(), (file, name), &at)?;
+        Ok(Density { grid, to_world: self.to_world })
     }
 }

@@ -25,6 +25,18 @@ pub(super) struct Lexer<'a> {
     bytes: &'a [u8],
     pos: usize,
     places: Places<'a>,
+    /// Where the last list of parameters goes on, in the file that includes this one.
+    rest: Option<Rest<'a>>,
+}
+
+/// Text of another file at the end of one.
+#[derive(Clone)]
+struct Rest<'a> {
+    /// Where it begins here.
+    begins: usize,
+    /// Where it begins in the other file.
+    offset: usize,
+    places: Places<'a>,
 }
 
 const fn is_blank(byte: u8) -> bool {
@@ -35,12 +47,37 @@ impl<'a> Lexer<'a> {
     pub(super) fn new(file: &Arc<str>, bytes: &'a [u8]) -> Lexer<'a> {
         let mark = b"\xef\xbb\xbf";
         let pos = if bytes.starts_with(mark) { mark.len() } else { 0 };
-        Lexer { bytes, pos, places: Places::new(file, bytes) }
+        Lexer { bytes, pos, places: Places::new(file, bytes), rest: None }
+    }
+
+    /// The tokens of a file whose bytes, from `begins` on, are those of another file from `offset` on.
+    pub(super) fn going_on(self, begins: usize, other: &Lexer<'a>, offset: usize) -> Lexer<'a> {
+        let (places, offset) = other.origin(offset);
+        Lexer { rest: Some(Rest { begins, offset, places: places.clone() }), ..self }
+    }
+
+    /// Skips the parameters that come next, if any do: where they begin, and their text.
+    pub(super) fn skip_parameters(&mut self) -> Result<Option<(usize, &'a [u8])>, FormatError> {
+        let Some((Token::Quoted(_), begin)) = self.peek()? else { return Ok(None) };
+        let is_directive = |token: &Token| matches!(token, Token::Word(word) if word.first().is_some_and(u8::is_ascii_uppercase));
+        while self.peek()?.is_some_and(|(token, _)| !is_directive(&token)) {
+            self.next()?;
+        }
+        Ok(Some((begin, &self.bytes[begin..self.pos])))
     }
 
     /// The location of an offset.
     pub(super) fn place(&self, offset: usize) -> Span {
-        self.places.at(offset)
+        let (places, offset) = self.origin(offset);
+        places.at(offset)
+    }
+
+    /// The file that an offset comes from, and the offset there.
+    fn origin(&self, offset: usize) -> (&Places<'a>, usize) {
+        match &self.rest {
+            Some(rest) if offset >= rest.begins => (&rest.places, offset - rest.begins + rest.offset),
+            _ => (&self.places, offset),
+        }
     }
 
     /// An error at an offset.
@@ -80,7 +117,7 @@ impl<'a> Lexer<'a> {
 
     /// A copy of the lexer that continues from here independently.
     pub(super) fn ahead(&self) -> Lexer<'a> {
-        Lexer { bytes: self.bytes, pos: self.pos, places: self.places.clone() }
+        Lexer { bytes: self.bytes, pos: self.pos, places: self.places.clone(), rest: self.rest.clone() }
     }
 
     /// The next token, which must exist; `wanted` describes it in the error.

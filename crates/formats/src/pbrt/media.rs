@@ -1,6 +1,6 @@
 //! Participating media: the same everywhere, or as dense as a grid says.
 
-use super::grid_media::{Density, GridMaker};
+use super::grid_media::{Density, GridMaker, Temperature};
 use super::loader::{Loader, SpectrumType};
 use super::parameters::ParameterList;
 use crate::FormatError;
@@ -21,6 +21,7 @@ pub(super) struct Medium {
     /// The radiance of a thick layer, and a factor on it.
     pub(super) emission: Rgb,
     pub(super) emission_grid: Option<Density>,
+    pub(super) temperature: Option<Temperature>,
 }
 
 impl Medium {
@@ -38,6 +39,10 @@ impl Medium {
         }
         if !self.emission.is_black() {
             spec.parameters.set("medium_emission", self.emission.clamp(0.0, 1e9));
+        }
+        if let Some(temperature) = &self.temperature {
+            spec.parameters.set("temperature_scale", temperature.scale.min(1e6));
+            spec.parameters.set("temperature_norm", "peak");
         }
     }
 }
@@ -78,7 +83,7 @@ pub(super) fn read(
     let ([absorption, scattering], density) = match kind.as_str() {
         "homogeneous" => (coefficients(list, grids.loader)?, None),
         "uniformgrid" => (coefficients(list, grids.loader)?, Some(grids.uniform("density")?)),
-        "nanovdb" => (coefficients(list, grids.loader)?, grids.nanovdb()?),
+        "nanovdb" => (coefficients(list, grids.loader)?, Some(grids.nanovdb()?)),
         "cloud" => (coefficients(list, grids.loader)?, Some(grids.cloud()?)),
         "rgbgrid" => {
             let (coefficients, density) = grids.coloured()?;
@@ -90,27 +95,28 @@ pub(super) fn read(
             return Ok(Medium::default());
         }
     };
-    let (emission, emission_grid) = emission(&kind, &mut grids)?;
+    let temperature = grids.temperature(&kind)?;
+    let (mut radiance, emission_grid) = emission(&kind, &mut grids)?;
+    if let Some(temperature) = &temperature {
+        let older = list.finite("LeScale", 1.0)?;
+        let factor = if kind == "nanovdb" { list.finite("Lescale", older)? } else { 1.0 };
+        radiance = Rgb::grey(factor * temperature.brightest());
+    }
     list.report_unused(&mut loader.oddities);
     let (absorption, scattering) = (absorption * scale, scattering * scale);
-    Ok(Medium { absorption, scattering, anisotropy, density, emission, emission_grid })
+    let emission = radiance;
+    Ok(Medium { absorption, scattering, anisotropy, density, emission, emission_grid, temperature })
 }
 
 /// The radiance of a medium, and the grid that varies it.
 fn emission(kind: &str, grids: &mut GridMaker) -> Result<(Rgb, Option<Density>), FormatError> {
     let list = grids.list;
-    for about_temperature in ["temperaturescale", "temperatureoffset", "temperaturecutoff", "LeScale"] {
-        list.has(about_temperature);
-    }
-    if list.has("temperature") {
-        let what = "emission by the temperature of a medium is not supported";
-        grids.loader.note(what, || list.place("temperature"));
-    }
     if kind == "rgbgrid" && list.has("Le") {
         grids.loader.note("emission by a medium of type 'rgbgrid' is not supported", || list.place("Le"));
     }
     if kind == "rgbgrid" || kind == "nanovdb" {
         list.has("Lescale");
+        list.has("LeScale");
         return Ok((Rgb::BLACK, None));
     }
     let radiance = grids.loader.spectrum(list, "Le", SpectrumType::Light)?.unwrap_or(Rgb::BLACK);
@@ -162,7 +168,10 @@ pub(super) fn fill(
         return Ok(());
     }
     medium.fill(spec);
-    for (key, grid) in [("density", &medium.density), ("medium_emission_grid", &medium.emission_grid)] {
+    let temperature = medium.temperature.as_ref().map(|temperature| &temperature.grid);
+    let [density, emission] = [&medium.density, &medium.emission_grid].map(Option::as_ref);
+    let grids = [("density", density), ("medium_emission_grid", emission), ("temperature", temperature)];
+    for (key, grid) in grids {
         let Some(grid) = grid else { continue };
         if let Some(grid) = grid.within(to_world, at, loader)? {
             spec.parameters.set(key, Value::Grid(grid));

@@ -2,6 +2,7 @@
 
 use super::loader::Loader;
 use crate::FormatError;
+use crate::images::mean;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Spec, Texture, Value};
 use std::sync::Arc;
@@ -33,18 +34,7 @@ impl TextureOrValue {
     pub(super) fn mean(&self) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,
-            TextureOrValue::Picture(picture) => {
-                let all: Vec<Rgb> = if picture.formula().is_some() {
-                    picture.spread(64).collect()
-                } else {
-                    picture.texels().collect()
-                };
-                let count = all.len().max(1);
-                let sums = all
-                    .iter()
-                    .fold([0f64; 3], |sums, texel| std::array::from_fn(|c| sums[c] + f64::from(texel[c])));
-                Rgb::from_array(sums.map(|sum| (sum / count as f64) as f32))
-            }
+            TextureOrValue::Picture(picture) => mean(picture),
         }
     }
 

@@ -72,7 +72,7 @@ fn seen(scene: &Scene, x: f32, y: f32) -> Surface {
     Tracer::new(scene, false).closest(&Ray::new([x, y, 5.0], [0.0, 0.0, -1.0])).expect("the square is there")
 }
 
-fn one_picture(width: usize, texels: &[[u8; 3]], sampler: &str) -> String {
+pub(crate) fn one_picture(width: usize, texels: &[[u8; 3]], sampler: &str) -> String {
     format!(
         r#""textures":[{{"source":0,"sampler":0}}],"samplers":[{{{sampler}}}],"images":[{{"uri":"{}"}}],"#,
         picture(width, texels)

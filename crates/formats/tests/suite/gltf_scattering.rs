@@ -1,6 +1,6 @@
 //! Scattering inside of glTF's materials, by two drafts of an extension, and media that glTF and OBJ cannot hold.
 
-use crate::gltf_conventions::{Square, read};
+use crate::gltf_conventions::{Square, one_picture, read};
 use bilux_formats::{ReadOptions, WriteOptions, write};
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
@@ -49,6 +49,34 @@ fn volumes_scatter_as_the_drafts_say() {
         "KHR_materials_scatter":{"scatterStrengthFactor":0.5,"multiscatterColorFactor":[0.8,0.6,0.5],"scatterAnisotropy":0.2}"#,
     );
     assert_colour(&spec, "transmission_scatter", [0.044_982_5, 0.129_387, 0.212_516_5]);
+}
+
+/// Of a texture of the colour the mean counts inside; a thin wall has the texture.
+#[test]
+fn textures_of_the_colour_count() {
+    let textured = |scatter: &str| {
+        let colour = r#""multiscatterColorFactor":[1,0.5,1],"multiscatterColorTexture":{"index":0}"#;
+        let material = format!(r#"{{"extensions":{{{scatter}{colour}}}}}}}"#);
+        let more = one_picture(2, &[[255, 0, 0], [0, 255, 0], [255, 255, 0], [0, 0, 0]], "");
+        read(&Square::of(&material, &more).text())
+    };
+    let volume = r#""KHR_materials_volume":{"thicknessFactor":1,"attenuationColor":[0.9,0.9,0.9],"attenuationDistance":0.01},
+        "KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume_scatter":{"#;
+    let scene = textured(volume);
+    // The formula of the draft at .5, .25 and 0, by hand.
+    let spec = &scene.materials[scene.objects[0].material];
+    assert_colour(spec, "transmission_scatter", [0.096_058_1, 0.073_059_7, 0.0]);
+    let said = crate::warnings(&scene);
+    assert!(said.contains("of a texture of its colour, the mean counts"), "{said}");
+    assert!(!said.contains("no property") && !said.contains("nothing in the file uses"), "{said}");
+    let scene = textured(
+        r#""KHR_materials_transmission":{"transmissionFactor":0.8},"KHR_materials_scatter":{"scatterStrengthFactor":0.5,"#,
+    );
+    let spec = &scene.materials[scene.objects[0].material];
+    let Some((Value::Texture(index), _)) = spec.parameters.find("subsurface_color") else {
+        panic!("{spec:?}")
+    };
+    assert!((scene.textures[*index].texel(1, 0).g - 0.5).abs() < 1e-6);
 }
 
 /// A thin wall scatters a part of what it transmits to both sides.

@@ -309,6 +309,87 @@ fn media_of_pbrt_emit_light_times_their_absorption() {
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
 }
 
+/// As in scenes of pbrt whose smoke is a file of its own.
+#[test]
+fn parameters_after_an_include_belong_to_its_last_directive() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("smoke.pbrt", "Include \"inner.pbrt\"\n");
+    write(
+        "inner.pbrt",
+        "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 2 # two\n\"float density\" [1 2] # end",
+    );
+    let scene = |more: &str| {
+        write(
+            "a.pbrt",
+            &format!(
+                "Camera \"perspective\"\nWorldBegin\nInclude \"smoke.pbrt\"\n{more}\nMaterial \"interface\"\n\
+             MediumInterface \"m\" \"\"\nShape \"sphere\""
+            ),
+        );
+        read(&folder.path().join("a.pbrt"), &ReadOptions::default()).map_err(|error| error.to_string())
+    };
+    let found = scene("  \"rgb sigma_s\" [3 4 5]\n  \"float scale\" 2").unwrap();
+    let spec = &found.materials[found.objects[0].material];
+    close(spec.colour("scattering").unwrap().b, 10.0);
+    close(at(&found, 0, [0.75, 0.5, 0.5]), 2.0);
+    let message = scene("  \"rgb sigma_s\" [3 4 5]\n  \"float scale\" two").unwrap_err();
+    assert!(message.contains("a.pbrt:5:17"), "{message}");
+    write("inner.pbrt", "WorldEnd");
+    let message = scene("\n \"rgb sigma_s\" [3 4 5]").unwrap_err();
+    assert!(message.contains("a.pbrt:5:2") && message.contains("a directive is expected"), "{message}");
+}
+
+/// The luminance of black bodies with a maximum of 1 comes from another program.
+#[test]
+fn temperatures_of_pbrt_are_those_of_black_bodies() {
+    let scene = world(
+        r#"
+        MakeNamedMedium "fire" "string type" "uniformgrid" "integer nx" 2 "float density" [1 2]
+            "float temperature" [850 1600] "float temperatureoffset" 100 "float temperaturescale" 2
+        Material "interface"
+        MediumInterface "fire" ""
+        Shape "sphere""#,
+    )
+    .unwrap();
+    assert_eq!(warnings(&scene), "");
+    let spec = &scene.materials[scene.objects[0].material];
+    let temperature = |spec: &Spec| match spec.parameters.find("temperature") {
+        Some((Value::Grid(grid), _)) => grid.clone(),
+        other => panic!("{other:?}"),
+    };
+    close(spec.colour("medium_emission").unwrap().g, 44.5226);
+    close(temperature(spec).value(Vec3::new(0.25, 0.5, 0.5)), 750.0);
+    close(temperature(spec).maximum(), 1500.0);
+    close(spec.number("temperature_scale").unwrap(), 2.0);
+    assert_eq!(spec.parameters.find("temperature_norm").unwrap().0, &Value::Text("peak".to_owned()));
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(corpus("halves_two_grids.vdb"), folder.path().join("fire.nvdb")).unwrap();
+    let path = folder.path().join("a.pbrt");
+    let file = |more: &str| {
+        let text = format!(
+            r#"Camera "perspective"
+            WorldBegin
+            MakeNamedMedium "m" "string type" "nanovdb" "string filename" "fire.nvdb" {more}
+            Material "interface"
+            MediumInterface "m" ""
+            Shape "sphere""#
+        );
+        std::fs::write(&path, text).unwrap();
+        read(&path, &ReadOptions::default()).unwrap()
+    };
+    let scene = file(r#""float temperaturescale" 3000 "float Lescale" 1.25"#);
+    assert_eq!(warnings(&scene), "");
+    let spec = &scene.materials[scene.objects[0].material];
+    close(temperature(spec).maximum(), 1.0);
+    close(spec.colour("medium_emission").unwrap().r, 1.25 * 44.5226);
+    let scene = file(r#""string temperaturename" "heat" "string gridname" "temperature""#);
+    let spec = &scene.materials[scene.objects[0].material];
+    assert!(spec.parameters.find("temperature").is_none());
+    close(density(spec).maximum(), 1.0);
+    scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
+}
+
 #[test]
 fn rgb_grids_of_pbrt_have_the_mean_of_their_colours() {
     let scene = world(
@@ -390,7 +471,6 @@ fn media_of_pbrt_that_cannot_be_are_refused_or_named() {
     )
     .unwrap();
     assert!(warnings(&scene).contains("numbers of a grid that are negative"), "{}", warnings(&scene));
-    assert!(warnings(&scene).contains("emission by the temperature of a medium"), "{}", warnings(&scene));
     let scene = medium(r#""string type" "clouds""#).unwrap();
     assert!(warnings(&scene).contains("a medium of type 'clouds' is not supported"), "{}", warnings(&scene));
     assert!(refusal("vdb", b"nothing").contains("no file of grids"));

@@ -7,7 +7,7 @@ use crate::classic::ClassicMaterial;
 use crate::grid::Grid;
 use crate::media::{
     DENSITY, DIAMETER, DRAINE_ALPHA, EMISSION, EMISSION_GRID, Glow, Medium, PHASE, PHASE_ANISOTROPY,
-    SCATTERING, TEMPERATURE, TEMPERATURE_SCALE,
+    SCATTERING, TEMPERATURE, TEMPERATURE_NORM, TEMPERATURE_SCALE,
 };
 use crate::surface::Surface;
 use bilux_math::Rgb;
@@ -31,6 +31,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION_GRID,
             TEMPERATURE,
             TEMPERATURE_SCALE,
+            TEMPERATURE_NORM,
             PRIORITY,
         ],
     },

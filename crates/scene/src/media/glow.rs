@@ -5,7 +5,7 @@
 
 use crate::grid::{Grid, GridLine};
 use crate::parameters::Reader;
-use crate::wavelength::black_body;
+use crate::wavelength::{black_body, black_body_of_peak_one};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
@@ -45,7 +45,9 @@ impl Glow {
     pub(crate) fn read(reader: &Reader) -> Option<Glow> {
         let radiance = reader.colour(EMISSION.name);
         let scale = reader.number(TEMPERATURE_SCALE.name);
-        let temperature = reader.grid(TEMPERATURE.name).map(|grid| Temperature::new(grid, scale));
+        let spectrum =
+            if reader.text(TEMPERATURE_NORM.name) == "peak" { black_body_of_peak_one } else { black_body };
+        let temperature = reader.grid(TEMPERATURE.name).map(|grid| Temperature::new(grid, scale, spectrum));
         let glow = Glow { radiance, factor: reader.grid(EMISSION_GRID.name), temperature };
         (!radiance.is_black()).then_some(glow)
     }
@@ -100,12 +102,12 @@ impl GlowLine {
 
 impl Temperature {
     /// A grid whose numbers are kelvins over `scale`.
-    fn new(grid: Arc<Grid>, scale: f32) -> Temperature {
+    fn new(grid: Arc<Grid>, scale: f32, spectrum: fn(f32) -> Rgb) -> Temperature {
         let maximum = grid.maximum();
-        let hottest = black_body(maximum * scale).luminance();
+        let hottest = spectrum(maximum * scale).luminance();
         let colour = |step: usize| {
             let kelvin = maximum * scale * step as f32 / STEPS as f32;
-            if hottest > 0.0 { black_body(kelvin) / hottest } else { Rgb::BLACK }
+            if hottest > 0.0 { spectrum(kelvin) / hottest } else { Rgb::BLACK }
         };
         let steps = if maximum > 0.0 { STEPS as f32 / maximum } else { 0.0 };
         Temperature { colours: (0..=STEPS).map(colour).collect(), grid, steps }
@@ -150,6 +152,14 @@ pub(crate) const TEMPERATURE_SCALE: Parameter = Parameter {
     default: "1",
 };
 
+pub(crate) const TEMPERATURE_NORM: Parameter = Parameter {
+    name: "temperature_norm",
+    summary: "which maximum counts as 1: of the light of the hottest place, as physics has it; or of each temperature's spectrum (peak), as pbrt has it, where cool fire is brighter",
+    unit: "",
+    kind: ParameterKind::Choice(&["hottest", "peak"]),
+    default: "hottest",
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,12 +190,15 @@ mod tests {
     fn what_is_half_as_hot_hardly_glows() {
         let values = [1000.0, 2000.0];
         let grid = Arc::new(Grid::dense("", [2, 1, 1], &Transform::IDENTITY, &values).unwrap());
-        let temperature = Temperature::new(grid, 1.0);
+        let temperature = Temperature::new(grid.clone(), 1.0, black_body);
         assert!((temperature.colour(2000.0).luminance() - 1.0).abs() < 1e-5);
         // By Planck's law at 555 nm it would be 2.3e-6; eyes see longer waves too.
         let cool = temperature.colour(1000.0).luminance();
         assert!(cool > 1e-6 && cool < 1e-4, "{cool}");
         let [warm, hot] = [1600.0, 2000.0].map(|kelvin| temperature.colour(kelvin));
         assert!(warm.g / warm.r < hot.g / hot.r, "what is cooler is redder");
+        // By its own peak, a black body half as hot has 2⁵ times as much.
+        let by_peak = Temperature::new(grid, 1.0, black_body_of_peak_one).colour(1000.0).luminance();
+        assert!((by_peak / cool / 32.0 - 1.0).abs() < 1e-3, "{by_peak} {cool}");
     }
 }

@@ -14,7 +14,7 @@ mod tracking;
 
 pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE, Origin, Stored};
 pub use densities::{ComputedDensity, DENSITIES, DensityEntry};
-pub(crate) use glow::{EMISSION, EMISSION_GRID, TEMPERATURE, TEMPERATURE_SCALE};
+pub(crate) use glow::{EMISSION, EMISSION_GRID, TEMPERATURE, TEMPERATURE_NORM, TEMPERATURE_SCALE};
 pub use glow::{Glow, GlowLine};
 pub(crate) use medium::{DENSITY, SCATTERING};
 pub use medium::{FreePath, Medium, MediumLine, beer, mean};

@@ -193,6 +193,8 @@ typed! {
         temperature: impl Into<crate::Value>,
         /// Kelvins for each unit of the temperature grid (K); default `1`.
         temperature_scale: f32,
+        /// Which maximum counts as 1: of the light of the hottest place, as physics has it; or of each temperature's spectrum (peak), as pbrt has it, where cool fire is brighter: `hottest`, `peak`; default `hottest`.
+        temperature_norm: &str,
         /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is relative to air; 0 ignores overlaps; default `0`.
         priority: i32,
     }
