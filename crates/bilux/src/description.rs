@@ -1,18 +1,12 @@
 //! What a picture says about itself: the version that made it, the fingerprint of its scene and settings, the settings
 //! that make it again, and its view. Nothing that differs from one run to the next: no date, no time, no threads.
 
+pub use crate::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
 use crate::settings::{RENDER, Settings};
 use crate::{Job, Outcome};
 use bilux_math::Mat4;
 use bilux_pictures::Picture;
 use bilux_scene::{Parameters, Value};
-
-/// The program and its version.
-pub const SOFTWARE: &str = "Software";
-/// [`Job::fingerprint`].
-pub const FINGERPRINT: &str = "bilux.fingerprint";
-/// The options of the command line that make the picture again.
-pub const SETTINGS: &str = "bilux.settings";
 
 /// Settings that change no picture with a fixed number of samples.
 const WITHOUT_EFFECT: [&str; 11] = [
@@ -28,12 +22,6 @@ const WITHOUT_EFFECT: [&str; 11] = [
     "noise",
     "time_limit",
 ];
-
-/// The metadata that parts of a picture hand on to what they are merged into.
-pub fn is_handed_on(key: &str) -> bool {
-    let own = [SOFTWARE, "software", FINGERPRINT, SETTINGS, "worldToCamera", "worldToNDC"];
-    own.contains(&key) || key.starts_with("cryptomatte/") || key.starts_with("bilux.group_")
-}
 
 impl Job {
     /// Adds to a picture what it says about itself. `denoiser` is the name of the one that smoothed it, if any did.

@@ -1,12 +1,13 @@
 //! What can go wrong in any part of Bilux.
 
-use crate::checkpoint::CheckpointError;
 use crate::encoding::EncodingError;
 use crate::memory::Memory;
 use bilux_formats::FormatError;
 use bilux_pictures::PictureError;
 use bilux_scene::SceneError;
 use bilux_transport::{FilmError, RenderError};
+use std::io;
+use std::path::PathBuf;
 
 /// Anything that can go wrong. Each message says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +50,79 @@ pub enum Error {
     /// Settings that contradict each other.
     #[error("{0}")]
     Settings(String),
+}
+
+/// Why a checkpoint cannot be read, or does not fit.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// The file cannot be read or written.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was attempted.
+        action: &'static str,
+        /// Why it failed.
+        source: io::Error,
+    },
+    /// The file is not a checkpoint, or damaged.
+    #[error("{}: {what}: delete it, or begin anew without it", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// The checkpoint belongs to another picture.
+    #[error(
+        "{}: this is the checkpoint of another picture; what differs: {}; render as before, or begin anew without it",
+        path.display(), differences.join(", ")
+    )]
+    OtherPicture {
+        /// The file.
+        path: PathBuf,
+        /// What is different.
+        differences: Vec<String>,
+    },
+    /// The file is too large to be read.
+    #[error("{}: this checkpoint has {size} bytes, but only {most} are allowed: allow more memory", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        size: u64,
+        /// The maximum.
+        most: u64,
+    },
+}
+
+/// A reader that was refused memory needs at most so many times what it had asked for by then, in the files that were
+/// tried, if that is more than [`LEAST_FOR_READING`].
+const TIMES_ASKED: u64 = 4;
+
+/// Bytes that are always allowed where reading was refused memory: compressed textures and meshes take up to a hundred
+/// times the size of their file, so what a reader asks for first says little about small files.
+const LEAST_FOR_READING: u64 = 1 << 30;
+
+/// A file that asks for so many bytes is broken, or means harm.
+const BEYOND_BELIEF: u64 = 1 << 40;
+
+impl Error {
+    /// The memory to allow, in bytes, if an error says that less is allowed than is needed. Whole GiB, or below one GiB whole
+    /// MiB. A render that was refused then has enough; reading a file, which is refused before all of it is known, most
+    /// probably.
+    pub fn memory_to_allow(&self) -> Option<u64> {
+        let bytes = match self {
+            Error::TooLarge { needed, .. } => needed.total(),
+            Error::Format(FormatError::TooLarge { asked, .. }) if *asked < BEYOND_BELIEF => {
+                (asked * TIMES_ASKED).max(LEAST_FOR_READING)
+            }
+            _ => return None,
+        };
+        let unit = if bytes >= 1 << 30 { 1 << 30 } else { 1 << 20 };
+        Some(bytes.div_ceil(unit).saturating_mul(unit))
+    }
 }
 
 /// What to make smaller: whatever takes the most memory.

@@ -1,7 +1,5 @@
 //! How much memory a picture will take, so that Bilux refuses to start one that does not fit.
 
-use crate::{Error, Settings};
-use bilux_formats::FormatError;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -13,9 +11,6 @@ const TRIANGLE: u64 = 170;
 const STROKE: u64 = 150;
 /// Bytes per instance of a repeated object, including its entry in the top-level tree; measured at 295.
 const INSTANCE: u64 = 350;
-/// Bytes per pixel, with its sums, its layers, and what measuring the noise and denoising take; measured up to 180.
-const PIXEL: u64 = 200;
-
 fn trees_over(mesh: &Mesh) -> u64 {
     mesh.triangles.len() as u64 * TRIANGLE + mesh.stroke_count() as u64 * STROKE
 }
@@ -59,43 +54,9 @@ impl Memory {
         all
     }
 
-    /// The memory for a picture of a scene with these settings.
-    pub fn of(scene: &SceneBuilder, settings: &Settings) -> Memory {
-        let picture = u64::from(settings.width) * u64::from(settings.height) * PIXEL;
-        Memory { picture, ..Memory::of_scene(scene) }
-    }
-
     /// The sum of all parts.
     pub fn total(&self) -> u64 {
         let Memory { meshes, textures, levels, grids, trees, picture } = *self;
         [meshes, textures, levels, grids, trees, picture].into_iter().fold(0, u64::saturating_add)
-    }
-}
-
-/// A reader that was refused memory needs at most so many times what it had asked for by then, in the files that were
-/// tried, if that is more than [`LEAST_FOR_READING`].
-const TIMES_ASKED: u64 = 4;
-
-/// Bytes that are always allowed where reading was refused memory: compressed textures and meshes take up to a hundred
-/// times the size of their file, so what a reader asks for first says little about small files.
-const LEAST_FOR_READING: u64 = 1 << 30;
-
-/// A file that asks for so many bytes is broken, or means harm.
-const BEYOND_BELIEF: u64 = 1 << 40;
-
-impl Error {
-    /// The memory to allow, in bytes, if an error says that less is allowed than is needed. Whole GiB, or below one GiB whole
-    /// MiB. A render that was refused then has enough; reading a file, which is refused before all of it is known, most
-    /// probably.
-    pub fn memory_to_allow(&self) -> Option<u64> {
-        let bytes = match self {
-            Error::TooLarge { needed, .. } => needed.total(),
-            Error::Format(FormatError::TooLarge { asked, .. }) if *asked < BEYOND_BELIEF => {
-                (asked * TIMES_ASKED).max(LEAST_FOR_READING)
-            }
-            _ => return None,
-        };
-        let unit = if bytes >= 1 << 30 { 1 << 30 } else { 1 << 20 };
-        Some(bytes.div_ceil(unit).saturating_mul(unit))
     }
 }

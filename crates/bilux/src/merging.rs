@@ -1,15 +1,13 @@
 //! Partial renders, merged into one picture: which samples they have together, and which they lack.
 
-use crate::description::{SETTINGS, SOFTWARE, is_handed_on};
+pub use crate::metadata::ASKED;
+use crate::metadata::{SETTINGS, SOFTWARE, is_handed_on};
 use crate::{Display, Error};
 use bilux_pictures::Picture;
 use bilux_transport::{Coverage, Film, MergedLayers, Window};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
-
-/// In the metadata of a partial render: the samples per pixel of the picture that it is a part of.
-pub const ASKED: &str = "bilux.spp";
 
 /// A message lists at most so many pieces of what is missing.
 const LISTED: usize = 4;

@@ -3,35 +3,15 @@
 
 use crate::Error;
 use crate::camera_choice::choose_camera;
-use crate::job::shutter_of;
+use crate::judged::Judged;
 use crate::presets::{self, Studio};
-use crate::settings::Settings;
-use bilux_math::transcendental::{log2, powf};
+use crate::settings::{Settings, shutter_of};
 use bilux_scene::presets::{added_lights, has_own_light, may_be_lit, seems_lit};
 use bilux_scene::{AccelChoice, BuiltParts, Scene, SceneBuilder};
 use bilux_transport::{Illumination, illumination};
 
 /// The fraction of the visible surfaces that a file's own light must reach for the studio to stay off.
 const ENOUGH: f32 = 0.5;
-/// The fraction that it must reach to count for the exposure.
-const SOME: f32 = 0.05;
-/// The outgoing radiance of a white surface that a display shows well, and by how many stops that may be missed.
-const SURFACE: [f32; 2] = [0.5, 1.5];
-/// The same for what emits light, where nothing else is visible.
-const EMITTER: [f32; 2] = [1.0, 3.0];
-/// Exposures are multiples of this many stops.
-const STEP: f32 = 0.25;
-
-/// What was found of a scene's own light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Judged {
-    /// Whether it lights what is visible; `None` if the file describes its surroundings, so that nothing is to be decided.
-    pub(crate) is_enough: Option<bool>,
-    /// Whether the user may wonder, and is told.
-    is_said: bool,
-    measured: Illumination,
-}
-
 /// The result of measuring a scene's own light.
 pub(crate) struct OwnLight {
     pub(crate) judged: Judged,
@@ -93,51 +73,6 @@ pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> boo
 /// The fraction of the visible surfaces that light reaches; 0 if there are none.
 fn reached(measured: &Illumination) -> f32 {
     if measured.surfaces > 0.0 { measured.lit } else { 0.0 }
-}
-
-impl Judged {
-    /// The exposure, in stops, with which a display shows what the scene's own light lights; 0 where it is as bright as usual, or
-    /// lights next to nothing.
-    pub(crate) fn exposure(&self) -> f32 {
-        let Illumination { surfaces, lit, level, glow } = self.measured;
-        let (level, [wanted, tolerance]) = match surfaces > 0.0 {
-            true if lit < SOME => return 0.0,
-            true => (level, SURFACE),
-            false => (glow, EMITTER),
-        };
-        let stops = if level > 0.0 { log2(wanted / level) } else { 0.0 };
-        // Where its own light is dim, the studio's is not.
-        let is_usual = stops.abs() <= tolerance || stops > 0.0 && self.is_enough == Some(false);
-        if is_usual { 0.0 } else { (stops / STEP).round() * STEP }
-    }
-
-    /// How many times brighter than usual the scene is.
-    pub(crate) fn brightness(&self) -> f32 {
-        powf(2.0, -self.exposure())
-    }
-
-    fn decision(&self, added: Option<&str>) -> Option<String> {
-        let percent = (self.measured.lit * 100.0).round();
-        let added = added.unwrap_or("nothing");
-        Some(match self.is_enough? {
-            true if added != "nothing" => format!(
-                "its own lights light it: they reach {percent}% of the visible surfaces; the studio adds {added} \
-                 (--env none leaves them out)"
-            ),
-            true => format!(
-                "only its own lights light it: they reach {percent}% of the visible surfaces (--preset studio adds \
-                 the studio's)"
-            ),
-            false if self.measured.surfaces == 0.0 => format!(
-                "the studio lights it with {added}: everything visible in it is an emitter that lights nothing else \
-                 (--env none turns the studio off)"
-            ),
-            false => format!(
-                "the studio lights it with {added}: its own lights reach only {percent}% of the visible surfaces \
-                 (--env none turns the studio off)"
-            ),
-        })
-    }
 }
 
 /// What the studio has added to light a scene, where nothing else is to be told about its light.

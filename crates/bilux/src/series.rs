@@ -1,7 +1,7 @@
 //! What the pictures of a turntable or of an animation have in common. If it changed from one to the next, they would
 //! flicker.
 
-use crate::own_light::Judged;
+use crate::judged::Judged;
 use crate::presets::{Studio, set_upright};
 use crate::request::JobRequest;
 use crate::{Error, own_light};

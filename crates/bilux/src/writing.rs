@@ -1,32 +1,13 @@
 //! How a job's pictures are written.
 
 use crate::display::Display;
+use crate::metadata::ASKED;
 use crate::settings::{Background, Settings};
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::{Picture, WriteOptions};
-use bilux_scene::{SceneBuilder, Span, Warning};
+use bilux_scene::{Span, Warning};
 use std::path::Path;
-
-/// The tone curve if the studio lights a model.
-const STUDIO_TONEMAP: &str = "neutral";
-
-/// The tone curve that `auto` means for a scene that the studio has completed, and what to tell the user about it.
-pub(crate) fn auto_curve(
-    scene: &SceneBuilder,
-    completed: &SceneBuilder,
-    settings: &Settings,
-) -> (&'static str, Option<String>) {
-    if completed.lights.len() == scene.lights.len() || settings.integrator.classic {
-        return ("none", None);
-    }
-    if !bilux_scene::presets::is_unlit(scene) {
-        return (STUDIO_TONEMAP, None);
-    }
-    let note = "the whole model is unlit, so its colours are shown as they are (--tonemap neutral adds the curve of \
-                the studio)";
-    ("none", (settings.tonemap == "auto").then(|| note.to_owned()))
-}
 
 /// A warning, if a picture is transparent and the format of the file cannot be. `behind` is the colour behind the picture.
 ///
@@ -109,5 +90,22 @@ impl Job {
         let mut picture = outcome.picture()?;
         self.describe(&mut picture, outcome, None);
         Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)
+    }
+
+    /// The film's exact sums, its coverage and its display, as a picture that an `.exr` can hold and `merge` can merge.
+    ///
+    /// # Errors
+    /// If memory is short.
+    pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
+        let mut picture = outcome.rendered.film.to_partial()?;
+        if let Some(coverage) = &outcome.coverage {
+            picture.push_channel("A", coverage.clone())?;
+        }
+        self.display()?.record(&mut picture);
+        if let Some(spp) = self.settings.asked_spp() {
+            picture.metadata.insert(ASKED.to_owned(), spp.to_string());
+        }
+        self.describe(&mut picture, outcome, None);
+        Ok(picture)
     }
 }

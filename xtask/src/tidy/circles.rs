@@ -18,8 +18,6 @@ const STILL: &[&str] = &[
     "crates/accel",
     // Measurements stand beside what they measure with, in the `mod.rs` of each benchmark.
     "crates/bench",
-    // A job is made of settings that look at what lights the scene, for which they make a part of a job.
-    "crates/bilux",
     // The arguments name what reads them, which reads other arguments.
     "crates/cli",
     // A value may be a grid, and grids are made of values; a picture is made of what it is pickled to.

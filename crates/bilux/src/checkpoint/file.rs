@@ -1,6 +1,7 @@
 //! The file of a checkpoint.
 
 use super::identity::Identity;
+use crate::error::CheckpointError;
 use bilux_pictures::formats::Unfinished;
 use bilux_transport::{Checkpoint, FilmError};
 use sha2::{Digest, Sha256};
@@ -15,51 +16,6 @@ const MAGIC: &[u8; 20] = b"bilux checkpoint 1\n\0";
 const MAX_HEAD: u32 = 1 << 16;
 /// The length of a hash in bytes.
 const HASH: usize = 32;
-
-/// Why a checkpoint cannot be read, or does not fit.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CheckpointError {
-    /// The file cannot be read or written.
-    #[error("{}: cannot {action}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What was attempted.
-        action: &'static str,
-        /// Why it failed.
-        source: io::Error,
-    },
-    /// The file is not a checkpoint, or damaged.
-    #[error("{}: {what}: delete it, or begin anew without it", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        what: String,
-    },
-    /// The checkpoint belongs to another picture.
-    #[error(
-        "{}: this is the checkpoint of another picture; what differs: {}; render as before, or begin anew without it",
-        path.display(), differences.join(", ")
-    )]
-    OtherPicture {
-        /// The file.
-        path: PathBuf,
-        /// What is different.
-        differences: Vec<String>,
-    },
-    /// The file is too large to be read.
-    #[error("{}: this checkpoint has {size} bytes, but only {most} are allowed: allow more memory", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Its size.
-        size: u64,
-        /// The maximum.
-        most: u64,
-    },
-}
 
 /// The name of the checkpoint of a picture: its own, and `.checkpoint`.
 pub fn checkpoint_path(picture: &Path) -> PathBuf {

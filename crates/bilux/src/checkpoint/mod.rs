@@ -25,6 +25,7 @@ mod file;
 mod identity;
 mod writer;
 
-pub use file::{CheckpointError, Head, SavedRender, checkpoint_path};
+pub use crate::error::CheckpointError;
+pub use file::{Head, SavedRender, checkpoint_path};
 pub use identity::Identity;
 pub use writer::CheckpointWriter;

@@ -1,7 +1,8 @@
 //! Writes checkpoints of a render from time to time.
 
-use super::file::{CheckpointError, Head, SavedRender, part_path, write};
+use super::file::{Head, SavedRender, part_path, write};
 use super::identity::Identity;
+use crate::error::CheckpointError;
 use crate::{Error, Job, Outcome};
 use bilux_transport::{Observer, Progress, Standing};
 use std::path::{Path, PathBuf};

@@ -17,10 +17,12 @@
 //! ```
 
 mod blob;
+mod blob_reading;
 mod code;
 mod error;
 mod hash;
 mod scene;
+mod table_code;
 mod tables;
 mod values;
 

@@ -1,20 +1,23 @@
 //! How a job is made: the scene is completed by the studio, then built, then looked at.
 
-use super::subject::{Subject, shutter_of};
+use super::subject::Subject;
 use super::{Found, Job};
+use crate::Error;
 use crate::built::Built;
 use crate::camera_choice::choose_camera;
 use crate::own_light::{self, OwnLight};
 use crate::presets::{self, Studio};
 use crate::request::JobRequest;
 use crate::scene_warnings::{self, oddities};
-use crate::settings::Settings;
-use crate::{Error, writing};
+use crate::settings::{Settings, shutter_of};
 use bilux_math::Rgb;
 use bilux_scene::{AccelChoice, Orientation, Reader, Scene, SceneBuilder, Spec, Warning};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{Filter, PixelAnchor, RenderError, RenderSettings, ShadowCatcher};
 use std::sync::Arc;
+
+/// The tone curve if the studio lights a model.
+const STUDIO_TONEMAP: &str = "neutral";
 
 impl Job {
     /// Merges the scene file's settings with those of the request, which take precedence, and builds the scene.
@@ -40,7 +43,7 @@ impl Job {
         scene_warnings::check_not_empty(scene)?;
         let Completed { source, alone, orientation, catcher, of_ground } =
             Completed::of(scene, &mut settings, built)?;
-        let (auto_curve, of_curve) = writing::auto_curve(scene, &source, &settings);
+        let (auto_curve, of_curve) = auto_curve(scene, &source, &settings);
         let note = own_light::note(&settings, &source, scene.lights.len());
         let accel = accel_for(&source, &settings);
         let unfiltered = built_scene(&source, alone, &settings, &accel, built)?;
@@ -166,4 +169,21 @@ fn render_settings(settings: &Settings, request: &JobRequest) -> Result<RenderSe
         batch_means: guides || request.layers.contains(&Aov::Variance),
         ids: request.layers.contains(&Aov::Ids),
     })
+}
+
+/// The tone curve that `auto` means for a scene that the studio has completed, and what to tell the user about it.
+fn auto_curve(
+    scene: &SceneBuilder,
+    completed: &SceneBuilder,
+    settings: &Settings,
+) -> (&'static str, Option<String>) {
+    if completed.lights.len() == scene.lights.len() || settings.integrator.classic {
+        return ("none", None);
+    }
+    if !bilux_scene::presets::is_unlit(scene) {
+        return (STUDIO_TONEMAP, None);
+    }
+    let note = "the whole model is unlit, so its colours are shown as they are (--tonemap neutral adds the curve of \
+                the studio)";
+    ("none", (settings.tonemap == "auto").then(|| note.to_owned()))
 }

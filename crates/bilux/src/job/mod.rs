@@ -7,12 +7,10 @@ mod subject;
 
 use crate::Error;
 use crate::fingerprint::fingerprint;
-use crate::merging::ASKED;
 use crate::outcome::Outcome;
 use crate::request::JobRequest;
 use crate::series::Series;
 use crate::settings::Settings;
-use bilux_pictures::Picture;
 use bilux_pictures::denoise::DenoiserChoice;
 use bilux_scene::{Camera, Orientation, Scene, SceneBuilder, Warning};
 use bilux_transport::integrators::PixelIntegrator;
@@ -22,7 +20,7 @@ use bilux_transport::{
 };
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
-pub(crate) use subject::{Subject, shutter_of};
+pub(crate) use subject::Subject;
 
 /// A picture to be rendered. It never changes; [`at_time`](Job::at_time) and the like make other jobs of it.
 #[derive(Clone)]
@@ -233,22 +231,5 @@ impl Job {
             let plain = fingerprint(&self.subject.source, &self.settings);
             if self.render.interval { plain + "-replicates" } else { plain }
         })
-    }
-
-    /// The film's exact sums, its coverage and its display, as a picture that an `.exr` can hold and `merge` can merge.
-    ///
-    /// # Errors
-    /// If memory is short.
-    pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
-        let mut picture = outcome.rendered.film.to_partial()?;
-        if let Some(coverage) = &outcome.coverage {
-            picture.push_channel("A", coverage.clone())?;
-        }
-        self.display()?.record(&mut picture);
-        if let Some(spp) = self.settings.asked_spp() {
-            picture.metadata.insert(ASKED.to_owned(), spp.to_string());
-        }
-        self.describe(&mut picture, outcome, None);
-        Ok(picture)
     }
 }

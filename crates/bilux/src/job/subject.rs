@@ -1,6 +1,6 @@
 //! What a job renders.
 
-use crate::settings::Settings;
+use crate::settings::{Settings, shutter_of};
 use bilux_scene::{AccelChoice, Camera, Scene, SceneBuilder};
 use bilux_transport::ShadowCatcher;
 use bilux_transport::integrators::PixelIntegrator;
@@ -28,9 +28,4 @@ impl Subject {
         let scene = self.scene.at(&self.accel, shutter_of(settings));
         Subject { scene: Arc::new(scene), ..self.clone() }
     }
-}
-
-/// When the shutter opens and closes, in seconds.
-pub(crate) fn shutter_of(settings: &Settings) -> [f32; 2] {
-    [settings.time, settings.time + settings.shutter]
 }

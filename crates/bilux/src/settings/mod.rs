@@ -3,19 +3,24 @@
 
 mod accel;
 mod background;
+mod idle;
+mod memory;
 mod same_samples;
+mod shutter;
 mod size;
 mod studio;
+mod tree;
 mod view;
 
-use crate::{Error, own_light::Judged, presets::Studio};
+use crate::{Error, judged::Judged, presets::Studio};
 use accel::accel_choice;
 pub use background::Background;
 use background::background;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value, Warning};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value};
 use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+pub(crate) use shutter::shutter_of;
 pub use size::{parse_size, size_error};
 use std::time::Duration;
 pub use studio::parse_orbit;
@@ -340,29 +345,6 @@ impl Settings {
     }
 }
 
-impl Settings {
-    /// Warns about settings by the user that belong to other integrators than the one that renders. Scene files may
-    /// contain settings for several integrators.
-    pub(crate) fn unused_settings(&self, user: &Parameters) -> Vec<Warning> {
-        let has = |entry: &Entry, key: &str| entry.parameters.iter().any(|p| p.name == key);
-        let chosen = &self.integrator.entry;
-        let is_idle = |key: &str| !has(&RENDER, key) && !has(chosen, key);
-        let others = |key: &str| {
-            let others = INTEGRATORS.iter().map(|row| &row.entry).filter(|entry| has(entry, key));
-            others.map(|entry| format!("'{}'", entry.name)).collect::<Vec<_>>().join(", ")
-        };
-        let warn = |key: &str, at: &Span| {
-            let message = format!(
-                "'{key}' has no effect here: it is a setting of {}, but the integrator is '{}'",
-                others(key),
-                chosen.name
-            );
-            Warning { message, at: at.clone() }
-        };
-        user.0.iter().filter(|(key, ..)| is_idle(key)).map(|(key, _, at)| warn(key, at)).collect()
-    }
-}
-
 /// The maximum number of samples per pixel if a noise level or a time limit is given but no number of samples.
 const MAX_SPP: u32 = 1 << 16;
 
@@ -396,25 +378,4 @@ fn integrator_parameters(
         }
     }
     Ok(spec)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Parameters, Settings, Value};
-
-    #[test]
-    fn settings_of_other_integrators_are_reported() {
-        let mut user = Parameters::default();
-        user.set("integrator", Value::Text("path".to_owned()));
-        user.set("roulette_depth", Value::Integer(3));
-        assert!(Settings::resolve(&user).unwrap().unused_settings(&user).is_empty());
-        user.set("techniques", Value::Text("vcm".to_owned()));
-        let reported = Settings::resolve(&user).unwrap().unused_settings(&user);
-        assert_eq!(reported.len(), 1);
-        assert!(
-            reported[0].message.contains("'techniques'") && reported[0].message.contains("'auto'"),
-            "{}",
-            reported[0]
-        );
-    }
 }

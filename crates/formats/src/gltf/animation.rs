@@ -17,6 +17,9 @@ pub(super) struct Pose {
     pub(super) animations: Vec<Animation>,
 }
 
+/// Values, and what they are of.
+type Moved = Vec<(Target, Vec<f64>)>;
+
 /// What a channel animates.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Target {
@@ -107,7 +110,7 @@ fn play<'d>(
     animation: JsonNode<'d>,
     time: f32,
     data: &mut DataReader<'d, '_>,
-) -> Result<(Vec<(Target, Vec<f64>)>, f32), FormatError> {
+) -> Result<(Moved, f32), FormatError> {
     let samplers = animation.list("samplers")?;
     let (mut values, mut end) = (Vec::new(), 0f32);
     for channel in animation.list("channels")? {

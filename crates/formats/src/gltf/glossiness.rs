@@ -25,7 +25,7 @@ struct Mapped<T> {
 
 impl<T> Mapped<T> {
     /// The same without the texture's placement.
-    fn as_it_is(self) -> Mapped<T> {
+    fn unplaced(self) -> Mapped<T> {
         Mapped { map: self.map.map(|map| Texture { transform: None, ..map }), ..self }
     }
 }
@@ -81,7 +81,7 @@ fn baked(
     let larger = diffuse.map.iter().chain(&specular.map).max_by_key(size).cloned();
     let Some(lies) = larger else { return Ok([Texture::missing(""), Texture::missing("")]) };
     let (width, height) = (lies.width(), lies.height());
-    let (diffuse, specular, gloss) = (diffuse.as_it_is(), specular.as_it_is(), gloss.as_it_is());
+    let (diffuse, specular, gloss) = (diffuse.unplaced(), specular.unplaced(), gloss.unplaced());
     textures.take_bytes((width * height) as u64 * 8)?;
     let (mut base, mut numbers) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
     let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;

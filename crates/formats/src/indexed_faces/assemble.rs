@@ -6,8 +6,9 @@ use crate::normals::{FLAT, Faces};
 use crate::oddities::Oddities;
 use crate::polygon::Triangulator;
 use crate::reading::{Reading, Source, plain_material};
+use crate::sink::Sink;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span};
+use bilux_scene::{Mesh, Object, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -21,10 +22,9 @@ pub(crate) fn assemble(
     place: &dyn Fn(u64) -> Span,
     mut indexed: IndexedFaces,
     mut materials: HashMap<String, usize>,
-    scene: &mut SceneBuilder,
-    oddities: &mut Oddities,
+    sink: &mut Sink,
 ) -> Result<(), FormatError> {
-    check_indices(&mut indexed, place, oddities)?;
+    check_indices(&mut indexed, place, &mut sink.oddities)?;
     add_normals(reading, source, &mut indexed)?;
     reading.budget.take_bytes((indexed.positions.len() * size_of::<Slot>()) as u64, source.name)?;
     // A polygon has two triangles fewer than it has corners.
@@ -36,29 +36,29 @@ pub(crate) fn assemble(
     let mut run_sizes = run_sizes(&indexed, &faces).into_iter();
     let mut piece = Piece::new(&indexed, run_sizes.next());
     let mut run = 0;
-    let mut finish = |piece: Piece, run: &Run, oddities: &mut Oddities| {
+    let mut finish = |piece: Piece, run: &Run, sink: &mut Sink| {
         let name = if run.name.is_empty() { source.stem() } else { run.name.clone() };
-        let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, oddities) };
-        let material = material_of(run, &indexed, &mut materials, place, scene, oddities);
-        scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, &mut sink.oddities) };
+        let material = material_of(run, &indexed, &mut materials, place, sink);
+        sink.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
     };
     // Corners are freed as triangles are made from them: holding both would be the peak of memory.
     faces.consume(|face, corners| {
         if indexed.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
             let done = std::mem::replace(&mut piece, Piece::new(&indexed, run_sizes.next()));
-            finish(done, &indexed.runs[run], oddities);
+            finish(done, &indexed.runs[run], sink);
             (run, welder.run) = (run + 1, welder.run + 1);
         }
         let made = piece.made.len();
         if piece.add_face((face, corners), &mut welder, &mut triangulator).is_none() {
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
-            oddities.note(what, || place(indexed.places.at(face)));
+            sink.oddities.note(what, || place(indexed.places.at(face)));
         }
         reading.budget.take::<Vertex>(piece.made.len() - made, source.name)
     })?;
     if let Some(last) = indexed.runs.get(run) {
-        finish(piece, last, oddities);
+        finish(piece, last, sink);
     }
     Ok(())
 }
@@ -186,8 +186,7 @@ pub(crate) fn material_of(
     indexed: &IndexedFaces,
     materials: &mut HashMap<String, usize>,
     place: &dyn Fn(u64) -> Span,
-    scene: &mut SceneBuilder,
-    oddities: &mut Oddities,
+    sink: &mut Sink,
 ) -> usize {
     let (name, offset) = match &run.material {
         Some((name, offset)) => (name.as_str(), Some(*offset)),
@@ -201,13 +200,13 @@ pub(crate) fn material_of(
         let what = format!(
             "the material '{name}' is not in any material library that was read: a plain one is used instead"
         );
-        oddities.note(&what, || place(offset));
+        sink.oddities.note(&what, || place(offset));
     }
     let mut spec = plain_material(indexed.has_colours(), !indexed.specular.is_empty());
     if offset.is_some() {
         name.clone_into(&mut spec.name);
     }
-    let index = scene.add_material(spec);
+    let index = sink.scene.add_material(spec);
     materials.insert(name.to_owned(), index);
     index
 }

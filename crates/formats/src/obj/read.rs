@@ -9,8 +9,8 @@ use crate::blocks::Blocks;
 use crate::colours::{Stored, UNCOLOURED, decode};
 use crate::indexed_faces::{IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, Smoothing};
-use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
+use crate::sink::Sink;
 use crate::text::{Cursor, Places, TextPosition, no_text, unquoted, whole_file};
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
@@ -42,13 +42,8 @@ fn read_in_blocks(
         source,
         lines: 0,
         indexed: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
-        scene: SceneBuilder {
-            environment_unspecified: true,
-            exposure_unspecified: true,
-            ..SceneBuilder::default()
-        },
+        sink: Sink::for_bare_files(),
         materials: HashMap::new(),
-        oddities: Oddities::default(),
         name: String::new(),
         material: None,
         smoothing: BY_ANGLE,
@@ -65,10 +60,9 @@ struct Obj<'a, 'o, 'r> {
     /// The number of lines before the block that is being joined.
     lines: u32,
     indexed: IndexedFaces,
-    scene: SceneBuilder,
+    sink: Sink,
     /// The index of each material by name.
     materials: HashMap<String, usize>,
-    oddities: Oddities,
     name: String,
     material: Option<(String, u64)>,
     smoothing: Smoothing,
@@ -113,7 +107,7 @@ impl Obj<'_, '_, '_> {
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
         self.resolve_backward_indices(block, text);
-        self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
+        self.sink.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
         let before = self.indexed.positions.len();
         let indexed = &mut self.indexed;
@@ -160,7 +154,7 @@ impl Obj<'_, '_, '_> {
             let index = u32::try_from(index).ok().filter(|&index| index != NONE).unwrap_or_else(|| {
                 // Counts lines only once per block: a file may have as many of these faults as it has corners.
                 if !std::mem::take(&mut is_first) {
-                    self.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
+                    self.sink.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
                     return NONE;
                 }
                 let mut cursor = Cursor::joining_lines(text);
@@ -169,7 +163,7 @@ impl Obj<'_, '_, '_> {
                 at.line = at.line.saturating_add(self.lines);
                 let message = bad_corner(cursor.word());
                 self.set_fault(FormatError::malformed(message.clone(), at.clone()));
-                self.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
+                self.sink.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
                 NONE
             });
             // A faulty face may have ended before this corner.
@@ -276,7 +270,7 @@ impl Obj<'_, '_, '_> {
                 Ok(loaded) => loaded,
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
-                    self.scene.warn(
+                    self.sink.scene.warn(
                         format!("a material library is missing: {}", error.without_place()),
                         at.clone(),
                     );
@@ -285,15 +279,14 @@ impl Obj<'_, '_, '_> {
             };
             let shown = std::path::Path::new(&**self.source.name).with_file_name(&name).display().to_string();
             let library = Source { bytes: &bytes, name: &shown.into(), folder: path.parent() };
-            read_library(self.reading, &library, &mut self.scene, &mut self.materials)?;
+            read_library(self.reading, &library, &mut self.sink.scene, &mut self.materials)?;
             self.reading.release(bytes);
         }
         Ok(())
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, mut materials, mut oddities, mut indexed, mut strokes, .. } =
-            self;
+        let Obj { reading, source, mut sink, mut materials, mut indexed, mut strokes, .. } = self;
         if let Some(fault) = indexed.first_fault.take_if(|_| indexed.faces.is_empty() && strokes.is_empty()) {
             return Err(fault);
         }
@@ -309,14 +302,11 @@ impl Obj<'_, '_, '_> {
         // Only now is the greatest number of the whole file known.
         decode(&mut indexed.colours, Stored::Numbers);
         let place = |key: u64| TextPosition::of_key(key).in_file(source.name);
-        strokes.into_objects(reading, source, &place, &indexed, &mut materials, &mut scene, &mut oddities)?;
-        if indexed.faces.is_empty() {
-            oddities.into_warnings(&mut scene);
-            return Ok(scene);
+        strokes.into_objects(reading, source, &place, &indexed, &mut materials, &mut sink)?;
+        if !indexed.faces.is_empty() {
+            assemble(reading, source, &place, indexed, materials, &mut sink)?;
         }
-        assemble(reading, source, &place, indexed, materials, &mut scene, &mut oddities)?;
-        oddities.into_warnings(&mut scene);
-        Ok(scene)
+        Ok(sink.finish())
     }
 }
 

@@ -3,10 +3,10 @@
 use super::block::{End, Stroke};
 use crate::FormatError;
 use crate::indexed_faces::{IndexedFaces, NONE, Run, material_of};
-use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
+use crate::sink::Sink;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span};
+use bilux_scene::{Mesh, Object, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -64,7 +64,6 @@ impl Strokes {
     }
 
     /// Makes an object of each group, with the vertices that it uses.
-    #[allow(clippy::too_many_arguments)]
     pub(super) fn into_objects(
         self,
         reading: &mut Reading,
@@ -72,8 +71,7 @@ impl Strokes {
         place: &dyn Fn(u64) -> Span,
         indexed: &IndexedFaces,
         materials: &mut HashMap<String, usize>,
-        scene: &mut SceneBuilder,
-        oddities: &mut Oddities,
+        sink: &mut Sink,
     ) -> Result<(), FormatError> {
         if self.groups.is_empty() {
             return Ok(());
@@ -111,8 +109,8 @@ impl Strokes {
             (mesh.points, mesh.lines) = (group.points, group.lines);
             let name = if group.run.name.is_empty() { source.stem() } else { group.run.name.clone() };
             mesh.name.clone_from(&name);
-            let material = material_of(&group.run, indexed, materials, place, scene, oddities);
-            scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+            let material = material_of(&group.run, indexed, materials, place, sink);
+            sink.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
         }
         Ok(())
     }

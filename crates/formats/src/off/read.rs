@@ -8,6 +8,7 @@ use crate::indexed_faces::{Corner, FaceColour, IndexedFaces, NONE, Run, assemble
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
+use crate::sink::Sink;
 use crate::text::{Cursor, Places, no_text, quoted};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::SceneBuilder;
@@ -201,16 +202,15 @@ impl<'a> Off<'a, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Off { reading, source, places, mut indexed, mut oddities, .. } = self;
+        let Off { reading, source, places, mut indexed, oddities, .. } = self;
         if indexed.faces.is_empty() {
             return Err(FormatError::malformed("it contains no faces", places.whole()));
         }
         indexed.runs.push(Run { first_face: 0, name: source.stem(), material: None });
-        let mut scene = SceneBuilder::default();
         let place = |offset: u64| places.at(offset as usize);
-        assemble(reading, source, &place, indexed, HashMap::new(), &mut scene, &mut oddities)?;
-        oddities.into_warnings(&mut scene);
-        Ok(scene)
+        let mut sink = Sink { scene: SceneBuilder::default(), oddities };
+        assemble(reading, source, &place, indexed, HashMap::new(), &mut sink)?;
+        Ok(sink.finish())
     }
 
     /// Skips empty lines and comments; returns the start of the next line.

@@ -13,6 +13,7 @@ use crate::indexed_faces::{IndexedFaces, NONE, assemble};
 use crate::normals::{BY_ANGLE, FLAT};
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
+use crate::sink::Sink;
 use crate::text::{Places, quoted};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::SceneBuilder;
@@ -212,10 +213,10 @@ impl Ply<'_, '_, '_> {
             self.oddities.not_shown("colours of faces, since vertices have colours", || places.whole());
         }
         let materials = self.materials(textures, &mut scene)?;
-        let Ply { reading, source, places, indexed, mut oddities, .. } = self;
+        let Ply { reading, source, places, indexed, oddities, .. } = self;
         let place = |offset: u64| places.at(offset as usize);
-        assemble(reading, source, &place, indexed, materials, &mut scene, &mut oddities)?;
-        oddities.into_warnings(&mut scene);
-        Ok(scene)
+        let mut sink = Sink { scene, oddities };
+        assemble(reading, source, &place, indexed, materials, &mut sink)?;
+        Ok(sink.finish())
     }
 }

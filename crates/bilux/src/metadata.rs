@@ -1,0 +1,17 @@
+//! The keys of what pictures say about themselves.
+
+/// The program and its version.
+pub const SOFTWARE: &str = "Software";
+/// [`Job::fingerprint`].
+pub const FINGERPRINT: &str = "bilux.fingerprint";
+/// The options of the command line that make the picture again.
+pub const SETTINGS: &str = "bilux.settings";
+
+/// In the metadata of a partial render: the samples per pixel of the picture that it is a part of.
+pub const ASKED: &str = "bilux.spp";
+
+/// The metadata that parts of a picture hand on to what they are merged into.
+pub fn is_handed_on(key: &str) -> bool {
+    let own = [SOFTWARE, "software", FINGERPRINT, SETTINGS, "worldToCamera", "worldToNDC"];
+    own.contains(&key) || key.starts_with("cryptomatte/") || key.starts_with("bilux.group_")
+}
