@@ -258,7 +258,7 @@ fn formulas_are_densities_of_toml_scenes_and_are_written_as_they_were_read() {
         assert!(written.contains("density = { kind = "), "{written}");
         assert_eq!(written.contains("place = "), density.contains("place = "), "{written}");
         let second = read(&path, &ReadOptions::default()).unwrap();
-        let [first, second] = [&first, &second].map(|scene| density_of(scene));
+        let [first, second] = [&first, &second].map(density_of);
         assert_eq!(first, second);
         assert!(first.maximum() > 0.3, "{first:?}");
     }
