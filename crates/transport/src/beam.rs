@@ -9,6 +9,7 @@
 //! [Křivánek 2014, estimator B-B1D with short beams]
 
 use crate::emission::Start;
+use crate::equiangular::Lit;
 use crate::limits::Events;
 use crate::media::{Passage, Travelled};
 use crate::mis::{Edge, Partial};
@@ -56,6 +57,8 @@ pub(crate) struct Leaving<const N: usize = 1> {
     pub(crate) beta: Rgb,
     pub(crate) odds: Rgb,
     pub(crate) partial: Partial<N>,
+    /// The vertex, if light comes there straight from a light and points are sampled by their angle to it too.
+    pub(crate) lit: Option<Lit<N>>,
     /// The light, if the vertex is on one.
     pub(crate) start: Option<Start>,
     /// Events so far: all, and as far as they limit paths.
@@ -68,6 +71,9 @@ pub(crate) struct Crossing<const N: usize> {
     pub(crate) beta: Rgb,
     pub(crate) odds: Rgb,
     pub(crate) partial: Partial<N>,
+    /// The distance from the last vertex, in metres, and the density per metre with which a walk has an event there.
+    pub(crate) distance: f32,
+    pub(crate) by_walk: f32,
 }
 
 impl<const N: usize> Leaving<N> {
@@ -105,6 +111,7 @@ impl Beam {
             leaves_medium: false,
             by_area: false,
             partial: Partial::START,
+            lit: None,
             start: None,
             depth: 0,
             events: Events::default(),
@@ -126,7 +133,7 @@ impl<const N: usize> Beam<N> {
         eye: Option<(&dyn Camera, &Ray)>,
         techniques: &TechniqueCounts<N>,
     ) -> Crossing<N> {
-        let Leaving { channel, leaves_medium, by_area, start, mut partial, .. } = self.subpath;
+        let Leaving { channel, leaves_medium, by_area, lit, start, mut partial, .. } = self.subpath;
         let free = medium.free_path(along, usize::from(channel));
         let travelled = Travelled { passage: self.passage, ..Travelled::NOWHERE }.passed(free);
         let (odds, passage) = (self.subpath.odds * travelled.odds, travelled.passage);
@@ -141,8 +148,13 @@ impl<const N: usize> Beam<N> {
             let ratio = start.map_or(1.0, |start| start.light_sampling_ratio(scene, self.line.at(along)));
             let connections = if start.is_some() { PerSet::ONE } else { techniques.connections };
             partial.arrive(distance2 * ratio, edge, connections, PerSet::ZERO);
+            if let Some(lit) = lit {
+                let picked = lit.picked(scene, -self.line.direction, distance);
+                partial.d_vc = partial.d_vc + picked * (1.0 / edge.forward);
+            }
         }
-        Crossing { beta: self.subpath.beta * travelled.weight / all, odds: odds / all, partial }
+        let beta = self.subpath.beta * travelled.weight / all;
+        Crossing { beta, odds: odds / all, partial, distance, by_walk: edge.forward }
     }
 }
 

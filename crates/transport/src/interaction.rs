@@ -3,7 +3,7 @@
 //! A density over solid angle becomes one over the next vertex: per area of a surface, with the cosine there, or per volume of
 //! a medium, without. [Pauly 2000]
 
-use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
 
@@ -33,6 +33,8 @@ pub(crate) struct MediumPoint {
     pub(crate) is_inside: bool,
     /// Its extinction coefficient, per metre, if it is the same everywhere.
     pub(crate) even: Option<Rgb>,
+    /// Points of its medium are also [sampled by their angle to lights](crate::equiangular).
+    pub(crate) is_near_lights: bool,
 }
 
 impl Interaction {
@@ -117,14 +119,10 @@ impl Interaction {
         }
     }
 
-    /// What light subpaths find here straight from a light.
+    /// Whether light subpaths are connected with the camera here, and merged, where they come straight from a light.
     #[inline]
-    pub(crate) fn direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> DirectLight {
-        match self {
-            _ if techniques.direct => DirectLight::Found,
-            Interaction::Medium(_) => DirectLight::Merged,
-            Interaction::Surface(..) => DirectLight::Left,
-        }
+    pub(crate) fn finds_direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> bool {
+        techniques.direct || matches!(self, Interaction::Medium(MediumPoint { is_near_lights: false, .. }))
     }
 
     /// A ray that leaves it.

@@ -15,6 +15,7 @@ mod camera_rays;
 pub mod checkpoint;
 mod classic;
 pub mod emission;
+mod equiangular;
 mod error;
 mod failures;
 pub mod features;

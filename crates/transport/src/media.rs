@@ -11,10 +11,11 @@
 //! Materials without a priority take no part. Their refractive index is relative to whatever surrounds them.
 
 mod coincident;
+mod fog;
 mod nested;
 mod passage;
 
-use crate::interaction::{Interaction, MediumPoint};
+use crate::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
@@ -137,11 +138,8 @@ impl Media {
             }
             if let Some(MediumEvent { distance, sigma_s, sigma_t }) = flight.event {
                 let t = begin + distance;
-                let p = Vec3::from(ray.origin) + direction * t;
                 self.overlap.leave();
-                let is_inside = !scene.material_of(self.inside).is_interface();
-                let even = medium.density.is_none().then(|| medium.sigma_t());
-                let point = MediumPoint { p, t, time: ray.time, phase: medium.phase, is_inside, even };
+                let point = self.point(scene, &medium, ray, t);
                 return travelled.scattered(flight.path, [sigma_s, sigma_t], point);
             }
             travelled = travelled.passed(flight.path);

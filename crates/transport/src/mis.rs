@@ -1,7 +1,7 @@
 //! What a subpath carries along for the weights of its techniques.
 
 use crate::limits::MAX_CONNECTED_ROW;
-use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
@@ -88,15 +88,15 @@ impl<const N: usize> Partial<N> {
         self.except_direct = self.except_direct * ratio;
     }
 
-    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `direct` is
-    /// what light subpaths find here of direct light; `row` is the number of events in a row in
+    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `finds_direct` is
+    /// whether light subpaths [find direct light](crate::interaction::Interaction::finds_direct_light) here; `row` is the number of events in a row in
     /// media, up to this one; `sine` is that of the [angle](crate::interaction::Interaction::sine) here.
     pub(crate) fn leave(
         &mut self,
         cos: f32,
         sine: f32,
         pdfs: Option<(f32, f32)>,
-        direct: DirectLight,
+        finds_direct: bool,
         row: u32,
     ) {
         match pdfs {
@@ -106,13 +106,9 @@ impl<const N: usize> Partial<N> {
                 self.except_direct = PerSet::ZERO;
             }
             Some((pdf, pdf_back)) => {
-                let (merged, splatted) = (self.merged * sine, self.splatted);
-                let (always, except_direct) = match direct {
-                    DirectLight::Found => (Some(merged + splatted), PerSet::ZERO),
-                    DirectLight::Merged => (Some(merged), splatted * (cos / pdf)),
-                    DirectLight::Left => (None, (merged + splatted) * (cos / pdf)),
-                };
-                let always = always.map_or(PerSet::ZERO, |always| always * (cos / pdf));
+                let found = (self.merged * sine + self.splatted) * (cos / pdf);
+                let [always, except_direct] =
+                    if finds_direct { [found, PerSet::ZERO] } else { [PerSet::ZERO, found] };
                 if row > 0 {
                     let connected = if row == 1 { self.connected } else { PerSet::ZERO };
                     let settled = (self.settled + self.except_direct) * pdf_back + connected;
@@ -140,14 +136,12 @@ impl<const N: usize> Partial<N> {
         pdf_area: f32,
         pdf_back: f32,
         sine: f32,
-        direct: DirectLight,
+        finds_direct: bool,
     ) -> PerSet<N> {
-        let subpath = self.connected + (self.d_vc + self.except_direct) * pdf_back;
-        match direct {
-            DirectLight::Found => self.others(pdf_area, pdf_back, sine),
-            DirectLight::Merged => (self.merged * sine + subpath) * pdf_area,
-            DirectLight::Left => subpath * pdf_area,
+        if finds_direct {
+            return self.others(pdf_area, pdf_back, sine);
         }
+        (self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
     }
 
     /// The same over the density of finding this vertex, without merging here.

@@ -129,6 +129,9 @@ pub enum VertexKind {
 /// lights.
 const MEDIUM_STREAM: u64 = 3 << 32;
 
+/// And those for points near lights.
+const NEAR_LIGHTS_STREAM: u64 = 5 << 32;
+
 impl SampleState {
     /// A sample that has drawn nothing yet.
     pub fn new(sampler: PixelSampler, wavelength: Wavelength) -> SampleState {
@@ -147,6 +150,13 @@ impl SampleState {
     pub(crate) fn enter_medium(&mut self, depth: u32, mode: TransportMode) {
         let from_light = if mode == TransportMode::Importance { 1 << 32 } else { 0 };
         self.sampler.enter(MEDIUM_STREAM + from_light + u64::from(depth));
+    }
+
+    /// Enters the stream of random numbers for the points that are sampled, on the way to the vertex after `depth` events, by their
+    /// angle to lights.
+    #[inline]
+    pub(crate) fn enter_near_lights(&mut self, depth: u32) {
+        self.sampler.enter(NEAR_LIGHTS_STREAM + u64::from(depth));
     }
 
     /// A seed of further random numbers, which draws none.

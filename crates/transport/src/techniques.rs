@@ -25,23 +25,12 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// Media of a larger extinction in any channel, per metre, have no beams: light subpaths have many short ones there, and
     /// connections find as much.
     pub(crate) densest: f32,
-    /// Light subpaths are connected with the camera, and merged on surfaces, also where they come straight from a light. In media
-    /// they always are merged.
+    /// Light subpaths are connected with the camera, and merged, also on surfaces that they reach straight from a light. In media
+    /// they always are.
     ///
     /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
-    /// heuristic gives photons too much weight.
+    /// heuristic gives photons too much weight. In a medium close to a light, such a point is noise.
     pub(crate) direct: bool,
-}
-
-/// What light subpaths find at a vertex that they would reach straight from a light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DirectLight {
-    /// They are connected with the camera, and merged.
-    Found,
-    /// They are merged.
-    Merged,
-    /// Nothing: a point on the light is sampled.
-    Left,
 }
 
 /// What one technique contributes for one path.

@@ -9,6 +9,7 @@ use bilux_scene::media::mean;
 use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
 
 /// A path on its way to its next vertex.
+#[derive(Clone, Copy)]
 pub(crate) struct Walk {
     /// The ray to it.
     pub(crate) ray: Ray,
@@ -117,6 +118,22 @@ impl Walk {
             (self.beta, self.odds) = (self.beta / all, odds / all);
         }
         Travelled { emitted, ..travelled }
+    }
+
+    /// The same walk as if it had an event in fog at this distance, in metres, where points are sampled by their [angle to
+    /// lights](crate::equiangular) too; `None` where they are not, or where a surface is before it.
+    pub(crate) fn in_fog(
+        &self,
+        first: Surface,
+        distance: f32,
+        tracer: &mut Tracer,
+        sample: &SampleState,
+    ) -> Option<(Walk, Travelled)> {
+        let mut walk = *self;
+        walk.media.channel = sample.channel;
+        let travelled = walk.media.travel_to_fog(tracer, &self.ray, first, distance, sample.seed())?;
+        walk.beta *= travelled.weight;
+        Some((walk, travelled))
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the

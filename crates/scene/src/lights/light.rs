@@ -68,6 +68,12 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
         false
     }
 
+    /// A point in its middle, in metres, and about how far from there it reaches; `None` for an infinite light. What is sampled close to it is
+    /// sampled around there.
+    fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        None
+    }
+
     /// True for a delta light, which no ray can hit by chance.
     fn is_delta(&self) -> bool;
 

@@ -25,6 +25,8 @@ pub struct MeshLight {
     first: Primitive,
     /// Centroid of the area, in object space.
     middle: Vec3,
+    /// Half the root of its area in world space, when its motion begins.
+    reach: f32,
     motion: Motion,
     /// The triangles in world space; empty when they move.
     static_triangles: Vec<LightTriangle>,
@@ -108,6 +110,7 @@ impl MeshLight {
             choice,
             first,
             middle,
+            reach: 0.0,
             motion,
             static_triangles,
             radiance,
@@ -116,6 +119,7 @@ impl MeshLight {
             turn,
             classic,
         };
+        light.reach = 0.5 * light.world_area(0.0).sqrt();
         if light.motion.is_still() {
             light.static_triangles = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
@@ -276,6 +280,10 @@ impl Light for MeshLight {
     fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
         let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
         self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
+    }
+
+    fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        Some((self.middle(0.0), self.reach))
     }
 
     fn is_delta(&self) -> bool {

@@ -71,6 +71,10 @@ impl Light for Point {
         0.0
     }
 
+    fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, 0.0))
+    }
+
     fn is_delta(&self) -> bool {
         true
     }

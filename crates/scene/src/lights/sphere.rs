@@ -195,6 +195,10 @@ impl Light for SphereLight {
         hit.n_geom.dot(wo) > 0.0
     }
 
+    fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        Some((self.sphere.centre, self.sphere.radius))
+    }
+
     fn is_delta(&self) -> bool {
         false
     }

@@ -91,6 +91,10 @@ impl Light for Spot {
         0.0
     }
 
+    fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        Some((self.position, 0.0))
+    }
+
     fn is_delta(&self) -> bool {
         true
     }

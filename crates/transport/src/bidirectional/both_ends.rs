@@ -8,11 +8,13 @@ use super::connect::{Connection, merged, to_light, to_vertex};
 use super::{
     CameraSubpath, Subpath, Vertex, connect_to_camera, crossed, emitted, from_infinity, light_vertices,
 };
+use crate::equiangular::Equiangular;
 use crate::mis::Partial;
 use crate::photons::Photons;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Step, Tally, Technique, TechniqueCounts};
-use bilux_scene::Ray;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Ray, TransportMode};
 
 /// One subpath from each end, and all that they find.
 pub struct BothEnds<'a, const N: usize = 1> {
@@ -42,6 +44,14 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     /// Whether light subpaths are connected with camera subpaths.
     pub(super) fn connects(&self) -> bool {
         self.techniques.connections != PerSet::ZERO
+    }
+
+    /// The weights of the first vertex of a camera subpath, which is on this ray.
+    fn see_first(&self, ray: &Ray, z: &mut Vertex<N>, task: &Task) {
+        if z.depth == 0 {
+            let density = task.context.camera.density(ray, z.at.t());
+            z.partial = Partial::of_camera(density * z.arriving, &self.techniques, z.partial.merged);
+        }
     }
 
     /// Traces both subpaths; the one from the camera only where it `is_wanted`.
@@ -86,15 +96,15 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         task: &mut Task,
         tally: &mut impl Tally<N>,
     ) -> bool {
+        self.see_first(&subpath.walk.ray, z, task);
         if z.depth == 0 {
-            let density = task.context.camera.density(&subpath.walk.ray, z.at.t());
-            z.partial = Partial::of_camera(density * z.arriving, &self.techniques, z.partial.merged);
             subpath.partial = z.partial;
         }
         if let Some(glow) = subpath.take_glow(task.sample) {
             tally.add_sample(Technique::Connected { s: 0, t: z.count() }, &Contribution::only(glow));
         }
-        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo)) {
+        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo, subpath.approach()))
+        {
             let (seen, technique) =
                 (subpath.walk.seen(task.sample), Technique::Connected { s: 0, t: z.count() });
             let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
@@ -156,6 +166,40 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
                 tally.add_sample(technique, found);
             });
         }
+    }
+
+    fn near_lights(&self, subpath: &Subpath<N>, task: &mut Task, tally: &mut impl Tally<N>) {
+        let walk = &subpath.walk;
+        let is_short = walk.events().and(false).are_within(task.context.max_depth);
+        if subpath.before.is_none() || !is_short {
+            return;
+        }
+        let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
+        task.sample.enter_near_lights(walk.depth);
+        let u = task.sample.sampler.next_1d();
+        for light in task.context.lights.sample(u) {
+            let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
+            let points = Equiangular::new(task.context.scene, light, origin, direction);
+            let Some(points) = points else { continue };
+            let distance = points.sample(u);
+            let Some(mut z) = subpath.vertex_near(distance, task) else { continue };
+            self.see_first(&walk.ray, &mut z, task);
+            tally.spend(Step::Picked, 1);
+            let Some(Connection { join, segment }) = to_light(task, &z, light, u_light, &self.techniques)
+            else {
+                continue;
+            };
+            if let Some(passage) = segment.passage(task.tracer) {
+                let join = join.near(points.density(distance) / z.arriving);
+                tally.add_sample(join.technique, &join.along(&passage));
+            }
+        }
+    }
+
+    fn leave_camera(&self, ray: &Ray) -> Subpath<'_, N> {
+        let subpath =
+            Subpath::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &self.techniques);
+        subpath.having_points()
     }
 
     #[inline]

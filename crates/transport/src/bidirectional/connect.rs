@@ -1,6 +1,6 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
-use super::subpath::{Vertex, count};
+use super::vertex::{Vertex, count};
 use crate::emission::light_number;
 use crate::interaction::Interaction;
 use crate::limits::MAX_CONNECTED_ROW;
@@ -28,6 +28,8 @@ pub(crate) struct Join<const N: usize = 1> {
     /// How often other techniques find the path that go on along the segment to its end, and those that come back to its start,
     /// if no medium is on the way.
     others: [PerSet<N>; 2],
+    /// How often those find it that do not depend on what lies along the segment.
+    alike: PerSet<N>,
     /// How often the camera subpath hits the light by chance, if the segment ends on one.
     picked: Option<f32>,
     /// Whether each end is a point of a medium.
@@ -45,6 +47,11 @@ impl<const N: usize> Connection<N> {
 }
 
 impl<const N: usize> Join<N> {
+    /// The same with a point on a light, where the vertex was sampled by its angle to that, `ratio` times as often as walks find it.
+    pub(super) fn near(self, ratio: f32) -> Join<N> {
+        Join { found: Contribution { own: PerSet::ONE * ratio, ..self.found }, alike: PerSet::ONE, ..self }
+    }
+
     /// What it contributes along this.
     #[inline]
     pub(crate) fn along(&self, passage: &Passage) -> Contribution<N> {
@@ -53,10 +60,11 @@ impl<const N: usize> Join<N> {
         let on_by = passage.arriving((!ends_in_medium).then_some(1.0));
         let back = back * passage.returning(leaves_medium);
         let picked = self.picked.map(|picked| picked * on_by);
+        let together = self.found.own.0[0] + self.alike.0[0];
         Contribution {
             light: self.found.light * passage.share(self.odds),
-            others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back,
-            power_factor: picked.map_or(1.0, power_factor),
+            others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back + self.alike,
+            power_factor: picked.map_or(1.0, |picked| power_factor(picked / together)),
             ..self.found
         }
     }
@@ -90,6 +98,7 @@ pub(crate) fn to_camera<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: 1 },
         found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },
         others: [PerSet::ZERO, others],
+        alike: y.picked_near(task.context.scene, seen.p) * arriving,
         picked: None,
         in_medium: [y.at.is_in_medium(), false],
         odds: y.odds,
@@ -131,14 +140,19 @@ pub(crate) fn to_light<const N: usize>(
     let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.at.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
-    let from_light =
-        z.partial.others_of_direct(arriving, back, z.at.sine(z.wo, sample.wi), z.at.direct_light(techniques));
+    let from_light = z.partial.others_of_direct(
+        arriving,
+        back,
+        z.at.sine(z.wo, sample.wi),
+        z.at.finds_direct_light(techniques),
+    );
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());
     let join = Join {
         technique: Technique::Connected { s: 1, t: z.count() },
         found: Contribution { origin: light_number(index), ..Contribution::only(light) },
         others: [PerSet::ZERO, from_light],
+        alike: z.approach().map_or(PerSet::ZERO, |approach| PerSet::ONE * approach.ratio(scene, index)),
         picked: Some(ratio),
         in_medium: [z.at.is_in_medium(), false],
         odds: z.odds,
@@ -186,6 +200,7 @@ pub(crate) fn to_vertex<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: z.count() },
         found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
         others: [from_camera, from_light],
+        alike: y.picked_near(task.context.scene, z.at.p()) * (pdf_z / distance2),
         picked: None,
         in_medium,
         odds: z.odds * y.odds,

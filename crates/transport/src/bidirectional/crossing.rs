@@ -1,10 +1,12 @@
 //! How rays of camera subpaths are merged with the photon beams that they cross in media.
 
-use super::subpath::count;
-use crate::beam::{Beam, medium_of};
+use super::vertex::count;
+use crate::beam::{Beam, Crossing, medium_of};
+use crate::equiangular::{Approach, is_near_lights};
 use crate::photon_beams::PhotonBeams;
 use crate::task::Task;
-use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts};
+use crate::techniques::{Contribution, Technique, TechniqueCounts};
+use bilux_math::Vec3;
 use bilux_scene::Ray;
 use bilux_scene::media::mean;
 
@@ -22,6 +24,7 @@ pub(crate) fn crossed<const N: usize>(
     let Some((medium, is_inside)) = medium_of(scene, z.object) else { return };
     let (eye, channel) = (&z.subpath, usize::from(z.subpath.channel));
     let sigma_t = medium.sigma_t();
+    let is_near = is_near_lights(scene, &medium, is_inside);
     let often = techniques.crossings(sigma_t, eye.channel);
     let per_events = 1.0 / (sigma_t[channel] * sigma_t[channel]);
     let camera = (eye.depth == 0).then_some((task.context.camera, ray));
@@ -29,17 +32,25 @@ pub(crate) fn crossed<const N: usize>(
         let light = &y.subpath;
         let events = eye.events.joined(light.events).and(is_inside);
         let is_one = y.object == z.object && light.channel == eye.channel;
-        if !is_one || !events.are_within(task.context.max_depth) {
+        let is_left = light.start.is_some() && is_near && !techniques.direct;
+        if !is_one || is_left || !events.are_within(task.context.max_depth) {
             return;
         }
         let [wo, wi] = [-z.line.direction, -y.line.direction];
         let pdf = medium.phase.eval(wo, wi);
-        let mut from_camera = z.at(scene, &medium, along_z, camera, techniques);
-        // What comes straight from a light is not connected with the camera.
-        if light.start.is_some() && !techniques.direct {
-            from_camera.partial.splatted = PerSet::ZERO;
+        let from_camera = z.at(scene, &medium, along_z, camera, techniques);
+        let mut from_light = y.at(scene, &medium, along_y, None, techniques);
+        if let (Some(start), true) = (light.start, is_near) {
+            let Crossing { distance, by_walk, .. } = from_camera;
+            let approach = Approach {
+                origin: Vec3::from(ray.origin),
+                direction: z.line.direction,
+                t: distance,
+                by_walk,
+            };
+            let also = from_light.partial.connected * approach.ratio(scene, start.light);
+            from_light.partial.connected = from_light.partial.connected + also;
         }
-        let from_light = y.at(scene, &medium, along_y, None, techniques);
         let [row_z, row_y] = [eye, light].map(|subpath| subpath.events.and(is_inside).in_row);
         let others = from_camera.partial.before_crossing(pdf, row_z, events.in_row)
             + from_light.partial.before_crossing(pdf, row_y, events.in_row);

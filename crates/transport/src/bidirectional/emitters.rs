@@ -2,6 +2,7 @@
 
 use super::Subpath;
 use crate::emission::light_number;
+use crate::equiangular::Approach;
 use crate::mis::Partial;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, power_factor};
@@ -65,8 +66,14 @@ pub(crate) fn from_infinity<const N: usize>(
     }
 }
 
-/// The light that a surface emits towards `wo`; `None` where it emits none.
-pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<EmitterHit> {
+/// The light that a surface emits towards `wo`; `None` where it emits none. `approach` is how a ray came to the vertex before, if that was
+/// a point of fog that is sampled by its angle to lights too.
+pub(crate) fn emitted(
+    task: &Task,
+    surface: &Surface,
+    wo: Vec3,
+    approach: Option<Approach>,
+) -> Option<EmitterHit> {
     let scene = task.context.scene;
     let radiance = scene.emission(surface, wo);
     if radiance.is_black() {
@@ -80,6 +87,7 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Emitte
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = task.context.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
-    let pdf_direct = pdf_area * task.context.lights.probability(index);
+    let often = approach.map_or(1.0, |approach| 1.0 + approach.ratio(scene, index));
+    let pdf_direct = pdf_area * task.context.lights.probability(index) * often;
     Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) })
 }

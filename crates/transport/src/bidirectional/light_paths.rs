@@ -84,7 +84,7 @@ pub(crate) fn connect_to_camera<const N: usize>(
 }
 
 fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
-    y.depth > 0 || techniques.direct
+    y.depth > 0 || y.at.finds_direct_light(techniques)
 }
 
 pub(super) fn begin_at_light<'w, const N: usize>(

@@ -22,6 +22,7 @@ mod light_tracing;
 mod queue;
 mod queued_sample;
 mod subpath;
+mod vertex;
 #[cfg(test)]
 mod weights;
 
@@ -36,4 +37,5 @@ pub(crate) use light_paths::{LightPaths, connect_to_camera, light_vertices};
 pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
 pub(crate) use queue::{BothEndsQueue, BothEndsSamples};
 pub(crate) use queued_sample::QueuedSample;
-pub(crate) use subpath::{Subpath, Vertex};
+pub(crate) use subpath::Subpath;
+pub(crate) use vertex::Vertex;

@@ -1,96 +1,16 @@
-//! Subpaths while they grow, from either end, and their vertices.
+//! Subpaths while they grow, from either end.
 
+use super::vertex::{Vertex, count, kept_share};
 use crate::beam::{Beam, Leaving};
 use crate::emission::Start;
-use crate::interaction::Interaction;
-use crate::limits::Events;
+use crate::equiangular::{self, Approach, Lit};
 use crate::media::{Media, MediumPart, Travelled};
 use crate::mis::{Edge, Partial};
-use crate::photons::{Photon, PhotonPosition};
 use crate::task::{PathVertex, SampleState, Task, VertexKind};
-use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
+use crate::techniques::{PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Ray, Scene, Surface, TransportMode};
-
-/// A vertex of a subpath.
-pub(crate) struct Vertex<const N: usize = 1> {
-    pub(crate) at: Interaction,
-    /// The direction that the subpath came from, a unit vector.
-    pub(crate) wo: Vec3,
-    /// Throughput: what arrives, over the density of having come here.
-    pub(crate) beta: Rgb,
-    /// The densities of walks in each channel over their mean.
-    pub(crate) odds: Rgb,
-    pub(crate) partial: Partial<N>,
-    /// Scattering events before this vertex.
-    pub(crate) depth: u32,
-    /// The same and this one, as far as they limit paths.
-    events: Events,
-    /// Whether it is among those that are connected at all.
-    is_kept: bool,
-    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
-    pub(crate) origin: u16,
-    /// The subpath carries a single wavelength, whatever is here.
-    pub(super) came_split: bool,
-    /// The media on the side of `wo`.
-    media: Media,
-    /// The density of arriving, per area or volume, over that over solid angle over the squared distance.
-    pub(super) arriving: f32,
-}
-
-impl<const N: usize> Vertex<N> {
-    /// The number of vertices of the subpath up to here, including the one on the light or at the camera.
-    pub(crate) fn count(&self) -> u32 {
-        count(self.depth)
-    }
-
-    /// Events up to and including this one, as far as they limit paths.
-    pub(crate) fn events(&self) -> Events {
-        self.events
-    }
-
-    /// True where it can be connected.
-    pub(crate) fn is_open(&self) -> bool {
-        self.is_kept && !self.at.is_delta()
-    }
-
-    /// True where a path through here carries a single wavelength.
-    pub(super) fn is_split(&self) -> bool {
-        self.came_split || self.at.splits()
-    }
-
-    /// The photon that is stored for merging; `None` in a medium.
-    pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
-        let surface = self.at.surface()?;
-        let counted = self.events.counted - 1;
-        let uncounted = self.depth - counted;
-        let position = PhotonPosition::new(surface.p, counted, uncounted, self.came_split, self.origin);
-        let (wo, n_geom, beta) = (self.wo, surface.n_geom, self.beta);
-        Some((
-            position,
-            Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc },
-        ))
-    }
-
-    /// The media in which light travels on along `direction`.
-    pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
-        self.media.towards(scene, &self.at, self.wo, direction)
-    }
-}
-
-/// The number of vertices of a subpath up to the one after `depth` scattering events: this one, one per event, and
-/// the one on the light or at the camera.
-pub(crate) fn count(depth: u32) -> u32 {
-    depth + 2
-}
-
-/// The fraction of the vertices of light subpaths that are kept for connections, at this number of an event in a row in media: all of
-/// the first, then fewer and fewer, which count for more. Some walks through milk have ten thousand events.
-fn kept_share(number: u32) -> f32 {
-    const ALL: u32 = 64;
-    if number <= ALL { 1.0 } else { ALL as f32 / number as f32 }
-}
 
 /// A subpath on its way to the next vertex.
 pub(crate) struct Subpath<'w, const N: usize = 1> {
@@ -113,8 +33,31 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     pub(crate) beams: Vec<Beam<N>>,
     /// Whether it keeps them.
     has_beams: bool,
+    /// Whether points of its rays are sampled by their [angle to lights](equiangular), and it as it was before its last ray, with the first
+    /// surface there.
+    has_points: bool,
+    pub(super) before: Option<Box<Before<N>>>,
+    /// The last vertex, if camera subpaths may find it near a light.
+    near: Option<Near<N>>,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
+}
+
+/// A subpath before its next ray is followed.
+pub(super) struct Before<const N: usize> {
+    walk: Walk,
+    partial: Partial<N>,
+    leaves_medium: bool,
+    first: Surface,
+}
+
+/// A vertex that a subpath has left, for the sake of points that are sampled by their angle to lights.
+#[derive(Clone, Copy)]
+enum Near<const N: usize> {
+    /// Of a camera subpath, which may hit the light by chance next.
+    Eye(Approach),
+    /// Of a light subpath, which came straight from its light.
+    Light(Lit<N>),
 }
 
 impl<'w, const N: usize> Subpath<'w, N> {
@@ -140,8 +83,16 @@ impl<'w, const N: usize> Subpath<'w, N> {
             glow: Rgb::BLACK,
             beams: Vec::new(),
             has_beams: mode == TransportMode::Radiance && techniques.beams != PerSet::ZERO,
+            has_points: false,
+            before: None,
+            near: None,
             techniques,
         }
+    }
+
+    /// The same, with points that are sampled by their angle to lights.
+    pub(super) fn having_points(self) -> Subpath<'w, N> {
+        Subpath { has_points: true, ..self }
     }
 
     /// The same from a light of the scene.
@@ -196,10 +147,14 @@ impl<'w, const N: usize> Subpath<'w, N> {
         if walk.depth == 0 {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
-        // Light sampling connects the first surface of a light subpath with the light.
-        let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
+        self.before = None;
+        if self.has_points && equiangular::is_used_in(context.scene) {
+            let (walk, partial, leaves_medium) = (*walk, self.partial, self.leaves_medium);
+            self.before = Some(Box::new(Before { walk, partial, leaves_medium, first }));
+        }
         let leaving = self.has_beams.then(|| Leaving {
             origin: self.origin,
+            lit: if let Some(Near::Light(lit)) = self.near { Some(lit) } else { None },
             channel: sample.channel,
             is_split: walk.is_split,
             leaves_medium: self.leaves_medium,
@@ -222,12 +177,22 @@ impl<'w, const N: usize> Subpath<'w, N> {
                 beams.push(leaving.beam(&ray, object, ends, before));
             }
         };
-        let Travelled { arrival, passage, emitted, .. } =
-            walk.travel(Some(first), tracer, sample, self.mode, keep);
-        self.glow = emitted;
+        let travelled = walk.travel(Some(first), tracer, sample, self.mode, keep);
+        self.glow = travelled.emitted;
+        self.arrived(&travelled, task)
+    }
+
+    /// The next vertex, where the walk has travelled so far; `None` where that leaves the scene.
+    #[inline]
+    fn arrived(&mut self, travelled: &Travelled, task: &mut Task) -> Option<Vertex<N>> {
+        let Task { context, sample, .. } = task;
+        let Travelled { arrival, passage, .. } = travelled;
+        let walk = &self.walk;
+        // Light sampling connects the first surface of a light subpath with the light.
+        let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let media = walk.media;
         let back = passage.returning(self.leaves_medium);
-        let Some(at) = media.interaction(context.scene, &arrival, &sample.wavelength) else {
+        let Some(at) = media.interaction(context.scene, arrival, &sample.wavelength) else {
             self.partial.pass(1.0, Edge { forward: passage.survival, back });
             return None;
         };
@@ -235,10 +200,14 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let edge = Edge { forward: passage.arriving(at.cos(wo)), back };
         let distance2 = if self.by_area { 1.0 } else { t * t };
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
-        let is_left = is_at_light && at.direct_light(self.techniques) == DirectLight::Left;
+        let straight_from = if is_at_light { self.start.map(|start| start.light) } else { None };
+        let is_left = is_at_light && !at.finds_direct_light(self.techniques);
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel) };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
+        if let Some(Near::Light(lit)) = self.near {
+            self.partial.d_vc = self.partial.d_vc + lit.picked(context.scene, wo, t) * (1.0 / edge.forward);
+        }
         let events = self.walk.events().and(at.is_inside());
         self.partial.in_row(events.in_row);
         self.by_area = false;
@@ -264,6 +233,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             came_split: is_split,
             media,
             arriving,
+            straight_from,
         })
     }
 
@@ -278,14 +248,43 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let cos = at.cos(sample.wi).unwrap_or(1.0);
         let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
-        let direct = match self.mode {
-            TransportMode::Importance => DirectLight::Found,
-            TransportMode::Radiance => at.direct_light(self.techniques),
+        let finds_direct = self.mode == TransportMode::Importance || at.finds_direct_light(self.techniques);
+        self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, finds_direct, vertex.events.in_row);
+        self.near = match (self.mode, vertex.straight_from) {
+            (TransportMode::Radiance, _) => vertex.approach().map(Near::Eye),
+            (TransportMode::Importance, Some(light)) if vertex.approach().is_some() => {
+                let connected = vertex.partial.connected * (1.0 / sample.pdf_solid_angle);
+                Some(Near::Light(Lit { light, p: at.p(), connected }))
+            }
+            _ => None,
         };
-        self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, direct, vertex.events.in_row);
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
+    }
+
+    /// A vertex as if the last ray had come to a point at this distance, in metres, where points are sampled by their angle to lights;
+    /// `None` where they are not, or where the ray does not come so far.
+    pub(super) fn vertex_near(&self, distance: f32, task: &mut Task) -> Option<Vertex<N>> {
+        let Before { walk, partial, leaves_medium, first } = self.before.as_deref()?;
+        let (walk, travelled) = walk.in_fog(*first, distance, task.tracer, task.sample)?;
+        let mut alike = Subpath {
+            walk,
+            partial: *partial,
+            leaves_medium: *leaves_medium,
+            start: None,
+            beams: Vec::new(),
+            has_beams: false,
+            before: None,
+            near: None,
+            ..*self
+        };
+        alike.arrived(&travelled, task)
+    }
+
+    /// How it came to its last vertex, if that is a point of fog that may be sampled by its angle to a light.
+    pub(super) fn approach(&self) -> Option<Approach> {
+        if let Some(Near::Eye(approach)) = self.near { Some(approach) } else { None }
     }
 
     /// The light that media have emitted on the way here, as the colour channels see it; `None` if there is none. No other technique

@@ -49,8 +49,7 @@ impl PixelIntegrator for PathTracing {
     }
 
     fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
-        // Columns do not stop between surfaces.
-        let has_columns = self.is_mis() && !context.scene.scatters();
-        has_columns.then(|| Box::new(PathQueue::new(*self)) as _)
+        let has_queue = self.is_mis() && PathQueue::takes(context.scene);
+        has_queue.then(|| Box::new(PathQueue::new(*self)) as _)
     }
 }

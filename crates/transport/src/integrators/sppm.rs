@@ -109,7 +109,7 @@ impl CameraSubpath for PhotonGathering<'_> {
         task: &mut Task,
         tally: &mut impl Tally<1>,
     ) -> bool {
-        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo)) {
+        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo, None)) {
             let technique = Technique::Connected { s: 0, t: z.count() };
             tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         }

@@ -3,9 +3,10 @@
 
 mod light_connection;
 
+use crate::equiangular::{self, Approach, Equiangular};
 use crate::interaction::Interaction;
 use crate::light_choice::LightChoice;
-use crate::media::{Arrival, Media};
+use crate::media::{Arrival, Media, Travelled};
 use crate::segment::Segment;
 use crate::task::{Context, PathVertex, Task, VertexKind};
 use crate::through::Through;
@@ -31,6 +32,8 @@ struct Vertex<'a> {
     media: &'a Media,
     /// [`Walk::odds`].
     odds: Rgb,
+    /// How its ray came here, where it is a point of fog that is sampled by its angle to lights too.
+    approach: Option<Approach>,
 }
 
 /// How light is sampled where both techniques could find it.
@@ -49,6 +52,8 @@ pub(crate) struct Path {
     /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
     /// where no light can be sampled.
     pub(crate) last: Option<(Vec3, f32)>,
+    /// How its ray came to the last event, where that is a point of fog that is sampled by its [angle to lights](equiangular) too.
+    pub(crate) approach: Option<Approach>,
 }
 
 impl PathTracing {
@@ -57,6 +62,11 @@ impl PathTracing {
         let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
         loop {
             let first = task.tracer.closest(&path.walk.ray);
+            if let Some(first) = first
+                && equiangular::is_used_in(task.context.scene)
+            {
+                self.near_lights(&mut path, first, task);
+            }
             let travelled =
                 path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance, |_| {});
             if let Some((_, pdf)) = &mut path.last {
@@ -70,7 +80,7 @@ impl PathTracing {
                 return path.light;
             }
             task.sample.vertices += 1;
-            if !self.interact(&mut path, &travelled.arrival, task) {
+            if !self.interact(&mut path, &travelled, task) {
                 return path.light;
             }
         }
@@ -109,10 +119,13 @@ impl PathTracing {
     /// What happens to a path at a surface or in a medium: it collects the light that is emitted there, connects to lights, and
     /// goes on in another direction; false when it ends.
     #[inline]
-    fn interact(&self, path: &mut Path, arrival: &Arrival, task: &mut Task) -> bool {
+    fn interact(&self, path: &mut Path, travelled: &Travelled, task: &mut Task) -> bool {
         let wo = path.walk.wo();
-        let Some(at) = self.arrive(path, arrival, task) else { return false };
-        let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds };
+        let Some(at) = self.arrive(path, &travelled.arrival, task) else { return false };
+        let by_walk = travelled.passage.arriving(None);
+        let approach = Approach::of(&at, wo, by_walk);
+        let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
+        path.approach = approach;
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
         self.scatter(path, &at, task)
@@ -133,6 +146,40 @@ impl PathTracing {
         let at = path.walk.media.interaction(task.context.scene, arrival, &task.sample.wavelength)?;
         path.walk.is_split |= at.splits();
         Some(at)
+    }
+
+    /// Light samples at points of the path's ray that are sampled by their angle to lights.
+    fn near_lights(&self, path: &mut Path, first: Surface, task: &mut Task) {
+        let Walk { depth, ray, .. } = path.walk;
+        if self.sampling == Sampling::Scattering
+            || !path.walk.events().and(false).are_within(task.context.max_depth)
+        {
+            return;
+        }
+        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        task.sample.enter_near_lights(depth);
+        let u = task.sample.sampler.next_1d();
+        for light in task.context.lights.sample(u) {
+            let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
+            let Some(points) = Equiangular::new(task.context.scene, light, origin, direction) else {
+                continue;
+            };
+            let Some((walk, travelled)) = path.walk.in_fog(first, points.sample(u), task.tracer, task.sample)
+            else {
+                continue;
+            };
+            let Arrival::Medium(point) = travelled.arrival else { continue };
+            let (at, wo) = (Interaction::Medium(point), walk.wo());
+            let approach = Approach::of(&at, wo, travelled.passage.arriving(None));
+            let from = Vertex { at: &at, wo, media: &walk.media, odds: walk.odds, approach };
+            if let Some(connection) = self.connection(task, light, &from, u_light) {
+                let seen = walk.seen(task.sample);
+                let found = seen * connection.trace(task.tracer);
+                connection.note(task.sample, depth, found);
+                task.sample.find(depth + 2, Some(light), found);
+                path.light += found;
+            }
+        }
     }
 
     /// Collects the light that a surface emits.
@@ -234,7 +281,8 @@ impl PathTracing {
             (Some((from, pdf)), Some(index)) => {
                 let light = &task.context.scene.lights()[index].light;
                 let direction = Vec3::from(path.walk.ray.direction);
-                let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface));
+                let often = path.approach.map_or(1.0, |last| 1.0 + last.ratio(task.context.scene, index));
+                let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface)) * often;
                 radiance * self.scattering_weight(pdf, light_pdf * task.context.lights.probability(index))
             }
             _ => radiance,
@@ -262,14 +310,13 @@ impl PathTracing {
         } else {
             lights.sample(task.sample.sampler.next_1d())
         };
-        chosen.fold(Rgb::BLACK, |sum, light| match self.connection(task, light, from) {
-            Some(connection) => {
-                let found = connection.trace(task.tracer);
-                connection.note(task.sample, depth, seen * found);
-                task.sample.find(depth + 2, Some(light), seen * found);
-                sum + found
-            }
-            None => sum,
+        chosen.fold(Rgb::BLACK, |sum, light| {
+            let u = task.sample.sampler.next_2d();
+            let Some(connection) = self.connection(task, light, from, u) else { return sum };
+            let found = connection.trace(task.tracer);
+            connection.note(task.sample, depth, seen * found);
+            task.sample.find(depth + 2, Some(light), seen * found);
+            sum + found
         })
     }
 
@@ -283,23 +330,22 @@ impl PathTracing {
         1 + if lights.takes_all() { lights.sample(0.0).len() as u32 } else { 1 }
     }
 
-    /// Samples one light; `None` if it brings nothing.
-    fn connection(&self, task: &mut Task, index: usize, from: &Vertex) -> Option<LightConnection> {
-        let Vertex { at, wo, media, odds } = *from;
+    /// Samples one light by this random point; `None` if it brings nothing.
+    fn connection(&self, task: &mut Task, index: usize, from: &Vertex, u: Vec2) -> Option<LightConnection> {
+        let Vertex { at, wo, media, odds, approach } = *from;
         let probability = task.context.lights.probability(index);
         let light = &task.context.scene.lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
-            task.sample.sampler.skip(1);
             return None;
         }
-        let u = task.sample.sampler.next_2d();
         let sample = light.sample_li(at.p(), at.time(), u).filter(|sample| !sample.li.is_black())?;
         let (scattered, pdf) = at.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
         let scattered_light = scattered * sample.li;
         if scattered_light.is_black() {
             return None;
         }
-        let light_pdf = sample.pdf_solid_angle * probability;
+        let often = approach.map_or(1.0, |approach| 1.0 + approach.ratio(task.context.scene, index));
+        let light_pdf = sample.pdf_solid_angle * probability * often;
         let pdf = (self.sampling == Sampling::Mis && !light.is_delta()).then_some(pdf);
         let through = Through {
             media: media.towards(task.context.scene, at, wo, sample.wi),
@@ -329,6 +375,6 @@ impl PathTracing {
 impl Path {
     /// A path with only its camera ray, which travels in these media.
     pub(crate) fn new(ray: &Ray, media: Media) -> Path {
-        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None }
+        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None, approach: None }
     }
 }

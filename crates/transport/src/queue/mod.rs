@@ -24,7 +24,7 @@ use crate::sample_queue::{SampleQueue, SampleSink};
 use crate::task::{Context, SampleState};
 use bilux_accel::Hit;
 use bilux_math::Rgb;
-use bilux_scene::{Ray, Shading, Tracer, Wavelength};
+use bilux_scene::{Ray, Scene, Shading, Tracer, Wavelength};
 use diffuse::Diffuse;
 use escapes::Escapes;
 use general::General;
@@ -57,6 +57,11 @@ pub(crate) struct PathQueue {
 }
 
 impl PathQueue {
+    /// True for scenes whose paths it follows: paths in columns do not stop between surfaces.
+    pub(crate) fn takes(scene: &Scene) -> bool {
+        !scene.scatters()
+    }
+
     pub(crate) fn new(tracing: PathTracing) -> PathQueue {
         PathQueue {
             tracing,

@@ -11,6 +11,7 @@ mod features;
 mod footprint;
 mod holes;
 mod interval;
+mod invariants;
 mod known_mistakes;
 mod light_parts;
 mod many_lights;

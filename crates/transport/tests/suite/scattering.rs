@@ -1,6 +1,7 @@
 //! Media that scatter, against closed forms and against numbers of discrete ordinates: slabs, light in fog, furnaces; and the same mean
 //! by every integrator.
 
+use crate::common::media::boxed;
 use crate::common::statistics::{
     UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
     blocks_of_depth, estimate,
@@ -9,9 +10,8 @@ use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, put, quad, shoot, sky, without_mirrors,
 };
 use bilux_math::transcendental::exp_f64;
-use bilux_math::{Aabb, Rgb, Transform, Vec3};
+use bilux_math::{Rgb, Transform, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::media::Grid;
 use bilux_scene::media::slab::Slab;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
@@ -21,10 +21,6 @@ use std::sync::Arc;
 
 fn medium(absorption: impl Into<bilux_scene::Value>, scattering: impl Into<bilux_scene::Value>) -> Spec {
     Spec::new("", "interface").with("absorption", absorption).with("scattering", scattering)
-}
-
-fn boxed(min: Vec3, max: Vec3) -> Arc<bilux_scene::Mesh> {
-    Arc::new(cuboid(Aabb { min, max }))
 }
 
 /// Looks along a direction by parallel rays through a window of this height.

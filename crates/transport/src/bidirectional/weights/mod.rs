@@ -38,8 +38,8 @@ struct Verdict {
     wrong: usize,
     worst: f64,
     /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
-    /// merge, crossed beams.
-    telling: [usize; 6],
+    /// merge, crossed beams, point near a light.
+    telling: [usize; 7],
 }
 
 impl Verdict {
@@ -64,6 +64,7 @@ impl Verdict {
         self.wrong += usize::from(error.is_nan() || error > path.tolerance());
         self.worst = self.worst.max(error);
         let kind = match key {
+            (true, 1) => 6,
             (true, i) => 4 + usize::from(path.nodes[i - 2].at.is_in_medium()),
             (_, s) if s < 2 => s,
             (_, s) if s == path.nodes.len() + 1 => 2,
@@ -83,7 +84,7 @@ fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw, fog: Option<
     let eye = integrator.camera_rays(scene, &*scene.cameras()[0].1, &settings);
     let mut tracer = Tracer::new(scene, false);
     let mut verdict =
-        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 6] };
+        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 7] };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
         let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
@@ -102,12 +103,14 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
 /// How much of each channel the fog absorbs and scatters, per metre.
 const FOG: [Rgb; 2] = [Rgb::new(0.02, 0.05, 0.01), Rgb::new(0.25, 0.15, 0.1)];
 
+/// The same without colour.
+const GREY_FOG: [Rgb; 2] = [Rgb::grey(0.02), Rgb::grey(0.2)];
+
 /// The same bodies inside a ball of what scatters, with mirrors in place of glass, so that fog fills every edge.
-fn foggy(lights: &[&str]) -> Scene {
-    let mut builder = filled(lights, cameras()[0].clone(), &Spec::new("", "mirror"));
-    // Inside a surface, so that rows of events have a limit.
-    let fog = Spec::new("", "dielectric").with("eta", 1.0f32).with("scattering_anisotropy", 0.4f32);
-    let fog = fog.with("absorption", FOG[0]).with("scattering", FOG[1]);
+fn foggy(lights: &[&str], camera: &Spec, fog: Spec, [absorption, scattering]: [Rgb; 2]) -> Scene {
+    let mut builder = filled(lights, camera.clone(), &Spec::new("", "mirror"));
+    let fog = fog.with("absorption", absorption).with("scattering", scattering);
+    let fog = fog.with("scattering_anisotropy", 0.4f32);
     shapes::put(&mut builder, "fog", shapes::ball(Vec3::ZERO, 9.0, 8, false), fog);
     shapes::built(&builder)
 }
@@ -249,11 +252,16 @@ fn densities_with_a_factor_left_out_give_other_weights() {
     }
 }
 
+/// Fog behind a surface, so that rows of events have a limit.
+fn inside(lights: &[&str]) -> Scene {
+    foggy(lights, &cameras()[0], Spec::new("", "dielectric").with("eta", 1.0f32), FOG)
+}
+
 #[test]
 fn every_mis_weight_matches_its_definition_in_fog() {
     let extinction = Some(FOG[0] + FOG[1]);
     for (i, lights) in [&["rect"][..], &["point", "rect"]].into_iter().enumerate() {
-        let scene = foggy(lights);
+        let scene = inside(lights);
         let without_direct = |set: TechniqueCounts| TechniqueCounts { direct: false, ..set };
         for techniques in [sets()[i], without_direct(sets()[2 + i])] {
             let Verdict { compared, wrong, worst, telling, .. } =
@@ -267,7 +275,7 @@ fn every_mis_weight_matches_its_definition_in_fog() {
 
 #[test]
 fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
-    let scene = foggy(&["rect"]);
+    let scene = inside(&["rect"]);
     // The density of events per metre is the same factor at each point of fog, whichever technique finds it.
     for flaw in [Flaw::Survival, Flaw::Cosine, Flaw::Distance, Flaw::Sine, Flaw::Extinction] {
         let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, Some(FOG[0] + FOG[1]));
@@ -276,4 +284,28 @@ fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
     // Few paths have so many points in a row.
     let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], Flaw::Row, Some(FOG[0] + FOG[1]));
     assert!(wrong > 20, "only {wrong} of {compared} weights know that rows are long");
+}
+
+/// In fog without colour, points of rays are also sampled by their angle to lights.
+#[test]
+fn every_mis_weight_matches_its_definition_near_lights() {
+    let extinction = Some(GREY_FOG[0] + GREY_FOG[1]);
+    for (i, lights) in [&["rect"][..], &["point", "rect"]].into_iter().enumerate() {
+        // The definition knows no lens.
+        for camera in [0, 2].map(|camera| cameras()[camera].clone()) {
+            let scene = foggy(lights, &camera, Spec::new("", "interface"), GREY_FOG);
+            let without_direct = |set: TechniqueCounts| TechniqueCounts { direct: false, ..set };
+            for techniques in [sets()[1], without_direct(sets()[2 + i])] {
+                let Verdict { compared, wrong, worst, telling, .. } =
+                    verdict(&scene, &techniques, Flaw::None, extinction);
+                assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
+                assert!(compared > 3000 && telling[6] > 500, "{telling:?}");
+            }
+        }
+    }
+    let scene = foggy(&["rect"], &cameras()[0], Spec::new("", "interface"), GREY_FOG);
+    for flaw in [Flaw::Points, Flaw::WalkedPoints] {
+        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, extinction);
+        assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
+    }
 }

@@ -1,13 +1,14 @@
 //! A whole path, and how often each technique finds it by the definition.
 
 use super::PANEL_AREA;
-use crate::interaction::Interaction;
+use crate::interaction::{Interaction, MediumPoint};
 use crate::limits::MAX_CONNECTED_ROW;
 use crate::task::Task;
 use crate::techniques::TechniqueCounts;
-use bilux_math::transcendental::exp_f64;
+use bilux_math::transcendental::{atan2_f64, exp_f64};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::TransportMode;
+use std::f64::consts::FRAC_PI_2;
 
 /// A vertex between the light and the camera, in both directions as the code has evaluated it.
 #[derive(Clone)]
@@ -61,6 +62,9 @@ pub(super) enum Flaw {
     /// The angle between beams that cross is left out, or that beams stand for all events along them.
     Sine,
     Extinction,
+    /// Points that are sampled by their angle to lights are left out, or are as frequent as events of walks.
+    Points,
+    WalkedPoints,
 }
 
 impl Path {
@@ -77,7 +81,11 @@ impl Path {
             [techniques.splats, techniques.connections, techniques.eta, techniques.beams]
                 .map(|counts| f64::from(counts.0[0]));
         // Light subpaths may leave direct light to camera subpaths.
-        let leaves_direct = !techniques.direct && flaw != Flaw::Direct;
+        let leaves_direct = flaw != Flaw::Direct
+            && match &self.nodes[0].at {
+                Interaction::Surface(..) => !techniques.direct,
+                Interaction::Medium(point) => !techniques.direct && point.is_near_lights,
+            };
         // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
         let mut all = Vec::new();
@@ -98,10 +106,13 @@ impl Path {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
+        if let Some(near) = self.near_light(task, flaw) {
+            all.push(((true, 1), light[1] * camera[count + 1] * near));
+        }
         for i in (1..=count).filter(|i| is_open(*i)) {
             let node = &self.nodes[i - 1];
             let copies = match i {
-                1 if leaves_direct && !node.at.is_in_medium() => 0.0,
+                1 if leaves_direct => 0.0,
                 _ if node.at.is_in_medium() => beams * self.crossing(node, flaw),
                 _ if flaw == Flaw::MergedTwice => 2.0 * eta,
                 _ => eta,
@@ -119,6 +130,37 @@ impl Path {
         let rows =
             [before.iter().rev().take_while(is_inside).count(), behind.iter().take_while(is_inside).count()];
         if rows.contains(&0) { 0 } else { rows.iter().sum::<usize>() as u32 }
+    }
+
+    /// How often the point next to the light is sampled by the angle under which the light sees the ray to it, over how often walks have an
+    /// event there; `None` where it is not.
+    fn near_light(&self, task: &Task, flaw: Flaw) -> Option<f64> {
+        let (scene, first) = (task.context.scene, &self.nodes[0]);
+        let Interaction::Medium(MediumPoint { is_near_lights: true, .. }) = first.at else { return None };
+        let (middle, reach) = scene.lights()[self.start.index].light.middle_and_reach()?;
+        let (p, to_camera) = (first.from_camera.0.as_dvec3(), first.to_camera.as_dvec3());
+        let t = match self.nodes.get(1) {
+            Some(next) => p.distance(next.from_light.0.as_dvec3()),
+            None => {
+                let seen = task.context.camera.connect(first.from_camera.0, Vec2::ZERO, first.at.time())?;
+                p.distance(seen.p.as_dvec3())
+            }
+        };
+        let [origin, middle] = [p + to_camera * t, middle.as_dvec3()];
+        // The tangent of the angle, whose range is infinite at one end, changes with the distance.
+        let nearest = -(middle - origin).dot(to_camera);
+        let apart2 = (middle - origin + to_camera * nearest).length_squared()
+            + f64::from(reach) * f64::from(reach)
+            + 1e-6 * (middle - origin).length_squared();
+        let apart = apart2.sqrt();
+        let range = FRAC_PI_2 + atan2_f64(nearest, apart);
+        let density = apart / (apart2 + (t - nearest) * (t - nearest)) / range;
+        let walked = self.passing(first, t as f32, Flaw::None);
+        match flaw {
+            Flaw::Points => None,
+            Flaw::WalkedPoints => Some(1.0),
+            _ => Some(density / walked),
+        }
     }
 
     /// The rounding error that a weight may have.

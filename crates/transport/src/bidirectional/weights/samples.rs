@@ -3,9 +3,10 @@
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
 use crate::beam::Beam;
-use crate::bidirectional::connect::{to_camera, to_light, to_vertex};
+use crate::bidirectional::connect::{Connection, to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
+use crate::equiangular::Equiangular;
 use crate::mis::Partial;
 use crate::photon_beams::PhotonBeams;
 use crate::photons::Photons;
@@ -13,7 +14,7 @@ use crate::photons::{Photon, PhotonPosition, PhotonWalk};
 use crate::task::Task;
 use crate::techniques::*;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::{LightSample, Ray, TransportMode};
 
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     let techniques = &{ verdict.techniques };
@@ -34,12 +35,15 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     seen_by_camera(task, verdict, start, &y);
     hit_emitters(task, verdict, &z);
     sampled_lights(task, verdict, &z);
+    sampled_near_lights(task, verdict, &z);
     connected(task, verdict, start, (&y, &z));
 }
 
 fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Traced) {
     let techniques = &{ verdict.techniques };
-    let is_seen = |vertex: &Vertex| !vertex.at.is_delta() && (vertex.depth > 0 || techniques.direct);
+    let is_seen = |vertex: &Vertex| {
+        !vertex.at.is_delta() && (vertex.depth > 0 || vertex.at.finds_direct_light(techniques))
+    };
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.sample.enter_light_vertex(vertex.depth);
         let Some((_, connection)) = to_camera(task, vertex, techniques) else { continue };
@@ -57,7 +61,7 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
 fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
         let Some(surface) = vertex.at.surface() else { continue };
-        let Some(found) = emitted(task, surface, vertex.wo) else { continue };
+        let Some(found) = emitted(task, surface, vertex.wo, z.vertices[i - 1].approach()) else { continue };
         let found = found.by(vertex.beta, &vertex.partial);
         let index = task.context.scene.light_index_of(surface.object).unwrap();
         let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
@@ -93,12 +97,46 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
             let Some(found) = connection.trace(task.tracer) else { continue };
             let light = &task.context.scene.lights()[index].light;
             let sample = light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
-            let start = Start { index, p: sample.point, cos: sample.cos() };
+            let start = light_start(index, &sample);
             let nodes = z.nodes(i, false, sample.wi, false);
             let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
             verdict.look(task, &found, (false, 1), &path);
         }
     }
+}
+
+/// Connects points that are sampled by their angle to a light with this.
+fn sampled_near_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
+    let techniques = &{ verdict.techniques };
+    for PointNear { before, light, ratio, vertex, camera_density } in &z.points {
+        let u = task.sample.sampler.next_2d();
+        let Some(Connection { join, segment }) = to_light(task, vertex, *light, u, techniques) else {
+            continue;
+        };
+        let Some(passage) = segment.passage(task.tracer) else { continue };
+        let found = join.near(*ratio).along(&passage);
+        let sample =
+            task.context.scene.lights()[*light].light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
+        let start = light_start(*light, &sample);
+        let place = (vertex.at.p(), Vec3::ZERO);
+        let mut nodes = vec![PathVertex {
+            from_light: place,
+            from_camera: place,
+            at: vertex.at,
+            to_light: sample.wi,
+            to_camera: vertex.wo,
+            is_delta: false,
+        }];
+        if let Some(last) = before.checked_sub(1) {
+            nodes.extend(z.nodes(last, false, -vertex.wo, z.is_delta[last]));
+        }
+        let path = Path { start, nodes, camera_density: *camera_density, fog: verdict.fog_of(task) };
+        verdict.look(task, &found, (true, 1), &path);
+    }
+}
+
+fn light_start(index: usize, sample: &LightSample) -> Start {
+    Start { index, p: sample.point, cos: sample.cos() }
 }
 
 /// Connects all ends; and, as if each light vertex lay at each camera vertex, merges them.
@@ -193,6 +231,18 @@ struct Traced<'w> {
     /// The subpath with which it left the scene.
     left: Option<Subpath<'w>>,
     camera_density: f32,
+    points: Vec<PointNear>,
+}
+
+/// A point of fog that is sampled by its angle to a light, on the ray that leaves the last of so many vertices before.
+struct PointNear {
+    before: usize,
+    light: usize,
+    /// How often it is sampled so, for each time that a walk finds it.
+    ratio: f32,
+    vertex: Vertex,
+    /// The density of camera rays at the camera subpath's first vertex, which may be this one.
+    camera_density: f32,
 }
 
 impl Traced<'_> {
@@ -221,9 +271,32 @@ fn followed<'w>(
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
     let (mut rays, mut beams) = (Vec::new(), Vec::new());
     subpath = subpath.keeping_beams(techniques.beams != PerSet::ZERO);
+    let mut points = Vec::new();
+    if is_camera {
+        subpath = subpath.having_points();
+    }
     loop {
         rays.push(subpath.walk.ray);
-        let Some(mut vertex) = subpath.next_vertex(task) else {
+        let next = subpath.next_vertex(task);
+        let ray = *rays.last().unwrap();
+        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        for light in 0..task.context.scene.lights().len() {
+            let u = task.sample.sampler.next_1d();
+            let Some(angle) = Equiangular::new(task.context.scene, light, origin, direction) else {
+                continue;
+            };
+            let distance = angle.sample(u);
+            let Some(mut vertex) = subpath.vertex_near(distance, task) else { continue };
+            let mut camera_density = camera_density;
+            if vertex.depth == 0 {
+                camera_density = task.context.camera.density(&ray, distance);
+                let density = camera_density * vertex.arriving;
+                vertex.partial = Partial::of_camera(density, techniques, vertex.partial.merged);
+            }
+            let ratio = angle.density(distance) / vertex.arriving;
+            points.push(PointNear { before: vertices.len(), light, ratio, vertex, camera_density });
+        }
+        let Some(mut vertex) = next else {
             left = Some(subpath);
             break;
         };
@@ -243,5 +316,5 @@ fn followed<'w>(
             break;
         }
     }
-    Traced { vertices, rays, beams, is_delta, left, camera_density }
+    Traced { vertices, rays, beams, is_delta, left, camera_density, points }
 }

@@ -3,13 +3,18 @@
 use super::pilot::Grid;
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
+use crate::queue::PathQueue;
 use crate::settings::RenderSettings;
 use crate::window::Window;
 use bilux_scene::{Shading, Tracer};
 
-/// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none.
+/// The part of the first surfaces, over the pilot's pixels, that path tracing shades in columns; 1 if there are none, and 0 where
+/// it has no queue.
 pub(super) fn share_in_columns(eye: &CameraRays, film: &RenderSettings) -> f64 {
     let (scene, mut tracer) = (eye.context.scene, Tracer::new(eye.context.scene, false));
+    if !PathQueue::takes(scene) {
+        return 0.0;
+    }
     let grid = Grid::of(film);
     let whole = Window::whole(grid.size[0], grid.size[1]);
     let (mut hits, mut in_columns) = (0u32, 0u32);

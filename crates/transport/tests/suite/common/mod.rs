@@ -3,6 +3,7 @@
 
 #[path = "../../../../accel/tests/suite/support/effort.rs"]
 mod effort;
+pub mod media;
 pub mod statistics;
 
 pub use effort::effort;

@@ -1,0 +1,110 @@
+//! The vertices of subpaths.
+
+use crate::equiangular::{Approach, Lit};
+use crate::interaction::Interaction;
+use crate::limits::Events;
+use crate::media::Media;
+use crate::mis::Partial;
+use crate::photons::{Photon, PhotonPosition};
+use crate::techniques::PerSet;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::Scene;
+
+/// A vertex of a subpath.
+pub(crate) struct Vertex<const N: usize = 1> {
+    pub(crate) at: Interaction,
+    /// The direction that the subpath came from, a unit vector.
+    pub(crate) wo: Vec3,
+    /// Throughput: what arrives, over the density of having come here.
+    pub(crate) beta: Rgb,
+    /// The densities of walks in each channel over their mean.
+    pub(crate) odds: Rgb,
+    pub(crate) partial: Partial<N>,
+    /// Scattering events before this vertex.
+    pub(crate) depth: u32,
+    /// The same and this one, as far as they limit paths.
+    pub(super) events: Events,
+    /// Whether it is among those that are connected at all.
+    pub(super) is_kept: bool,
+    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
+    pub(crate) origin: u16,
+    /// The subpath carries a single wavelength, whatever is here.
+    pub(super) came_split: bool,
+    /// The media on the side of `wo`.
+    pub(super) media: Media,
+    /// The density of arriving, per area or volume, over that over solid angle over the squared distance.
+    pub(super) arriving: f32,
+    /// The light that its light subpath comes from, if it comes straight from there.
+    pub(super) straight_from: Option<usize>,
+}
+
+impl<const N: usize> Vertex<N> {
+    /// The number of vertices of the subpath up to here, including the one on the light or at the camera.
+    pub(crate) fn count(&self) -> u32 {
+        count(self.depth)
+    }
+
+    /// Events up to and including this one, as far as they limit paths.
+    pub(crate) fn events(&self) -> Events {
+        self.events
+    }
+
+    /// True where it can be connected.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_kept && !self.at.is_delta()
+    }
+
+    /// True where a path through here carries a single wavelength.
+    pub(super) fn is_split(&self) -> bool {
+        self.came_split || self.at.splits()
+    }
+
+    /// How the ray of a camera subpath came here, where points are sampled by their [angle to lights](equiangular) too.
+    pub(super) fn approach(&self) -> Option<Approach> {
+        Approach::of(&self.at, self.wo, self.arriving)
+    }
+
+    /// How often camera subpaths that leave this point for here sample this vertex by its [angle to the light](equiangular) and connect
+    /// it with the light, in place of a light subpath: over the density with which their walks come close to it.
+    pub(super) fn picked_near(&self, scene: &Scene, from: Vec3) -> PerSet<N> {
+        match (&self.at, self.straight_from) {
+            (Interaction::Medium(point), Some(light)) if point.is_near_lights => {
+                let lit = Lit { light, p: point.p, connected: self.partial.connected };
+                let distance = point.p.distance(from);
+                lit.picked(scene, (point.p - from) / distance, distance)
+            }
+            _ => PerSet::ZERO,
+        }
+    }
+
+    /// The photon that is stored for merging; `None` in a medium.
+    pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
+        let surface = self.at.surface()?;
+        let counted = self.events.counted - 1;
+        let uncounted = self.depth - counted;
+        let position = PhotonPosition::new(surface.p, counted, uncounted, self.came_split, self.origin);
+        let (wo, n_geom, beta) = (self.wo, surface.n_geom, self.beta);
+        Some((
+            position,
+            Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc },
+        ))
+    }
+
+    /// The media in which light travels on along `direction`.
+    pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
+        self.media.towards(scene, &self.at, self.wo, direction)
+    }
+}
+
+/// The number of vertices of a subpath up to the one after `depth` scattering events: this one, one per event, and
+/// the one on the light or at the camera.
+pub(crate) fn count(depth: u32) -> u32 {
+    depth + 2
+}
+
+/// The fraction of the vertices of light subpaths that are kept for connections, at this number of an event in a row in media: all of
+/// the first, then fewer and fewer, which count for more. Some walks through milk have ten thousand events.
+pub(super) fn kept_share(number: u32) -> f32 {
+    const ALL: u32 = 64;
+    if number <= ALL { 1.0 } else { ALL as f32 / number as f32 }
+}

@@ -1,0 +1,153 @@
+//! Points of fog that light samples illuminate, where rays come close to a light: uniform in the angle under which the light sees the
+//! ray. [Kulla 2012]
+//!
+//! A walk meets fog as often as the fog says, wherever the light is, and the light falls as the inverse square of the distance. So every ray of a
+//! camera subpath also has such a point for each light that is sampled, and what it finds and what light samples at the walk's own events
+//! find are weighted by how often each is sampled. The light that a point finds is the same, so only the densities of the point along the ray
+//! are compared.
+//!
+//! The angle goes on to infinity, whatever is behind the ray: the density depends on the ray's start, its direction and the light, which other
+//! techniques know too.
+
+use crate::interaction::Interaction;
+use crate::techniques::PerSet;
+use bilux_math::Vec3;
+use bilux_math::transcendental::{atan, tan};
+use bilux_scene::{Medium, Scene};
+use std::f32::consts::FRAC_PI_2;
+
+/// How points on a ray are distributed for one light.
+pub(crate) struct Equiangular {
+    /// Distance along the ray to where the light is closest, in metres; negative behind its start.
+    nearest: f32,
+    /// The distance from there to the light, with what the light's own size adds.
+    apart: f32,
+    /// The angle at the light from the closest point to the start of the ray, and from there to its end.
+    begin: f32,
+    angle: f32,
+}
+
+/// A small part of the distance to the light, without which a ray through a point light would have its points in one place.
+const CLOSEST: f32 = 1e-3;
+
+impl Equiangular {
+    /// On a ray from `origin` along a unit vector; `None` for lights that are infinitely far away.
+    #[inline]
+    pub(crate) fn new(scene: &Scene, light: usize, origin: Vec3, direction: Vec3) -> Option<Equiangular> {
+        let (middle, reach) = scene.lights().get(light)?.light.middle_and_reach()?;
+        let to_light = middle - origin;
+        let nearest = to_light.dot(direction);
+        let clearance = CLOSEST * CLOSEST * to_light.length_squared() + reach * reach;
+        let apart = ((to_light - direction * nearest).length_squared() + clearance).sqrt();
+        let begin = -atan(nearest / apart);
+        (apart > 0.0).then_some(Equiangular { nearest, apart, begin, angle: FRAC_PI_2 - begin })
+    }
+
+    /// A distance along the ray, in metres, for a random number; it may be far behind everything.
+    #[inline]
+    pub(crate) fn sample(&self, u: f32) -> f32 {
+        (self.nearest + self.apart * tan(self.begin + self.angle * u)).max(0.0)
+    }
+
+    /// The density of a distance, per metre.
+    #[inline]
+    pub(crate) fn density(&self, t: f32) -> f32 {
+        let from_nearest = t - self.nearest;
+        self.apart / (self.angle * (self.apart * self.apart + from_nearest * from_nearest))
+    }
+}
+
+/// How a ray of a camera subpath came to a point of fog.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// Where it began, and its unit direction.
+    pub(crate) origin: Vec3,
+    pub(crate) direction: Vec3,
+    /// The distance, in metres.
+    pub(crate) t: f32,
+    /// The density per metre with which a walk has an event there.
+    pub(crate) by_walk: f32,
+}
+
+impl Approach {
+    /// To a vertex, from along `wo`; `None` where points are not sampled by their angle to lights.
+    #[inline]
+    pub(crate) fn of(at: &Interaction, wo: Vec3, by_walk: f32) -> Option<Approach> {
+        let Interaction::Medium(point) = at else { return None };
+        let origin = point.p + wo * point.t;
+        point.is_near_lights.then_some(Approach { origin, direction: -wo, t: point.t, by_walk })
+    }
+
+    /// How often points are sampled there by the angle to this light, for each time that a walk finds them.
+    #[inline]
+    pub(crate) fn ratio(&self, scene: &Scene, light: usize) -> f32 {
+        density(scene, light, self.origin, self.direction, self.t) / self.by_walk
+    }
+}
+
+/// A point of fog that a light subpath has reached straight from its light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lit<const N: usize = 1> {
+    pub(crate) light: usize,
+    pub(crate) p: Vec3,
+    /// How often connections between the two count, in each set, over the density with which the light subpath goes on from here.
+    pub(crate) connected: PerSet<N>,
+}
+
+impl<const N: usize> Lit<N> {
+    /// The same where a camera subpath comes here along this unit vector, from so far away, and samples the point by its angle to the
+    /// light; over the density with which a light subpath arrives where it begins.
+    #[inline]
+    pub(crate) fn picked(&self, scene: &Scene, along: Vec3, distance: f32) -> PerSet<N> {
+        self.connected * density(scene, self.light, self.p - along * distance, along, distance)
+    }
+}
+
+/// The density per metre with which points of a ray are sampled by the angle to a light; 0 for an infinite light.
+#[inline]
+pub(crate) fn density(scene: &Scene, light: usize, origin: Vec3, direction: Vec3, t: f32) -> f32 {
+    Equiangular::new(scene, light, origin, direction).map_or(0.0, |points| points.density(t))
+}
+
+/// Whether rays have such points in a scene: where distances are coloured, their densities are not those of one channel.
+#[inline]
+pub(crate) fn is_used_in(scene: &Scene) -> bool {
+    scene.scatters() && !scene.has_coloured_distances()
+}
+
+/// Whether points of a medium are sampled by the angle to a light as well: in fog that is the same everywhere.
+#[inline]
+pub(crate) fn is_near_lights(scene: &Scene, medium: &Medium, is_inside: bool) -> bool {
+    medium.density.is_none() && !is_inside && is_used_in(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_scene::cameras::CameraSpec;
+    use bilux_scene::{SceneBuilder, Spec};
+
+    #[test]
+    fn points_are_where_their_density_says() {
+        let lamp = Spec::new("", "point").with("position", Vec3::new(1.0, 2.0, 0.5));
+        let mut builder = SceneBuilder::default();
+        builder.lights.push(lamp);
+        builder.cameras = vec![CameraSpec { spec: Spec::new("", "perspective"), keyframes: Vec::new() }];
+        let scene = crate::shapes::built(&builder);
+        for (origin, direction) in
+            [(Vec3::ZERO, Vec3::X), (Vec3::new(3.0, 0.0, 0.0), Vec3::X), (Vec3::Z, Vec3::Y)]
+        {
+            let points = Equiangular::new(&scene, 0, origin, direction).unwrap();
+            // The inverse of the cumulative distribution: its slope is one over the density.
+            for i in 1..200 {
+                let u = i as f32 / 200.0;
+                let [before, at, behind] = [u - 1e-3, u, u + 1e-3].map(|u| points.sample(u));
+                let slope = (behind - before) / 2e-3;
+                if u < 0.95 {
+                    assert!((slope * points.density(at) - 1.0).abs() < 5e-3, "{origin} {direction}: at {u}");
+                }
+            }
+            assert!(points.sample(0.0) < 1e-3);
+        }
+    }
+}
