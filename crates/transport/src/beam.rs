@@ -9,7 +9,6 @@
 //! [Křivánek 2014, estimator B-B1D with short beams]
 
 use crate::emission::Start;
-use crate::equiangular::Lit;
 use crate::limits::Events;
 use crate::media::{Passage, Travelled};
 use crate::mis::{Edge, Partial};
@@ -57,8 +56,6 @@ pub(crate) struct Leaving<const N: usize = 1> {
     pub(crate) beta: Rgb,
     pub(crate) odds: Rgb,
     pub(crate) partial: Partial<N>,
-    /// The vertex, if light comes there straight from a light and points are sampled by their angle to it too.
-    pub(crate) lit: Option<Lit<N>>,
     /// The light, if the vertex is on one.
     pub(crate) start: Option<Start>,
     /// Events so far: all, and as far as they limit paths.
@@ -111,7 +108,6 @@ impl Beam {
             leaves_medium: false,
             by_area: false,
             partial: Partial::START,
-            lit: None,
             start: None,
             depth: 0,
             events: Events::default(),
@@ -133,7 +129,7 @@ impl<const N: usize> Beam<N> {
         eye: Option<(&dyn Camera, &Ray)>,
         techniques: &TechniqueCounts<N>,
     ) -> Crossing<N> {
-        let Leaving { channel, leaves_medium, by_area, lit, start, mut partial, .. } = self.subpath;
+        let Leaving { channel, leaves_medium, by_area, start, mut partial, .. } = self.subpath;
         let free = medium.free_path(along, usize::from(channel));
         let travelled = Travelled { passage: self.passage, ..Travelled::NOWHERE }.passed(free);
         let (odds, passage) = (self.subpath.odds * travelled.odds, travelled.passage);
@@ -148,10 +144,6 @@ impl<const N: usize> Beam<N> {
             let ratio = start.map_or(1.0, |start| start.light_sampling_ratio(scene, self.line.at(along)));
             let connections = if start.is_some() { PerSet::ONE } else { techniques.connections };
             partial.arrive(distance2 * ratio, edge, connections, PerSet::ZERO);
-            if let Some(lit) = lit {
-                let picked = lit.picked(scene, -self.line.direction, distance);
-                partial.d_vc = partial.d_vc + picked * (1.0 / edge.forward);
-            }
         }
         let beta = self.subpath.beta * travelled.weight / all;
         Crossing { beta, odds: odds / all, partial, distance, by_walk: edge.forward }

@@ -6,6 +6,8 @@
 //! find are weighted by how often each is sampled. The light that a point finds is the same, so only the densities of the point along the ray
 //! are compared.
 //!
+//! Rays that leave a point of a medium have none: what falls on their events is spread by the fog already, and few of them come close to a light.
+//!
 //! The angle goes on to infinity, whatever is behind the ray: the density depends on the ray's start, its direction and the light, which other
 //! techniques know too.
 

@@ -68,6 +68,12 @@ impl Interaction {
         matches!(self, Interaction::Medium(MediumPoint { is_inside: true, .. }))
     }
 
+    /// True for a point of fog that is sampled by its [angle to lights](crate::equiangular) too, where a ray comes from no other one.
+    #[inline]
+    pub(crate) fn is_near_lights(&self) -> bool {
+        matches!(self, Interaction::Medium(MediumPoint { is_near_lights: true, .. }))
+    }
+
     /// The point.
     #[inline]
     pub(crate) fn p(&self) -> Vec3 {

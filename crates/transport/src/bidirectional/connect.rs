@@ -152,7 +152,7 @@ pub(crate) fn to_light<const N: usize>(
         technique: Technique::Connected { s: 1, t: z.count() },
         found: Contribution { origin: light_number(index), ..Contribution::only(light) },
         others: [PerSet::ZERO, from_light],
-        alike: z.approach().map_or(PerSet::ZERO, |approach| PerSet::ONE * approach.ratio(scene, index)),
+        alike: z.approach.map_or(PerSet::ZERO, |approach| PerSet::ONE * approach.ratio(scene, index)),
         picked: Some(ratio),
         in_medium: [z.at.is_in_medium(), false],
         odds: z.odds,
@@ -200,7 +200,11 @@ pub(crate) fn to_vertex<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: z.count() },
         found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
         others: [from_camera, from_light],
-        alike: y.picked_near(task.context.scene, z.at.p()) * (pdf_z / distance2),
+        alike: if z.at.is_in_medium() {
+            PerSet::ZERO
+        } else {
+            y.picked_near(task.context.scene, z.at.p()) * (pdf_z / distance2)
+        },
         picked: None,
         in_medium,
         odds: z.odds * y.odds,

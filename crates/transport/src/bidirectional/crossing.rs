@@ -40,7 +40,7 @@ pub(crate) fn crossed<const N: usize>(
         let pdf = medium.phase.eval(wo, wi);
         let from_camera = z.at(scene, &medium, along_z, camera, techniques);
         let mut from_light = y.at(scene, &medium, along_y, None, techniques);
-        if let (Some(start), true) = (light.start, is_near) {
+        if let (Some(start), true) = (light.start, is_near && !eye.leaves_medium) {
             let Crossing { distance, by_walk, .. } = from_camera;
             let approach = Approach {
                 origin: Vec3::from(ray.origin),

@@ -148,13 +148,12 @@ impl<'w, const N: usize> Subpath<'w, N> {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
         self.before = None;
-        if self.has_points && equiangular::is_used_in(context.scene) {
+        if self.has_points && !self.leaves_medium && equiangular::is_used_in(context.scene) {
             let (walk, partial, leaves_medium) = (*walk, self.partial, self.leaves_medium);
             self.before = Some(Box::new(Before { walk, partial, leaves_medium, first }));
         }
         let leaving = self.has_beams.then(|| Leaving {
             origin: self.origin,
-            lit: if let Some(Near::Light(lit)) = self.near { Some(lit) } else { None },
             channel: sample.channel,
             is_split: walk.is_split,
             leaves_medium: self.leaves_medium,
@@ -205,12 +204,15 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel) };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
-        if let Some(Near::Light(lit)) = self.near {
+        if let Some(Near::Light(lit)) = self.near
+            && !at.is_in_medium()
+        {
             self.partial.d_vc = self.partial.d_vc + lit.picked(context.scene, wo, t) * (1.0 / edge.forward);
         }
         let events = self.walk.events().and(at.is_inside());
         self.partial.in_row(events.in_row);
         self.by_area = false;
+        let approach = Approach::of(&at, wo, edge.forward).filter(|_| !self.leaves_medium);
         self.leaves_medium = at.is_in_medium();
         let Subpath { walk: Walk { beta, odds, depth, is_split, .. }, partial, origin, .. } = *self;
         let share = match self.mode {
@@ -234,6 +236,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             media,
             arriving,
             straight_from,
+            approach,
         })
     }
 
@@ -251,8 +254,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let finds_direct = self.mode == TransportMode::Importance || at.finds_direct_light(self.techniques);
         self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, finds_direct, vertex.events.in_row);
         self.near = match (self.mode, vertex.straight_from) {
-            (TransportMode::Radiance, _) => vertex.approach().map(Near::Eye),
-            (TransportMode::Importance, Some(light)) if vertex.approach().is_some() => {
+            (TransportMode::Radiance, _) => vertex.approach.map(Near::Eye),
+            (TransportMode::Importance, Some(light)) if at.is_near_lights() => {
                 let connected = vertex.partial.connected * (1.0 / sample.pdf_solid_angle);
                 Some(Near::Light(Lit { light, p: at.p(), connected }))
             }

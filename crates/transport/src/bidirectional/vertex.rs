@@ -36,6 +36,8 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) arriving: f32,
     /// The light that its light subpath comes from, if it comes straight from there.
     pub(super) straight_from: Option<usize>,
+    /// How the ray of a camera subpath came here, where points of it are sampled by their [angle to lights](crate::equiangular) too.
+    pub(super) approach: Option<Approach>,
 }
 
 impl<const N: usize> Vertex<N> {
@@ -57,11 +59,6 @@ impl<const N: usize> Vertex<N> {
     /// True where a path through here carries a single wavelength.
     pub(super) fn is_split(&self) -> bool {
         self.came_split || self.at.splits()
-    }
-
-    /// How the ray of a camera subpath came here, where points are sampled by their [angle to lights](equiangular) too.
-    pub(super) fn approach(&self) -> Option<Approach> {
-        Approach::of(&self.at, self.wo, self.arriving)
     }
 
     /// How often camera subpaths that leave this point for here sample this vertex by its [angle to the light](equiangular) and connect

@@ -54,6 +54,8 @@ pub(crate) struct Path {
     pub(crate) last: Option<(Vec3, f32)>,
     /// How its ray came to the last event, where that is a point of fog that is sampled by its [angle to lights](equiangular) too.
     pub(crate) approach: Option<Approach>,
+    /// Its last event was in a medium.
+    leaves_medium: bool,
 }
 
 impl PathTracing {
@@ -63,6 +65,7 @@ impl PathTracing {
         loop {
             let first = task.tracer.closest(&path.walk.ray);
             if let Some(first) = first
+                && !path.leaves_medium
                 && equiangular::is_used_in(task.context.scene)
             {
                 self.near_lights(&mut path, first, task);
@@ -123,9 +126,9 @@ impl PathTracing {
         let wo = path.walk.wo();
         let Some(at) = self.arrive(path, &travelled.arrival, task) else { return false };
         let by_walk = travelled.passage.arriving(None);
-        let approach = Approach::of(&at, wo, by_walk);
+        let approach = Approach::of(&at, wo, by_walk).filter(|_| !path.leaves_medium);
         let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
-        path.approach = approach;
+        (path.approach, path.leaves_medium) = (approach, at.is_in_medium());
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
         self.scatter(path, &at, task)
@@ -375,6 +378,12 @@ impl PathTracing {
 impl Path {
     /// A path with only its camera ray, which travels in these media.
     pub(crate) fn new(ray: &Ray, media: Media) -> Path {
-        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None, approach: None }
+        Path {
+            walk: Walk::new(ray, Rgb::WHITE, media),
+            light: Rgb::BLACK,
+            last: None,
+            approach: None,
+            leaves_medium: false,
+        }
     }
 }

@@ -257,6 +257,24 @@ fn fog_looks_the_same_from_both_ends() {
 }
 
 /// Events in fog count against the depth, those in milk do not, and all integrators agree on which paths there are.
+/// In fog without colour, rays have points near lights; `light` knows nothing of them.
+#[test]
+fn lamps_in_grey_fog_look_the_same_from_both_ends() {
+    let grey = || medium(0.02f32, 0.3f32).with("scattering_anisotropy", 0.5f32);
+    let spot = Spec::new("", "spot").with("position", Vec3::new(0.5, 2.0, 2.0)).with("intensity", 8.0f32);
+    let lights = [
+        Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)).with("intensity", 4.0f32),
+        spot.with("look_at", Vec3::new(0.0, 0.5, 0.0)).with("angle", 40.0f32),
+        Spec::new("", "sphere")
+            .with("position", Vec3::new(-0.5, 2.5, 0.0))
+            .with("radius", 0.3f32)
+            .with("intensity", 10.0f32),
+    ];
+    for light in lights {
+        assert_like_path(&light.kind.clone(), &built(&foggy(light, grey())), &["bdpt", "light", "vcm"]);
+    }
+}
+
 #[test]
 fn paths_of_limited_depth_are_the_same_from_both_ends() {
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);

@@ -137,6 +137,9 @@ impl Path {
     fn near_light(&self, task: &Task, flaw: Flaw) -> Option<f64> {
         let (scene, first) = (task.context.scene, &self.nodes[0]);
         let Interaction::Medium(MediumPoint { is_near_lights: true, .. }) = first.at else { return None };
+        if self.nodes.get(1).is_some_and(|next| next.at.is_in_medium()) {
+            return None;
+        }
         let (middle, reach) = scene.lights()[self.start.index].light.middle_and_reach()?;
         let (p, to_camera) = (first.from_camera.0.as_dvec3(), first.to_camera.as_dvec3());
         let t = match self.nodes.get(1) {

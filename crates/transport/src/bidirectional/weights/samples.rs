@@ -61,7 +61,7 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
 fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
         let Some(surface) = vertex.at.surface() else { continue };
-        let Some(found) = emitted(task, surface, vertex.wo, z.vertices[i - 1].approach()) else { continue };
+        let Some(found) = emitted(task, surface, vertex.wo, z.vertices[i - 1].approach) else { continue };
         let found = found.by(vertex.beta, &vertex.partial);
         let index = task.context.scene.light_index_of(surface.object).unwrap();
         let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
