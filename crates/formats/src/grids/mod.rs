@@ -20,6 +20,7 @@ use crate::{FormatError, ReadOptions};
 use bilux_math::{Aabb, Transform, Vec3};
 use bilux_scene::media::{Grid, MAX_SIDE};
 use bilux_scene::{Span, UpHint};
+use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -128,6 +129,15 @@ impl Faults {
         0.0
     }
 
+    /// These and others.
+    fn and(self, others: Faults) -> Faults {
+        Faults {
+            negative: self.negative + others.negative,
+            not_finite: self.not_finite + others.not_finite,
+            background: self.background,
+        }
+    }
+
     /// A sentence for each kind.
     pub(crate) fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
@@ -184,28 +194,30 @@ pub(crate) fn dense(
     size: [usize; 3],
     bounds: &Aabb,
     budget: &mut Budget,
-    mut value: impl FnMut(usize, usize, usize) -> f32,
+    value: impl Fn(usize, usize, usize) -> f32 + Sync,
 ) -> Result<Volume, FormatError> {
     let fail = |message: String| FormatError::malformed(message, whole_file(source.name));
     let [x, y, z] = size;
     if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
         return Err(fail(format!("{x} x {y} x {z} voxels: each side has 1 to {MAX_SIDE}")));
     }
-    // The numbers, and blocks as floats in a list that grows by doubling, and as halves.
+    // The numbers, and blocks as halves.
     let voxels = (x as u64).saturating_mul(y as u64).saturating_mul(z as u64);
-    budget.take_bytes(voxels.saturating_mul(4 + 8 + 2), source.name)?;
+    budget.take_bytes(voxels.saturating_mul(4 + 2), source.name)?;
     let extent = bounds.extent() / Vec3::from(size.map(|side| side as f32));
     let to_file = Transform::scale(extent).zip(Transform::translate(bounds.min));
     let to_file = to_file.map(|(scale, shift)| scale.then(&shift));
     let to_file =
         to_file.ok_or_else(|| fail("the box of its voxels has no volume, or is not finite".to_owned()))?;
-    let mut faults = Faults::default();
-    let mut values = Vec::with_capacity(x * y * z);
-    for z in 0..z {
-        for y in 0..y {
-            values.extend((0..x).map(|x| faults.density(value(x, y, z))));
+    let mut values = vec![0.0; x * y * z];
+    let layers = values.par_chunks_mut(x * y).enumerate().map(|(z, layer)| {
+        let mut faults = Faults::default();
+        for (i, voxel) in layer.iter_mut().enumerate() {
+            *voxel = faults.density(value(i % x, i / x, z));
         }
-    }
+        faults
+    });
+    let faults = layers.reduce(Faults::default, Faults::and);
     let grid =
         Grid::dense(&source.stem(), size, &to_file, &values).map_err(|error| fail(error.to_string()))?;
     let bounds = Aabb { min: Vec3::ZERO, max: Vec3::from(size.map(|side| side as f32)) };

@@ -1,10 +1,11 @@
 //! The storage of a grid, and its values.
 
-use super::blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, all, blocks_of, check, voxel_of, within};
+use super::blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, all, blocks_of, check, within};
 use super::half::{from_half, half, scale_of};
 use super::line::{GridLine, for_each_block};
 use super::origin::Origin;
 use bilux_math::{Transform, Vec3};
+use rayon::prelude::*;
 use std::fmt;
 
 /// Marks a block of zeros.
@@ -65,12 +66,7 @@ impl Grid {
         }
         let scale = scale_of(largest);
         let voxels = stored.iter().map(|value| half(value / scale)).collect();
-        let to_voxels = to_object.inverted();
-        let (name, majorants) = (name.to_owned(), Box::default());
-        let places = places.into();
-        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale, origin: None };
-        grid.majorants = grid.bounds_of_blocks(blocks);
-        Ok(grid)
+        Ok(Grid::of_blocks(name, size, to_object, places, voxels, scale))
     }
 
     /// A grid from one value for each voxel, x varying fastest, then y.
@@ -83,22 +79,59 @@ impl Grid {
         to_object: &Transform,
         values: &[f32],
     ) -> Result<Grid, GridError> {
-        blocks_of(size)?;
-        let wanted = size[0] * size[1] * size[2];
+        let blocks = blocks_of(size)?;
+        let [nx, ny, nz] = size;
+        let wanted = nx * ny * nz;
         if values.len() != wanted {
             return Err(GridError::Count { wanted, found: values.len() });
         }
-        Grid::new(name, size, to_object, |at, block| {
-            let mut any = false;
-            for (i, voxel) in block.iter_mut().enumerate() {
-                let [x, y, z] = voxel_of(at, i);
-                if x < size[0] && y < size[1] && z < size[2] {
-                    *voxel = values[(z * size[1] + y) * size[0] + x];
-                    any |= *voxel != 0.0;
+        let is_none = |value: &f32| !(value.is_finite() && *value >= 0.0);
+        if let Some(i) = values.par_iter().position_first(is_none) {
+            return Err(GridError::Value(i % nx, i / nx % ny, i / (nx * ny)));
+        }
+        let scale = scale_of(values.par_iter().copied().reduce(|| 0.0, f32::max));
+        // The part of a row of voxels that lies in a block, and its place there.
+        let rows = |[bx, by, bz]: [usize; 3]| {
+            let [xs, ys, zs] =
+                [(bx, nx), (by, ny), (bz, nz)].map(|(b, n)| b * BLOCK..(b * BLOCK + BLOCK).min(n));
+            zs.flat_map(move |z| ys.clone().map(move |y| (y, z))).map(move |(y, z)| {
+                let row = (z * ny + y) * nx;
+                (within(0, y, z), &values[row + xs.start..row + xs.end])
+            })
+        };
+        let at: Vec<[usize; 3]> = all(blocks).collect();
+        let is_stored = |at: &[usize; 3]| rows(*at).any(|(_, row)| row.iter().any(|value| *value != 0.0));
+        let is_stored: Vec<bool> = at.par_iter().map(is_stored).collect();
+        let (mut places, mut stored) = (Vec::with_capacity(at.len()), Vec::new());
+        for (at, is_stored) in at.into_iter().zip(is_stored) {
+            places.push(if is_stored { stored.len() as u32 } else { EMPTY });
+            stored.extend(is_stored.then_some(at));
+        }
+        let mut voxels = vec![0; stored.len() * BLOCK_VOXELS];
+        voxels.par_chunks_mut(BLOCK_VOXELS).zip(&stored).for_each(|(voxels, at)| {
+            for (place, row) in rows(*at) {
+                for (voxel, value) in voxels[place..].iter_mut().zip(row) {
+                    *voxel = half(value / scale);
                 }
             }
-            any
-        })
+        });
+        Ok(Grid::of_blocks(name, size, to_object, places, voxels, scale))
+    }
+
+    /// One of these blocks, which are those of its size.
+    fn of_blocks(
+        name: &str,
+        size: [usize; 3],
+        to_object: &Transform,
+        places: Vec<u32>,
+        voxels: Vec<u16>,
+        scale: f32,
+    ) -> Grid {
+        let (places, voxels, majorants) = (places.into(), voxels.into(), Box::default());
+        let (name, to_voxels) = (name.to_owned(), to_object.inverted());
+        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale, origin: None };
+        grid.majorants = grid.bounds_of_blocks();
+        grid
     }
 
     /// A grid from what another one [stored](Grid::stored).
@@ -117,11 +150,7 @@ impl Grid {
         if !(is_whole && are_theirs && are_numbers) {
             return Err(GridError::Stored);
         }
-        let (places, voxels, majorants) = (places.into(), voxels.into(), Box::default());
-        let (name, to_voxels) = (String::new(), to_object.inverted());
-        let mut grid = Grid { name, size, to_voxels, places, voxels, majorants, scale, origin: None };
-        grid.majorants = grid.bounds_of_blocks(blocks);
-        Ok(grid)
+        Ok(Grid::of_blocks("", size, to_object, places.to_vec(), voxels.to_vec(), scale))
     }
 
     /// What it holds, as it is stored.
@@ -262,25 +291,38 @@ impl Grid {
     }
 
     /// The majorant of each block: what lies between voxels is a mean of those on both sides, also of the neighbours.
-    fn bounds_of_blocks(&self, blocks: [usize; 3]) -> Box<[f32]> {
-        let reach = |block: usize, voxels: usize| {
-            let low = (block * BLOCK).saturating_sub(1);
-            low..(block * BLOCK + BLOCK + 1).min(voxels)
-        };
-        let bound = |at: [usize; 3]| {
-            if self.is_empty_around(at, blocks) {
-                return 0.0;
+    fn bounds_of_blocks(&self) -> Box<[f32]> {
+        let blocks = self.size.map(|n| n.div_ceil(BLOCK));
+        let at: Vec<[usize; 3]> = all(blocks).collect();
+        let bound =
+            |at: &[usize; 3]| if self.is_empty_around(*at, blocks) { 0.0 } else { self.bound_of_block(*at) };
+        at.par_iter().map(bound).collect()
+    }
+
+    fn bound_of_block(&self, at: [usize; 3]) -> f32 {
+        let own = at.map(|block| block * BLOCK..(block + 1) * BLOCK);
+        let [xs, ys, zs] = [0, 1, 2]
+            .map(|axis: usize| own[axis].start.saturating_sub(1)..(own[axis].end + 1).min(self.size[axis]));
+        let mut largest = match self.places[self.block_index(at)] {
+            EMPTY => 0.0,
+            // Halves without a sign are in the order of their bits.
+            place => {
+                let first = place as usize * BLOCK_VOXELS;
+                let half = self.voxels[first..first + BLOCK_VOXELS].iter().copied().fold(0, u16::max);
+                from_half(half) * self.scale
             }
-            let [xs, ys, zs] = [0, 1, 2].map(|axis: usize| reach(at[axis], self.size[axis]));
-            let mut largest = 0.0f32;
-            for z in zs {
-                for y in ys.clone() {
-                    xs.clone().for_each(|x| largest = largest.max(self.voxel([x, y, z])));
+        };
+        for z in zs {
+            for y in ys.clone() {
+                let is_own = own[2].contains(&z) && own[1].contains(&y);
+                // Of rows through the block only the voxels beyond it are left.
+                let step = if is_own { xs.len() - 1 } else { 1 };
+                for x in xs.clone().step_by(step.max(1)) {
+                    largest = largest.max(self.voxel([x, y, z]));
                 }
             }
-            largest
-        };
-        all(blocks).map(bound).collect()
+        }
+        largest
     }
 
     /// The same values with other majorants: larger ones, or wrong ones.
@@ -342,6 +384,34 @@ mod tests {
         let huge: Vec<f32> = values.iter().map(|x| x * 1e20).collect();
         let grid = Grid::dense("", size, &Transform::IDENTITY, &huge).unwrap();
         assert!((grid.voxel([3, 1, 2]) - huge[2 * 8 * 19 + 19 + 3]).abs() <= 1e17);
+    }
+
+    /// All voxels at once give what block after block does, with the same bounds, whatever the factor on halves.
+    #[test]
+    fn all_voxels_at_once_are_blocks_in_turn() {
+        let size = [19, 8, 10];
+        for factor in [1.0, 1e6, 1e-6] {
+            let numbers: Vec<f32> =
+                noise(size).into_iter().map(|x| if x < 0.5 { 0.0 } else { x * factor }).collect();
+            let empty = |x: usize, z: usize| x < 8 && z < 8;
+            let value = |[x, y, z]: [usize; 3]| match numbers.get((z * size[1] + y) * size[0] + x) {
+                Some(value) if x < size[0] && !empty(x, z) => *value,
+                _ => 0.0,
+            };
+            let in_turn = Grid::new("", size, &Transform::IDENTITY, |at, block| {
+                for (i, voxel) in block.iter_mut().enumerate() {
+                    *voxel = value(
+                        [0, 1, 2].map(|axis: usize| at[axis] * BLOCK + i / BLOCK.pow(axis as u32) % BLOCK),
+                    );
+                }
+                block.iter().any(|value| *value != 0.0)
+            });
+            let places = (0..numbers.len()).map(|i| [i % 19, i / 19 % 8, i / (19 * 8)]);
+            let at_once: Vec<f32> = places.map(value).collect();
+            let in_turn = in_turn.unwrap();
+            assert!(in_turn == Grid::dense("", size, &Transform::IDENTITY, &at_once).unwrap());
+            assert!(in_turn.stored_blocks() < 6);
+        }
     }
 
     #[test]
