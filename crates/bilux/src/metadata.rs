@@ -2,7 +2,7 @@
 
 /// The program and its version.
 pub const SOFTWARE: &str = "Software";
-/// [`Job::fingerprint`].
+/// [`Job::fingerprint`](crate::Job::fingerprint).
 pub const FINGERPRINT: &str = "bilux.fingerprint";
 /// The options of the command line that make the picture again.
 pub const SETTINGS: &str = "bilux.settings";
