@@ -26,6 +26,7 @@ pub mod lights;
 pub mod materials;
 pub mod media;
 pub mod mesh;
+mod octaves;
 pub mod orientation;
 pub mod parameters;
 mod placed;

@@ -1,24 +1,22 @@
-//! Points of fog that light samples illuminate, where rays come close to a light: uniform in the angle under which the light sees the
-//! ray. [Kulla 2012]
+//! Equiangular points: points of fog on a ray, uniform in the angle under which a light sees the ray. [Kulla 2012]
 //!
-//! A walk meets fog as often as the fog says, wherever the light is, and the light falls as the inverse square of the distance. So every ray of a
-//! camera subpath also has such a point for each light that is sampled, and what it finds and what light samples at the walk's own events
-//! find are weighted by how often each is sampled. The light that a point finds is the same, so only the densities of the point along the ray
-//! are compared.
+//! A walk meets fog as often as the fog says, wherever the light is, and light falls as the inverse square of the distance. So a ray of a
+//! camera subpath has such a point for each light that is sampled, which is connected with that light as an event of the walk is. Which point of the
+//! light is sampled depends on the point of fog alone, so the two ways to this differ in their densities along the ray only, and are weighted by them.
 //!
-//! Rays that leave a point of a medium have none: what falls on their events is spread by the fog already, and few of them come close to a light.
+//! Rays that leave a point of a medium have none: they are the most in thick fog, and gain the least there.
 //!
 //! The angle goes on to infinity, whatever is behind the ray: the density depends on the ray's start, its direction and the light, which other
 //! techniques know too.
 
 use crate::interaction::Interaction;
 use crate::techniques::PerSet;
-use bilux_math::Vec3;
 use bilux_math::transcendental::{atan, tan};
+use bilux_math::{Vec2, Vec3};
 use bilux_scene::{Medium, Scene};
 use std::f32::consts::FRAC_PI_2;
 
-/// How points on a ray are distributed for one light.
+/// The distribution of one light's points on a ray.
 pub(crate) struct Equiangular {
     /// Distance along the ray to where the light is closest, in metres; negative behind its start.
     nearest: f32,
@@ -59,6 +57,16 @@ impl Equiangular {
     }
 }
 
+/// An equiangular point, and how it is to be connected.
+pub(crate) struct EquiangularSample {
+    pub(crate) light: usize,
+    pub(crate) points: Equiangular,
+    /// Its distance along the ray, in metres.
+    pub(crate) distance: f32,
+    /// The random point that picks the light's sample.
+    pub(crate) u_light: Vec2,
+}
+
 /// How a ray of a camera subpath came to a point of fog.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
@@ -72,15 +80,15 @@ pub(crate) struct Approach {
 }
 
 impl Approach {
-    /// To a vertex, from along `wo`; `None` where points are not sampled by their angle to lights.
+    /// To a vertex, from along `wo`; `None` where there are no equiangular points.
     #[inline]
     pub(crate) fn of(at: &Interaction, wo: Vec3, by_walk: f32) -> Option<Approach> {
         let Interaction::Medium(point) = at else { return None };
         let origin = point.p + wo * point.t;
-        point.is_near_lights.then_some(Approach { origin, direction: -wo, t: point.t, by_walk })
+        point.is_equiangular.then_some(Approach { origin, direction: -wo, t: point.t, by_walk })
     }
 
-    /// How often points are sampled there by the angle to this light, for each time that a walk finds them.
+    /// How many equiangular points of this light are there, for each event of a walk.
     #[inline]
     pub(crate) fn ratio(&self, scene: &Scene, light: usize) -> f32 {
         density(scene, light, self.origin, self.direction, self.t) / self.by_walk
@@ -97,15 +105,15 @@ pub(crate) struct Lit<const N: usize = 1> {
 }
 
 impl<const N: usize> Lit<N> {
-    /// The same where a camera subpath comes here along this unit vector, from so far away, and samples the point by its angle to the
-    /// light; over the density with which a light subpath arrives where it begins.
+    /// How often it is the equiangular point of a ray that comes here along this unit vector, from so far away, and is connected with its
+    /// light; over the density with which a light subpath arrives where the ray begins.
     #[inline]
     pub(crate) fn picked(&self, scene: &Scene, along: Vec3, distance: f32) -> PerSet<N> {
         self.connected * density(scene, self.light, self.p - along * distance, along, distance)
     }
 }
 
-/// The density per metre with which points of a ray are sampled by the angle to a light; 0 for an infinite light.
+/// The density per metre of a light's equiangular points on a ray; 0 for an infinite light.
 #[inline]
 pub(crate) fn density(scene: &Scene, light: usize, origin: Vec3, direction: Vec3, t: f32) -> f32 {
     Equiangular::new(scene, light, origin, direction).map_or(0.0, |points| points.density(t))
@@ -117,9 +125,9 @@ pub(crate) fn is_used_in(scene: &Scene) -> bool {
     scene.scatters() && !scene.has_coloured_distances()
 }
 
-/// Whether points of a medium are sampled by the angle to a light as well: in fog that is the same everywhere.
+/// Whether a medium of such a scene has them: fog that is the same everywhere.
 #[inline]
-pub(crate) fn is_near_lights(scene: &Scene, medium: &Medium, is_inside: bool) -> bool {
+pub(crate) fn is_used_inside(scene: &Scene, medium: &Medium, is_inside: bool) -> bool {
     medium.density.is_none() && !is_inside && is_used_in(scene)
 }
 

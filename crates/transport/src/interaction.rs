@@ -33,8 +33,8 @@ pub(crate) struct MediumPoint {
     pub(crate) is_inside: bool,
     /// Its extinction coefficient, per metre, if it is the same everywhere.
     pub(crate) even: Option<Rgb>,
-    /// Points of its medium are also [sampled by their angle to lights](crate::equiangular).
-    pub(crate) is_near_lights: bool,
+    /// Its medium has [equiangular points](crate::equiangular) too.
+    pub(crate) is_equiangular: bool,
 }
 
 impl Interaction {
@@ -68,10 +68,10 @@ impl Interaction {
         matches!(self, Interaction::Medium(MediumPoint { is_inside: true, .. }))
     }
 
-    /// True for a point of fog that is sampled by its [angle to lights](crate::equiangular) too, where a ray comes from no other one.
+    /// True for a point of a medium that has [equiangular points](crate::equiangular) too.
     #[inline]
-    pub(crate) fn is_near_lights(&self) -> bool {
-        matches!(self, Interaction::Medium(MediumPoint { is_near_lights: true, .. }))
+    pub(crate) fn is_equiangular(&self) -> bool {
+        matches!(self, Interaction::Medium(MediumPoint { is_equiangular: true, .. }))
     }
 
     /// The point.
@@ -128,7 +128,7 @@ impl Interaction {
     /// Whether light subpaths are connected with the camera here, and merged, where they come straight from a light.
     #[inline]
     pub(crate) fn finds_direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> bool {
-        techniques.direct || matches!(self, Interaction::Medium(MediumPoint { is_near_lights: false, .. }))
+        techniques.direct || (self.is_in_medium() && !self.is_equiangular())
     }
 
     /// A ray that leaves it.

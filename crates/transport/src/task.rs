@@ -129,8 +129,8 @@ pub enum VertexKind {
 /// lights.
 const MEDIUM_STREAM: u64 = 3 << 32;
 
-/// And those for points near lights.
-const NEAR_LIGHTS_STREAM: u64 = 5 << 32;
+/// And those for equiangular points.
+const EQUIANGULAR_STREAM: u64 = 5 << 32;
 
 impl SampleState {
     /// A sample that has drawn nothing yet.
@@ -152,11 +152,10 @@ impl SampleState {
         self.sampler.enter(MEDIUM_STREAM + from_light + u64::from(depth));
     }
 
-    /// Enters the stream of random numbers for the points that are sampled, on the way to the vertex after `depth` events, by their
-    /// angle to lights.
+    /// Enters the stream of random numbers for the [equiangular points](crate::equiangular) on the way to the vertex after `depth` events.
     #[inline]
-    pub(crate) fn enter_near_lights(&mut self, depth: u32) {
-        self.sampler.enter(NEAR_LIGHTS_STREAM + u64::from(depth));
+    pub(crate) fn enter_equiangular(&mut self, depth: u32) {
+        self.sampler.enter(EQUIANGULAR_STREAM + u64::from(depth));
     }
 
     /// A seed of further random numbers, which draws none.

@@ -25,11 +25,11 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// Media of a larger extinction in any channel, per metre, have no beams: light subpaths have many short ones there, and
     /// connections find as much.
     pub(crate) densest: f32,
-    /// Light subpaths are connected with the camera, and merged, also on surfaces that they reach straight from a light. In media
-    /// they always are.
+    /// Light subpaths are connected with the camera, and merged, also where they come straight from a light: on surfaces, and in
+    /// media with [equiangular points](crate::equiangular). In other media they always are.
     ///
     /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
-    /// heuristic gives photons too much weight. In a medium close to a light, such a point is noise.
+    /// heuristic gives photons too much weight. In other media, close to a light, such a point is noise.
     pub(crate) direct: bool,
 }
 

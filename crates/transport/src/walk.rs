@@ -1,9 +1,10 @@
 //! A random walk: what every path has while it grows, from whichever end.
 
+use crate::equiangular::{Equiangular, EquiangularSample};
 use crate::interaction::Interaction;
 use crate::limits::Events;
 use crate::media::{Media, MediumPart, Travelled};
-use crate::task::SampleState;
+use crate::task::{SampleState, Task};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::mean;
 use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
@@ -27,6 +28,8 @@ pub(crate) struct Walk {
     pub(crate) specular: bool,
     /// It carries a single wavelength.
     pub(crate) is_split: bool,
+    /// Its last vertex is a point of a medium.
+    pub(crate) leaves_medium: bool,
     /// The media that the ray travels in.
     pub(crate) media: Media,
 }
@@ -44,6 +47,7 @@ impl Walk {
             eta_scale: 1.0,
             specular: true,
             is_split: false,
+            leaves_medium: false,
             media,
         }
     }
@@ -85,6 +89,7 @@ impl Walk {
             [all, _] => [all, 0],
         };
         self.specular &= sample.is_delta;
+        self.leaves_medium = at.is_in_medium();
         if mode == TransportMode::Radiance {
             self.eta_scale *= sample.eta * sample.eta;
         }
@@ -120,8 +125,29 @@ impl Walk {
         Travelled { emitted, ..travelled }
     }
 
-    /// The same walk as if it had an event in fog at this distance, in metres, where points are sampled by their [angle to
-    /// lights](crate::equiangular) too; `None` where they are not, or where a surface is before it.
+    /// Visits an [equiangular point](crate::equiangular) of its ray for each light that is sampled there.
+    pub(crate) fn each_equiangular(
+        &self,
+        task: &mut Task,
+        mut visit: impl FnMut(&mut Task, EquiangularSample),
+    ) {
+        if !self.events().and(false).are_within(task.context.max_depth) {
+            return;
+        }
+        let (origin, direction) = (Vec3::from(self.ray.origin), Vec3::from(self.ray.direction));
+        task.sample.enter_equiangular(self.depth);
+        let u = task.sample.sampler.next_1d();
+        for light in task.context.lights.sample(u) {
+            let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
+            if let Some(points) = Equiangular::new(task.context.scene, light, origin, direction) {
+                let distance = points.sample(u);
+                visit(task, EquiangularSample { light, points, distance, u_light });
+            }
+        }
+    }
+
+    /// The same walk as if it had an event at this distance, in metres, where [equiangular points](crate::equiangular) may be; `None` where
+    /// they may not, or where a surface is before it.
     pub(crate) fn in_fog(
         &self,
         first: Surface,

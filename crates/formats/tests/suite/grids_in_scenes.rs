@@ -3,7 +3,7 @@
 use crate::{refusal, warnings};
 use bilux_formats::{ReadOptions, read, read_bytes};
 use bilux_math::Vec3;
-use bilux_scene::media::{BLOCK, Grid};
+use bilux_scene::media::{BLOCK, DENSITIES, Grid};
 use bilux_scene::{Axis, SceneBuilder, Spec, UpHint, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -246,11 +246,16 @@ fn formulas_are_densities_of_toml_scenes_and_are_written_as_they_were_read() {
     };
     let folder = tempfile::tempdir().unwrap();
     let place = "[0.1, 0, 0, 0, 0, 0.1, 0, -0.1, 0, 1, 2, 3]";
-    for density in [
+    let densities = [
         "{ kind = \"height\", falloff = 0.5, up = \"z\", from = [-1, -1, 0], to = [1, 1, 4] }".to_owned(),
         "{ kind = \"cloud\", frequency = 0.5, to = [1, 2, 1] }".to_owned(),
         format!("{{ kind = \"noise\", octaves = 2, low = 0.4, resolution = 16, place = {place} }}"),
-    ] {
+    ];
+    for row in DENSITIES {
+        let kind = format!("kind = \"{}\"", row.entry.name);
+        assert!(densities.iter().any(|density| density.contains(&kind)), "{kind} is not tried");
+    }
+    for density in densities {
         let first = scene(&density).unwrap();
         let path = folder.path().join("written.toml");
         bilux_formats::write(&path, &first, &Default::default()).unwrap();

@@ -8,12 +8,12 @@ use super::connect::{Connection, merged, to_light, to_vertex};
 use super::{
     CameraSubpath, Subpath, Vertex, connect_to_camera, crossed, emitted, from_infinity, light_vertices,
 };
-use crate::equiangular::Equiangular;
+use crate::equiangular::EquiangularSample;
 use crate::mis::Partial;
 use crate::photons::Photons;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Step, Tally, Technique, TechniqueCounts};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::Rgb;
 use bilux_scene::{Ray, TransportMode};
 
 /// One subpath from each end, and all that they find.
@@ -168,38 +168,25 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         }
     }
 
-    fn near_lights(&self, subpath: &Subpath<N>, task: &mut Task, tally: &mut impl Tally<N>) {
-        let walk = &subpath.walk;
-        let is_short = walk.events().and(false).are_within(task.context.max_depth);
-        if subpath.before.is_none() || !is_short {
-            return;
-        }
-        let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
-        task.sample.enter_near_lights(walk.depth);
-        let u = task.sample.sampler.next_1d();
-        for light in task.context.lights.sample(u) {
-            let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
-            let points = Equiangular::new(task.context.scene, light, origin, direction);
-            let Some(points) = points else { continue };
-            let distance = points.sample(u);
-            let Some(mut z) = subpath.vertex_near(distance, task) else { continue };
+    fn equiangular(&self, subpath: &Subpath<N>, task: &mut Task, tally: &mut impl Tally<N>) {
+        let Some(walk) = subpath.equiangular_walk() else { return };
+        walk.each_equiangular(task, |task, EquiangularSample { light, points, distance, u_light }| {
+            let Some(mut z) = subpath.equiangular_vertex(distance, task) else { return };
             self.see_first(&walk.ray, &mut z, task);
             tally.spend(Step::Picked, 1);
-            let Some(Connection { join, segment }) = to_light(task, &z, light, u_light, &self.techniques)
-            else {
-                continue;
-            };
+            let connection = to_light(task, &z, light, u_light, &self.techniques);
+            let Some(Connection { join, segment }) = connection else { return };
             if let Some(passage) = segment.passage(task.tracer) {
-                let join = join.near(points.density(distance) / z.arriving);
+                let join = join.equiangular(points.density(distance) / z.arriving);
                 tally.add_sample(join.technique, &join.along(&passage));
             }
-        }
+        });
     }
 
     fn leave_camera(&self, ray: &Ray) -> Subpath<'_, N> {
         let subpath =
             Subpath::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &self.techniques);
-        subpath.having_points()
+        subpath.with_equiangular_points()
     }
 
     #[inline]

@@ -87,7 +87,7 @@ impl<const N: usize> CameraQueue<N> {
             let before = self.vertices.len();
             self.vertices.extend(surface.and_then(|surface| subpath.vertex_before(surface, &mut task)));
             events.cross(subpath, &task, tally);
-            events.near_lights(subpath, &mut task, tally);
+            events.equiangular(subpath, &mut task, tally);
             let Some(z) = self.vertices.get_mut(before) else {
                 events.escape(subpath, &task, tally);
                 continue;

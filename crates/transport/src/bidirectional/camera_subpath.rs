@@ -44,8 +44,8 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
     /// Merges its last ray with the beams of photons that it crosses in media.
     fn cross(&self, subpath: &Subpath<N>, task: &Task, tally: &mut impl Tally<N>);
 
-    /// Connects points of its last ray that are sampled by their angle to lights with these.
-    fn near_lights(&self, _subpath: &Subpath<N>, _task: &mut Task, _tally: &mut impl Tally<N>) {}
+    /// Connects the [equiangular points](crate::equiangular) of its last ray with their lights.
+    fn equiangular(&self, _subpath: &Subpath<N>, _task: &mut Task, _tally: &mut impl Tally<N>) {}
 
     /// Sends the subpath on; false where it ends.
     fn scatter(&self, subpath: &mut Subpath<N>, z: &Vertex<N>, task: &mut Task) -> bool;
@@ -62,7 +62,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
             tally.spend(Step::Camera, 1);
             let vertex = subpath.next_vertex(task);
             self.cross(&subpath, task, tally);
-            self.near_lights(&subpath, task, tally);
+            self.equiangular(&subpath, task, tally);
             let Some(mut z) = vertex else {
                 return self.escape(&mut subpath, task, tally);
             };

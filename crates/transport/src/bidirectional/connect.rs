@@ -47,8 +47,8 @@ impl<const N: usize> Connection<N> {
 }
 
 impl<const N: usize> Join<N> {
-    /// The same with a point on a light, where the vertex was sampled by its angle to that, `ratio` times as often as walks find it.
-    pub(super) fn near(self, ratio: f32) -> Join<N> {
+    /// The same of an equiangular point and a point on its light, where there are `ratio` such points for each event of a walk.
+    pub(super) fn equiangular(self, ratio: f32) -> Join<N> {
         Join { found: Contribution { own: PerSet::ONE * ratio, ..self.found }, alike: PerSet::ONE, ..self }
     }
 
@@ -98,7 +98,7 @@ pub(crate) fn to_camera<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: 1 },
         found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },
         others: [PerSet::ZERO, others],
-        alike: y.picked_near(task.context.scene, seen.p) * arriving,
+        alike: y.lit_from(task.context.scene, seen.p) * arriving,
         picked: None,
         in_medium: [y.at.is_in_medium(), false],
         odds: y.odds,
@@ -203,7 +203,7 @@ pub(crate) fn to_vertex<const N: usize>(
         alike: if z.at.is_in_medium() {
             PerSet::ZERO
         } else {
-            y.picked_near(task.context.scene, z.at.p()) * (pdf_z / distance2)
+            y.lit_from(task.context.scene, z.at.p()) * (pdf_z / distance2)
         },
         picked: None,
         in_medium,

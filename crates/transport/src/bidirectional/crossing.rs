@@ -2,7 +2,7 @@
 
 use super::vertex::count;
 use crate::beam::{Beam, Crossing, medium_of};
-use crate::equiangular::{Approach, is_near_lights};
+use crate::equiangular::{self, Approach};
 use crate::photon_beams::PhotonBeams;
 use crate::task::Task;
 use crate::techniques::{Contribution, Technique, TechniqueCounts};
@@ -24,7 +24,7 @@ pub(crate) fn crossed<const N: usize>(
     let Some((medium, is_inside)) = medium_of(scene, z.object) else { return };
     let (eye, channel) = (&z.subpath, usize::from(z.subpath.channel));
     let sigma_t = medium.sigma_t();
-    let is_near = is_near_lights(scene, &medium, is_inside);
+    let is_equiangular = equiangular::is_used_inside(scene, &medium, is_inside);
     let often = techniques.crossings(sigma_t, eye.channel);
     let per_events = 1.0 / (sigma_t[channel] * sigma_t[channel]);
     let camera = (eye.depth == 0).then_some((task.context.camera, ray));
@@ -32,7 +32,7 @@ pub(crate) fn crossed<const N: usize>(
         let light = &y.subpath;
         let events = eye.events.joined(light.events).and(is_inside);
         let is_one = y.object == z.object && light.channel == eye.channel;
-        let is_left = light.start.is_some() && is_near && !techniques.direct;
+        let is_left = light.start.is_some() && is_equiangular && !techniques.direct;
         if !is_one || is_left || !events.are_within(task.context.max_depth) {
             return;
         }
@@ -40,7 +40,7 @@ pub(crate) fn crossed<const N: usize>(
         let pdf = medium.phase.eval(wo, wi);
         let from_camera = z.at(scene, &medium, along_z, camera, techniques);
         let mut from_light = y.at(scene, &medium, along_y, None, techniques);
-        if let (Some(start), true) = (light.start, is_near && !eye.leaves_medium) {
+        if let (Some(start), true) = (light.start, is_equiangular && !eye.leaves_medium) {
             let Crossing { distance, by_walk, .. } = from_camera;
             let approach = Approach {
                 origin: Vec3::from(ray.origin),

@@ -25,39 +25,28 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     /// The light that it comes from and how it left, until it has a vertex.
     start: Option<Start>,
     origin: u16,
-    /// Its last vertex is a point of a medium.
-    leaves_medium: bool,
     /// What media on the way to the next vertex emit, over the density of finding it.
     glow: Rgb,
     /// The parts of its last ray through media in which rays are merged; none before the ray is followed.
     pub(crate) beams: Vec<Beam<N>>,
     /// Whether it keeps them.
     has_beams: bool,
-    /// Whether points of its rays are sampled by their [angle to lights](equiangular), and it as it was before its last ray, with the first
-    /// surface there.
-    has_points: bool,
-    pub(super) before: Option<Box<Before<N>>>,
-    /// The last vertex, if camera subpaths may find it near a light.
-    near: Option<Near<N>>,
+    /// Whether its rays have [equiangular points](equiangular).
+    is_equiangular: bool,
+    /// It as it was before its last ray, if that has such points.
+    before: Option<Box<Before<N>>>,
+    /// Its last vertex, if it is a camera subpath, and a light subpath, where equiangular points may be.
+    approach: Option<Approach>,
+    lit: Option<Lit<N>>,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
 
-/// A subpath before its next ray is followed.
-pub(super) struct Before<const N: usize> {
+/// A subpath before its next ray is followed, and the first surface along that.
+struct Before<const N: usize> {
     walk: Walk,
     partial: Partial<N>,
-    leaves_medium: bool,
     first: Surface,
-}
-
-/// A vertex that a subpath has left, for the sake of points that are sampled by their angle to lights.
-#[derive(Clone, Copy)]
-enum Near<const N: usize> {
-    /// Of a camera subpath, which may hit the light by chance next.
-    Eye(Approach),
-    /// Of a light subpath, which came straight from its light.
-    Light(Lit<N>),
 }
 
 impl<'w, const N: usize> Subpath<'w, N> {
@@ -79,20 +68,20 @@ impl<'w, const N: usize> Subpath<'w, N> {
             full,
             start: None,
             origin: 0,
-            leaves_medium: false,
             glow: Rgb::BLACK,
             beams: Vec::new(),
             has_beams: mode == TransportMode::Radiance && techniques.beams != PerSet::ZERO,
-            has_points: false,
+            is_equiangular: false,
             before: None,
-            near: None,
+            approach: None,
+            lit: None,
             techniques,
         }
     }
 
-    /// The same, with points that are sampled by their angle to lights.
-    pub(super) fn having_points(self) -> Subpath<'w, N> {
-        Subpath { has_points: true, ..self }
+    /// The same, with [equiangular points](equiangular) on its rays.
+    pub(super) fn with_equiangular_points(self) -> Subpath<'w, N> {
+        Subpath { is_equiangular: true, ..self }
     }
 
     /// The same from a light of the scene.
@@ -148,15 +137,14 @@ impl<'w, const N: usize> Subpath<'w, N> {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
         self.before = None;
-        if self.has_points && !self.leaves_medium && equiangular::is_used_in(context.scene) {
-            let (walk, partial, leaves_medium) = (*walk, self.partial, self.leaves_medium);
-            self.before = Some(Box::new(Before { walk, partial, leaves_medium, first }));
+        if self.is_equiangular && !walk.leaves_medium && equiangular::is_used_in(context.scene) {
+            self.before = Some(Box::new(Before { walk: *walk, partial: self.partial, first }));
         }
         let leaving = self.has_beams.then(|| Leaving {
             origin: self.origin,
             channel: sample.channel,
             is_split: walk.is_split,
-            leaves_medium: self.leaves_medium,
+            leaves_medium: walk.leaves_medium,
             by_area: self.by_area,
             partial: self.partial,
             start: self.start,
@@ -190,13 +178,14 @@ impl<'w, const N: usize> Subpath<'w, N> {
         // Light sampling connects the first surface of a light subpath with the light.
         let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let media = walk.media;
-        let back = passage.returning(self.leaves_medium);
+        let back = passage.returning(walk.leaves_medium);
         let Some(at) = media.interaction(context.scene, arrival, &sample.wavelength) else {
             self.partial.pass(1.0, Edge { forward: passage.survival, back });
             return None;
         };
         let (wo, t) = (walk.wo(), at.t());
         let edge = Edge { forward: passage.arriving(at.cos(wo)), back };
+        let approach = Approach::of(&at, wo, edge.forward).filter(|_| !walk.leaves_medium);
         let distance2 = if self.by_area { 1.0 } else { t * t };
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
         let straight_from = if is_at_light { self.start.map(|start| start.light) } else { None };
@@ -204,16 +193,12 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel) };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
-        if let Some(Near::Light(lit)) = self.near
-            && !at.is_in_medium()
-        {
+        if let Some(lit) = self.lit.filter(|_| !at.is_in_medium()) {
             self.partial.d_vc = self.partial.d_vc + lit.picked(context.scene, wo, t) * (1.0 / edge.forward);
         }
         let events = self.walk.events().and(at.is_inside());
         self.partial.in_row(events.in_row);
         self.by_area = false;
-        let approach = Approach::of(&at, wo, edge.forward).filter(|_| !self.leaves_medium);
-        self.leaves_medium = at.is_in_medium();
         let Subpath { walk: Walk { beta, odds, depth, is_split, .. }, partial, origin, .. } = *self;
         let share = match self.mode {
             TransportMode::Importance => kept_share(events.in_row),
@@ -253,41 +238,38 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         let finds_direct = self.mode == TransportMode::Importance || at.finds_direct_light(self.techniques);
         self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, finds_direct, vertex.events.in_row);
-        self.near = match (self.mode, vertex.straight_from) {
-            (TransportMode::Radiance, _) => vertex.approach.map(Near::Eye),
-            (TransportMode::Importance, Some(light)) if at.is_near_lights() => {
-                let connected = vertex.partial.connected * (1.0 / sample.pdf_solid_angle);
-                Some(Near::Light(Lit { light, p: at.p(), connected }))
-            }
-            _ => None,
-        };
+        self.approach = vertex.approach;
+        self.lit = vertex.lit(1.0 / sample.pdf_solid_angle);
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
     }
 
-    /// A vertex as if the last ray had come to a point at this distance, in metres, where points are sampled by their angle to lights;
-    /// `None` where they are not, or where the ray does not come so far.
-    pub(super) fn vertex_near(&self, distance: f32, task: &mut Task) -> Option<Vertex<N>> {
-        let Before { walk, partial, leaves_medium, first } = self.before.as_deref()?;
+    /// The walk as it was before its last ray, if that has equiangular points.
+    pub(super) fn equiangular_walk(&self) -> Option<Walk> {
+        self.before.as_deref().map(|before| before.walk)
+    }
+
+    /// The vertex that an equiangular point at this distance along the last ray, in metres, would be; `None` where there are none, or
+    /// where the ray does not come so far.
+    pub(super) fn equiangular_vertex(&self, distance: f32, task: &mut Task) -> Option<Vertex<N>> {
+        let Before { walk, partial, first } = self.before.as_deref()?;
         let (walk, travelled) = walk.in_fog(*first, distance, task.tracer, task.sample)?;
         let mut alike = Subpath {
             walk,
             partial: *partial,
-            leaves_medium: *leaves_medium,
             start: None,
             beams: Vec::new(),
             has_beams: false,
             before: None,
-            near: None,
             ..*self
         };
         alike.arrived(&travelled, task)
     }
 
-    /// How it came to its last vertex, if that is a point of fog that may be sampled by its angle to a light.
+    /// How it came to its last vertex, if that may be an equiangular point.
     pub(super) fn approach(&self) -> Option<Approach> {
-        if let Some(Near::Eye(approach)) = self.near { Some(approach) } else { None }
+        self.approach
     }
 
     /// The light that media have emitted on the way here, as the colour channels see it; `None` if there is none. No other technique

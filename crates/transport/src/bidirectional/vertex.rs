@@ -36,7 +36,7 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) arriving: f32,
     /// The light that its light subpath comes from, if it comes straight from there.
     pub(super) straight_from: Option<usize>,
-    /// How the ray of a camera subpath came here, where points of it are sampled by their [angle to lights](crate::equiangular) too.
+    /// How the ray of a camera subpath came here, where [equiangular points](crate::equiangular) may be.
     pub(super) approach: Option<Approach>,
 }
 
@@ -61,17 +61,18 @@ impl<const N: usize> Vertex<N> {
         self.came_split || self.at.splits()
     }
 
-    /// How often camera subpaths that leave this point for here sample this vertex by its [angle to the light](equiangular) and connect
-    /// it with the light, in place of a light subpath: over the density with which their walks come close to it.
-    pub(super) fn picked_near(&self, scene: &Scene, from: Vec3) -> PerSet<N> {
-        match (&self.at, self.straight_from) {
-            (Interaction::Medium(point), Some(light)) if point.is_near_lights => {
-                let lit = Lit { light, p: point.p, connected: self.partial.connected };
-                let distance = point.p.distance(from);
-                lit.picked(scene, (point.p - from) / distance, distance)
-            }
-            _ => PerSet::ZERO,
-        }
+    /// This vertex of a light subpath, where camera subpaths may find it as an [equiangular point](crate::equiangular). `factor` turns how
+    /// often it is connected with its light into what counts beyond it.
+    pub(super) fn lit(&self, factor: f32) -> Option<Lit<N>> {
+        let (light, connected) = (self.straight_from?, self.partial.connected * factor);
+        self.at.is_equiangular().then(|| Lit { light, p: self.at.p(), connected })
+    }
+
+    /// How often camera subpaths that come here from this point find it so, over the density with which their walks arrive.
+    pub(super) fn lit_from(&self, scene: &Scene, from: Vec3) -> PerSet<N> {
+        let Some(lit) = self.lit(1.0) else { return PerSet::ZERO };
+        let distance = lit.p.distance(from);
+        lit.picked(scene, (lit.p - from) / distance, distance)
     }
 
     /// The photon that is stored for merging; `None` in a medium.

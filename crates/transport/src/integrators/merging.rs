@@ -38,10 +38,11 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 pub(super) const CONNECTIONS: Parameter = switch("connections", "connect the vertices of the two subpaths");
 pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to the camera");
 
-/// Whether light subpaths look for direct light on surfaces too; in fog they always do.
+/// Whether light subpaths look for direct light too where camera subpaths find it well: on surfaces, and in fog with equiangular points.
 pub(super) const DIRECT: Parameter = switch(
     "direct",
-    "also connect and merge light paths that reach a surface straight from a light; in fog this is always done",
+    "also connect and merge light paths that come straight from a light to a surface or into grey, even fog; in coloured fog and \
+     smoke this is always done",
 );
 
 const fn switch(name: &'static str, summary: &'static str) -> Parameter {

@@ -2,7 +2,7 @@
 
 use super::Media;
 use super::passage::{Arrival, Passage, Travelled, behind, draws_along};
-use crate::equiangular::is_near_lights;
+use crate::equiangular;
 use crate::interaction::MediumPoint;
 use bilux_math::Vec3;
 use bilux_scene::{Medium, Ray, Scene, Surface, Tracer};
@@ -19,11 +19,11 @@ impl Media {
             phase: medium.phase,
             is_inside,
             even: medium.density.is_none().then(|| medium.sigma_t()),
-            is_near_lights: is_near_lights(scene, medium, is_inside),
+            is_equiangular: equiangular::is_used_inside(scene, medium, is_inside),
         }
     }
 
-    /// As if a walk along a ray of unit direction had an event in [such a medium](is_near_lights), at this distance in metres. `first`
+    /// As if a walk along a ray of unit direction had an event in a medium that has [equiangular points](equiangular), at this distance in metres. `first`
     /// is the first surface along the ray. `None` where something else is there, or a surface before it. Afterwards these are the media
     /// there.
     pub(crate) fn travel_to_fog(
@@ -61,7 +61,7 @@ impl Media {
         let density = passage.arriving(None);
         let weight = passage.transmittance * medium.sigma_s / density;
         let arrival = Arrival::Medium(point);
-        (point.is_near_lights && density > 0.0).then_some(Travelled {
+        (point.is_equiangular && density > 0.0).then_some(Travelled {
             arrival,
             weight,
             passage,

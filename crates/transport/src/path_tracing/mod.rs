@@ -3,7 +3,7 @@
 
 mod light_connection;
 
-use crate::equiangular::{self, Approach, Equiangular};
+use crate::equiangular::{self, Approach, EquiangularSample};
 use crate::interaction::Interaction;
 use crate::light_choice::LightChoice;
 use crate::media::{Arrival, Media, Travelled};
@@ -32,7 +32,7 @@ struct Vertex<'a> {
     media: &'a Media,
     /// [`Walk::odds`].
     odds: Rgb,
-    /// How its ray came here, where it is a point of fog that is sampled by its angle to lights too.
+    /// How its ray came here, where [equiangular points](equiangular) may be.
     approach: Option<Approach>,
 }
 
@@ -52,10 +52,8 @@ pub(crate) struct Path {
     /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
     /// where no light can be sampled.
     pub(crate) last: Option<(Vec3, f32)>,
-    /// How its ray came to the last event, where that is a point of fog that is sampled by its [angle to lights](equiangular) too.
+    /// How its ray came to the last event, where [equiangular points](equiangular) may be.
     pub(crate) approach: Option<Approach>,
-    /// Its last event was in a medium.
-    leaves_medium: bool,
 }
 
 impl PathTracing {
@@ -65,10 +63,11 @@ impl PathTracing {
         loop {
             let first = task.tracer.closest(&path.walk.ray);
             if let Some(first) = first
-                && !path.leaves_medium
+                && self.sampling != Sampling::Scattering
+                && !path.walk.leaves_medium
                 && equiangular::is_used_in(task.context.scene)
             {
-                self.near_lights(&mut path, first, task);
+                self.equiangular(&mut path, first, task);
             }
             let travelled =
                 path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance, |_| {});
@@ -126,9 +125,9 @@ impl PathTracing {
         let wo = path.walk.wo();
         let Some(at) = self.arrive(path, &travelled.arrival, task) else { return false };
         let by_walk = travelled.passage.arriving(None);
-        let approach = Approach::of(&at, wo, by_walk).filter(|_| !path.leaves_medium);
+        let approach = Approach::of(&at, wo, by_walk).filter(|_| !path.walk.leaves_medium);
         let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
-        (path.approach, path.leaves_medium) = (approach, at.is_in_medium());
+        path.approach = approach;
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
         self.scatter(path, &at, task)
@@ -151,38 +150,20 @@ impl PathTracing {
         Some(at)
     }
 
-    /// Light samples at points of the path's ray that are sampled by their angle to lights.
-    fn near_lights(&self, path: &mut Path, first: Surface, task: &mut Task) {
-        let Walk { depth, ray, .. } = path.walk;
-        if self.sampling == Sampling::Scattering
-            || !path.walk.events().and(false).are_within(task.context.max_depth)
-        {
-            return;
-        }
-        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
-        task.sample.enter_near_lights(depth);
-        let u = task.sample.sampler.next_1d();
-        for light in task.context.lights.sample(u) {
-            let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
-            let Some(points) = Equiangular::new(task.context.scene, light, origin, direction) else {
-                continue;
+    /// Connects the [equiangular points](equiangular) of the path's ray, which hits this surface first, with their lights.
+    fn equiangular(&self, path: &mut Path, first: Surface, task: &mut Task) {
+        let walk = path.walk;
+        walk.each_equiangular(task, |task, EquiangularSample { light, distance, u_light, .. }| {
+            let alike = walk.in_fog(first, distance, task.tracer, task.sample);
+            let Some((alike, Travelled { arrival: Arrival::Medium(point), passage, .. })) = alike else {
+                return;
             };
-            let Some((walk, travelled)) = path.walk.in_fog(first, points.sample(u), task.tracer, task.sample)
-            else {
-                continue;
-            };
-            let Arrival::Medium(point) = travelled.arrival else { continue };
-            let (at, wo) = (Interaction::Medium(point), walk.wo());
-            let approach = Approach::of(&at, wo, travelled.passage.arriving(None));
-            let from = Vertex { at: &at, wo, media: &walk.media, odds: walk.odds, approach };
-            if let Some(connection) = self.connection(task, light, &from, u_light) {
-                let seen = walk.seen(task.sample);
-                let found = seen * connection.trace(task.tracer);
-                connection.note(task.sample, depth, found);
-                task.sample.find(depth + 2, Some(light), found);
-                path.light += found;
-            }
-        }
+            let (at, wo) = (Interaction::Medium(point), alike.wo());
+            let approach = Approach::of(&at, wo, passage.arriving(None));
+            let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach };
+            let seen = alike.seen(task.sample);
+            path.light += seen * self.light_sample(task, light, &from, u_light, (alike.depth, seen));
+        });
     }
 
     /// Collects the light that a surface emits.
@@ -315,12 +296,25 @@ impl PathTracing {
         };
         chosen.fold(Rgb::BLACK, |sum, light| {
             let u = task.sample.sampler.next_2d();
-            let Some(connection) = self.connection(task, light, from, u) else { return sum };
-            let found = connection.trace(task.tracer);
-            connection.note(task.sample, depth, seen * found);
-            task.sample.find(depth + 2, Some(light), seen * found);
-            sum + found
+            sum + self.light_sample(task, light, from, u, (depth, seen))
         })
+    }
+
+    /// What one light sends along `wo`, from the point that `u` picks. The depth of the vertex and what the sample sees of it are for the
+    /// record.
+    fn light_sample(
+        &self,
+        task: &mut Task,
+        light: usize,
+        from: &Vertex,
+        u: Vec2,
+        (depth, seen): (u32, Rgb),
+    ) -> Rgb {
+        let Some(connection) = self.connection(task, light, from, u) else { return Rgb::BLACK };
+        let found = connection.trace(task.tracer);
+        connection.note(task.sample, depth, seen * found);
+        task.sample.find(depth + 2, Some(light), seen * found);
+        found
     }
 
     /// Leaves out the random numbers of light samples.
@@ -378,12 +372,6 @@ impl PathTracing {
 impl Path {
     /// A path with only its camera ray, which travels in these media.
     pub(crate) fn new(ray: &Ray, media: Media) -> Path {
-        Path {
-            walk: Walk::new(ray, Rgb::WHITE, media),
-            light: Rgb::BLACK,
-            last: None,
-            approach: None,
-            leaves_medium: false,
-        }
+        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None, approach: None }
     }
 }

@@ -4,6 +4,7 @@ use super::density::{FROM, RESOLUTION, TO};
 use super::gradient_noise;
 use super::{Density, DensityEntry};
 use crate::error::SceneError;
+use crate::octaves::{ROUGHNESS, SEED, weights};
 use bilux_math::Vec3;
 use bilux_math::hash::hash_words;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -28,13 +29,7 @@ pub(super) const ENTRY: DensityEntry = DensityEntry {
                 kind: ParameterKind::Integer { min: 1, max: 16 },
                 default: "5",
             },
-            Parameter {
-                name: "roughness",
-                summary: "amplitude of each octave relative to the one before",
-                unit: "",
-                kind: ParameterKind::Number { min: 0.0, max: 1.0 },
-                default: "0.5",
-            },
+            ROUGHNESS,
             Parameter {
                 name: "low",
                 summary: "where the noise, whose mean is 0.5, is below this, the density is 0",
@@ -49,35 +44,22 @@ pub(super) const ENTRY: DensityEntry = DensityEntry {
                 kind: ParameterKind::Number { min: -10.0, max: 10.0 },
                 default: "1",
             },
-            Parameter {
-                name: "seed",
-                summary: "seed of the noise",
-                unit: "",
-                kind: ParameterKind::Integer { min: 0, max: i64::MAX },
-                default: "0",
-            },
+            SEED,
             FROM,
             TO,
             RESOLUTION,
         ],
     },
     build: |reader| {
-        let [frequency, roughness, low, high] =
-            ["frequency", "roughness", "low", "high"].map(|key| reader.number(key));
+        let [frequency, low, high] = ["frequency", "low", "high"].map(|key| reader.number(key));
         if low >= high {
             let message = format!("'low' is {low}, which is not below 'high', {high}");
             return Err(SceneError::invalid(message, reader.span("low")));
         }
         let seed = reader.integer("seed") as u64;
-        let mut octaves = Vec::new();
-        let mut weight = 1.0f32;
-        for octave in 0..reader.integer("octaves") as u64 {
-            octaves.push((weight, shift(seed, octave)));
-            weight *= roughness;
-        }
-        // Noise of one octave has a standard deviation of .27; that of the sum is then .2, for any number of octaves.
-        let spread = octaves.iter().map(|(weight, _)| weight * weight).sum::<f32>().sqrt();
-        octaves.iter_mut().for_each(|(weight, _)| *weight *= 0.75 / spread);
+        // Noise of one octave has a standard deviation of .27; that of the sum is then .2.
+        let octaves = weights(reader, 0.75).into_iter().zip(0..);
+        let octaves = octaves.map(|(weight, octave)| (weight, shift(seed, octave))).collect();
         Ok(Box::new(Noise { frequency, octaves, low, high }))
     },
 };

@@ -2,6 +2,7 @@
 
 use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
+use crate::octaves::{ROUGHNESS, SEED, weights};
 use crate::texture::ColourMap;
 use bilux_math::hash::hash_words;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -26,20 +27,8 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
                 kind: ParameterKind::Integer { min: 1, max: 16 },
                 default: "6",
             },
-            Parameter {
-                name: "roughness",
-                summary: "amplitude of each octave relative to the one before",
-                unit: "",
-                kind: ParameterKind::Number { min: 0.0, max: 1.0 },
-                default: "0.5",
-            },
-            Parameter {
-                name: "seed",
-                summary: "seed of the noise",
-                unit: "",
-                kind: ParameterKind::Integer { min: 0, max: i64::MAX },
-                default: "0",
-            },
+            ROUGHNESS,
+            SEED,
             u_scale("factor on u: the number of cells of the noise across", "4"),
             v_scale("factor on v: the number of cells of the noise upwards", "4"),
             U_OFFSET,
@@ -48,16 +37,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
     },
     build: |reader, parts| {
         let [a, b] = ["a", "b"].map(|key| parts.colour(reader, key));
-        let strength = reader.number("roughness");
-        let mut octaves = Vec::new();
-        let mut weight = 1.0;
-        for _ in 0..reader.integer("octaves") {
-            octaves.push(weight);
-            weight *= strength;
-        }
-        // The same standard deviation for any number of octaves.
-        let spread = octaves.iter().map(|w| w * w).sum::<f32>().sqrt();
-        octaves.iter_mut().for_each(|weight| *weight *= SQRT_2 / spread);
+        let octaves = weights(reader, SQRT_2);
         let seed = reader.integer("seed") as u64;
         Ok(Arc::new(Noise { a, b, octaves, seed, place: UvPlacement::read(reader) }))
     },

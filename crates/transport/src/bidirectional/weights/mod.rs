@@ -38,7 +38,7 @@ struct Verdict {
     wrong: usize,
     worst: f64,
     /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
-    /// merge, crossed beams, point near a light.
+    /// merge, crossed beams, equiangular point.
     telling: [usize; 7],
 }
 
@@ -286,9 +286,9 @@ fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
     assert!(wrong > 20, "only {wrong} of {compared} weights know that rows are long");
 }
 
-/// In fog without colour, points of rays are also sampled by their angle to lights.
+/// In fog without colour, rays have equiangular points too.
 #[test]
-fn every_mis_weight_matches_its_definition_near_lights() {
+fn every_mis_weight_matches_its_definition_with_equiangular_points() {
     let extinction = Some(GREY_FOG[0] + GREY_FOG[1]);
     for (i, lights) in [&["rect"][..], &["point", "rect"]].into_iter().enumerate() {
         // The definition knows no lens.

@@ -62,7 +62,7 @@ pub(super) enum Flaw {
     /// The angle between beams that cross is left out, or that beams stand for all events along them.
     Sine,
     Extinction,
-    /// Points that are sampled by their angle to lights are left out, or are as frequent as events of walks.
+    /// Equiangular points are left out, or are as frequent as events of walks.
     Points,
     WalkedPoints,
 }
@@ -84,7 +84,7 @@ impl Path {
         let leaves_direct = flaw != Flaw::Direct
             && match &self.nodes[0].at {
                 Interaction::Surface(..) => !techniques.direct,
-                Interaction::Medium(point) => !techniques.direct && point.is_near_lights,
+                Interaction::Medium(point) => !techniques.direct && point.is_equiangular,
             };
         // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
@@ -106,8 +106,8 @@ impl Path {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
-        if let Some(near) = self.near_light(task, flaw) {
-            all.push(((true, 1), light[1] * camera[count + 1] * near));
+        if let Some(ratio) = self.equiangular(task, flaw) {
+            all.push(((true, 1), light[1] * camera[count + 1] * ratio));
         }
         for i in (1..=count).filter(|i| is_open(*i)) {
             let node = &self.nodes[i - 1];
@@ -132,11 +132,10 @@ impl Path {
         if rows.contains(&0) { 0 } else { rows.iter().sum::<usize>() as u32 }
     }
 
-    /// How often the point next to the light is sampled by the angle under which the light sees the ray to it, over how often walks have an
-    /// event there; `None` where it is not.
-    fn near_light(&self, task: &Task, flaw: Flaw) -> Option<f64> {
+    /// How many equiangular points are where the vertex next to the light is, for each event of a walk; `None` where there are none.
+    fn equiangular(&self, task: &Task, flaw: Flaw) -> Option<f64> {
         let (scene, first) = (task.context.scene, &self.nodes[0]);
-        let Interaction::Medium(MediumPoint { is_near_lights: true, .. }) = first.at else { return None };
+        let Interaction::Medium(MediumPoint { is_equiangular: true, .. }) = first.at else { return None };
         if self.nodes.get(1).is_some_and(|next| next.at.is_in_medium()) {
             return None;
         }

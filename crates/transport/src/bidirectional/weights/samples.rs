@@ -35,7 +35,7 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     seen_by_camera(task, verdict, start, &y);
     hit_emitters(task, verdict, &z);
     sampled_lights(task, verdict, &z);
-    sampled_near_lights(task, verdict, &z);
+    sampled_equiangularly(task, verdict, &z);
     connected(task, verdict, start, (&y, &z));
 }
 
@@ -105,16 +105,16 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     }
 }
 
-/// Connects points that are sampled by their angle to a light with this.
-fn sampled_near_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
+/// Connects equiangular points with their lights.
+fn sampled_equiangularly(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     let techniques = &{ verdict.techniques };
-    for PointNear { before, light, ratio, vertex, camera_density } in &z.points {
+    for EquiangularPoint { before, light, ratio, vertex, camera_density } in &z.points {
         let u = task.sample.sampler.next_2d();
         let Some(Connection { join, segment }) = to_light(task, vertex, *light, u, techniques) else {
             continue;
         };
         let Some(passage) = segment.passage(task.tracer) else { continue };
-        let found = join.near(*ratio).along(&passage);
+        let found = join.equiangular(*ratio).along(&passage);
         let sample =
             task.context.scene.lights()[*light].light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
         let start = light_start(*light, &sample);
@@ -231,14 +231,14 @@ struct Traced<'w> {
     /// The subpath with which it left the scene.
     left: Option<Subpath<'w>>,
     camera_density: f32,
-    points: Vec<PointNear>,
+    points: Vec<EquiangularPoint>,
 }
 
-/// A point of fog that is sampled by its angle to a light, on the ray that leaves the last of so many vertices before.
-struct PointNear {
+/// An equiangular point on the ray that leaves the last of so many vertices before.
+struct EquiangularPoint {
     before: usize,
     light: usize,
-    /// How often it is sampled so, for each time that a walk finds it.
+    /// How many such points are there, for each event of a walk.
     ratio: f32,
     vertex: Vertex,
     /// The density of camera rays at the camera subpath's first vertex, which may be this one.
@@ -273,7 +273,7 @@ fn followed<'w>(
     subpath = subpath.keeping_beams(techniques.beams != PerSet::ZERO);
     let mut points = Vec::new();
     if is_camera {
-        subpath = subpath.having_points();
+        subpath = subpath.with_equiangular_points();
     }
     loop {
         rays.push(subpath.walk.ray);
@@ -286,7 +286,7 @@ fn followed<'w>(
                 continue;
             };
             let distance = angle.sample(u);
-            let Some(mut vertex) = subpath.vertex_near(distance, task) else { continue };
+            let Some(mut vertex) = subpath.equiangular_vertex(distance, task) else { continue };
             let mut camera_density = camera_density;
             if vertex.depth == 0 {
                 camera_density = task.context.camera.density(&ray, distance);
@@ -294,7 +294,7 @@ fn followed<'w>(
                 vertex.partial = Partial::of_camera(density, techniques, vertex.partial.merged);
             }
             let ratio = angle.density(distance) / vertex.arriving;
-            points.push(PointNear { before: vertices.len(), light, ratio, vertex, camera_density });
+            points.push(EquiangularPoint { before: vertices.len(), light, ratio, vertex, camera_density });
         }
         let Some(mut vertex) = next else {
             left = Some(subpath);
