@@ -92,10 +92,11 @@ fn finish(status: u8, message: &str, always: bool) -> ! {
         _ if always => write(Stream::Error, &["error: ", message, "\n"]),
         _ => {}
     }
+    // In this order: no file comes into its place after the first step.
+    bilux::pictures::formats::remove_unfinished();
     if interrupt().is_terminated() {
         remove_unasked();
     }
-    bilux::pictures::formats::remove_unfinished();
     exit(status)
 }
 

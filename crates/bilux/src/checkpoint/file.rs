@@ -5,7 +5,7 @@ use crate::error::CheckpointError;
 use bilux_pictures::formats::Unfinished;
 use bilux_transport::{Checkpoint, FilmError};
 use sha2::{Digest, Sha256};
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -120,11 +120,12 @@ pub(super) fn write(
     head: &Head,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), CheckpointError> {
-    let beside = part_path(path);
-    let _unfinished = Unfinished::begin(&beside);
     let text = head.to_text();
     let fill = || {
-        let mut out = Hashed { file: io::BufWriter::new(File::create(&beside)?), hash: Sha256::new() };
+        let mut how = OpenOptions::new();
+        let (unfinished, file) =
+            Unfinished::create(&part_path(path), how.write(true).create(true).truncate(true))?;
+        let mut out = Hashed { file: io::BufWriter::new(file), hash: Sha256::new() };
         out.write_all(MAGIC)?;
         out.write_all(&(text.len() as u32).to_le_bytes())?;
         out.write_all(text.as_bytes())?;
@@ -134,12 +135,12 @@ pub(super) fn write(
         out.file.write_all(&hash)?;
         let file = out.file.into_inner().map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        std::fs::rename(&beside, path)
+        unfinished.complete(path)
     };
-    fill().map_err(|source| {
-        // The first failure is the one to report.
-        let _ = std::fs::remove_file(&beside);
-        CheckpointError::Io { path: path.to_owned(), action: "write the checkpoint", source }
+    fill().map_err(|source| CheckpointError::Io {
+        path: path.to_owned(),
+        action: "write the checkpoint",
+        source,
     })
 }
 

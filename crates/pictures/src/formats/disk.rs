@@ -4,7 +4,7 @@ use super::unfinished::Unfinished;
 use crate::{Limits, PictureError};
 use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The bytes of a file; an error if they exceed the limit, whatever length the file claims to have.
 pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, PictureError> {
@@ -28,14 +28,10 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
         return fs::write(&target, bytes).map_err(|source| PictureError::Io { action: "write it", source });
     }
-    let (beside, file, _unfinished) =
+    let (unfinished, file) =
         create_beside(&target).map_err(|source| PictureError::Io { action: "write beside it", source })?;
-    let written = fill(file, bytes).and_then(|()| fs::rename(&beside, &target));
-    written.map_err(|source| {
-        // The first failure is the one to report; a failed cleanup adds nothing.
-        let _ = fs::remove_file(&beside);
-        PictureError::Io { action: "write it", source }
-    })
+    let written = fill(file, bytes).and_then(|()| unfinished.complete(&target));
+    written.map_err(|source| PictureError::Io { action: "write it", source })
 }
 
 fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {
@@ -44,15 +40,14 @@ fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Creates a new file in the target's folder, under a name that does not exist yet.
-fn create_beside(target: &Path) -> std::io::Result<(PathBuf, File, Unfinished)> {
+fn create_beside(target: &Path) -> std::io::Result<(Unfinished, File)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let process = std::process::id();
     let mut attempt = 0;
     loop {
         let beside = target.with_file_name(format!(".{name}.{process}.{attempt}.part"));
-        let unfinished = Unfinished::begin(&beside);
-        match OpenOptions::new().write(true).create_new(true).open(&beside) {
-            Ok(file) => return Ok((beside, file, unfinished)),
+        match Unfinished::create(&beside, OpenOptions::new().write(true).create_new(true)) {
+            Ok(created) => return Ok(created),
             Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
             Err(error) => return Err(error),
         }
