@@ -1,4 +1,4 @@
-//! Grids of numbers in space, from arrays.
+//! Grids of numbers in space, from arrays, files and formulas.
 
 use crate::arrays;
 use crate::encoded::{Encoded, decoded as decoded_scene};
@@ -6,7 +6,7 @@ use crate::ending::without_gil;
 use crate::errors::{exception, warn};
 use crate::memory;
 use crate::source::Source;
-use crate::values;
+use crate::values::{Grid, Unresolved, parameters as parameters_of};
 use bilux::formats::ReadOptions;
 use bilux::math::{Transform, Vec3};
 use bilux::scene::media::ComputedDensity;
@@ -16,21 +16,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
-
-/// Numbers in space, such as the density of smoke, for any parameter of a material that takes a grid.
-///
-/// Args:
-///     values: an array (depth, height, width), none of them negative: values[z, y, x]. They are kept as 16-bit floats.
-///     bounds: two opposite corners, (x, y, z) each, of the box in the object that the voxels fill, in metres. If it is not given,
-///         voxels are cubes, begin at the origin, and the longest side is 1.
-///     name: a name for messages and written files.
-///
-/// Example:
-///     >>> z, y, x = np.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
-///     >>> ball = bilux.Grid(np.maximum(0, 1 - (x**2 + y**2 + z**2)), bounds=((-1, -1, -1), (1, 1, 1)))
-///     >>> smoke = bilux.materials.interface(scattering=4, density=ball)
-#[pyclass(frozen, module = "bilux")]
-pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
 
 #[pymethods]
 impl Grid {
@@ -95,7 +80,7 @@ impl Grid {
     fn computed(py: Python<'_>, kind: &str, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Grid> {
         let mut spec = Spec::new("", kind);
         if let Some(keywords) = parameters {
-            spec.parameters = values::parameters(keywords, &mut values::Unresolved)?;
+            spec.parameters = parameters_of(keywords, &mut Unresolved)?;
         }
         let density = ComputedDensity::new(spec).map_err(exception)?;
         let max_memory = memory::within_limits(ReadOptions::default().max_memory);

@@ -48,8 +48,6 @@ mod _bilux {
     #[pymodule_export]
     use crate::encoded::Encoded;
     #[pymodule_export]
-    use crate::grid::Grid;
-    #[pymodule_export]
     use crate::inspect::{replay, strategies};
     #[pymodule_export]
     use crate::keyframes::set_keyframes;
@@ -72,7 +70,7 @@ mod _bilux {
     #[pymodule_export]
     use crate::turntable::Turntable;
     #[pymodule_export]
-    use crate::values::Spec;
+    use crate::values::{Grid, Spec};
 
     /// The licences of Bilux, and of everything in this package that others wrote.
     ///

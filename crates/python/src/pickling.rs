@@ -1,7 +1,5 @@
-//! Pictures and structures as plain Python values, for `pickle` and `copy`.
+//! How a picture is shown, as plain Python values, for `pickle` and `copy`.
 
-use crate::layer::Layer;
-use crate::picture::Picture;
 use bilux::Display;
 use bilux::math::Rgb;
 use bilux::pictures::{ColourSpace, tone_map};
@@ -10,51 +8,48 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// The form of pickles; another number is refused.
-const FORM: u32 = 2;
+pub(crate) const FORM: u32 = 2;
+
+/// Everything that a picture holds: the form, its layers, how it is shown, its colour space, its metadata, and its info.
+pub(crate) type PictureValues =
+    (u32, Vec<(String, Vec<String>, Py<PyAny>)>, ShownValues, SpaceValue, Py<PyDict>, Py<PyDict>);
 
 /// Exposure in stops, whether it is automatic too, the name of the tone curve, and the colour behind the picture.
-type ShownValues = (f32, bool, String, Option<[f32; 3]>);
+pub(crate) type ShownValues = (f32, bool, String, Option<[f32; 3]>);
 
-/// Everything that a picture holds.
-pub(crate) type PictureValues =
-    (u32, Vec<(String, Vec<String>, Py<PyAny>)>, ShownValues, Option<f32>, Py<PyDict>, Py<PyDict>);
+/// Linear light, sRGB as a power of 0, or a power.
+pub(crate) type SpaceValue = Option<f32>;
 
-/// A picture as plain values.
-pub(crate) fn values_of(py: Python<'_>, picture: &Picture) -> PictureValues {
-    let layers = picture.layers.iter();
-    let layers = layers.map(|l| (l.name.clone(), l.channels.clone(), l.pixels.clone_ref(py))).collect();
-    let Display { exposure, auto_exposure, tone_map, behind, .. } = picture.shown;
-    let shown = (exposure, auto_exposure, tone_map.entry.name.to_owned(), behind.map(Rgb::to_array));
-    // Linear light, sRGB as a power of 0, or a power.
-    let space = match picture.colour_space {
+pub(crate) fn shown_values(shown: &Display) -> ShownValues {
+    let Display { exposure, auto_exposure, tone_map, behind, .. } = shown;
+    (*exposure, *auto_exposure, tone_map.entry.name.to_owned(), behind.map(Rgb::to_array))
+}
+
+/// # Errors
+/// If the values come from another version.
+pub(crate) fn shown_of((exposure, auto_exposure, curve, behind): ShownValues) -> PyResult<Display> {
+    let tone_map = tone_map(&curve).map_err(|_| other_version())?;
+    let behind = behind.map(Rgb::from_array);
+    Ok(Display { exposure, auto_exposure, tone_map, behind, ..Display::default() })
+}
+
+pub(crate) fn space_value(space: ColourSpace) -> SpaceValue {
+    match space {
         ColourSpace::LinearRec709 => None,
         ColourSpace::Srgb => Some(0.0),
         ColourSpace::Gamma(power) => Some(power),
-    };
-    (FORM, layers, shown, space, picture.metadata.clone_ref(py), picture.info.clone_ref(py))
+    }
 }
 
-/// The picture of these values.
-///
-/// # Errors
-/// If they come from another version.
-pub(crate) fn picture_of(py: Python<'_>, values: PictureValues) -> PyResult<Picture> {
-    let (form, layers, (exposure, auto_exposure, curve, behind), space, metadata, info) = values;
-    let other =
-        || PyValueError::new_err("this picture was pickled by another version of bilux: save it as an .exr");
-    if form != FORM || layers.is_empty() {
-        return Err(other());
-    }
-    let layers: Vec<Layer> =
-        layers.into_iter().map(|(name, channels, pixels)| Layer { name, channels, pixels }).collect();
-    let tone_map = tone_map(&curve).map_err(|_| other())?;
-    let behind = behind.map(Rgb::from_array);
-    let shown = Display { exposure, auto_exposure, tone_map, behind, ..Display::default() };
-    let colour_space = match space {
+pub(crate) fn space_of(value: SpaceValue) -> ColourSpace {
+    match value {
         None => ColourSpace::LinearRec709,
         Some(0.0) => ColourSpace::Srgb,
         Some(power) => ColourSpace::Gamma(power),
-    };
-    let size = layers[0].size(py)?;
-    Ok(Picture { size, layers, shown, colour_space, metadata, info })
+    }
+}
+
+/// The error for values that come from another version.
+pub(crate) fn other_version() -> PyErr {
+    PyValueError::new_err("this picture was pickled by another version of bilux: save it as an .exr")
 }

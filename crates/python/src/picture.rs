@@ -4,7 +4,7 @@ use crate::ending::without_gil;
 use crate::errors::{exception, of_picture, warn};
 use crate::layer::{Layer, layers_of};
 use crate::layer_names::{Meaning, meaning};
-use crate::pickling::{PictureValues, picture_of, values_of};
+use crate::pickling::{self, PictureValues, shown_of, shown_values, space_of, space_value};
 use crate::shown;
 use crate::source::Sink;
 use bilux::Display;
@@ -267,12 +267,19 @@ impl Picture {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let restore = slf.get_type().getattr("_restored")?;
-        (restore, (values_of(slf.py(), slf.get()),)).into_pyobject(slf.py())
+        (restore, (slf.get().values(slf.py()),)).into_pyobject(slf.py())
     }
 
     #[staticmethod]
     fn _restored(py: Python<'_>, values: PictureValues) -> PyResult<Picture> {
-        picture_of(py, values)
+        let (form, layers, shown, space, metadata, info) = values;
+        if form != pickling::FORM || layers.is_empty() {
+            return Err(pickling::other_version());
+        }
+        let layer = |(name, channels, pixels)| Layer { name, channels, pixels };
+        let layers: Vec<Layer> = layers.into_iter().map(layer).collect();
+        let (shown, colour_space) = (shown_of(shown)?, space_of(space));
+        Ok(Picture { size: layers[0].size(py)?, layers, shown, colour_space, metadata, info })
     }
 
     fn __repr__(&self) -> String {
@@ -284,6 +291,14 @@ impl Picture {
 }
 
 impl Picture {
+    /// Everything that it holds.
+    fn values(&self, py: Python<'_>) -> PictureValues {
+        let layers = self.layers.iter();
+        let layers = layers.map(|l| (l.name.clone(), l.channels.clone(), l.pixels.clone_ref(py))).collect();
+        let (shown, space) = (shown_values(&self.shown), space_value(self.colour_space));
+        (pickling::FORM, layers, shown, space, self.metadata.clone_ref(py), self.info.clone_ref(py))
+    }
+
     /// The layers that a name stands for.
     fn found(&self, name: &str) -> Vec<&Layer> {
         let all = || self.layers.iter().filter(|layer| !layer.name.is_empty());

@@ -1,12 +1,13 @@
-//! Python's values as parameters of a scene, and back. A material may be a value, and has values itself.
+//! Python's values as parameters of a scene, and back. A material may be a value, and has values itself; a grid
+//! may be one, and may be computed from some.
 
-use crate::grid::Grid;
 use crate::texture::Texture;
 use bilux::scene::{Parameters, SceneBuilder, Value};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
+use std::sync::Arc;
 
 /// A material, a light or a camera: the name of a row of a table, and parameters.
 ///
@@ -29,6 +30,21 @@ pub(crate) struct Spec {
     pub(crate) name: String,
     pub(crate) parameters: Py<PyDict>,
 }
+
+/// Numbers in space, such as the density of smoke, for any parameter of a material that takes a grid.
+///
+/// Args:
+///     values: an array (depth, height, width), none of them negative: values[z, y, x]. They are kept as 16-bit floats.
+///     bounds: two opposite corners, (x, y, z) each, of the box in the object that the voxels fill, in metres. If it is not given,
+///         voxels are cubes, begin at the origin, and the longest side is 1.
+///     name: a name for messages and written files.
+///
+/// Example:
+///     >>> z, y, x = np.mgrid[-1:1:32j, -1:1:32j, -1:1:32j]
+///     >>> ball = bilux.Grid(np.maximum(0, 1 - (x**2 + y**2 + z**2)), bounds=((-1, -1, -1), (1, 1, 1)))
+///     >>> smoke = bilux.materials.interface(scattering=4, density=ball)
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
 
 /// Where values may name textures and materials.
 pub(crate) trait Resolve {

@@ -16,12 +16,8 @@ const STILL: &[&str] = &[
     // The kernels of one tree are compiled for each level of instructions: every file of them names the trait that `level` makes
     // of them, which calls them all. Trees and the storage that maps them from files are built of each other.
     "crates/accel",
-    // Measurements stand beside what they measure with, in the `mod.rs` of each benchmark.
-    "crates/bench",
     // The arguments name what reads them, which reads other arguments.
     "crates/cli",
-    // A value may be a grid, and grids are made of values; a picture is made of what it is pickled to.
-    "crates/python",
 ];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {

@@ -1,6 +1,6 @@
 //! Our best result for each class of rays on each scene, against Embree's.
 
-use super::Mode;
+use super::engine::Mode;
 use super::report::Row;
 use crate::table;
 

@@ -1,6 +1,6 @@
 //! The five classes of rays.
 
-use super::Batch;
+use super::batch::Batch;
 use bilux::accel::{Accelerator, Bvh, Query, Ray, TriangleMesh};
 use bilux::math::{Frame, Vec2, Vec3};
 use bilux::scene::{Camera, CameraSample};

@@ -1,67 +1,16 @@
-//! The engines being measured: our structures and their competitors, behind one trait whose calls take a whole batch.
+//! The engines being measured: our structures and their competitors.
 
-use super::embree::{Embree, EmbreeEngine, KINDS, Tree};
-use super::{Batch, Mode};
+use super::batch::{Answers, Batch};
+use super::embree::{Embree, EmbreeEngine, KINDS, Packets, Tree};
+use super::engine::{Engine, HIT_WITHOUT_LOCATION, Mode, Named, loop_over, timed};
 use crate::accels::{find, threads};
 use bilux::Error;
 use bilux::accel::{Accelerator, BuildError, Bvh, Bvh8, CompactBvh8, Hit, Query, Ray, TriangleMesh};
 use rayon::ThreadPool;
-use std::hint::black_box;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// What the rays of a batch found, ray by ray.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Answers {
-    /// Closest hits; empty for an any-hit batch.
-    pub(super) closest: Vec<Option<Hit>>,
-    /// Whether anything was hit; empty for a closest-hit batch.
-    pub(super) any: Vec<bool>,
-}
-
-impl Answers {
-    pub(super) fn fill(&mut self, any: bool, hits: impl Iterator<Item = Option<Hit>>) {
-        *self = Answers::default();
-        if any {
-            self.any = hits.map(|hit| hit.is_some()).collect();
-        } else {
-            self.closest = hits.collect();
-        }
-    }
-
-    /// Counts the rays for which one side reports a hit and the other a miss, or which hit different primitives at
-    /// distances that differ by more than a ten-thousandth; if answers must be `equal`, all rays with any difference.
-    pub(super) fn mismatches(&self, reference: &Answers, equal: bool) -> usize {
-        let differ = |(a, b): &(&Option<Hit>, &Option<Hit>)| match (a, b) {
-            (Some(a), Some(b)) if !equal => {
-                a.primitive != b.primitive && (a.t - b.t).abs() > 1e-4 * a.t.abs().max(b.t.abs())
-            }
-            (a, b) => a != b,
-        };
-        let closest = self.closest.iter().zip(&reference.closest).filter(differ).count();
-        closest + self.any.iter().zip(&reference.any).filter(|(a, b)| a != b).count()
-    }
-}
-
-/// A structure over a scene's mesh, and one way of querying it.
-pub(super) trait Engine {
-    fn mode(&self) -> Mode;
-    fn build_seconds(&self) -> f64;
-    fn bytes(&self) -> usize;
-    /// The seconds that the rays take. Converting them into the engine's own form, and reading the answers out of it,
-    /// is not timed.
-    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64;
-}
-
-/// An engine with its name.
-pub(super) struct Named {
-    pub(super) name: String,
-    /// Whether it is one of our own.
-    pub(super) ours: bool,
-    pub(super) engine: Box<dyn Engine>,
-}
 
 /// Builds every engine over a mesh, on one thread: ours, those behind the feature `peers`, and Embree from the given
 /// libraries.
@@ -80,7 +29,7 @@ pub(super) fn build(
     for embree in against {
         for kind in KINDS {
             let tree = Rc::new(Tree::build(embree, kind, mesh)?);
-            for packets in embree.ways() {
+            for packets in Packets::ways(embree) {
                 let engine = Box::new(EmbreeEngine { tree: tree.clone(), packets });
                 let name = format!("{}{}", kind.name, packets.suffix());
                 engines.push(Named { name, ours: false, engine });
@@ -179,46 +128,4 @@ impl<A: Accelerator + ?Sized> Engine for OwnEngine<A> {
             }
         }
     }
-}
-
-/// The hit that stands for any hit, which has no location.
-pub(super) const HIT_WITHOUT_LOCATION: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
-
-/// Times `ask` over all rays, one by one.
-pub(super) fn loop_over<T: Clone + Default>(
-    batch: &Batch,
-    answers: Option<&mut Answers>,
-    ask: impl Fn(&Ray) -> T,
-    hit: impl Fn(&T) -> Option<Hit>,
-) -> f64 {
-    let each = |rays: &[Ray], found: &mut [T]| {
-        for (slot, ray) in found.iter_mut().zip(rays) {
-            *slot = ask(ray);
-        }
-    };
-    timed(batch, batch.rays.len(), answers, each, hit)
-}
-
-/// Times `ask` over all rays, `size` per call. Answers go into memory that is already allocated, as Embree's do.
-#[inline(always)]
-fn timed<T: Clone + Default>(
-    batch: &Batch,
-    size: usize,
-    answers: Option<&mut Answers>,
-    ask: impl Fn(&[Ray], &mut [T]),
-    hit: impl Fn(&T) -> Option<Hit>,
-) -> f64 {
-    let mut found = vec![T::default(); batch.rays.len()];
-    // Memory that was never written costs page faults, which must not count as tracing time.
-    found.iter_mut().for_each(|slot| *black_box(slot) = T::default());
-    let (size, begun) = (size.max(1), Instant::now());
-    for (rays, found) in batch.rays.chunks(size).zip(found.chunks_mut(size)) {
-        ask(rays, found);
-    }
-    let seconds = begun.elapsed().as_secs_f64();
-    if let Some(answers) = answers {
-        answers.fill(batch.any, found.iter().map(hit));
-    }
-    black_box(found);
-    seconds
 }

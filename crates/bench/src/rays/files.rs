@@ -5,8 +5,7 @@
 //! t. Hits are t, u, v (f32) and the primitive (u32, all ones for a miss) per ray, or one byte per ray for any-hit
 //! queries.
 
-use super::engines::Answers;
-use super::{Batch, file_error};
+use super::batch::{Answers, Batch};
 use bilux::Error;
 use bilux::accel::{Ray, TriangleMesh};
 use std::collections::HashMap;
@@ -153,4 +152,9 @@ fn open(
         return fail(format!("its numbers {numbers:?} ask for {wanted} bytes, but it has {there}"));
     }
     Ok((file, numbers))
+}
+
+/// An error about a setting that names a faulty file.
+fn file_error(what: &str, path: &Path, why: impl std::fmt::Display) -> Error {
+    Error::Settings(format!("cannot {what} '{}': {why}", path.display()))
 }

@@ -5,11 +5,14 @@
 //! `shadow` (any, to an area light). Everything runs on one thread. Every engine traces a class once per round, in an
 //! order that rotates from round to round, and the medians are reported. Hits are compared with those of `bvh`.
 
+mod batch;
 mod best;
 mod classes;
 mod embree;
+mod engine;
 mod engines;
 pub mod files;
+mod options;
 #[cfg(feature = "peers")]
 mod peers;
 mod report;
@@ -17,78 +20,17 @@ mod scenes;
 
 use crate::accels::find;
 use crate::{ProgressFn, Report, median};
+use batch::Answers;
+pub use batch::Batch;
 pub use best::{Best, Champion};
 use bilux::Error;
 use bilux::accel::registry::AUTO;
-use bilux::accel::{Bvh, Query, Ray};
-use bilux::formats::ReadOptions;
-use engines::{Answers, Named};
+use bilux::accel::{Bvh, Query};
+use engine::Named;
+pub use options::Options;
 use report::Row;
 use scenes::TestMesh;
-use std::path::{Path, PathBuf};
-
-/// The benchmark's options.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Scene files; if empty, our own scenes.
-    pub scenes: Vec<PathBuf>,
-    /// How scene files are read.
-    pub read: ReadOptions,
-    /// Our structures; if empty, the fastest and `bvh`.
-    pub accels: Vec<String>,
-    /// Rays per class.
-    pub count: usize,
-    /// The number of rounds; the median is reported.
-    pub rounds: u32,
-    /// Competitors in shared libraries: their name (`embree`) and the library.
-    pub against: Vec<(String, PathBuf)>,
-    /// The folder to which meshes and rays are written.
-    pub dump: Option<PathBuf>,
-    /// A mesh file, traced by the rays of `rays` instead of scenes.
-    pub mesh: Option<PathBuf>,
-    /// See `mesh`.
-    pub rays: Vec<PathBuf>,
-    /// Where the hits of the last file of rays are written.
-    pub hits: Option<PathBuf>,
-}
-
-impl Default for Options {
-    fn default() -> Options {
-        Options {
-            scenes: Vec::new(),
-            read: ReadOptions::default(),
-            accels: Vec::new(),
-            count: 1 << 20,
-            rounds: 5,
-            against: Vec::new(),
-            dump: None,
-            mesh: None,
-            rays: Vec::new(),
-            hits: None,
-        }
-    }
-}
-
-/// Rays for the same kind of query.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Batch {
-    /// The class of the rays.
-    pub class: String,
-    /// Whether any hit is enough, instead of the closest.
-    pub any: bool,
-    /// The rays.
-    pub rays: Vec<Ray>,
-}
-
-/// How rays are passed to an engine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Mode {
-    /// One per call.
-    #[default]
-    Single,
-    /// Several per call.
-    Batch,
-}
+use std::path::Path;
 
 /// Runs the benchmark.
 ///
@@ -195,9 +137,4 @@ fn truth(reference: &Bvh, batch: &Batch) -> Answers {
         truth.closest = batch.rays.iter().map(|ray| reference.closest_hit(ray, &query)).collect();
     }
     truth
-}
-
-/// An error about a setting that names a faulty file.
-fn file_error(what: &str, path: &Path, why: impl std::fmt::Display) -> Error {
-    Error::Settings(format!("cannot {what} '{}': {why}", path.display()))
 }

@@ -1,7 +1,8 @@
 //! Competitors that are crates, each called as in its own examples. Behind the feature `peers`.
 
-use super::engines::{Answers, Engine, HIT_WITHOUT_LOCATION, Named, loop_over};
-use super::{Batch, Mode};
+use super::batch::{Answers, Batch};
+use super::engine::{Engine, HIT_WITHOUT_LOCATION, Mode, Named, loop_over};
+use super::files::indexed;
 use bilux::accel::{Hit, Ray, TriangleMesh};
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
@@ -132,7 +133,7 @@ struct Parry {
 
 impl Parry {
     fn new(mesh: &TriangleMesh) -> Option<Parry> {
-        let (positions, indices) = super::files::indexed(mesh);
+        let (positions, indices) = indexed(mesh);
         let positions = positions.into_iter().map(|[x, y, z]| Vector::new(x, y, z)).collect();
         let begun = Instant::now();
         let mesh = TriMesh::new(positions, indices).ok()?;

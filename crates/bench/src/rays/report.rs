@@ -1,6 +1,7 @@
 //! The results, as JSON and as tables.
 
-use super::{Mode, Options};
+use super::engine::Mode;
+use super::options::Options;
 use crate::table;
 use serde_json::{Value, json};
 
@@ -26,15 +27,6 @@ impl Row {
             "mode": self.mode.name(), "mrays": self.mrays, "build_seconds": self.build_seconds,
             "bytes_per_triangle": self.bytes_per_triangle, "mismatches": self.mismatches,
         })
-    }
-}
-
-impl Mode {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Mode::Single => "single",
-            Mode::Batch => "batch",
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! What is traced: our own scenes, scene files, or meshes and rays from files.
 
-use super::{Batch, Options, classes, files};
+use super::batch::Batch;
+use super::options::Options;
+use super::{classes, files};
 use bilux::accel::TriangleMesh;
 use bilux::math::Vec3;
 use bilux::scene::error::nearest_name;

@@ -1,7 +1,7 @@
 //! A plot of error over time: both axes logarithmic, one line per integrator.
 
+use super::measured::{Measured, Row};
 use super::table::short;
-use super::{Measured, Row};
 use bilux_math::transcendental::{ln_f64, powf_f64};
 use std::f64::consts::LN_10;
 use std::fmt::Write;

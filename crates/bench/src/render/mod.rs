@@ -8,44 +8,35 @@
 mod cost;
 mod curves;
 mod errors;
+mod measured;
+mod names;
+mod options;
 mod page;
 mod predicted;
 mod reference;
+mod scenes;
 mod table;
 mod test_scene;
+mod timed_render;
 
 pub(crate) use cost::Clock;
 pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
 pub(crate) use errors::{block_relmse, mean};
+pub use options::Options;
 pub use reference::{Reference, ReferenceOptions, make_references};
+pub use scenes::{SCENES, SIZE};
 
 use crate::{ProgressFn, Report, median};
-use bilux::formats::ReadOptions;
-use bilux::pictures::WriteOptions;
-use bilux::scene::error::nearest_name;
-use bilux::scene::{Parameters, SceneBuilder, Value as Setting};
-use bilux::transport::{Choice, INTEGRATORS};
-use bilux::{Error, Job, Quiet};
+use bilux::scene::SceneBuilder;
+use bilux::transport::INTEGRATORS;
+use bilux::{Error, Job};
 use bilux_math::Rgb;
+use measured::{Measured, Row};
+use names::check;
 use serde_json::{Value, json};
-use std::path::PathBuf;
 use std::time::Instant;
 use test_scene::{TestScene, test_scenes};
-
-/// The width and height of the pictures: whole blocks of [`BLOCK`] pixels.
-pub const SIZE: (u32, u32) = (128, 96);
-
-/// The scenes, by the names of their generators, each with the file of its reference.
-pub const SCENES: &[(&str, &[u8])] = &[
-    ("daylight", include_bytes!("../../references/daylight.exr")),
-    ("indirect", include_bytes!("../../references/indirect.exr")),
-    ("lampshades", include_bytes!("../../references/lampshades.exr")),
-    ("caustics", include_bytes!("../../references/caustics.exr")),
-    ("pool", include_bytes!("../../references/pool.exr")),
-    ("bidirectional", include_bytes!("../../references/bidirectional.exr")),
-    ("door-ajar", include_bytes!("../../references/door-ajar.exr")),
-    ("many-lights", include_bytes!("../../references/many-lights.exr")),
-];
+use timed_render::{calibrate, settings, shoot};
 
 /// The maximum number of trial pictures for finding a number of samples, and the first of their seeds.
 const TRIALS: u64 = 3;
@@ -53,92 +44,6 @@ const TRIAL_SEED: u64 = 1 << 31;
 
 /// The default integrators, as far as they are available.
 const USUAL: [&str; 5] = ["path", "bdpt", "vcm", "sppm", "auto"];
-
-/// The benchmark's options.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Names from [`SCENES`]; all of them if there are neither names nor files.
-    pub scenes: Vec<String>,
-    /// The user's own scene files. Their references are rendered first.
-    pub files: Vec<PathBuf>,
-    /// How files are read.
-    pub read: ReadOptions,
-    /// The CPU seconds that each of the two integrators spends on the reference of a file.
-    pub reference_seconds: f64,
-    /// Names of integrators, `auto:TECHNIQUES` for one set of techniques of `auto`; if empty, the default ones.
-    pub integrators: Vec<String>,
-    /// CPU seconds per picture, summed over all threads.
-    pub seconds: Vec<f64>,
-    /// The number of pictures per scene, integrator and budget, at least 1.
-    pub seeds: u32,
-    /// The number of threads; 0 for all cores.
-    pub threads: u32,
-    /// The folder for a page with pictures and curves.
-    pub report: Option<PathBuf>,
-}
-
-impl Default for Options {
-    fn default() -> Options {
-        Options {
-            scenes: Vec::new(),
-            files: Vec::new(),
-            read: ReadOptions::default(),
-            reference_seconds: 60.0,
-            integrators: Vec::new(),
-            seconds: vec![1.0, 4.0],
-            seeds: 5,
-            threads: 0,
-            report: None,
-        }
-    }
-}
-
-/// The result of one integrator on a scene within a budget.
-struct Row {
-    scene: String,
-    integrator: String,
-    /// The budget, in CPU seconds.
-    seconds: f64,
-    /// The CPU seconds that the pictures actually took.
-    took: f64,
-    samples: u32,
-    relmse: f64,
-    relmse_trimmed: f64,
-    /// `None` for a single picture.
-    bias2: Option<f64>,
-    mean: f64,
-    /// `None` if the system does not report it.
-    peak_mb: Option<f64>,
-    /// The first of the pictures.
-    picture: Vec<Rgb>,
-    /// What `auto` chose there, and why.
-    choice: Option<Choice>,
-}
-
-impl Row {
-    fn json(&self, scene: &Measured) -> Value {
-        let reference = &scene.reference;
-        let compared = scene.compared(self);
-        json!({
-            "scene": self.scene, "integrator": self.integrator, "seconds": self.seconds, "samples": self.samples,
-            "relmse": self.relmse, "relmse_trimmed": self.relmse_trimmed, "bias2": self.bias2, "mean": self.mean,
-            "peak_mb": self.peak_mb, "cpu_seconds": self.took, "reference_mean": reference.mean(),
-            "reference_relmse": reference.relmse, "predicted": compared.predicted, "measured": compared.measured,
-            "measured_trimmed": compared.measured_trimmed,
-            "chosen": self.choice.as_ref().map(|choice| choice.best().techniques),
-        })
-    }
-}
-
-/// Everything that was measured on a scene.
-struct Measured {
-    scene: String,
-    summary: String,
-    reference: Reference,
-    /// How its pictures are displayed.
-    shown: WriteOptions,
-    rows: Vec<Row>,
-}
 
 /// Runs the benchmark.
 ///
@@ -164,15 +69,22 @@ pub fn run(options: &Options, progress: ProgressFn) -> Result<Report, Error> {
     if let Some(folder) = &options.report {
         page::write(folder, &measured, options)?;
     }
-    let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| row.json(m))).collect();
+    let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| json(row, m))).collect();
     Ok(Report { rows, text: table::text(&measured, options), ..Report::default() })
 }
 
-impl Options {
-    /// The CPU seconds of an integrator on a scene.
-    fn work(&self) -> f64 {
-        self.seconds.iter().sum::<f64>() * f64::from(self.seeds.max(1))
-    }
+/// A row as JSON.
+fn json(row: &Row, scene: &Measured) -> Value {
+    let reference = &scene.reference;
+    let compared = scene.compared(row);
+    json!({
+        "scene": row.scene, "integrator": row.integrator, "seconds": row.seconds, "samples": row.samples,
+        "relmse": row.relmse, "relmse_trimmed": row.relmse_trimmed, "bias2": row.bias2, "mean": row.mean,
+        "peak_mb": row.peak_mb, "cpu_seconds": row.took, "reference_mean": reference.mean(),
+        "reference_relmse": reference.relmse, "predicted": compared.predicted, "measured": compared.measured,
+        "measured_trimmed": compared.measured_trimmed,
+        "chosen": row.choice.as_ref().map(|choice| choice.best().techniques),
+    })
 }
 
 /// A run in progress.
@@ -276,55 +188,6 @@ impl Bench<'_> {
     }
 }
 
-/// Measures samples per pixel per CPU second, with ever longer renders until one takes a fifth of the smallest budget.
-fn calibrate(scene: &SceneBuilder, integrator: &str, budgets: &[f64], threads: u32) -> Result<f64, Error> {
-    let smallest = budgets.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut samples = 1;
-    loop {
-        let render = shoot(scene, &settings(integrator, samples, 0, threads))?;
-        let speed = f64::from(samples) / render.seconds.max(1e-3);
-        if render.seconds >= 0.2 * smallest || samples > 1 << 20 {
-            return Ok(speed);
-        }
-        samples *= if render.seconds < 0.04 * smallest { 4 } else { 2 };
-    }
-}
-
-/// A picture and its cost.
-struct TimedRender {
-    seconds: f64,
-    peak_mb: Option<f64>,
-    picture: Vec<Rgb>,
-    choice: Option<Choice>,
-}
-
-fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<TimedRender, Error> {
-    let job = Job::new(scene, settings)?;
-    let clock = Clock::start(job.settings().threads);
-    let outcome = job.render(&Quiet)?;
-    let (seconds, peak_mb) = clock.stop();
-    Ok(TimedRender {
-        seconds,
-        peak_mb,
-        picture: outcome.rendered.film.to_rgb(),
-        choice: outcome.rendered.choice,
-    })
-}
-
-fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {
-    let mut settings = Parameters::default();
-    let (name, techniques) = integrator.split_once(':').unwrap_or((integrator, ""));
-    settings.set("integrator", name);
-    if !techniques.is_empty() {
-        settings.set("techniques", techniques);
-    }
-    settings.set("size", Setting::Text(format!("{}x{}", SIZE.0, SIZE.1)));
-    settings.set("spp", Setting::Integer(i64::from(samples)));
-    settings.set("seed", Setting::Integer(seed as i64));
-    settings.set("threads", Setting::Integer(i64::from(threads)));
-    settings
-}
-
 fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
     let known: Vec<String> =
         INTEGRATORS.iter().filter(|row| !row.classic).map(|row| row.entry.name.to_owned()).collect();
@@ -334,15 +197,4 @@ fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
     let plain = |name: &String| name.strip_prefix("auto:").map_or(name.clone(), |_| "auto".to_owned());
     names.iter().try_for_each(|name| check("integrator", &plain(name), &known))?;
     Ok(names.to_vec())
-}
-
-fn check(what: &str, name: &str, known: &[String]) -> Result<(), Error> {
-    if known.iter().any(|k| k == name) {
-        return Ok(());
-    }
-    let hint = match nearest_name(name, known) {
-        Some(nearest) => format!("did you mean '{nearest}'?"),
-        None => format!("there are {}", known.join(", ")),
-    };
-    Err(Error::Settings(format!("there is no {what} '{name}'; {hint}")))
 }

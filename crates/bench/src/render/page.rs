@@ -2,8 +2,10 @@
 
 use super::curves::{COLOURS, svg};
 use super::errors::pixel_errors;
-use super::table::{HEADER, best_single, cells, find, short};
-use super::{Measured, Options, Row, SIZE};
+use super::measured::{Measured, Row};
+use super::options::Options;
+use super::scenes::SIZE;
+use super::table::{HEADER, cells, short};
 use bilux::Error;
 use bilux::pictures::metrics::ramp;
 use bilux::pictures::{ColourSpace, Picture, WriteOptions, write_atomically, write_bytes};
@@ -57,10 +59,10 @@ fn overview(page: &mut String, measured: &[Measured], integrators: &[String]) {
     for scene in measured {
         let Some(seconds) = longest(scene) else { continue };
         let _ = write!(page, "<tr><td><a href=\"#{0}\">{0}</a></td>", scene.scene);
-        let best = best_single(scene, seconds).map(|row| row.integrator.clone());
+        let best = scene.best_single(seconds).map(|row| row.integrator.clone());
         for name in integrators {
-            let row = find(scene, name, seconds);
-            let path = find(scene, "path", seconds);
+            let row = scene.find(name, seconds);
+            let path = scene.find("path", seconds);
             let factor = row
                 .zip(path)
                 .map(|(row, path)| format!(" <small>{}×</small>", short(path.relmse / row.relmse)));

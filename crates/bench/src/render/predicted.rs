@@ -1,8 +1,7 @@
 //! What `auto` predicted for each integrator compared with what was measured: times to the same error, relative to that
 //! of its choice.
 
-use super::table::find;
-use super::{Measured, Row};
+use super::measured::{Measured, Row};
 
 /// Times to the same error, as multiples of the time that `auto` takes; `None` if nothing was predicted, or `auto` was
 /// not measured.
@@ -18,7 +17,7 @@ pub(super) struct Compared {
 impl Measured {
     /// Compares a row with that of `auto` within the same budget.
     pub(super) fn compared(&self, row: &Row) -> Compared {
-        let Some(auto) = find(self, "auto", row.seconds) else { return Compared::default() };
+        let Some(auto) = self.find("auto", row.seconds) else { return Compared::default() };
         let techniques = match row.integrator.split_once(':') {
             Some((_, techniques)) => techniques,
             None => &row.integrator,

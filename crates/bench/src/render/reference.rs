@@ -1,8 +1,8 @@
 //! References: long renders by two unbiased integrators that must agree before they are averaged.
 
 use super::errors::{block_means, mean};
-use super::test_scene::{chosen_scenes, generated};
-use super::{SIZE, calibrate, settings, shoot};
+use super::scenes::{SIZE, chosen_scenes, generated};
+use super::timed_render::{calibrate, settings, shoot};
 use crate::{ProgressFn, Report};
 use bilux::Error;
 use bilux::pictures::{Limits, Picture, WriteOptions, read_bytes, write};
@@ -273,7 +273,7 @@ mod tests {
         let wanted = 1.0 / 12.0 / (2.0 * PARTS as f64) / 1.01;
         assert!((reference.relmse / wanted - 1.0).abs() < 0.05, "{} for {wanted}", reference.relmse);
         let truth = vec![Rgb::grey(1.0); reference.pixels.len()];
-        let real = super::super::relmse(&reference.pixels, &truth);
+        let real = crate::render::relmse(&reference.pixels, &truth);
         assert!((real / wanted - 1.0).abs() < 0.05, "{real} for {wanted}");
         assert_eq!(reference.origin, "noise 64 samples a pixel and noise 64 samples a pixel");
     }

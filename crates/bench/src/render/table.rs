@@ -1,6 +1,8 @@
 //! The results as text: one table per scene, and one that compares `auto` with the others.
 
-use super::{Measured, Options, Row, SIZE};
+use super::measured::{Measured, Row};
+use super::options::Options;
+use super::scenes::SIZE;
 use crate::table;
 
 /// The error for which the table states times.
@@ -56,7 +58,7 @@ pub(super) fn cells(scene: &Measured, row: &Row) -> Vec<String> {
     let optional = |x: Option<f64>, digits: usize| x.map_or("–".to_owned(), |x| format!("{x:.digits$}"));
     let compared = scene.compared(row);
     let times = |x: Option<f64>| x.map_or("–".to_owned(), short);
-    let path = find(scene, "path", row.seconds).map(|path| row.relmse / path.relmse);
+    let path = scene.find("path", row.seconds).map(|path| row.relmse / path.relmse);
     vec![
         row.integrator.clone(),
         format!("{}", row.seconds),
@@ -81,8 +83,8 @@ fn of_auto(measured: &[Measured]) -> String {
     let cells: Vec<Vec<String>> = rows
         .filter(|(_, row)| row.integrator == "auto")
         .filter_map(|(scene, auto)| {
-            let path = find(scene, "path", auto.seconds)?;
-            let best = best_single(scene, auto.seconds)?;
+            let path = scene.find("path", auto.seconds)?;
+            let best = scene.best_single(auto.seconds)?;
             Some(vec![
                 scene.scene.clone(),
                 format!("{}", auto.seconds),
@@ -97,17 +99,6 @@ fn of_auto(measured: &[Measured]) -> String {
     }
     let header = ["scene", "seconds", "path's error / auto's", "best single", "auto's error / best's"];
     table("auto against the others, by relMSE at equal time", &header, &cells)
-}
-
-/// The row of an integrator and a budget.
-pub(super) fn find<'a>(scene: &'a Measured, integrator: &str, seconds: f64) -> Option<&'a Row> {
-    scene.rows.iter().find(|row| row.integrator == integrator && row.seconds == seconds)
-}
-
-/// The integrator other than `auto` with the smallest error.
-pub(super) fn best_single(scene: &Measured, seconds: f64) -> Option<&Row> {
-    let single = scene.rows.iter().filter(|row| row.integrator != "auto" && row.seconds == seconds);
-    single.min_by(|a, b| a.relmse.total_cmp(&b.relmse))
 }
 
 /// Formats a number with three significant digits.

@@ -1,11 +1,12 @@
 //! What the integrators are measured on: built-in scenes, and the user's own files.
 
-use super::reference::make_reference;
-use super::{Options, Reference, ReferenceOptions, SCENES, check};
+use super::options::Options;
+use super::reference::{Reference, ReferenceOptions, make_reference};
+use super::scenes::{chosen_scenes, generated};
 use crate::ProgressFn;
 use bilux::Error;
+use bilux::scene::SceneBuilder;
 use bilux::scene::generators::GENERATORS;
-use bilux::scene::{SceneBuilder, Spec};
 use std::path::Path;
 
 /// A scene to measure on, and its expected picture.
@@ -56,16 +57,4 @@ fn of_the_user(file: &Path, options: &Options, progress: ProgressFn) -> Result<T
         None => "a file".to_owned(),
     };
     Ok(TestScene { name: file.display().to_string(), summary, scene, reference: made })
-}
-
-pub(super) fn generated(name: &str) -> Result<SceneBuilder, Error> {
-    bilux::generate(&Spec::new("", name))
-}
-
-/// The rows of [`SCENES`] with these names, in the order of [`SCENES`].
-pub(super) fn chosen_scenes(names: &[String]) -> Result<Vec<(&'static str, &'static [u8])>, Error> {
-    let known: Vec<String> = SCENES.iter().map(|(name, _)| (*name).to_owned()).collect();
-    names.iter().try_for_each(|name| check("scene of `bench render`", name, &known))?;
-    let wanted = |name: &str| names.is_empty() || names.iter().any(|n| n == name);
-    Ok(SCENES.iter().copied().filter(|(name, _)| wanted(name)).collect())
 }

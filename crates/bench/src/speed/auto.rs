@@ -1,7 +1,7 @@
 //! `auto` against the best single integrator, on every scene of `bench render`.
 
+use super::measurement::{Context, Measurement};
 use super::row::{Goal, Row};
-use super::{Context, Measurement};
 use crate::render::{self, SCENES};
 use bilux::Error;
 use serde_json::Value;

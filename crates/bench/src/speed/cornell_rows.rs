@@ -1,10 +1,10 @@
 //! The box with two spheres: `path` against Mitsuba's, and our bidirectional integrators.
 
 use super::cornell::{self, MAX_DEPTH, SIDE};
+use super::measurement::{Context, Measurement};
 use super::mitsuba::{Mitsuba, Scratch};
 use super::row::{Goal, Row};
 use super::shots::Plan;
-use super::{Context, Measurement};
 use crate::median;
 use crate::render::relmse;
 use bilux::Error;

@@ -1,7 +1,7 @@
 //! Our rays against Embree's, on the scenes and classes of `bench rays`.
 
+use super::measurement::{Context, Measurement};
 use super::row::{Goal, Row};
-use super::{Context, Measurement};
 use crate::rays::{self, Best};
 use bilux::Error;
 use bilux::accel::registry::AUTO;

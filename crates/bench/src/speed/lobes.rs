@@ -3,9 +3,9 @@
 //! Two closed rooms, one inside the other, so that every path goes on to its full length: only the inner one lets light
 //! through, and the camera and the light are in it. Time is divided by the rays that were traced.
 
+use super::measurement::{Context, Measurement};
 use super::row::{Goal, Row};
 use super::shots::{Plan, Shot};
-use super::{Context, Measurement};
 use crate::median;
 use bilux::math::{Rgb, Vec3};
 use bilux::scene::cameras::CameraSpec;

@@ -1,9 +1,9 @@
 //! The memory of a large picture, measured in a process of its own.
 
+use super::measurement::{Context, Measurement};
 use super::mitsuba::Scratch;
-use super::row::{Goal, Row};
+use super::row::{Goal, Row, rows_of};
 use super::shots::as_a_user;
-use super::{Context, Measurement, rows_of};
 use crate::render::Clock;
 use bilux::Error;
 use bilux::scene::{Parameters, Spec, Value};

@@ -1,6 +1,6 @@
 //! Mitsuba, asked through Python: a process that loads a scene once and renders it as often as it is told to.
 
-use super::Options;
+use super::options::Options;
 use bilux::Error;
 use bilux::formats::{WriteOptions, write};
 use bilux::math::{Rgb, Vec3};

@@ -2,10 +2,10 @@
 //!
 //! Both sides get the model with what both understand: base colour, metalness, roughness and normal map.
 
+use super::measurement::{Context, Measurement};
 use super::mitsuba::{Mitsuba, Scratch, bitmap, ply};
 use super::row::{Goal, Row};
 use super::shots::Plan;
-use super::{Context, Measurement};
 use crate::median;
 use crate::render::{block_relmse, mean};
 use bilux::Error;

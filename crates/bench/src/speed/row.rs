@@ -82,6 +82,11 @@ impl Row {
     }
 }
 
+/// The rows as another process has printed them.
+pub(super) fn rows_of(printed: &Value) -> Vec<Row> {
+    printed["rows"].as_array().into_iter().flatten().map(Row::from_json).collect()
+}
+
 impl Goal {
     fn text(self) -> String {
         match self {

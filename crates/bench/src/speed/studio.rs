@@ -1,10 +1,10 @@
 //! A model in the studio with nothing said, as a user renders it: read, lit, rendered, denoised and written.
 
+use super::measurement::{Context, Measurement};
 use super::mitsuba::Scratch;
 use super::model::{NO_MODEL, name_of};
 use super::row::{Goal, Row};
 use super::shots::{UserPicture, as_a_user};
-use super::{Context, Measurement};
 use crate::median;
 use bilux::Error;
 use bilux::formats::ReadOptions;

@@ -1,8 +1,9 @@
 //! How much faster two threads are than one.
 
+use super::cpu::cores;
+use super::measurement::{Context, Measurement};
 use super::row::{Goal, Row};
 use super::shots::Plan;
-use super::{Context, Measurement, cores};
 use crate::median;
 use bilux::Error;
 use bilux::scene::Spec;
