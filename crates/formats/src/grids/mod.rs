@@ -4,6 +4,7 @@ mod bytes;
 mod file;
 mod model;
 mod npy;
+mod numbers;
 mod sparse;
 mod vol;
 
@@ -18,9 +19,8 @@ use crate::text::whole_file;
 use crate::vdb;
 use crate::{FormatError, ReadOptions};
 use bilux_math::{Aabb, Transform, Vec3};
-use bilux_scene::media::{Grid, MAX_SIDE};
+use bilux_scene::media::{Faults, Grid, MAX_SIDE};
 use bilux_scene::{Span, UpHint};
-use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -64,6 +64,28 @@ pub(crate) struct Volume {
     /// Where its values may differ from 0, in voxels.
     pub(crate) bounds: Aabb,
     pub(crate) faults: Faults,
+    /// The value of all that the file does not list.
+    pub(crate) background: f32,
+}
+
+impl Volume {
+    /// What is wrong with its numbers, a sentence for each kind.
+    pub(crate) fn complaints(&self) -> Vec<String> {
+        let Faults { negative, not_finite } = self.faults;
+        let mut all = Vec::new();
+        if negative > 0 {
+            all.push(format!(
+                "{negative} voxels are negative, which a density cannot be, and are taken as 0"
+            ));
+        }
+        if not_finite > 0 {
+            all.push(format!("{not_finite} voxels are not finite numbers, and are taken as 0"));
+        }
+        if self.background != 0.0 {
+            all.push(format!("everything outside its voxels is {}, and is taken as 0", self.background));
+        }
+        all
+    }
 }
 
 /// A grid of a file, as [`read_grids`] gives it.
@@ -109,54 +131,6 @@ pub fn read_grid(
     Reading::new(options, None).grid_of_file(format, &source, listed.clone())
 }
 
-/// How many numbers could not be densities.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Faults {
-    negative: u64,
-    not_finite: u64,
-    /// The value of all that the file does not list, if it is not 0.
-    pub(crate) background: f32,
-}
-
-impl Faults {
-    /// The nearest density.
-    #[inline]
-    pub(crate) fn density(&mut self, value: f32) -> f32 {
-        if (0.0..f32::INFINITY).contains(&value) {
-            return value;
-        }
-        *(if value.is_finite() { &mut self.negative } else { &mut self.not_finite }) += 1;
-        0.0
-    }
-
-    /// These and others.
-    fn and(self, others: Faults) -> Faults {
-        Faults {
-            negative: self.negative + others.negative,
-            not_finite: self.not_finite + others.not_finite,
-            background: self.background,
-        }
-    }
-
-    /// A sentence for each kind.
-    pub(crate) fn sentences(&self) -> Vec<String> {
-        let mut all = Vec::new();
-        if self.negative > 0 {
-            all.push(format!(
-                "{} voxels are negative, which a density cannot be, and are taken as 0",
-                self.negative
-            ));
-        }
-        if self.not_finite > 0 {
-            all.push(format!("{} voxels are not finite numbers, and are taken as 0", self.not_finite));
-        }
-        if self.background != 0.0 {
-            all.push(format!("everything outside its voxels is {}, and is taken as 0", self.background));
-        }
-        all
-    }
-}
-
 impl Catalogue {
     /// The grid with this name, or if that is empty `density`, or else the only or first one that can be a density.
     pub(crate) fn named(&self, name: &str, file: &str) -> Result<&Listed, String> {
@@ -188,40 +162,29 @@ pub(crate) fn format_of(source: &Source) -> Result<&'static GridFormatEntry, For
     })
 }
 
-/// Makes a grid of one number for each voxel, of which `value` gives the place in the file; it fills a box.
+/// Makes a grid that fills a box and has a number for each voxel; `fill` writes the row along x at y and z.
 pub(crate) fn dense(
     source: &Source,
     size: [usize; 3],
     bounds: &Aabb,
     budget: &mut Budget,
-    value: impl Fn(usize, usize, usize) -> f32 + Sync,
+    fill: impl Fn(usize, usize, &mut [f32]) + Sync,
 ) -> Result<Volume, FormatError> {
     let fail = |message: String| FormatError::malformed(message, whole_file(source.name));
     let [x, y, z] = size;
     if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
         return Err(fail(format!("{x} x {y} x {z} voxels: each side has 1 to {MAX_SIDE}")));
     }
-    // The numbers, and blocks as halves.
-    let voxels = (x as u64).saturating_mul(y as u64).saturating_mul(z as u64);
-    budget.take_bytes(voxels.saturating_mul(4 + 2), source.name)?;
+    budget.take_bytes(Grid::bytes_to_make(size), source.name)?;
     let extent = bounds.extent() / Vec3::from(size.map(|side| side as f32));
     let to_file = Transform::scale(extent).zip(Transform::translate(bounds.min));
     let to_file = to_file.map(|(scale, shift)| scale.then(&shift));
     let to_file =
         to_file.ok_or_else(|| fail("the box of its voxels has no volume, or is not finite".to_owned()))?;
-    let mut values = vec![0.0; x * y * z];
-    let layers = values.par_chunks_mut(x * y).enumerate().map(|(z, layer)| {
-        let mut faults = Faults::default();
-        for (i, voxel) in layer.iter_mut().enumerate() {
-            *voxel = faults.density(value(i % x, i / x, z));
-        }
-        faults
-    });
-    let faults = layers.reduce(Faults::default, Faults::and);
-    let grid =
-        Grid::dense(&source.stem(), size, &to_file, &values).map_err(|error| fail(error.to_string()))?;
+    let grid = Grid::of_rows(&source.stem(), size, &to_file, fill);
+    let (grid, faults) = grid.map_err(|error| fail(error.to_string()))?;
     let bounds = Aabb { min: Vec3::ZERO, max: Vec3::from(size.map(|side| side as f32)) };
-    Ok(Volume { grid, bounds, faults })
+    Ok(Volume { grid, bounds, faults, background: 0.0 })
 }
 
 impl Reading<'_> {
@@ -261,7 +224,7 @@ impl Reading<'_> {
             }
         };
         let volume = self.volume(format, &source, listed)?;
-        self.note_faults(&format!("the grid '{}' of '{file}'", listed.name), &volume.faults.sentences(), at);
+        self.note_faults(&format!("the grid '{}' of '{file}'", listed.name), &volume.complaints(), at);
         self.release(bytes);
         let grid = Arc::new(volume.grid);
         self.keep(&grid);
@@ -280,8 +243,9 @@ impl Reading<'_> {
         if let Some(why) = listed.refused {
             return Ok(GridOfFile { name, grid: Err(why), bounds: Aabb::EMPTY, warnings: Vec::new() });
         }
-        let Volume { grid, bounds, faults } = self.volume(format, source, &listed)?;
-        Ok(GridOfFile { name, grid: Ok(grid), bounds, warnings: faults.sentences() })
+        let volume = self.volume(format, source, &listed)?;
+        let warnings = volume.complaints();
+        Ok(GridOfFile { name, grid: Ok(volume.grid), bounds: volume.bounds, warnings })
     }
 
     /// Reads one of the grids of a file, and charges it for good.

@@ -40,7 +40,9 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     let name: &str = source.name;
     let at = || whole_file(source.name);
     let listed = catalogue.named("", name).map_err(|message| FormatError::malformed(message, at()))?;
-    let Volume { grid, bounds, faults } = reading.volume(format, source, listed)?;
+    let volume = reading.volume(format, source, listed)?;
+    let complaints = volume.complaints();
+    let Volume { grid, bounds, .. } = volume;
     let mut oddities = Oddities::default();
     for Listed { name, .. } in catalogue.grids.iter().filter(|other| other.index != listed.index) {
         oddities.not_shown(&format!("the grid '{name}'"), at);
@@ -58,7 +60,7 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
          densest way along an axis has an optical thickness of {THICKNESS}: a TOML scene can say something else"
     );
     scene.notes.push(Warning { message, at: at() });
-    reading.note_faults(&what, &faults.sentences(), &at());
+    reading.note_faults(&what, &complaints, &at());
     let stem = source.stem();
     let mesh = Arc::new(Mesh { name: stem.clone(), ..box_of(&bounds, &grid.to_object()) });
     let mut material = Spec::new("smoke", "interface");

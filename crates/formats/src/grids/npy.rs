@@ -1,5 +1,6 @@
 //! Arrays of numpy, with the indices [z][y][x]. [Kern 2007]
 
+use super::numbers::{self, Decode};
 use super::{Bytes, Catalogue, GridFormatEntry, Listed, Volume, dense};
 use crate::FormatError;
 use crate::budget::Budget;
@@ -13,17 +14,14 @@ pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";
 pub(super) const FORMAT: GridFormatEntry =
     GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
 
-/// Turns the bytes of a number into a value.
-type Value = fn(&[u8]) -> f32;
-
-/// Number types, their bytes, and their values.
-const TYPES: &[(&str, usize, Value)] = &[
-    ("<f4", 4, |b| f32::from_le_bytes(std::array::from_fn(|i| b[i]))),
-    (">f4", 4, |b| f32::from_be_bytes(std::array::from_fn(|i| b[i]))),
-    ("<f8", 8, |b| f64::from_le_bytes(std::array::from_fn(|i| b[i])) as f32),
-    (">f8", 8, |b| f64::from_be_bytes(std::array::from_fn(|i| b[i])) as f32),
-    ("<f2", 2, |b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()),
-    ("|u1", 1, |b| f32::from(b[0]) / 255.0),
+/// Number types, their bytes, and how they are read.
+const TYPES: &[(&str, usize, Decode)] = &[
+    ("<f4", 4, numbers::floats),
+    (">f4", 4, numbers::floats_big),
+    ("<f8", 8, numbers::doubles),
+    (">f8", 8, numbers::doubles_big),
+    ("<f2", 2, numbers::halves),
+    ("|u1", 1, numbers::bytes_of_one),
 ];
 
 fn list(_: &Source) -> Result<Catalogue, FormatError> {
@@ -39,7 +37,7 @@ fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, Form
     let header = bytes.take(length)?;
     let header = String::from_utf8_lossy(header);
     let kind = entry(&header, "descr").and_then(|text| text.split(['\'', '"']).nth(1)).unwrap_or_default();
-    let Some(&(_, width, number)) = TYPES.iter().find(|(name, ..)| *name == kind) else {
+    let Some(&(_, width, decode)) = TYPES.iter().find(|(name, ..)| *name == kind) else {
         let known: Vec<&str> = TYPES.iter().map(|(name, ..)| *name).collect();
         let message =
             format!("its numbers have the type '{kind}', but only {} can be read", known.join(", "));
@@ -53,10 +51,14 @@ fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, Form
     let values = bytes.take(count)?;
     let longest = nx.max(ny).max(nz).max(1) as f32;
     let sides = Vec3::from([nx, ny, nz].map(|side| side as f32)) / longest;
-    dense(source, [nx, ny, nz], &Aabb { min: Vec3::ZERO, max: sides }, budget, |x, y, z| {
+    dense(source, [nx, ny, nz], &Aabb { min: Vec3::ZERO, max: sides }, budget, |y, z, row| {
+        if !is_fortran {
+            return decode(&values[(z * ny + y) * nx * width..], row);
+        }
         // In Fortran's order the first index varies fastest.
-        let at = if is_fortran { (x * ny + y) * nz + z } else { (z * ny + y) * nx + x };
-        number(&values[at * width..])
+        for (x, value) in row.chunks_exact_mut(1).enumerate() {
+            decode(&values[((x * ny + y) * nz + z) * width..], value);
+        }
     })
 }
 

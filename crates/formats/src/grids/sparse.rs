@@ -1,13 +1,13 @@
 //! Trees of voxels, as OpenVDB and NanoVDB have them, become grids: leaves of 8³ values, and larger cubes of one value.
 //! [Museth 2013]
 
-use super::{Faults, Volume};
+use super::Volume;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Source;
 use crate::text::whole_file;
 use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
-use bilux_scene::media::{BLOCK, BLOCK_VOXELS, Block, Grid, MAX_SIDE};
+use bilux_scene::media::{BLOCK, BLOCK_VOXELS, Block, Faults, Grid, MAX_SIDE};
 
 /// Voxels along the side of a leaf: that of a block.
 const SIDE: i64 = BLOCK as i64;
@@ -174,7 +174,7 @@ impl Sparse {
         let grid = Grid::new(placed.name, size, &to_file, fill).map_err(|error| fail(error.to_string()))?;
         match failed {
             Some(error) => Err(error),
-            None => Ok(Some(Volume { grid, bounds, faults })),
+            None => Ok(Some(Volume { grid, bounds, faults, background: 0.0 })),
         }
     }
 

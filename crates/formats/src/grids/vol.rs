@@ -1,5 +1,6 @@
 //! Mitsuba's `.vol`: a number for each voxel of a box. [Jakob 2022]
 
+use super::numbers::{self, Decode};
 use super::{Bytes, Catalogue, GridFormatEntry, Listed, Volume, dense};
 use crate::FormatError;
 use crate::budget::Budget;
@@ -9,10 +10,8 @@ use bilux_math::{Aabb, Vec3};
 /// The first bytes, of which the last is the version.
 pub(crate) const SIGNATURE: &[u8] = b"VOL\x03";
 
-/// The number types of values.
-const FLOAT32: i32 = 1;
-const FLOAT16: i32 = 2;
-const UINT8: i32 = 3;
+/// The number types of values, from 1: their bytes, and how they are read.
+const TYPES: [(usize, Decode); 3] = [(4, numbers::floats), (2, numbers::halves), (1, numbers::bytes_of_one)];
 
 pub(super) const FORMAT: GridFormatEntry =
     GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
@@ -36,11 +35,9 @@ fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, Form
     for number in &mut corners {
         *number = bytes.f32()?;
     }
-    let width = match kind {
-        FLOAT32 => 4,
-        FLOAT16 => 2,
-        UINT8 => 1,
-        _ => return Err(bytes.fail(format!("its numbers have the type {kind}, but only 1 to 3 are known"))),
+    let known = usize::try_from(kind).ok().and_then(|kind| TYPES.get(kind.checked_sub(1)?));
+    let Some(&(width, decode)) = known else {
+        return Err(bytes.fail(format!("its numbers have the type {kind}, but only 1 to 3 are known")));
     };
     let wanted = size.iter().fold(width, |count: usize, side| count.saturating_mul(*side));
     let values = bytes.take(wanted)?;
@@ -51,12 +48,7 @@ fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, Form
     } else {
         Aabb { min: Vec3::ZERO, max: Vec3::ONE }
     };
-    dense(source, size, &bounds, budget, |x, y, z| {
-        let at = (z * size[1] + y) * size[0] + x;
-        match kind {
-            FLOAT32 => f32::from_le_bytes(std::array::from_fn(|i| values[4 * at + i])),
-            FLOAT16 => half::f16::from_le_bytes([values[2 * at], values[2 * at + 1]]).to_f32(),
-            _ => f32::from(values[at]) / 255.0,
-        }
+    dense(source, size, &bounds, budget, |y, z, row| {
+        decode(&values[(z * size[1] + y) * size[0] * width..], row);
     })
 }

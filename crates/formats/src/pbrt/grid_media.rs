@@ -4,7 +4,7 @@ use super::loader::Loader;
 use super::parameters::ParameterList;
 use crate::FormatError;
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
-use bilux_scene::media::{BLOCK_VOXELS, Grid};
+use bilux_scene::media::{BLOCK_VOXELS, Faults, Grid};
 use bilux_scene::wavelength::black_body_of_peak_one;
 use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
@@ -105,7 +105,7 @@ impl GridMaker<'_, '_, '_> {
         &mut self,
         key: &str,
         count: usize,
-        value: impl Fn(usize) -> f32,
+        value: impl Fn(usize) -> f32 + Sync,
     ) -> Result<Density, FormatError> {
         let list = self.list;
         let mut size = [0usize; 3];
@@ -127,25 +127,21 @@ impl GridMaker<'_, '_, '_> {
         };
         let padded = size.map(|side| side + 2);
         let file = &*list.at.file;
-        // Numbers, and blocks as floats in a list that grows by doubling, and as halves.
-        let bytes = padded.iter().fold(4 + 8 + 2, |bytes: u64, side| bytes.saturating_mul(*side as u64));
+        let bytes = Grid::bytes_to_make(padded);
         self.loader.reading.budget.take_bytes(bytes, file)?;
-        let mut values = vec![0.0; padded.iter().product()];
-        let mut faults = 0;
-        for i in 0..count {
-            let [x, y, z] = [i % nx, i / nx % ny, i / (nx * ny)];
-            let density = value(i);
-            let is_sound = density >= 0.0 && density.is_finite();
-            faults += usize::from(!is_sound);
-            let at = ((z + 1) * padded[1] + y + 1) * padded[0] + x + 1;
-            values[at] = if is_sound { density } else { 0.0 };
-        }
-        if faults > 0 {
+        let row = |y: usize, z: usize, row: &mut [f32]| {
+            row.fill(0.0);
+            if (1..=ny).contains(&y) && (1..=nz).contains(&z) {
+                let first = ((z - 1) * ny + y - 1) * nx;
+                row[1..=nx].iter_mut().enumerate().for_each(|(x, density)| *density = value(first + x));
+            }
+        };
+        let made = Grid::of_rows(self.name, padded, &to_medium, row);
+        let (grid, faults) = made.map_err(|error| fail(error.to_string()))?;
+        if faults != Faults::default() {
             let what = "numbers of a grid that are negative or not finite are taken as 0";
             self.loader.note(what, || list.place(key));
         }
-        let grid =
-            Grid::dense(self.name, padded, &to_medium, &values).map_err(|error| fail(error.to_string()))?;
         self.loader.reading.budget.release(bytes);
         self.loader.reading.charge_grid(&grid, file)?;
         Ok(Density { grid: Arc::new(grid), to_world: self.to_world })

@@ -165,7 +165,7 @@ pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Res
     let values = |at: usize, values: &mut LeafValues| leaf(bytes, at, numbers, background, values);
     let volume = sparse.into_volume(&placed, source, budget, values)?;
     let mut volume = volume.ok_or_else(|| bytes.fail("it has no voxels with values"))?;
-    volume.faults.background = background;
+    volume.background = background;
     Ok(volume)
 }
 

@@ -8,6 +8,7 @@ use crate::FormatError;
 use crate::budget::Budget;
 use crate::grids::{Bytes, LeafMask, LeafValues, Listed, Placed, Sparse, Volume};
 use crate::reading::Source;
+use bilux_scene::media::from_binary16;
 
 /// The bits of a grid's compression.
 const ZIP: u32 = 1;
@@ -52,7 +53,7 @@ pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Res
     let volume = sparse.into_volume(&placed, source, budget, leaf)?;
     let mut volume =
         volume.ok_or_else(|| bytes.fail(format!("the grid '{}' has no voxels with values", listed.name)))?;
-    volume.faults.background = encoding.background;
+    volume.background = encoding.background;
     Ok(volume)
 }
 
@@ -222,7 +223,7 @@ impl Encoding {
     /// One value among others.
     fn among(&self, bytes: &[u8]) -> f32 {
         match *bytes {
-            [a, b] => half::f16::from_le_bytes([a, b]).to_f32(),
+            [a, b] => from_binary16(u16::from_le_bytes([a, b])),
             [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
             [a, b, c, d, e, f, g, h] => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
             _ => 0.0,

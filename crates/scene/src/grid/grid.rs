@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::fmt;
 
 /// Marks a block of zeros.
-const EMPTY: u32 = u32::MAX;
+pub(super) const EMPTY: u32 = u32::MAX;
 
 /// Numbers, none of them negative, at the centres of voxels, linear in between, and 0 outside.
 #[derive(Clone, PartialEq)]
@@ -69,57 +69,8 @@ impl Grid {
         Ok(Grid::of_blocks(name, size, to_object, places, voxels, scale))
     }
 
-    /// A grid from one value for each voxel, x varying fastest, then y.
-    ///
-    /// # Errors
-    /// As [`Grid::new`], and when there are more or fewer values.
-    pub fn dense(
-        name: &str,
-        size: [usize; 3],
-        to_object: &Transform,
-        values: &[f32],
-    ) -> Result<Grid, GridError> {
-        let blocks = blocks_of(size)?;
-        let [nx, ny, nz] = size;
-        let wanted = nx * ny * nz;
-        if values.len() != wanted {
-            return Err(GridError::Count { wanted, found: values.len() });
-        }
-        let is_none = |value: &f32| !(value.is_finite() && *value >= 0.0);
-        if let Some(i) = values.par_iter().position_first(is_none) {
-            return Err(GridError::Value(i % nx, i / nx % ny, i / (nx * ny)));
-        }
-        let scale = scale_of(values.par_iter().copied().reduce(|| 0.0, f32::max));
-        // The part of a row of voxels that lies in a block, and its place there.
-        let rows = |[bx, by, bz]: [usize; 3]| {
-            let [xs, ys, zs] =
-                [(bx, nx), (by, ny), (bz, nz)].map(|(b, n)| b * BLOCK..(b * BLOCK + BLOCK).min(n));
-            zs.flat_map(move |z| ys.clone().map(move |y| (y, z))).map(move |(y, z)| {
-                let row = (z * ny + y) * nx;
-                (within(0, y, z), &values[row + xs.start..row + xs.end])
-            })
-        };
-        let at: Vec<[usize; 3]> = all(blocks).collect();
-        let is_stored = |at: &[usize; 3]| rows(*at).any(|(_, row)| row.iter().any(|value| *value != 0.0));
-        let is_stored: Vec<bool> = at.par_iter().map(is_stored).collect();
-        let (mut places, mut stored) = (Vec::with_capacity(at.len()), Vec::new());
-        for (at, is_stored) in at.into_iter().zip(is_stored) {
-            places.push(if is_stored { stored.len() as u32 } else { EMPTY });
-            stored.extend(is_stored.then_some(at));
-        }
-        let mut voxels = vec![0; stored.len() * BLOCK_VOXELS];
-        voxels.par_chunks_mut(BLOCK_VOXELS).zip(&stored).for_each(|(voxels, at)| {
-            for (place, row) in rows(*at) {
-                for (voxel, value) in voxels[place..].iter_mut().zip(row) {
-                    *voxel = half(value / scale);
-                }
-            }
-        });
-        Ok(Grid::of_blocks(name, size, to_object, places, voxels, scale))
-    }
-
     /// One of these blocks, which are those of its size.
-    fn of_blocks(
+    pub(super) fn of_blocks(
         name: &str,
         size: [usize; 3],
         to_object: &Transform,
@@ -293,33 +244,31 @@ impl Grid {
     /// The majorant of each block: what lies between voxels is a mean of those on both sides, also of the neighbours.
     fn bounds_of_blocks(&self) -> Box<[f32]> {
         let blocks = self.size.map(|n| n.div_ceil(BLOCK));
-        let at: Vec<[usize; 3]> = all(blocks).collect();
-        let bound =
-            |at: &[usize; 3]| if self.is_empty_around(*at, blocks) { 0.0 } else { self.bound_of_block(*at) };
-        at.par_iter().map(bound).collect()
+        let [nx, ny, _] = blocks;
+        let bound = |index: usize| {
+            let at = [index % nx, index / nx % ny, index / (nx * ny)];
+            from_half(self.largest_around(at, blocks)) * self.scale
+        };
+        (0..self.places.len()).into_par_iter().map(bound).collect::<Vec<f32>>().into()
     }
 
-    fn bound_of_block(&self, at: [usize; 3]) -> f32 {
-        let own = at.map(|block| block * BLOCK..(block + 1) * BLOCK);
-        let [xs, ys, zs] = [0, 1, 2]
-            .map(|axis: usize| own[axis].start.saturating_sub(1)..(own[axis].end + 1).min(self.size[axis]));
-        let mut largest = match self.places[self.block_index(at)] {
-            EMPTY => 0.0,
-            // Halves without a sign are in the order of their bits.
-            place => {
-                let first = place as usize * BLOCK_VOXELS;
-                let half = self.voxels[first..first + BLOCK_VOXELS].iter().copied().fold(0, u16::max);
-                from_half(half) * self.scale
+    /// The largest half of a block and of the voxels beside it. Halves without a sign are in the order of their bits.
+    fn largest_around(&self, at: [usize; 3], blocks: [usize; 3]) -> u16 {
+        let mut largest = 0;
+        for step in all([3; 3]) {
+            // One step back, none, or one ahead along each axis.
+            let there = [0, 1, 2].map(|axis: usize| (at[axis] + step[axis]).wrapping_sub(1));
+            if (0..3).any(|axis| there[axis] >= blocks[axis]) {
+                continue;
             }
-        };
-        for z in zs {
-            for y in ys.clone() {
-                let is_own = own[2].contains(&z) && own[1].contains(&y);
-                // Of rows through the block only the voxels beyond it are left.
-                let step = if is_own { xs.len() - 1 } else { 1 };
-                for x in xs.clone().step_by(step.max(1)) {
-                    largest = largest.max(self.voxel([x, y, z]));
-                }
+            let place = self.places[self.block_index(there)];
+            if place == EMPTY {
+                continue;
+            }
+            let block = &self.voxels[place as usize * BLOCK_VOXELS..][..BLOCK_VOXELS];
+            let [xs, ys, zs] = step.map(|step| [BLOCK - 1..BLOCK, 0..BLOCK, 0..1][step].clone());
+            for row in zs.flat_map(|z| ys.clone().map(move |y| within(0, y, z))) {
+                largest = block[row..][xs.clone()].iter().copied().fold(largest, u16::max);
             }
         }
         largest
@@ -329,13 +278,6 @@ impl Grid {
     #[cfg(test)]
     pub(crate) fn with_majorants_scaled(&self, factor: f32) -> Grid {
         Grid { majorants: self.majorants.iter().map(|bound| bound * factor).collect(), ..self.clone() }
-    }
-
-    /// True where neither a block nor one of its neighbours is stored.
-    fn is_empty_around(&self, at: [usize; 3], blocks: [usize; 3]) -> bool {
-        let around = |axis: usize| at[axis].saturating_sub(1)..(at[axis] + 2).min(blocks[axis]);
-        around(2)
-            .all(|z| around(1).all(|y| around(0).all(|x| self.places[self.block_index([x, y, z])] == EMPTY)))
     }
 
     /// Visits the blocks along a line, up to a length in metres: where it enters and leaves each of them, and their majorants, until

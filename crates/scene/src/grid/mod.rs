@@ -4,6 +4,8 @@
 //! majorant, so that paths cross thin parts in long steps. [Woodcock 1965; Museth 2013]
 
 mod blocks;
+mod dense;
+mod faults;
 #[expect(clippy::module_inception, reason = "the folder is the concept, and this the type")]
 mod grid;
 mod half;
@@ -11,6 +13,8 @@ mod line;
 mod origin;
 
 pub use blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, MAX_SIDE};
+pub use faults::Faults;
 pub use grid::{Grid, Stored};
+pub use half::from_binary16;
 pub use line::GridLine;
 pub use origin::Origin;

@@ -12,7 +12,9 @@ mod seen;
 pub mod slab;
 mod tracking;
 
-pub use crate::grid::{BLOCK, BLOCK_VOXELS, Block, Grid, GridError, GridLine, MAX_SIDE, Origin, Stored};
+pub use crate::grid::{
+    BLOCK, BLOCK_VOXELS, Block, Faults, Grid, GridError, GridLine, MAX_SIDE, Origin, Stored, from_binary16,
+};
 pub use densities::{ComputedDensity, DENSITIES, DensityEntry};
 pub(crate) use glow::{EMISSION, EMISSION_GRID, TEMPERATURE, TEMPERATURE_NORM, TEMPERATURE_SCALE};
 pub use glow::{Glow, GlowLine};
