@@ -29,6 +29,16 @@ struct Noticing;
 #[global_allocator]
 static ALLOCATOR: Noticing = Noticing;
 
+/// Prepares the allocator for the limits of memory. Comes first, while there is one thread.
+pub fn begin() {
+    let limit = memory::imposed();
+    return_large_blocks();
+    report_failures();
+    if let Some(limit) = limit {
+        share(limit.left);
+    }
+}
+
 impl Noticing {
     /// Looks at what the system gave.
     fn given(block: *mut u8, size: usize) -> *mut u8 {
@@ -81,7 +91,7 @@ fn end_without(size: usize) -> ! {
 }
 
 /// Reports where memory runs out for code that does not expect it: that aborts the process, which is noticed here.
-pub fn report_failures() {
+fn report_failures() {
     #[cfg(unix)]
     {
         use signal_hook::consts::SIGABRT;
@@ -126,7 +136,7 @@ mod malloc {
 }
 
 /// Gives each large block its own pages, so that the memory goes back to the system when the block is freed.
-pub fn return_large_blocks() {
+fn return_large_blocks() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
         /// Larger than what threads allocate for a tile or a pass of photons, smaller than a plane of a large picture. At 1 MB, pages that
@@ -138,7 +148,7 @@ pub fn return_large_blocks() {
 }
 
 /// Takes few arenas for threads where there are only so many bytes.
-pub fn share(bytes: u64) {
+fn share(bytes: u64) {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
         /// Arenas take at most one part in this many.

@@ -292,6 +292,11 @@ impl Render {
     pub fn output_or_stdout(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new("-"))
     }
+
+    /// True if only a part of the picture is rendered.
+    pub fn is_part(&self) -> bool {
+        self.samples.is_some() || self.crop.is_some()
+    }
 }
 
 /// Show what is in a scene file

@@ -1,19 +1,8 @@
-//! Ctrl-C, SIGTERM, the end of the terminal and `--timeout`: the first asks the work to stop and save what there is, and the
-//! process ends within [`GRACE`] whatever it does; a second signal ends it at once. Where there is nothing to save, the first
-//! does.
-//!
-//! A thread waits for signals, so that none of the work has to look for them: not reading, building trees or decoding,
-//! nor a library in the midst of any of it.
+//! What interrupts the work: Ctrl-C, SIGTERM, the end of the terminal, `--timeout`, or a change of what is rendered.
 
-use crate::ending::end;
-#[cfg(target_os = "linux")]
-use signal_hook::consts::SIGHUP;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
+use signal_hook::consts::SIGTERM;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::thread::Builder;
-use std::time::Duration;
 
 /// What has interrupted the work, if anything has.
 #[derive(Clone, Default)]
@@ -28,14 +17,11 @@ pub struct Interrupt {
     ignores_more: Arc<AtomicBool>,
 }
 
+/// The exit status after a timeout, the same as that of the command `timeout`.
+pub const TIMED_OUT: u8 = 124;
+
 /// Takes the place of a signal's number when the time is up.
 const TIMEOUT: usize = usize::MAX;
-
-/// The exit status after a timeout, the same as that of the command `timeout`.
-const TIMED_OUT: u8 = 124;
-
-/// How long saving may take after a signal or a timeout; the process is gone within 2 seconds.
-pub const GRACE: Duration = Duration::from_millis(1800);
 
 /// The one of this process.
 static INTERRUPT: OnceLock<Interrupt> = OnceLock::new();
@@ -45,85 +31,25 @@ pub fn interrupt() -> &'static Interrupt {
     INTERRUPT.get_or_init(Interrupt::default)
 }
 
-/// The signals that end the work. `nohup` has that of a closed terminal ignored, which holds. A sandbox hides what says so.
-pub fn signals() -> Vec<i32> {
-    let mut all = vec![SIGINT, SIGTERM];
-    #[cfg(target_os = "linux")]
-    if !is_ignored(SIGHUP) {
-        all.push(SIGHUP);
-    }
-    all
-}
-
-/// Whether the process was started with a signal ignored: in `/proc/self/status`, each has a bit of a hexadecimal number.
-#[cfg(target_os = "linux")]
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let bits = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let bits = bits.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
-    bits.is_none_or(|bits| bits >> (signal - 1) & 1 == 1)
-}
-
-/// From now on, waits for these signals in a thread. This comes after `--sandbox` is in force, which the thread inherits.
-pub fn listen(wanted: &[i32]) -> anyhow::Result<()> {
-    // Files that grow beyond `ulimit -f` then give an error, and what is half written is removed.
-    #[cfg(unix)]
-    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
-    let mut signals = Signals::new(wanted)?;
-    thread("signals").spawn(move || {
-        for signal in signals.forever() {
-            interrupt().signalled(signal);
-        }
-    })?;
-    Ok(())
-}
-
-/// A thread that waits most of the time, and needs little memory.
-fn thread(name: &str) -> Builder {
-    const STACK: usize = 256 << 10;
-    Builder::new().name(name.to_owned()).stack_size(STACK)
-}
-
 impl Interrupt {
-    /// What a signal does.
-    fn signalled(&self, signal: i32) {
-        let first = self.signal.compare_exchange(0, signal as usize, Ordering::SeqCst, Ordering::SeqCst);
-        if first.is_err() && self.ignores_more.load(Ordering::SeqCst) {
-            return;
-        }
-        if first.is_err() {
-            end(status(signal as usize), "a second signal ended it at once, and nothing more was saved");
-        }
-        if !self.ends_itself.load(Ordering::SeqCst) {
-            end(self.exit_status(), "a signal ended it before there was a picture to save");
-        }
-        let late = self.clone();
-        let waits = thread("grace").spawn(move || {
-            std::thread::sleep(GRACE);
-            end(late.exit_status(), "a signal ended it, and what there is could not be saved in time");
-        });
-        if waits.is_err() {
-            end(self.exit_status(), "a signal ended it, and there is no memory to save what there is");
-        }
+    /// Notes a signal by its number; returns false if it is not the first, or the time was up before.
+    pub fn note(&self, signal: i32) -> bool {
+        self.signal.compare_exchange(0, signal as usize, Ordering::SeqCst, Ordering::SeqCst).is_ok()
     }
 
-    /// Stops the work after what is left of the timeout. What is rendered by then is saved; if nothing is, the program exits at
-    /// once.
-    pub fn end_after(&self, left: Duration, timeout: Duration) -> anyhow::Result<()> {
-        let Interrupt { signal, ends_itself, .. } = self.clone();
-        thread("timeout").spawn(move || {
-            std::thread::sleep(left);
-            let _ = signal.compare_exchange(0, TIMEOUT, Ordering::SeqCst, Ordering::SeqCst);
-            let seconds = timeout.as_secs_f64();
-            if ends_itself.load(Ordering::SeqCst) {
-                std::thread::sleep(GRACE);
-                let lost = "was up, and the picture could not be saved";
-                end(TIMED_OUT, &format!("--timeout: the time of {seconds} s {lost}"));
-            }
-            let nothing = "was up before there was a picture to save";
-            end(TIMED_OUT, &format!("--timeout: the time of {seconds} s {nothing}"));
-        })?;
-        Ok(())
+    /// Notes that the time is up, unless a signal came before.
+    pub fn note_timeout(&self) {
+        let _ = self.signal.compare_exchange(0, TIMEOUT, Ordering::SeqCst, Ordering::SeqCst);
+    }
+
+    /// True if the work ends by itself when it is interrupted.
+    pub fn has_an_end(&self) -> bool {
+        self.ends_itself.load(Ordering::SeqCst)
+    }
+
+    /// True if more signals change nothing.
+    pub fn ignores_more(&self) -> bool {
+        self.ignores_more.load(Ordering::SeqCst)
     }
 
     /// Says whether, from now on, the work ends by itself when it is interrupted, and saves what there is.
@@ -177,6 +103,6 @@ impl Interrupt {
 }
 
 /// The exit status by which shells report a signal.
-fn status(signal: usize) -> u8 {
+pub fn status(signal: usize) -> u8 {
     128 + signal as u8
 }

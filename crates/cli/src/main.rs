@@ -7,10 +7,12 @@
 mod advice;
 mod allocator;
 mod arguments;
+mod assignments;
 mod choices;
 mod commands;
 mod comparison;
 mod converting;
+mod denoisers;
 mod denoising;
 mod ending;
 mod explaining;
@@ -24,8 +26,10 @@ mod output;
 mod preview;
 mod progress;
 mod sandbox;
+mod sandbox_paths;
 mod serving;
 mod settings_from;
+mod signals;
 mod studio;
 mod usage;
 mod values;
@@ -46,12 +50,12 @@ const CLOSED_PIPE: u8 = 128 + 13;
 
 fn main() -> ExitCode {
     report_panics();
-    memory::begin();
+    allocator::begin();
     let result = match Arguments::try_parse() {
         Ok(mut arguments) => {
             // A worker's jobs are bounded in the process that renders them.
             if !matches!(arguments.command, Command::Worker(_)) {
-                memory::bound(&mut arguments.common);
+                memory::bound(&mut arguments.common.max_memory);
             }
             run(arguments)
         }

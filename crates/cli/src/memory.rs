@@ -1,8 +1,6 @@
 //! How much memory this process takes, where the system gives it less than the machine has: a lower `--max-memory`, fewer
 //! threads, and a message in place of a kill.
 
-use crate::allocator;
-use crate::arguments::Common;
 use anyhow::Context;
 use bilux::memory_limit::{LimitSource, MemoryLimit};
 use bilux::scene::Parameters;
@@ -14,18 +12,8 @@ static LIMIT: OnceLock<Option<MemoryLimit>> = OnceLock::new();
 /// Whether the limit is what bounds `--max-memory`.
 static IS_TIGHTER: AtomicBool = AtomicBool::new(false);
 
-/// Looks for limits, and prepares the allocator for them. Comes first, while there is one thread.
-pub fn begin() {
-    let limit = imposed();
-    allocator::return_large_blocks();
-    allocator::report_failures();
-    if let Some(limit) = limit {
-        allocator::share(limit.left);
-    }
-}
-
 /// The limit that the system imposes, if it does.
-fn imposed() -> Option<&'static MemoryLimit> {
+pub fn imposed() -> Option<&'static MemoryLimit> {
     LIMIT.get_or_init(MemoryLimit::of_process).as_ref().filter(|limit| limit.is_imposed())
 }
 
@@ -51,11 +39,11 @@ fn refuse_before_kill(limit: &MemoryLimit) {
 fn refuse_before_kill(_: &MemoryLimit) {}
 
 /// Lowers `--max-memory` to what the system and the threads leave.
-pub fn bound(common: &mut Common) {
+pub fn bound(max_memory: &mut u64) {
     let Some(limit) = LIMIT.get_or_init(MemoryLimit::of_process) else { return };
     let left = limit.for_pictures();
-    IS_TIGHTER.store(left < common.max_memory, Ordering::Relaxed);
-    common.max_memory = left.min(common.max_memory);
+    IS_TIGHTER.store(left < *max_memory, Ordering::Relaxed);
+    *max_memory = left.min(*max_memory);
 }
 
 /// What sets the limit, if the system imposes one.

@@ -1,6 +1,6 @@
 //! The options for the studio around a model.
 
-use crate::settings_from::{change_of, from_flag};
+use crate::assignments::{change_of, from_flag};
 use crate::values::{parse_focal, parse_metres, parse_zoom};
 use crate::{help, usage};
 use anyhow::{Context, bail};

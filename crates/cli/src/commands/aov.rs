@@ -1,11 +1,10 @@
 //! `--aov`: what a render writes besides its picture.
 
 use super::targets::is_stdout;
-use super::written::Layers;
 use crate::arguments::{Common, Render};
+use crate::assignments::from_flag;
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
-use crate::settings_from::from_flag;
 use crate::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
@@ -16,6 +15,14 @@ use bilux::transport::aovs::{self, AOVS, Aov};
 use bilux::transport::{Interval, Strategies, integrators, strategies::MAX_EDGES};
 use bilux::{ExtraLayers, Job, Outcome};
 use std::path::{Path, PathBuf};
+
+/// The layers of an `.exr`.
+pub struct Layers<'a> {
+    /// Those that rendering keeps.
+    pub kept: &'a [Aov],
+    /// Those that are made after it.
+    pub extra: Option<&'a ExtraLayers>,
+}
 
 /// Checks, before any work, that the outputs asked for exist and have a place to go.
 pub fn check(arguments: &Render) -> anyhow::Result<()> {

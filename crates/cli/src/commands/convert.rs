@@ -7,7 +7,7 @@ use super::{
     report_warnings, warn_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::{WriteOptions, check_not_read};

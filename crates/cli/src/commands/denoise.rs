@@ -3,7 +3,7 @@
 use super::pictures::{read_picture, with_main};
 use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
 use crate::arguments::{Common, Denoise};
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::values::Exposure;
 use crate::{output, usage};
 use anyhow::Context;
@@ -24,7 +24,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let tone_map = tone_map(&arguments.tonemap).context("--tonemap").map_err(usage::wrong)?;
     let threads = arguments.threads as usize;
     if arguments.by != "builtin" {
-        crate::denoising::load(threads, common);
+        crate::denoisers::load(threads, common);
     }
     let task = Task { threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).context("--by").map_err(usage::wrong)?;

@@ -2,7 +2,7 @@
 
 use super::{DONE, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Explain};
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::{output, settings_from, usage};
 use bilux::explain::{Explanation, Measures, slower};
 use bilux::{Job, JobRequest};

@@ -49,7 +49,7 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
     let denoiser = denoiser.filter(|_| !outcome.rendered.cancelled);
     let outcome = Arc::new(outcome);
     let extra = aov::extra(arguments, job, &outcome, &report)?;
-    let layers = written::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
+    let layers = aov::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
     let denoising = written::write(input, job, &outcome, (denoiser, &layers), output)?;
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);

@@ -2,8 +2,8 @@
 
 use super::{DONE, check_folder, check_not_input, is_picture, load, read_options, report_warnings};
 use crate::arguments::{Common, Generate};
-use crate::sandbox::SandboxPaths;
-use crate::settings_from::{assignment_of, from_flag};
+use crate::assignments::{assignment_of, from_flag};
+use crate::sandbox_paths::SandboxPaths;
 use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;

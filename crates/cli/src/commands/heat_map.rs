@@ -1,7 +1,7 @@
 //! `bilux convert --heat-map`: one channel of a picture in false colours.
 
+use crate::assignments::from_flag;
 use crate::output;
-use crate::settings_from::from_flag;
 use bilux::pictures::metrics::false_colours;
 use bilux::pictures::{Channel, Picture};
 use bilux::scene::SceneError;

@@ -3,7 +3,7 @@
 use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
 use crate::output::counted;
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::{output, usage};
 use bilux::formats::ReadOptions;
 use bilux::memory::Memory;

@@ -1,11 +1,11 @@
 //! The scene that `bilux render` renders, and the jobs that it makes of it.
 
 use super::targets::{Target, is_stdout};
-use super::written::is_part;
 use super::{aov, check_choices, load, read_options_with, report_warnings};
 use crate::arguments::{Common, Render};
+use crate::assignments::from_flag;
 use crate::interrupt::Interrupt;
-use crate::{output, settings_from, usage};
+use crate::{output, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::checkpoint::checkpoint_path;
 use bilux::formats::ReadOptions;
@@ -162,7 +162,7 @@ impl Input<'_> {
     fn request(&self, user: &Parameters, series: &Series, output: &Path) -> anyhow::Result<JobRequest> {
         let (arguments, common) = (self.arguments, self.common);
         // A path is drawn into the picture that is shown, even if only a part of it is rendered.
-        let is_whole = arguments.replay.is_some() || !is_part(arguments);
+        let is_whole = arguments.replay.is_some() || !arguments.is_part();
         let is_shown = is_whole && (is_stdout(output) || format_of_path(output)?.for_display);
         let denoised = if is_shown { Denoised::ForDisplay } else { Denoised::IfAsked };
         let mut request = JobRequest::from(user)
@@ -207,5 +207,5 @@ fn check_input_format(name: &str) -> anyhow::Result<()> {
     }
     let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
     let names = rows.map(|row| row.entry.name).chain(["auto"]);
-    Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
+    Err(SceneError::unknown("scene format", name, names, &from_flag("--input-format")).into())
 }

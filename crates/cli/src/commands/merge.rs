@@ -2,7 +2,7 @@
 
 use super::{DONE, check_folder, check_not_input, warn_lost_alpha};
 use crate::arguments::{Common, Merge};
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::{output, usage};
 use anyhow::{Context, bail};
 use bilux::Display;

@@ -32,7 +32,7 @@ mod written;
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
 use crate::output;
-use crate::sandbox::folder_of;
+use crate::sandbox_paths::folder_of;
 use anyhow::bail;
 use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Rgb;

@@ -4,14 +4,13 @@ use super::finishing::finish;
 use super::frames::FinishedFrames;
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
-use super::written::is_part;
 use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
 use crate::arguments::{Common, Render};
-use crate::denoising::{begin_loading, check_scenes};
+use crate::denoisers::{begin_loading, check_scenes};
 use crate::ending::{finished, under_way};
 use crate::interrupt::{Interrupt, interrupt};
-use crate::sandbox::{SandboxPaths, check_read, folder_of, leads_out};
-use crate::{output, settings_from, usage};
+use crate::sandbox_paths::{SandboxPaths, check_read, folder_of, leads_out};
+use crate::{output, settings_from, signals, usage};
 use anyhow::{Context, bail};
 use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::checkpoint::checkpoint_path;
@@ -82,7 +81,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
 fn begin(targets: &[Target], arguments: &Render, common: &Common, begun: Instant) -> anyhow::Result<()> {
     confine(targets, arguments, common)?;
     match arguments.timeout {
-        Some(timeout) => interrupt().end_after(timeout.saturating_sub(begun.elapsed()), timeout),
+        Some(timeout) => signals::end_after(interrupt(), timeout.saturating_sub(begun.elapsed()), timeout),
         None => Ok(()),
     }
 }
@@ -193,7 +192,7 @@ fn render_scene(
     let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
     let mut user = user.clone();
-    let is_whole = !is_part(arguments) && (arguments.replay.is_none() || arguments.output.is_some());
+    let is_whole = !arguments.is_part() && (arguments.replay.is_none() || arguments.output.is_some());
     if arguments.fast {
         with_fast_budget(&scene.settings, &mut user);
     }

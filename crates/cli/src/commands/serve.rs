@@ -4,10 +4,10 @@ use super::{DONE, check_choices, load, read_options_with, report_notes, report_w
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
 use crate::interrupt::interrupt;
-use crate::sandbox::{SandboxPaths, folder_of};
+use crate::sandbox_paths::{SandboxPaths, folder_of};
 use crate::serving::Serve;
 use crate::studio::{StudioArguments, surround};
-use crate::{denoising, output, settings_from, usage};
+use crate::{denoisers, output, settings_from, usage};
 use anyhow::bail;
 use bilux::formats::ReadOptions;
 use bilux::scene::SceneBuilder;
@@ -27,7 +27,7 @@ pub fn run(arguments: Serve, common: &Common) -> anyhow::Result<u8> {
     let settings = settings_from::serve(&arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
-    denoising::load(0, common);
+    denoisers::load(0, common);
     confine(&arguments, common)?;
     let read = read_options_with(common, &arguments.choices, arguments.at.unwrap_or(0.0));
     let scene = open(&arguments, &read)?;

@@ -1,8 +1,8 @@
 //! How the picture of a render becomes a file.
 
+use super::aov::{self, Layers};
 use super::input::Input;
-use super::{aov, warn_lost_alpha};
-use crate::arguments::Render;
+use super::warn_lost_alpha;
 use crate::commands::targets::is_stdout;
 use crate::interrupt::Interrupt;
 use crate::output;
@@ -10,26 +10,12 @@ use anyhow::bail;
 use bilux::pictures::Picture;
 use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::formats::BitDepth;
-use bilux::transport::aovs::Aov;
-use bilux::{ExtraLayers, Job, Outcome};
+use bilux::{Job, Outcome};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread::Builder;
 use std::time::Duration;
-
-/// The layers of an `.exr`.
-pub struct Layers<'a> {
-    /// Those that rendering keeps.
-    pub kept: &'a [Aov],
-    /// Those that are made after it.
-    pub extra: Option<&'a ExtraLayers>,
-}
-
-/// True if only a part of the picture is rendered.
-pub fn is_part(arguments: &Render) -> bool {
-    arguments.samples.is_some() || arguments.crop.is_some()
-}
 
 /// How often it is checked whether denoising has to give way to saving what there is.
 const TICK: Duration = Duration::from_millis(20);
@@ -79,7 +65,7 @@ pub fn write(
 ) -> anyhow::Result<Denoising> {
     let Input { arguments, common, interrupt, .. } = *input;
     let is_exr = !is_stdout(output) && aov::is_exr(output);
-    let is_part = is_exr && (is_part(arguments) || outcome.rendered.cancelled);
+    let is_part = is_exr && (arguments.is_part() || outcome.rendered.cancelled);
     let chosen = denoiser.filter(|_| !is_part);
     let smooth = chosen.map(|chosen| denoised(outcome, chosen, interrupt)).transpose()?.flatten();
     let denoiser = chosen.filter(|_| smooth.is_some());

@@ -1,6 +1,6 @@
 //! Half blocks in 24-bit colour: two pixels in each character cell, which every modern terminal shows.
 
-use super::{Protocol, display_bytes};
+use super::protocol::{Protocol, display_bytes};
 use bilux::pictures::{Picture, WriteOptions};
 use std::io::Write;
 

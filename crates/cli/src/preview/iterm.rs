@@ -1,6 +1,6 @@
 //! The inline images of iTerm2, which WezTerm and others understand too: a whole PNG.
 
-use super::Protocol;
+use super::protocol::Protocol;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bilux::pictures::formats::write_bytes;

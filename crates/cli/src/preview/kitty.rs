@@ -1,6 +1,6 @@
 //! The graphics protocol of kitty, which some other terminals understand too: a PNG in pieces.
 
-use super::Protocol;
+use super::protocol::Protocol;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bilux::pictures::formats::write_bytes;

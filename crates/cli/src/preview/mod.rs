@@ -3,17 +3,18 @@
 mod blocks;
 mod iterm;
 mod kitty;
+mod protocol;
 mod sixel;
 
 use crate::interrupt::Interrupt;
 use crate::output;
-use anyhow::bail;
 use bilux::checkpoint::CheckpointWriter;
 use bilux::math::Rgb;
 use bilux::pictures::{Picture, WriteOptions};
 use bilux::transport::{Film, Observer, Standing};
 use bilux::{Job, Outcome};
 use indicatif::ProgressBar;
+use protocol::{Environment, Protocol};
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,40 +22,8 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A way of showing pictures in a terminal.
-pub struct Protocol {
-    pub name: &'static str,
-    /// Pixels across and down in one character cell, as far as the protocol is concerned.
-    cell: [u32; 2],
-    /// True if the environment says that the terminal understands it.
-    detect: fn(&Environment) -> bool,
-    /// What is written to show a picture in so many columns and rows, from the place of the cursor on, which may end anywhere.
-    draw: fn(&Picture, &WriteOptions, [u32; 2]) -> anyhow::Result<Vec<u8>>,
-}
-
 /// All protocols; the first that is detected is taken. Blocks are last: every terminal has them.
 const PROTOCOLS: &[Protocol] = &[kitty::ENTRY, iterm::ENTRY, sixel::ENTRY, blocks::ENTRY];
-
-/// What terminals say of themselves.
-struct Environment {
-    term: String,
-    program: String,
-    has_kitty_window: bool,
-}
-
-impl Environment {
-    fn read() -> Environment {
-        let text = |name: &str| std::env::var(name).unwrap_or_default();
-        let program = [text("TERM_PROGRAM"), text("LC_TERMINAL")].join(" ");
-        let has_kitty_window = std::env::var_os("KITTY_WINDOW_ID").is_some();
-        Environment { term: text("TERM"), program, has_kitty_window }
-    }
-
-    /// Multiplexers pass on text only.
-    fn is_multiplexer(&self) -> bool {
-        ["tmux", "screen"].iter().any(|name| self.term.starts_with(name) || self.program.contains(name))
-    }
-}
 
 /// What `--preview` asks for.
 #[derive(Clone, Copy)]
@@ -221,16 +190,6 @@ fn terminal_size() -> [u32; 2] {
     let of_terminal = terminal_size::terminal_size_of(std::io::stderr());
     let size = of_terminal.map(|(columns, rows)| [u32::from(columns.0), u32::from(rows.0)]);
     size.filter(|size| size.iter().all(|side| *side > 1)).unwrap_or(USUAL)
-}
-
-/// The colours of a picture as a display shows them, three bytes a pixel, row by row.
-fn display_bytes(picture: &Picture, options: &WriteOptions) -> anyhow::Result<Vec<u8>> {
-    let options = WriteOptions { bit_depth: bilux::pictures::formats::BitDepth::Eight, ..*options };
-    let file = bilux::pictures::formats::write_bytes("ppm", picture, &options)?;
-    let Some(start) = file.len().checked_sub(3 * picture.width() * picture.height()) else {
-        bail!("a preview could not be made");
-    };
-    Ok(file[start..].to_vec())
 }
 
 /// What sees the film while it is rendered.

@@ -1,6 +1,6 @@
 //! Sixels, which many terminals understand: six rows of pixels in each line, in a palette of 216 colours with ordered dither.
 
-use super::{Protocol, display_bytes};
+use super::protocol::{Protocol, display_bytes};
 use bilux::pictures::{Picture, WriteOptions};
 use std::io::Write;
 

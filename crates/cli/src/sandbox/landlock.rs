@@ -1,6 +1,6 @@
 //! Linux: Landlock, with which any process can restrict itself irrevocably.
 
-use super::Enforcement;
+use super::enforcement::Enforcement;
 use anyhow::Context;
 use landlock::{
     ABI, Access, AccessFs, AccessNet, BitFlags, CompatLevel, Compatible, PathBeneath, PathFd, Ruleset,
@@ -15,7 +15,7 @@ const WANTED: ABI = ABI::V6;
 const SYSTEM: [&str; 3] = ["/sys/fs/cgroup", "/sys/devices/system/cpu", "/proc/self/cgroup"];
 
 /// What this kernel can enforce.
-pub(super) fn available() -> Enforcement {
+pub fn available() -> Enforcement {
     let required = || Ruleset::default().set_compatibility(CompatLevel::HardRequirement);
     if required().handle_access(AccessNet::ConnectTcp).is_ok() {
         Enforcement::FilesAndNetwork
@@ -27,7 +27,7 @@ pub(super) fn available() -> Enforcement {
 }
 
 /// Restricts this thread, and the threads that it starts from now on.
-pub(super) fn restrict(read: &[PathBuf], write: Option<&Path>) -> anyhow::Result<Enforcement> {
+pub fn restrict(read: &[PathBuf], write: Option<&Path>) -> anyhow::Result<Enforcement> {
     let failed = "--sandbox: the kernel refuses to restrict this process";
     let rules = Ruleset::default()
         .handle_access(AccessFs::from_all(WANTED))

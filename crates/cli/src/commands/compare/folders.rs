@@ -1,6 +1,7 @@
 //! Folders of pictures, in pairs by their names.
 
-use super::{BEYOND, Compared, TROUBLE, as_json, broken_bounds, page};
+use super::compared::{BEYOND, Compared, TROUBLE, as_json, broken_bounds};
+use super::page;
 use crate::arguments::{Common, Compare};
 use crate::commands::{DONE, is_picture};
 use crate::output;

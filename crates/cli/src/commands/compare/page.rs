@@ -1,6 +1,6 @@
 //! `--html`: a page that shows pairs of pictures and their errors. It holds everything that it shows: nothing is fetched.
 
-use super::Compared;
+use super::compared::Compared;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bilux::pictures::{Picture, WriteOptions};

@@ -1,6 +1,7 @@
 //! `bilux farm`: splits a picture by its samples, or an animation by its frames, into tasks that a farm's scheduler runs.
 //! Nothing here opens a connection: the command writes files, and the tasks are ordinary commands.
 
+mod farm_job;
 mod files;
 mod options;
 mod readme;
@@ -9,49 +10,19 @@ mod split;
 mod template;
 
 use super::{DONE, check_choices, load, read_options_with, report_warnings};
-use crate::arguments::{Arguments, Common, Render};
+use crate::arguments::{Common, Render};
 use crate::farming::Farm;
-use crate::sandbox::SandboxPaths;
+use crate::sandbox_paths::SandboxPaths;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::Settings;
 use bilux::budget::with_default_budget;
 use bilux::formats::ReadOptions;
+use farm_job::{FarmJob, Word};
 use files::Files;
 use split::Split;
 use std::fs;
 use std::path::Path;
-
-/// A job for a farm.
-struct FarmJob {
-    /// The scene's name without folder and extension.
-    name: String,
-    /// The scene file, in the job's folder of files.
-    scene: Word,
-    /// The name of the picture, or of its frames.
-    picture: String,
-    split: Split,
-    /// The options of `bilux render`.
-    options: Vec<Word>,
-}
-
-/// A word of a command line.
-enum Word {
-    Text(String),
-    /// A file in the job's folder of files, after some text, such as that of an option.
-    File(String, String),
-}
-
-impl FarmJob {
-    /// The words of a task's command after `bilux`, each as the caller writes them: `range` stands for the part that the
-    /// task renders, `picture` for the file that it writes.
-    fn render(&self, picture: &str, range: &str, written: impl Fn(&Word) -> String) -> Vec<String> {
-        let mut words = vec!["render".to_owned(), written(&self.scene), "-o".to_owned(), picture.to_owned()];
-        words.extend([self.split.flag().to_owned(), range.to_owned()]);
-        words.extend(self.options.iter().map(written));
-        words
-    }
-}
 
 pub fn run(arguments: &Farm, common: &Common) -> anyhow::Result<u8> {
     let folder = &arguments.output;
@@ -173,10 +144,4 @@ fn report(job: &FarmJob, arguments: &Farm, bytes: u64) {
     output::eprint(format_args!(
         "{folder}: {tasks} for {what}, {megabytes:.1} MB of scene files; {folder}/README.md says how to run them"
     ));
-}
-
-/// The command line of a task, as the parser of the command line sees it.
-fn parse(words: &[String]) -> Result<Arguments, clap::Error> {
-    use clap::Parser;
-    Arguments::try_parse_from(words)
 }

@@ -1,12 +1,13 @@
 //! The options of `bilux render` that every task gets: the command line's own parser reads them, so that all work here,
 //! except those that make no sense in a part of a picture or on another machine.
 
+use super::farm_job::Word;
 use super::files::Files;
-use super::{FarmJob, Word};
-use crate::arguments::{Command, Render};
+use crate::arguments::{Arguments, Command, Render};
 use crate::commands::aov;
 use crate::farming::Farm;
 use anyhow::{Context, bail};
+use clap::Parser;
 use std::path::Path;
 
 /// The options whose value is a file.
@@ -19,7 +20,7 @@ const OF_FILES: [&str; 2] = ["--env", "--background"];
 pub(super) fn parse(options: &[String]) -> anyhow::Result<Box<Render>> {
     let before = ["bilux", "render", "-o", "picture.exr"].map(str::to_owned);
     let words: Vec<String> = before.iter().chain(options).cloned().chain(["scene".to_owned()]).collect();
-    match super::parse(&words) {
+    match Arguments::try_parse_from(&words) {
         Ok(parsed) => match parsed.command {
             Command::Render(render) if render.scenes.len() == 1 => Ok(render),
             _ => bail!("after `--` come only options of `bilux render`; the scene comes before it"),
@@ -110,11 +111,4 @@ pub(super) fn words(options: &[String], files: &Files) -> Vec<Word> {
         before = option;
     }
     words
-}
-
-impl FarmJob {
-    /// The parts that the merge reads, in a folder.
-    pub(super) fn parts(&self, folder: &str) -> Vec<String> {
-        self.split.ranges().iter().map(|range| format!("{folder}/{range}.exr")).collect()
-    }
 }

@@ -1,6 +1,6 @@
 //! The job's README: how to run it with OpenJD, Slurm, or GNU parallel.
 
-use super::FarmJob;
+use super::farm_job::FarmJob;
 use super::shell::{PROGRAM, merge, render};
 use super::split::Split;
 

@@ -1,7 +1,7 @@
 //! The job as a job array for Slurm, and its commands in a shell.
 
+use super::farm_job::{FarmJob, Word};
 use super::split::Split;
-use super::{FarmJob, Word};
 
 /// The program, where the environment may name another.
 pub(super) const PROGRAM: &str = "\"${BILUX:-bilux}\"";

@@ -1,7 +1,7 @@
 //! The job template, in YAML as Open Job Description defines it (its specification of 2023-09).
 
+use super::farm_job::{FarmJob, Word};
 use super::split::Split;
-use super::{FarmJob, Word};
 use anyhow::bail;
 
 /// The longest name of a job that the specification allows.

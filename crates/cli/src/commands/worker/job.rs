@@ -5,7 +5,7 @@ use super::lines::{LONGEST, Line};
 use crate::arguments::{Arguments, Command, Common, Worker};
 use crate::commands::render::confines;
 use crate::commands::targets::targets;
-use crate::denoising::may_denoise;
+use crate::denoisers::may_denoise;
 use crate::output;
 use crate::values::{parse_bytes, parse_duration};
 use bilux::scene::error::nearest_name;

@@ -3,7 +3,7 @@
 use super::confines::Confines;
 use super::job::Job;
 use super::signals::Signals;
-use crate::interrupt;
+use crate::signals;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 const EVERY: Duration = Duration::from_millis(20);
 
 /// How long a process may take to end once it is asked to, which is a little longer than it gives itself.
-const GRACE: Duration = interrupt::GRACE.saturating_add(Duration::from_millis(100));
+const GRACE: Duration = signals::GRACE.saturating_add(Duration::from_millis(100));
 
 /// How many jobs one process takes in a sandbox: the kernel allows no more than 16 of them on top of each other.
 const JOBS_IN_SANDBOX: u32 = 12;

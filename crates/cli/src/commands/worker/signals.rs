@@ -1,6 +1,6 @@
 //! Ctrl-C, SIGTERM and the end of the terminal for the process that reads the jobs: it goes on until the job under way has its result.
 
-use crate::interrupt::signals;
+use crate::signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,7 +11,7 @@ impl Signals {
     /// Starts listening.
     pub fn listen() -> std::io::Result<Signals> {
         let signal = Arc::default();
-        for wanted in signals() {
+        for wanted in signals::wanted() {
             signal_hook::flag::register_usize(wanted, Arc::clone(&signal), wanted as usize)?;
         }
         Ok(Signals(signal))

@@ -49,7 +49,7 @@ pub fn run() -> anyhow::Result<u8> {
 /// Renders what a command line says.
 fn render(words: &[String]) -> anyhow::Result<u8> {
     let Arguments { mut common, command, .. } = Arguments::try_parse_from(words)?;
-    memory::bound(&mut common);
+    memory::bound(&mut common.max_memory);
     match &command {
         Command::Render(render) => commands::render::run(render, &common),
         _ => bail!("this is no render"),
