@@ -4,12 +4,13 @@ use crate::presets::{Ground, Studio};
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{
-    Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
+    Camera, CameraSample, Mesh, Object, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer,
+    Warning,
 };
 
 /// Warnings about a scene: `given` is the scene before anything missing was added, `scene` is as the camera sees it.
 pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<Warning> = of_boundaries(given, scene).into_iter().collect();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
     if camera_is_inside_solid(scene, camera) {
@@ -36,6 +37,33 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
         }
     }
     warnings
+}
+
+/// Media that scatter and have no inside.
+fn of_boundaries(given: &SceneBuilder, scene: &Scene) -> Option<Warning> {
+    let scatters = |index: u32| scene.material_of(index).medium().is_some_and(|medium| medium.scatters());
+    let all = (0..).zip(&given.objects).filter(|(index, _)| scatters(*index));
+    let is_wrong = |(index, object): &(u32, &Object)| {
+        scene.enclosure(*index).is_none() && object.mesh.signed_volume() <= 0.0 || !object.mesh.is_closed()
+    };
+    let mut wrong = all.filter(is_wrong).map(|(_, object)| object);
+    let first = wrong.next()?;
+    let others = match wrong.count() {
+        0 => String::new(),
+        count => format!(" (and {count} more)"),
+    };
+    let name = &first.name;
+    let message = if first.mesh.is_closed() {
+        format!(
+            "the faces of '{name}'{others} look inwards, so its medium, which scatters light, is outside of it: turn them"
+        )
+    } else {
+        format!(
+            "the mesh of '{name}'{others} is open, but is the boundary of a medium that scatters light: a ray through a hole does \
+             not notice where the medium begins or ends; close the mesh"
+        )
+    };
+    Some(Warning { message, at: Span::default() })
 }
 
 /// What is odd about the ground that was asked for.
@@ -207,6 +235,28 @@ mod tests {
         assert!(reported(shell(), [0.1, 0.2, 0.0])[0].contains("single-sided"));
         assert!(reported(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(reported(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
+    }
+
+    #[test]
+    fn media_in_open_meshes_and_outside_of_their_own_are_named() {
+        let reported = |change: fn(&mut Mesh), material: Spec| {
+            let (mut scene, mut ball) = (SceneBuilder::default(), shapes::icosphere(Vec3::ZERO, 1.0, 2));
+            change(&mut ball);
+            let material = scene.add_material(material);
+            scene.objects.push(Object::new("ball", Arc::new(ball), material));
+            let job = Job::new(&scene, &Parameters::default()).unwrap();
+            job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("")
+        };
+        let milk = || Spec::new("milk", "dielectric").with("scattering", 3.0);
+        let fog = || Spec::new("fog", "interface").with("scattering", 3.0);
+        let open: fn(&mut Mesh) = |mesh| mesh.triangles.truncate(mesh.triangles.len() - 1);
+        for medium in [milk, fog] {
+            assert_eq!(reported(|_| {}, medium()), "");
+            assert!(reported(open, medium()).contains("'ball' is open"));
+            let turned = reported(|mesh| mesh.triangles.iter_mut().for_each(|t| t.reverse()), medium());
+            assert!(turned.contains("look inwards"), "{turned}");
+        }
+        assert_eq!(reported(open, Spec::new("glass", "dielectric")), "");
     }
 
     #[test]

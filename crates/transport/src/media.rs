@@ -17,8 +17,8 @@ mod passage;
 
 use crate::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::media::{Draws, FreePath, MediumEvent, MediumLine, WalkChannel};
-use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
+use bilux_scene::media::{Draws, Flight, FreePath, MediumEvent, MediumLine, WalkChannel};
+use bilux_scene::{Bsdf, Enclosure, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
 pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled, behind, draws_along};
@@ -106,8 +106,9 @@ impl Media {
     }
 
     /// Follows a ray of unit direction to the next event: of a medium, where the numbers that `draw` gives find one, or at the first surface
-    /// that separates two media. `first` is the first surface along the ray. Afterwards these are the media on the side that the ray comes
-    /// from. `odds` are those of walks in each channel so far. `visit` is told of each medium that scatters, on the way.
+    /// that separates two media. `first` is the first surface along the ray, or along the part of it up to the event of the flight `ahead`. Afterwards
+    /// these are the media on the side that the ray comes from. `odds` are those of walks in each channel so far. `visit` is told of each
+    /// medium that scatters, on the way.
     ///
     /// Beyond the last surface nothing happens: the boundary of what scatters would have been met.
     #[inline]
@@ -115,7 +116,7 @@ impl Media {
         &mut self,
         tracer: &mut Tracer,
         ray: &Ray,
-        first: Option<Surface>,
+        (first, ahead): (Option<Surface>, Option<Flight>),
         odds: Rgb,
         mut draw: impl FnMut() -> f32,
         mut visit: impl FnMut(MediumPart),
@@ -124,25 +125,19 @@ impl Media {
         let direction = Vec3::from(ray.direction);
         let mut travelled = Travelled::NOWHERE;
         let (mut next, mut begin) = (first, 0.0);
+        if let (None, Some(flight)) = (first, ahead) {
+            return self.fly(scene, ray, [0.0; 2], &flight, travelled, &mut visit);
+        }
         while let Some(surface) = next {
             let surface = self.arrive(tracer, ray, surface);
             let medium = self.medium(scene);
-            let length = surface.t - begin;
             let line = scene.medium_line(self.inside, &medium, ray, begin);
             let channel = WalkChannel { index: usize::from(self.channel), odds: odds * travelled.odds };
-            let flight = medium.walk(line.as_ref(), length, channel, &mut draw);
-            travelled = travelled.lit(flight.emitted);
-            if medium.scatters() {
-                let end = flight.event.map_or(surface.t, |event| begin + event.distance);
-                visit(MediumPart { object: self.inside, medium, ends: [begin, end], before: &travelled });
+            let flight = medium.walk(line.as_ref(), surface.t - begin, channel, &mut draw);
+            travelled = self.fly(scene, ray, [begin, surface.t], &flight, travelled, &mut visit);
+            if flight.event.is_some() {
+                return travelled;
             }
-            if let Some(MediumEvent { distance, sigma_s, sigma_t }) = flight.event {
-                let t = begin + distance;
-                self.overlap.leave();
-                let point = self.point(scene, &medium, ray, t);
-                return travelled.scattered(flight.path, [sigma_s, sigma_t], point);
-            }
-            travelled = travelled.passed(flight.path);
             if self.overlap.separates(scene, &surface) {
                 return Travelled { arrival: Arrival::Surface(surface), ..travelled };
             }
@@ -151,6 +146,74 @@ impl Media {
             next = tracer.closest(&behind(ray, &surface));
         }
         travelled
+    }
+
+    /// The flight along a ray that leaves a point of the medium around, up to its next event, if that is known without the surfaces along
+    /// the ray: where nothing leaves the medium unseen. `None` where the point of the event is outside by rounding, and for media that
+    /// vary, where a flight that ends at a surface would be followed twice.
+    pub(crate) fn flight_ahead(
+        &self,
+        scene: &Scene,
+        ray: &Ray,
+        odds: Rgb,
+        draw: impl FnMut() -> f32,
+    ) -> Option<Flight> {
+        let enclosure = scene.enclosure(self.inside)?;
+        let medium = self.medium(scene);
+        if medium.density.is_some() || medium.glow.is_some() {
+            return None;
+        }
+        let channel = WalkChannel { index: usize::from(self.channel), odds };
+        let flight = medium.walk(None, f32::INFINITY, channel, draw);
+        let at = |distance: f32| Vec3::from(ray.origin) + Vec3::from(ray.direction) * distance;
+        let is_inside = |event: MediumEvent| enclosure.bounds.contains(at(event.distance));
+        flight.event.is_some_and(is_inside).then_some(flight)
+    }
+
+    /// To the end of a flight through the medium around, between these distances along a ray unless an event ends it.
+    #[inline]
+    fn fly(
+        &mut self,
+        scene: &Scene,
+        ray: &Ray,
+        [begin, end]: [f32; 2],
+        flight: &Flight,
+        travelled: Travelled,
+        visit: &mut impl FnMut(MediumPart),
+    ) -> Travelled {
+        let medium = self.medium(scene);
+        let travelled = travelled.lit(flight.emitted);
+        if medium.scatters() {
+            let end = flight.event.map_or(end, |event| begin + event.distance);
+            visit(MediumPart { object: self.inside, medium, ends: [begin, end], before: &travelled });
+        }
+        let Some(MediumEvent { distance, sigma_s, sigma_t }) = flight.event else {
+            return travelled.passed(flight.path);
+        };
+        let point = self.point(scene, &medium, ray, begin + distance);
+        self.overlap.leave();
+        travelled.scattered(flight.path, [sigma_s, sigma_t], point)
+    }
+
+    /// The boundary of the medium around, if that is a surface which nothing leaves unseen.
+    #[inline]
+    fn walls<'s>(&self, scene: &'s Scene) -> Option<&'s Enclosure> {
+        if self.inside == NONE {
+            return None;
+        }
+        scene.enclosure(self.inside).filter(|enclosure| enclosure.is_solid)
+    }
+
+    /// True where a surface is certain to lie between a point in here and this one.
+    #[inline]
+    pub(crate) fn hide(&self, scene: &Scene, p: Vec3) -> bool {
+        self.walls(scene).is_some_and(|walls| !walls.bounds.contains(p))
+    }
+
+    /// True where a surface is certain to lie between a point in here and every light.
+    #[inline]
+    pub(crate) fn hide_lights(&self, scene: &Scene) -> bool {
+        self.walls(scene).is_some_and(|walls| !walls.holds_light)
     }
 
     /// The first surface along a ray of unit direction that separates two media, if there is one, and the transmittance up to there or

@@ -4,7 +4,7 @@ use crate::media::Passage;
 use crate::shadow_rays::ShadowRays;
 use crate::through::Through;
 use bilux_math::Vec3;
-use bilux_scene::{Ray, Tracer};
+use bilux_scene::{Ray, Scene, Tracer};
 
 /// A line between two points, or to what is infinitely far away, before it is known whether light passes.
 pub(crate) struct Segment {
@@ -23,9 +23,19 @@ impl Segment {
         self.through.visible(tracer, &self.ray, self.n)
     }
 
-    /// Adds its ray to a list, with what it brings. Where no medium changes light, as `is_clear` says, none is stored.
+    /// Adds its ray to a list, with what it brings, unless that can bring nothing. Where no medium changes light, as `is_clear` says, none
+    /// is stored.
     #[inline]
-    pub(crate) fn list<T>(&self, shadow_rays: &mut ShadowRays<T>, is_clear: bool, contribution: T) {
+    pub(crate) fn list<T>(
+        &self,
+        shadow_rays: &mut ShadowRays<T>,
+        scene: &Scene,
+        is_clear: bool,
+        contribution: T,
+    ) {
+        if !is_clear && self.through.is_hidden(scene, &self.ray) {
+            return;
+        }
         shadow_rays.push(self.ray, self.n, (!is_clear).then_some(self.through), contribution);
     }
 }

@@ -21,7 +21,16 @@ impl Through {
     /// the ray ends on at parameter 1; zero where there is none.
     #[inline]
     pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, n: Vec3) -> Option<Passage> {
+        if self.is_hidden(tracer.scene, ray) {
+            return None;
+        }
         self.media.visible(tracer, ray, self.distance, n, self.seed)
+    }
+
+    /// True where a surface is certain to block a ray.
+    #[inline]
+    pub(crate) fn is_hidden(&self, scene: &Scene, ray: &Ray) -> bool {
+        self.media.hide(scene, Vec3::from(ray.origin) + Vec3::from(ray.direction) * ray.t_max)
     }
 
     /// What lies along a ray that no surface is on.

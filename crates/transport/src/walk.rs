@@ -6,7 +6,7 @@ use crate::limits::Events;
 use crate::media::{Media, MediumPart, Travelled};
 use crate::task::{SampleState, Task};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::media::mean;
+use bilux_scene::media::{Flight, mean};
 use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
 
 /// A path on its way to its next vertex.
@@ -97,24 +97,45 @@ impl Walk {
         self.ray = at.spawn(sample.wi);
     }
 
-    /// Travels along its ray to the next event, given the first surface there; `mode` is what it carries. Afterwards its media
+    /// Its ray, as far as it has to be traced, and its flight to the event that it has at the end unless a surface is before: known
+    /// where its medium is. In milk a walk has hundreds of events and meets no surface for a long time.
+    #[inline]
+    pub(crate) fn ahead(
+        &mut self,
+        scene: &Scene,
+        sample: &mut SampleState,
+        mode: TransportMode,
+    ) -> (Ray, Option<Flight>) {
+        if !self.leaves_medium {
+            return (self.ray, None);
+        }
+        sample.enter_medium(self.depth, mode);
+        self.media.channel = sample.channel;
+        let flight = self.media.flight_ahead(scene, &self.ray, self.odds, || sample.sampler.next_1d());
+        let event = flight.and_then(|flight| flight.event);
+        let t_max = event.map_or(self.ray.t_max, |event| event.distance);
+        (Ray { t_max, ..self.ray }, flight)
+    }
+
+    /// Travels along its ray to the next event, given the first surface there and [what is ahead](Walk::ahead); `mode` is what it carries. Afterwards its media
     /// are those on the side that it comes from. `visit` is told of each medium that scatters, on the way. What media emit is what it brings to the start of the path.
     #[inline]
     pub(crate) fn travel(
         &mut self,
-        first: Option<Surface>,
+        (first, ahead): (Option<Surface>, Option<Flight>),
         tracer: &mut Tracer,
         sample: &mut SampleState,
         mode: TransportMode,
         visit: impl FnMut(MediumPart),
     ) -> Travelled {
         let scatters = tracer.scene.scatters();
-        if scatters {
+        // What is ahead has taken these numbers.
+        if scatters && (first.is_some() || ahead.is_none()) {
             sample.enter_medium(self.depth, mode);
             self.media.channel = sample.channel;
         }
         let draw = || sample.sampler.next_1d();
-        let travelled = self.media.travel(tracer, &self.ray, first, self.odds, draw, visit);
+        let travelled = self.media.travel(tracer, &self.ray, (first, ahead), self.odds, draw, visit);
         let emitted = self.beta * travelled.emitted;
         self.beta *= travelled.weight;
         if scatters {

@@ -2,7 +2,6 @@
 
 use super::data::DataReader;
 use super::json::JsonNode;
-use super::topology::is_closed;
 use crate::{FormatError, Glass};
 use bilux_scene::Mesh;
 
@@ -28,7 +27,7 @@ pub(super) fn is_solid<'d>(
         Glass::Auto => {
             let edges = (mesh.triangles.len() * 3 * 24 + mesh.positions.len() * 24) as u64;
             data.take_bytes(edges)?;
-            let is_closed = is_closed(mesh);
+            let is_closed = mesh.is_closed();
             data.budget.release(edges);
             if is_closed {
                 let what = "a transmissive material without a thickness, on a closed mesh, is shown as solid glass; \

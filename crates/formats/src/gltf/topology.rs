@@ -3,8 +3,6 @@
 use super::data::DataReader;
 use super::json::JsonNode;
 use crate::FormatError;
-use bilux_scene::Mesh;
-use std::collections::HashMap;
 
 /// The topology of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,33 +94,9 @@ pub(super) fn triangles<'d>(
     Ok((0..n).map(|t| corner(t).map(|i| corners[i])).collect())
 }
 
-/// True if a mesh is closed: two triangles share each edge, counting vertices at the same position as one.
-pub(super) fn is_closed(mesh: &Mesh) -> bool {
-    let mut places = HashMap::new();
-    let place = |p: &bilux_math::Vec3| {
-        let next = places.len() as u32;
-        // -0 equals 0.
-        *places.entry(p.to_array().map(|c| (c + 0.0).to_bits())).or_insert(next)
-    };
-    let places: Vec<u32> = mesh.positions.iter().map(place).collect();
-    let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
-    for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|i| places[i as usize]);
-        if a == b || b == c || c == a {
-            continue;
-        }
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            *edges.entry([from.min(to), from.max(to)]).or_default() += 1;
-        }
-    }
-    !edges.is_empty() && edges.values().all(|&uses| uses == 2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bilux_math::{Aabb, Vec3};
-    use bilux_scene::generators::shapes;
 
     #[test]
     fn lines_are_pairs_chains_and_loops() {
@@ -135,14 +109,5 @@ mod tests {
         assert_eq!(Mode::LineLoop.points_and_lines(Vec::new()), (Vec::new(), Vec::new()));
         let odd = Mode::Lines.points_and_lines(corners[..3].to_vec());
         assert_eq!(odd.1, [[4, 5]], "the odd one makes no line");
-    }
-
-    #[test]
-    fn boxes_are_closed_and_sheets_are_not() {
-        let mut cuboid = shapes::cuboid(Aabb { min: Vec3::ZERO, max: Vec3::ONE });
-        assert!(is_closed(&cuboid));
-        cuboid.triangles.pop();
-        assert!(!is_closed(&cuboid));
-        assert!(!is_closed(&shapes::quad(Vec3::ZERO, Vec3::X, Vec3::Y)) && !is_closed(&Mesh::default()));
     }
 }

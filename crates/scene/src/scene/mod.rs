@@ -1,5 +1,6 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
+mod enclosure;
 mod may_pass;
 mod mesh_lights;
 mod parts;
@@ -22,6 +23,7 @@ use crate::texture::mipmaps;
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, CpuLevel, Hit, Query, Ray};
 use bilux_math::{Aabb, Rgb, Transform, Vec3};
+pub use enclosure::Enclosure;
 use may_pass::MayPass;
 pub(crate) use mesh_lights::MeshLights;
 pub use parts::SceneLight;
@@ -234,6 +236,12 @@ impl Scene {
         let placed = self.parts.geometry.objects().get(object as usize);
         let to_world = || placed.map_or(Transform::IDENTITY, |placed| placed.motion.at(ray.time));
         medium.line(to_world, origin, direction)
+    }
+
+    /// The boundary of what scatters inside an object, if nothing leaves that unseen.
+    #[inline]
+    pub fn enclosure(&self, object: u32) -> Option<&Enclosure> {
+        self.parts.enclosures.get(object as usize)?.as_ref()
     }
 
     /// True when some object is the boundary of a medium without a surface of its own: of fog, smoke, a cloud.

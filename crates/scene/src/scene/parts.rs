@@ -1,5 +1,6 @@
 //! What a scene consists of at all times.
 
+use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
 use super::mesh_lights::MeshLights;
 use super::shading::ObjectShading;
@@ -52,6 +53,8 @@ pub(crate) struct SceneParts {
     pub(super) hides_backs: bool,
     /// For each object, then for each sphere.
     pub(super) passes: Vec<MayPass>,
+    /// For each object of triangles; none at all where no medium scatters.
+    pub(super) enclosures: Vec<Option<Enclosure>>,
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
     pub(super) scatters: bool,
@@ -118,6 +121,10 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
+        let enclosures = match scatters {
+            true => Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights),
+            false => Vec::new(),
+        };
         let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
@@ -136,6 +143,7 @@ impl SceneParts {
             has_holes,
             hides_backs,
             passes,
+            enclosures,
             disperses,
             absorbs,
             scatters,

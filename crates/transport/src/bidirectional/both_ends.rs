@@ -127,10 +127,11 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
     ) {
         let is_open = z.is_open();
+        let is_lit = is_open && !(z.at.is_in_medium() && z.media.hide_lights(task.context.scene));
         let u = task.sample.sampler.next_1d();
         for index in task.context.lights.sample(u) {
             let u = task.sample.sampler.next_2d();
-            if is_open {
+            if is_lit {
                 let connection = to_light(task, z, index, u, &self.techniques);
                 visit(task, Step::Picked, connection);
             }

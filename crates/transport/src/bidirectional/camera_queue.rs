@@ -72,7 +72,10 @@ impl<const N: usize> CameraQueue<N> {
     ) {
         let Subpaths { events, samples, subpaths, tallies } = paths;
         self.rays.clear();
-        self.rays.extend(self.active.iter().map(|&i| subpaths[i as usize].walk.ray));
+        self.rays.extend(self.active.iter().map(|&i| {
+            let i = i as usize;
+            subpaths[i].ray(context.scene, &mut samples[i].state)
+        }));
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
         tracer.hits(&self.rays, &mut self.hits);
@@ -85,7 +88,7 @@ impl<const N: usize> CameraQueue<N> {
             let surface = hit.map(|hit| tracer.surface(&subpath.walk.ray, &hit));
             let mut task = Task { context, tracer: &mut *tracer, sample: &mut samples[i].state };
             let before = self.vertices.len();
-            self.vertices.extend(surface.and_then(|surface| subpath.vertex_before(surface, &mut task)));
+            self.vertices.extend(subpath.vertex_before(surface, &mut task));
             events.cross(subpath, &task, tally);
             events.equiangular(subpath, &mut task, tally);
             let Some(z) = self.vertices.get_mut(before) else {
@@ -121,7 +124,8 @@ impl<const N: usize> CameraQueue<N> {
                 let Connection { join, segment } = connection;
                 let is_between_subpaths = matches!(join.technique, Technique::Connected { s: 2.., .. });
                 let unoccluded = Unoccluded { sample: *sample, join };
-                segment.list(&mut self.shadow_rays[usize::from(is_between_subpaths)], is_clear, unoccluded);
+                let shadow_rays = &mut self.shadow_rays[usize::from(is_between_subpaths)];
+                segment.list(shadow_rays, context.scene, is_clear, unoccluded);
             });
         }
         for shadow_rays in &mut self.shadow_rays {

@@ -174,6 +174,10 @@ pub(crate) fn to_vertex<const N: usize>(
     if is_inside && z.events().joined(y.events()).in_row > MAX_CONNECTED_ROW {
         return None;
     }
+    let is_hidden = |from: &Vertex<N>, p| from.at.is_in_medium() && from.media.hide(task.context.scene, p);
+    if is_hidden(z, y.at.p()) || is_hidden(y, z.at.p()) {
+        return None;
+    }
     let between = y.at.p() - z.at.p();
     let distance2 = between.length_squared();
     let direction = between.try_normalize()?;

@@ -172,15 +172,17 @@ impl<const N: usize> LightPaths<N> {
         }
         while !self.active.is_empty() {
             self.rays.clear();
-            self.rays
-                .extend(self.active.iter().filter_map(|&i| Some(subpaths[i as usize].as_ref()?.walk.ray)));
+            self.rays.extend(self.active.iter().filter_map(|&i| {
+                let i = i as usize;
+                Some(subpaths[i].as_mut()?.ray(context.scene, &mut samples[i].state))
+            }));
             self.hits.clear();
             self.hits.resize(self.rays.len(), None);
             tracer.hits(&self.rays, &mut self.hits);
             self.next.clear();
             for (&i, hit) in self.active.iter().zip(&self.hits) {
-                let (Some(hit), Some(subpath)) = (hit, &mut subpaths[i as usize]) else { continue };
-                let surface = tracer.surface(&subpath.walk.ray, hit);
+                let Some(subpath) = &mut subpaths[i as usize] else { continue };
+                let surface = hit.map(|hit| tracer.surface(&subpath.walk.ray, &hit));
                 let state = &mut samples[i as usize].state;
                 let mut task = Task { context, tracer: &mut *tracer, sample: state };
                 let before = self.vertices.len();
@@ -257,7 +259,7 @@ impl<const N: usize> LightPaths<N> {
                 let Some((film, connection)) = to_camera(&mut task, y, techniques) else { continue };
                 let Connection { join, segment } = connection;
                 let splat = Splat { sample: i as u32, film, join };
-                segment.list(&mut shadow_rays, is_clear, splat);
+                segment.list(&mut shadow_rays, context.scene, is_clear, splat);
             }
         }
         shadow_rays.trace(tracer, |Splat { sample, film, join }, passage| {

@@ -10,6 +10,7 @@ use crate::task::{PathVertex, SampleState, Task, VertexKind};
 use crate::techniques::{PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::{Rgb, Vec3};
+use bilux_scene::media::Flight;
 use bilux_scene::{Ray, Scene, Surface, TransportMode};
 
 /// A subpath on its way to the next vertex.
@@ -33,6 +34,8 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     has_beams: bool,
     /// Whether its rays have [equiangular points](equiangular).
     is_equiangular: bool,
+    /// Its flight along its next ray, if that is known before the ray is traced.
+    ahead: Option<Flight>,
     /// It as it was before its last ray, if that has such points.
     before: Option<Box<Before<N>>>,
     /// Its last vertex, if it is a camera subpath, and a light subpath, where equiangular points may be.
@@ -72,6 +75,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             beams: Vec::new(),
             has_beams: mode == TransportMode::Radiance && techniques.beams != PerSet::ZERO,
             is_equiangular: false,
+            ahead: None,
             before: None,
             approach: None,
             lit: None,
@@ -100,10 +104,19 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.start.map(|start| start.light)
     }
 
+    /// Its next ray, as far as it has to be traced: to the event that it [finds ahead](Walk::ahead).
+    #[inline]
+    pub(super) fn ray(&mut self, scene: &Scene, sample: &mut SampleState) -> Ray {
+        let (ray, ahead) = self.walk.ahead(scene, sample, self.mode);
+        self.ahead = ahead;
+        ray
+    }
+
     /// Traces to the next vertex; `None` where the ray leaves the scene.
     pub(crate) fn next_vertex(&mut self, task: &mut Task) -> Option<Vertex<N>> {
-        let first = task.tracer.closest(&self.walk.ray);
-        let vertex = first.and_then(|first| self.vertex_before(first, task));
+        let ray = self.ray(task.context.scene, task.sample);
+        let first = task.tracer.closest(&ray);
+        let vertex = self.vertex_before(first, task);
         let sample = &mut *task.sample;
         sample.vertices += u32::from(vertex.is_some());
         let is_light = self.mode == TransportMode::Importance;
@@ -128,16 +141,24 @@ impl<'w, const N: usize> Subpath<'w, N> {
         vertex
     }
 
-    /// The same where the first surface along the ray is known.
+    /// The same where the first surface along [its ray](Subpath::ray) is known.
     #[inline]
-    pub(crate) fn vertex_before(&mut self, first: Surface, task: &mut Task) -> Option<Vertex<N>> {
+    pub(crate) fn vertex_before(&mut self, first: Option<Surface>, task: &mut Task) -> Option<Vertex<N>> {
+        self.before = None;
+        let ahead = self.ahead.take();
+        if first.is_none() && ahead.is_none() {
+            return None;
+        }
         let Task { context, tracer, sample } = task;
         let walk = &mut self.walk;
         if walk.depth == 0 {
             walk.media = Media::at_start(tracer, &walk.ray);
         }
-        self.before = None;
-        if self.is_equiangular && !walk.leaves_medium && equiangular::is_used_in(context.scene) {
+        if let Some(first) = first
+            && self.is_equiangular
+            && !walk.leaves_medium
+            && equiangular::is_used_in(context.scene)
+        {
             self.before = Some(Box::new(Before { walk: *walk, partial: self.partial, first }));
         }
         let leaving = self.has_beams.then(|| Leaving {
@@ -164,7 +185,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
                 beams.push(leaving.beam(&ray, object, ends, before));
             }
         };
-        let travelled = walk.travel(Some(first), tracer, sample, self.mode, keep);
+        let travelled = walk.travel((first, ahead), tracer, sample, self.mode, keep);
         self.glow = travelled.emitted;
         self.arrived(&travelled, task)
     }
@@ -261,6 +282,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             start: None,
             beams: Vec::new(),
             has_beams: false,
+            ahead: None,
             before: None,
             ..*self
         };

@@ -61,7 +61,8 @@ impl PathTracing {
     pub(crate) fn trace(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
         loop {
-            let first = task.tracer.closest(&path.walk.ray);
+            let (ray, ahead) = path.walk.ahead(task.context.scene, task.sample, TransportMode::Radiance);
+            let first = task.tracer.closest(&ray);
             if let Some(first) = first
                 && self.sampling != Sampling::Scattering
                 && !path.walk.leaves_medium
@@ -69,8 +70,8 @@ impl PathTracing {
             {
                 self.equiangular(&mut path, first, task);
             }
-            let travelled =
-                path.walk.travel(first, task.tracer, task.sample, TransportMode::Radiance, |_| {});
+            let (tracer, mode) = (&mut *task.tracer, TransportMode::Radiance);
+            let travelled = path.walk.travel((first, ahead), tracer, task.sample, mode, |_| {});
             if let Some((_, pdf)) = &mut path.last {
                 *pdf *= travelled.passage.survival;
             }
@@ -283,7 +284,7 @@ impl PathTracing {
     /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`. The depth of the vertex
     /// and what the sample sees of it are for the record.
     fn direct(&self, task: &mut Task, from: &Vertex, (depth, seen): (u32, Rgb)) -> Rgb {
-        if from.at.is_delta() {
+        if from.at.is_delta() || from.at.is_in_medium() && from.media.hide_lights(task.context.scene) {
             self.skip_lights(task);
             return Rgb::BLACK;
         }

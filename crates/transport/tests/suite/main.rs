@@ -7,6 +7,7 @@ mod checkpoint;
 mod classic_modes;
 mod common;
 mod dispersion;
+mod enclosures;
 mod features;
 mod footprint;
 mod holes;

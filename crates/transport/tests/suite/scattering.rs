@@ -183,6 +183,17 @@ fn fog_before_a_mirror_is_crossed_once() {
     assert_like_path("fog before a mirror", &built(&builder), &["vcm", "sppm"]);
 }
 
+/// A path that leaves fog, meets a floor beside it and then leaves the scene has had its points near the lamp once.
+#[test]
+fn fog_beside_a_floor_has_its_points_near_lamps_once() {
+    let lamp = Spec::new("", "point").with("position", Vec3::new(0.0, 3.0, 0.0)).with("intensity", 8.0f32);
+    let mut builder = SceneBuilder { lights: vec![lamp], ..SceneBuilder::default() };
+    put(&mut builder, "fog", ball(Vec3::new(0.0, 1.5, 0.0), 1.0, 12, false), medium(0.0f32, 0.3f32));
+    put(&mut builder, "floor", floor(0.0, 9.0), diffuse(0.5f32));
+    look(&mut builder, Vec3::new(0.0, 3.0, 5.0), Vec3::new(0.0, 1.0, 0.0), 35.0);
+    assert_like_path("fog beside a floor", &built(&builder), &["bdpt", "light", "vcm"]);
+}
+
 /// Light that a glass ball casts into fog, seen in the ball: beams find it, and paths that happen to hit the large lamp.
 #[test]
 fn light_that_glass_casts_into_fog_is_as_bright_seen_through_the_glass() {
