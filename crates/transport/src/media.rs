@@ -10,7 +10,9 @@
 //!
 //! Materials without a priority take no part. Their refractive index is relative to whatever surrounds them.
 
+mod between;
 mod coincident;
+mod enclosed;
 mod fog;
 mod nested;
 mod passage;
@@ -18,7 +20,7 @@ mod passage;
 use crate::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Draws, Flight, FreePath, MediumEvent, MediumLine, WalkChannel};
-use bilux_scene::{Bsdf, Enclosure, Medium, Ray, Scene, Surface, Tracer, Wavelength};
+use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
 use nested::{NONE, Overlap, strength};
 pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled, behind, draws_along};
@@ -148,28 +150,6 @@ impl Media {
         travelled
     }
 
-    /// The flight along a ray that leaves a point of the medium around, up to its next event, if that is known without the surfaces along
-    /// the ray: where nothing leaves the medium unseen. `None` where the point of the event is outside by rounding, and for media that
-    /// vary, where a flight that ends at a surface would be followed twice.
-    pub(crate) fn flight_ahead(
-        &self,
-        scene: &Scene,
-        ray: &Ray,
-        odds: Rgb,
-        draw: impl FnMut() -> f32,
-    ) -> Option<Flight> {
-        let enclosure = scene.enclosure(self.inside)?;
-        let medium = self.medium(scene);
-        if medium.density.is_some() || medium.glow.is_some() {
-            return None;
-        }
-        let channel = WalkChannel { index: usize::from(self.channel), odds };
-        let flight = medium.walk(None, f32::INFINITY, channel, draw);
-        let at = |distance: f32| Vec3::from(ray.origin) + Vec3::from(ray.direction) * distance;
-        let is_inside = |event: MediumEvent| enclosure.bounds.contains(at(event.distance));
-        flight.event.is_some_and(is_inside).then_some(flight)
-    }
-
     /// To the end of a flight through the medium around, between these distances along a ray unless an event ends it.
     #[inline]
     fn fly(
@@ -193,27 +173,6 @@ impl Media {
         let point = self.point(scene, &medium, ray, begin + distance);
         self.overlap.leave();
         travelled.scattered(flight.path, [sigma_s, sigma_t], point)
-    }
-
-    /// The boundary of the medium around, if that is a surface which nothing leaves unseen.
-    #[inline]
-    fn walls<'s>(&self, scene: &'s Scene) -> Option<&'s Enclosure> {
-        if self.inside == NONE {
-            return None;
-        }
-        scene.enclosure(self.inside).filter(|enclosure| enclosure.is_solid)
-    }
-
-    /// True where a surface is certain to lie between a point in here and this one.
-    #[inline]
-    pub(crate) fn hide(&self, scene: &Scene, p: Vec3) -> bool {
-        self.walls(scene).is_some_and(|walls| !walls.bounds.contains(p))
-    }
-
-    /// True where a surface is certain to lie between a point in here and every light.
-    #[inline]
-    pub(crate) fn hide_lights(&self, scene: &Scene) -> bool {
-        self.walls(scene).is_some_and(|walls| !walls.holds_light)
     }
 
     /// The first surface along a ray of unit direction that separates two media, if there is one, and the transmittance up to there or
@@ -294,52 +253,6 @@ impl Media {
         }
         self.cross(scene, &surface, Vec3::from(ray.direction));
         Err(behind(ray, &surface))
-    }
-
-    /// What lies along a ray that begins in these media and is `distance` metres long; `None` where something blocks it.
-    ///
-    /// For light from infinity there is no `distance`: beyond the last surface nothing absorbs. `n` is the [normal](Scene::normal_towards) of the
-    /// surface that the ray ends on at parameter 1; zero where there is none. Of media that vary it is an estimate, by random numbers of this seed.
-    #[inline]
-    pub(crate) fn visible(
-        &self,
-        tracer: &mut Tracer,
-        ray: &Ray,
-        distance: Option<f32>,
-        n: Vec3,
-        seed: u64,
-    ) -> Option<Passage> {
-        tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance, seed))
-    }
-
-    /// What lies along a ray of this length that no surface is on.
-    #[inline]
-    pub(crate) fn unoccluded(&self, scene: &Scene, ray: &Ray, distance: Option<f32>, seed: u64) -> Passage {
-        let Some(distance) = distance else { return Passage::CLEAR };
-        let mut draws = draws_along(ray, seed);
-        Passage::CLEAR.then(self.passed_between(scene, ray, [0.0, distance], &mut draws))
-    }
-
-    #[inline]
-    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: Option<f32>, seed: u64) -> Option<Passage> {
-        if !tracer.scene.has_nested() {
-            return (!tracer.occluded(ray)).then(|| self.unoccluded(tracer.scene, ray, distance, seed));
-        }
-        let (mut media, mut rest, scene) = (*self, *ray, tracer.scene);
-        let (mut draws, direction) = (draws_along(ray, seed), Vec3::from(ray.direction));
-        let (length, mut begin, mut passed) = (direction.length(), 0.0, Passage::CLEAR);
-        while let Some(surface) = tracer.closest(&rest) {
-            let surface = media.arrive(tracer, ray, surface);
-            if media.overlap.separates(scene, &surface) {
-                return None;
-            }
-            let end = surface.t * length;
-            passed = passed.then(media.passed_between(scene, ray, [begin, end], &mut draws));
-            media.cross(scene, &surface, direction);
-            (begin, rest) = (end, behind(&rest, &surface));
-        }
-        let Some(distance) = distance else { return Some(passed) };
-        Some(passed.then(media.passed_between(scene, ray, [begin, distance.max(begin)], &mut draws)))
     }
 
     /// The BSDF at a wavelength of a surface that separates these media from others; its normal bends towards viewers.

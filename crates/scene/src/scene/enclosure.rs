@@ -1,7 +1,7 @@
 //! What is known of the boundary of a medium before a ray is traced.
 
 use super::may_pass::MayPass;
-use super::parts::SceneLight;
+use super::scene_light::SceneLight;
 use crate::geometry::Geometry;
 use crate::materials::Material;
 use crate::placed::Placed;
@@ -28,6 +28,9 @@ impl Enclosure {
         lights: &[SceneLight],
         object_lights: &[Option<u32>],
     ) -> Vec<Option<Enclosure>> {
+        if !materials.iter().any(|material| material.medium().is_some_and(|medium| medium.scatters())) {
+            return Vec::new();
+        }
         let lit = lit_places(geometry, lights, object_lights);
         let of = |(placed, passes): (&Placed, &MayPass)| {
             let material = &materials[placed.material as usize];

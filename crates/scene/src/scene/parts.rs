@@ -3,35 +3,17 @@
 use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
 use super::mesh_lights::MeshLights;
+use super::scene_light::SceneLight;
 use super::shading::ObjectShading;
 use crate::cameras::Camera;
 use crate::geometry::Geometry;
-use crate::lights::{Light, SphereLight};
+use crate::lights::SphereLight;
 use crate::materials::Material;
 use crate::placed::Placed;
 use crate::sides::Sides;
 use crate::texture::Texture;
 use bilux_math::{Aabb, Rgb};
 use std::sync::Arc;
-
-/// A light of the scene.
-#[derive(Clone)]
-pub struct SceneLight {
-    /// The user's name for it; may be empty.
-    pub name: String,
-    /// The layer of light that it belongs to; may be empty.
-    pub group: String,
-    /// The light.
-    pub light: Arc<dyn Light>,
-    /// Its colour in `cast`, `whitted` and `cook`.
-    pub classic_colour: Rgb,
-}
-
-impl SceneLight {
-    pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
-        SceneLight { name: name.to_owned(), group: name.to_owned(), light, classic_colour: Rgb::BLACK }
-    }
-}
 
 /// The parts of a scene that do not change with time.
 pub(crate) struct SceneParts {
@@ -121,10 +103,7 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
-        let enclosures = match scatters {
-            true => Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights),
-            false => Vec::new(),
-        };
+        let enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
         let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();

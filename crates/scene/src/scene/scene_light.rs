@@ -1,0 +1,24 @@
+//! The lights of a scene.
+
+use crate::lights::Light;
+use bilux_math::Rgb;
+use std::sync::Arc;
+
+/// A light of the scene.
+#[derive(Clone)]
+pub struct SceneLight {
+    /// The user's name for it; may be empty.
+    pub name: String,
+    /// The layer of light that it belongs to; may be empty.
+    pub group: String,
+    /// The light.
+    pub light: Arc<dyn Light>,
+    /// Its colour in `cast`, `whitted` and `cook`.
+    pub classic_colour: Rgb,
+}
+
+impl SceneLight {
+    pub(crate) fn new(name: &str, light: Arc<dyn Light>) -> SceneLight {
+        SceneLight { name: name.to_owned(), group: name.to_owned(), light, classic_colour: Rgb::BLACK }
+    }
+}
