@@ -51,10 +51,13 @@ pub(super) const PICTURES: &[Picture] = &[
         "--size 640x480 --spp 256 --denoise=builtin",
     ),
     picture("pool.png", BuiltIn("pool.toml"), "--size 640x480 --spp 96 --denoise=builtin"),
-    picture("jade.jpg", BuiltIn("jade.toml"), "-i bdpt --size 400x300 --spp 72 --denoise=builtin"),
-    picture("campfire.jpg", BuiltIn("campfire.toml"), "-i path --size 400x300 --spp 256 --denoise=builtin"),
-    picture("cloud.jpg", BuiltIn("cloud.toml"), "-i path --size 400x300 --spp 128 --denoise=builtin"),
-    picture("fog.jpg", BuiltIn("fog.toml"), "-i bdpt --size 400x300 --spp 96 --denoise=builtin"),
+    // Media, on the page about them; with Open Image Denoise.
+    picture("fog.jpg", BuiltIn("fog.toml"), "-i bdpt --size 400x300 --spp 8 --denoise"),
+    picture("milk.jpg", BuiltIn("milk.toml"), "-i path --size 512x384 --spp 48 --denoise"),
+    picture("jade.jpg", BuiltIn("jade.toml"), "-i path --size 512x384 --spp 32 --denoise"),
+    picture("piglet.jpg", BuiltIn("piglet.toml"), "-i path --size 512x384 --spp 32 --denoise"),
+    picture("campfire.jpg", BuiltIn("campfire.toml"), "-i path --size 400x300 --spp 16 --denoise"),
+    picture("cloud.jpg", BuiltIn("cloud.toml"), "-i path --size 512x384 --spp 16 --denoise"),
     // Models with default settings.
     picture("models/anisotropy.png", Model("gltf/AnisotropyStrengthTest"), ""),
     picture("models/bottle.png", Model("gltf/WaterBottle"), ""),

@@ -13,7 +13,9 @@ mod cornell;
 mod coverage;
 mod gallery;
 mod graft;
+mod implicit;
 mod interior;
+mod isosurface;
 mod parts;
 mod scan;
 pub mod shapes;
@@ -59,6 +61,8 @@ pub const GENERATORS: &[GeneratorEntry] = &[
     gallery::cloud::ENTRY,
     gallery::campfire::ENTRY,
     gallery::jade::ENTRY,
+    gallery::milk::ENTRY,
+    gallery::piglet::ENTRY,
 ];
 
 /// Makes the scene that a spec describes.

@@ -275,6 +275,51 @@ fn the_filling_of_a_vessel_is_closed_and_inside() {
     assert!(vessel.filling(-1.0).triangles.is_empty());
 }
 
+/// The objects of a built-in scene with this name.
+fn named<'a>(scene: &'a SceneBuilder, name: &'a str) -> impl Iterator<Item = &'a Mesh> {
+    scene.objects.iter().filter(move |object| object.name == name).map(|object| &*object.mesh)
+}
+
+#[test]
+fn what_light_enters_is_closed_and_faces_outwards() {
+    for (kind, names) in
+        [("milk", &["tumbler", "milk"][..]), ("piglet", &["piglet"]), ("jade", &["dragon", "candle", "egg"])]
+    {
+        let scene = generate(&Spec::new("", kind)).unwrap();
+        for name in names {
+            assert!(named(&scene, name).count() > 0, "{kind}: {name}");
+            for mesh in named(&scene, name) {
+                assert_eq!(open_edges(mesh), 0, "{kind}: {name}");
+                assert!(volume(mesh) > 0.0, "{kind}: {name}");
+            }
+        }
+        // More than its trunk and its head, and less than all parts that it is blended of.
+        let piglet = named(&scene, "piglet").map(volume).next().unwrap_or(0.006);
+        assert!((0.0044..0.0078).contains(&piglet), "{piglet} cubic metres");
+    }
+}
+
+#[test]
+fn milk_reaches_into_its_glass_and_not_out_of_it() {
+    let scene = generate(&Spec::new("", "milk")).unwrap();
+    for (glass, milk) in named(&scene, "tumbler").zip(named(&scene, "milk")) {
+        let axis = glass.bounds().centre();
+        let across = |p: &Vec3| (*p - axis).with_y(0.0).length();
+        let upper = glass.positions.iter().filter(|p| p.y > axis.y).map(across);
+        let [inner, outer] = [upper.clone().fold(f32::INFINITY, f32::min), upper.fold(0.0, f32::max)];
+        let bottom = glass.positions.iter().filter(|p| across(p) < 1e-6).map(|p| p.y);
+        let [under, floor] = [bottom.clone().fold(1.0, f32::min), bottom.fold(0.0, f32::max)];
+        let lowest = milk.bounds().min.y;
+        assert!(under + 0.001 < lowest && lowest < floor - 0.0005, "{under} {lowest} {floor}");
+        // The wall of the milk, below its surface and above the round corner.
+        let low = milk.positions.iter().filter(|p| (0.02..0.05).contains(&p.y));
+        let radii: Vec<f32> = low.map(across).collect();
+        assert!(radii.len() > 1000);
+        assert!(radii.iter().all(|r| (inner + 0.0003..outer - 0.0003).contains(r)), "{inner} {outer}");
+        assert!(milk.positions.iter().all(|p| across(p) < outer), "{outer}");
+    }
+}
+
 #[test]
 fn the_scan_is_closed_faces_outwards_and_is_irregular() {
     let mut volumes = Vec::new();

@@ -1,11 +1,12 @@
 //! Fire at night: it shines by its temperature, and its smoke rises into its own light.
 
+use super::super::parts::{chance, joined, moved, turned};
 use super::super::{GeneratorEntry, shapes};
 use super::puffs::{clouds, grid, rise};
 use super::{Stage, about};
 use crate::builder::SceneBuilder;
 use crate::parameters::Spec;
-use bilux_math::transcendental::{cos, sin};
+use bilux_math::transcendental::{cos, sin, sin_cos};
 use bilux_math::{Aabb, Motion, Quat, Rgb, Transform, Vec3};
 use std::f32::consts::TAU;
 
@@ -18,13 +19,18 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 const STONES: u32 = 13;
 /// Logs of the pile.
 const LOGS: u32 = 5;
+/// Firs at the edge of the wood.
+const FIRS: u32 = 34;
 /// The height up to which it burns, in metres.
 const FLAME: f32 = 0.95;
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(1.1);
-    let soil = stage.diffuse("soil", [0.11, 0.085, 0.06]);
-    stage.put("ground", shapes::floor(Vec3::ZERO, 30.0), soil);
+    let mut stage = Stage::new(0.6);
+    // Its colours stay those of fire where it is brightest.
+    stage.scene.settings.set("tonemap", "agx");
+    let soil = stage.diffuse("soil", [0.24, 0.18, 0.12]);
+    stage.put("ground", shapes::floor(Vec3::ZERO, 120.0), soil);
+    firs(&mut stage);
     stones(&mut stage);
     logs(&mut stage);
     let bounds = Aabb { min: Vec3::new(-0.55, 0.02, -0.55), max: Vec3::new(0.55, 2.6, 0.55) };
@@ -41,17 +47,17 @@ fn build() -> SceneBuilder {
         .with("scattering_anisotropy", 0.3f32)
         .with("density", density)
         .with("temperature", temperature)
-        .with("medium_emission", 26.0f32);
+        .with("medium_emission", 22.0f32);
     let fire = stage.material(fire);
     stage.put("fire", shapes::cuboid(bounds), fire);
     stage.light(
         Spec::new("night", "environment")
             .with("radiance", 1.0f32)
-            .with("zenith", Rgb::new(0.009, 0.017, 0.042))
-            .with("horizon", Rgb::new(0.022, 0.026, 0.048))
+            .with("zenith", Rgb::new(0.008, 0.024, 0.085))
+            .with("horizon", Rgb::new(0.062, 0.052, 0.072))
             .with("ground", Rgb::grey(0.003)),
     );
-    stage.seen([0.9, 0.95, 3.1], [0.0, 0.6, 0.0], 36.0)
+    stage.seen([0.85, 0.62, 2.9], [0.0, 0.60, 0.0], 34.0)
 }
 
 /// Tongues that sway more the higher they are, from 0 to a little above 1.
@@ -87,6 +93,27 @@ fn stones(stage: &mut Stage) {
         let rough = |d: Vec3| size * (1.0 + 0.35 * clouds(d * 1.6 + middle * 9.0, 4, 12));
         stage.put("stone", shapes::blob(middle, 5, rough), granite);
     }
+}
+
+/// The edge of a wood, dark before the sky.
+fn firs(stage: &mut Stage) {
+    let fir = |k: u32| {
+        let [angle, far, tall] = [21, 22, 23].map(|kind| chance(kind, k));
+        let (sin, cos) = sin_cos(TAU * (0.53 + 0.44 * (k as f32 + angle) / FIRS as f32));
+        let (tall, far) = (3.2 + 3.4 * tall, 15.0 + 12.0 * far);
+        let outline: Vec<[f32; 2]> = (0..=10)
+            .map(|k| {
+                // Whorls of branches, each wider than the one above.
+                let down = (k as f32 * 0.1).min(0.96);
+                let width = if k % 2 == 0 { 0.55 } else { 1.0 };
+                [0.24 * tall * down * width, tall * (1.0 - down)]
+            })
+            .chain([[0.0, 0.02 * tall]])
+            .collect();
+        moved(&turned(&outline, 14, 1), [far * cos, 0.0, far * sin])
+    };
+    let needles = stage.diffuse("needles", [0.03, 0.045, 0.03]);
+    stage.put("firs", joined((0..FIRS).map(fir)), needles);
 }
 
 /// Logs that lean against each other.

@@ -12,7 +12,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 };
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(1.8);
+    let mut stage = Stage::new(1.7);
     stage.deep(24);
     let plaster = stage.diffuse("plaster", [0.55, 0.52, 0.48]);
     stage.put("floor", shapes::floor(Vec3::ZERO, 12.0), plaster);
@@ -37,10 +37,10 @@ fn build() -> SceneBuilder {
         Spec::new("lamp", "spot")
             .with("position", Vec3::new(-2.4, 3.3, 0.5))
             .with("look_at", Vec3::new(0.05, 0.85, 0.0))
-            .with("intensity", Rgb::new(120.0, 108.0, 90.0))
+            .with("intensity", Rgb::new(145.0, 118.0, 84.0))
             .with("angle", 9.0f32)
             .with("inner_angle", 7.5f32),
     );
-    stage.panel("window", [3.2, 2.6, -1.2], [[0.0, 1.2, 0.0], [-0.35, 0.0, 0.9]], [0.5, 0.75, 1.2]);
+    stage.panel("window", [3.2, 2.6, -1.2], [[0.0, 1.2, 0.0], [-0.35, 0.0, 0.9]], [0.36, 0.62, 1.2]);
     stage.seen([0.9, 1.45, 4.6], [0.0, 0.95, 0.0], 34.0)
 }

@@ -3,7 +3,7 @@
 use super::super::parts::{moved, turned};
 use super::super::scan::statue;
 use super::super::{GeneratorEntry, shapes};
-use super::{Stage, about};
+use super::{Stage, about, boxes};
 use crate::builder::SceneBuilder;
 use crate::mesh::Mesh;
 use crate::parameters::Spec;
@@ -18,24 +18,26 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 const CANDLE: [f32; 3] = [-0.17, 0.0, 0.03];
 
 fn build() -> SceneBuilder {
-    let mut stage = Stage::new(1.0);
+    let mut stage = Stage::new(0.6);
     let slate = stage.material(
         Spec::new("slate", "principled")
             .with("base_color", Rgb::new(0.045, 0.036, 0.032))
             .with("specular_roughness", 0.35f32),
     );
     stage.put("table", shapes::floor(Vec3::ZERO, 9.0), slate);
-    let jade = stage.below("jade", [0.42, 0.78, 0.5], 0.004, [1.62, 0.25]);
-    let mut dragon = statue(48);
+    let plaster = stage.diffuse("wall", [0.16, 0.07, 0.045]);
+    stage.put("wall", boxes(&[[[-3.0, 0.0, -1.3], [3.0, 3.0, -1.2]]]), plaster);
+    let jade = stage.below("jade", [0.3, 0.7, 0.42], 0.004, [1.62, 0.32]);
+    let mut dragon = statue(72);
     dragon.positions.iter_mut().for_each(|p| *p *= 0.17);
     stage.put("dragon", dragon, jade);
-    let wax = stage.below("wax", [0.95, 0.88, 0.74], 0.004, [1.44, 0.4]);
+    let wax = stage.below("wax", [0.95, 0.88, 0.74], 0.004, [1.44, 0.5]);
     stage.put("candle", moved(&candle(), CANDLE), wax);
     let soot = stage.diffuse("soot", [0.03, 0.03, 0.03]);
     stage.put("wick", moved(&wick(), CANDLE), soot);
     let flame = stage.glowing("flame", [220.0, 105.0, 28.0]);
     stage.put("flame", moved(&fire(), CANDLE), flame);
-    let marble = stage.below("marble", [0.86, 0.83, 0.8], 0.004, [1.5, 0.2]);
+    let marble = stage.below("marble", [0.86, 0.83, 0.8], 0.004, [1.5, 0.3]);
     stage.put("egg", moved(&egg(), [0.165, 0.0, 0.07]), marble);
     stage.panel("window", [-0.1, 0.9, -0.78], [[0.9, 0.0, 0.0], [0.0, 0.36, 0.3]], [7.5, 8.0, 9.0]);
     stage.light(Spec::new("room", "environment").with("radiance", Rgb::new(0.02, 0.024, 0.035)));

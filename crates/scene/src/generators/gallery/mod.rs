@@ -12,6 +12,8 @@ pub(super) mod indirect;
 pub(super) mod jade;
 pub(super) mod lampshades;
 pub(super) mod many_lights;
+pub(super) mod milk;
+pub(super) mod piglet;
 pub(super) mod pool;
 mod puffs;
 mod tiles;
@@ -107,6 +109,11 @@ impl Stage {
         self.scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
         self.scene
     }
+}
+
+/// A place or a direction.
+const fn at(x: f32, y: f32, z: f32) -> Vec3 {
+    Vec3::new(x, y, z)
 }
 
 /// One mesh of sharp-edged boxes, each given by two opposite corners.

@@ -1,25 +1,9 @@
 //! The statue: a coiled dragon as a field, about a metre high, negative inside.
 
+use super::super::implicit::{Cone, soft_min};
 use super::noise::{pebbles, rough};
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Aabb, Vec3};
-
-/// A round cone: two balls and the hull between them.
-#[derive(Clone, Copy)]
-struct Cone {
-    from: Vec3,
-    to: Vec3,
-    radius: [f32; 2],
-}
-
-impl Cone {
-    /// Distance to the surface, accurate enough where the thickness changes slowly.
-    fn distance(&self, p: Vec3) -> f32 {
-        let along = self.to - self.from;
-        let t = ((p - self.from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        (p - self.from - along * t).length() - (self.radius[0] + (self.radius[1] - self.radius[0]) * t)
-    }
-}
 
 /// The statue.
 pub(super) struct Dragon {
@@ -69,7 +53,7 @@ impl Dragon {
 
     /// The field: smooth parts, then scales, wear and noise.
     pub(super) fn field(&self, p: Vec3) -> f32 {
-        let smooth = self.cones.iter().fold(f32::INFINITY, |d, cone| soft_min(d, cone.distance(p)));
+        let smooth = self.cones.iter().fold(f32::INFINITY, |d, cone| soft_min(d, cone.distance(p), SOFTNESS));
         if smooth.abs() > SKIN {
             return smooth;
         }
@@ -77,12 +61,6 @@ impl Dragon {
         let wear = 0.004 * rough(p * 9.0, 6);
         smooth + (scales + wear).clamp(-SKIN, SKIN)
     }
-}
-
-/// A smooth minimum of two numbers.
-fn soft_min(a: f32, b: f32) -> f32 {
-    let overlap = (SOFTNESS - (a - b).abs()).max(0.0);
-    a.min(b) - overlap * overlap / (4.0 * SOFTNESS)
 }
 
 /// From the tip of the tail, around the coil, and up the neck: degrees around, distance from the axis, height,

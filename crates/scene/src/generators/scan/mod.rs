@@ -2,9 +2,9 @@
 //! and shapes vary as those of scans do, including slivers.
 
 mod dragon;
-mod isosurface;
 mod noise;
 
+use super::isosurface::Samples;
 use super::{GeneratorEntry, integer, shapes};
 use crate::builder::{Object, SceneBuilder};
 use crate::cameras::CameraSpec;
@@ -15,7 +15,6 @@ use bilux_math::registry::Entry;
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec3};
 use dragon::Dragon;
-use isosurface::Samples;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
