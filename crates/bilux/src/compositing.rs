@@ -17,46 +17,32 @@ pub const MAX_GROUPS: usize = 64;
 /// The group of what shines without being a light of the scene.
 const OTHERS: &str = "others";
 
-/// Layers besides those that rendering itself gives ([`Job::extra_layers`]).
+/// Layers besides those that rendering itself gives.
 pub struct ExtraLayers(Picture);
 
 impl ExtraLayers {
-    /// Adds them, and their metadata, to a picture of the same window.
-    ///
-    /// # Errors
-    /// If the picture has a different size, or already has such layers.
-    pub fn push(&self, picture: &mut Picture) -> Result<(), Error> {
-        for channel in self.0.channels() {
-            picture.push_channel(channel.name.clone(), channel.samples.clone())?;
-        }
-        picture.metadata.extend(self.0.metadata.clone());
-        Ok(())
-    }
-}
-
-impl Job {
     /// Checks, before any work, that the layers can be made.
     ///
     /// # Errors
     /// If the integrator cannot divide its light, there are too many groups of lights, or only some samples are taken.
-    pub fn check_layers(&self, wanted: &[Aov]) -> Result<(), Error> {
-        if wanted.iter().any(|aov| aov.needs_all_samples()) && self.render.samples != (0..self.render.spp) {
+    pub fn check(job: &Job, wanted: &[Aov]) -> Result<(), Error> {
+        if wanted.iter().any(|aov| aov.needs_all_samples()) && job.render.samples != (0..job.render.spp) {
             return Err(Error::Settings(format!(
                 "parts and costs of the light need all samples: leave out the range of samples, or the layers {}",
                 Aov::names_that_need_all_samples()
             )));
         }
         let Some(aov) = wanted.iter().find(|aov| aov.is_light()) else { return Ok(()) };
-        if !self.integrator().has_light_parts() {
+        if !job.integrator().has_light_parts() {
             let others: Vec<&str> = bilux_transport::integrators::with_light_parts().collect();
             return Err(Error::Settings(format!(
                 "the integrator '{}' cannot divide its light into parts ({}): choose one of {}",
-                self.settings.integrator.entry.name,
+                job.settings.integrator.entry.name,
                 aov.layer().unwrap_or_default(),
                 others.join(", ")
             )));
         }
-        let groups = LightGroups::of(self.scene()).names.len();
+        let groups = LightGroups::of(job.scene()).names.len();
         if wanted.contains(&Aov::Groups) && groups > MAX_GROUPS {
             return Err(Error::Settings(format!(
                 "the scene has {groups} groups of lights, and each takes a picture of its own; the maximum is \
@@ -70,9 +56,9 @@ impl Job {
     /// picture may have been.
     ///
     /// # Errors
-    /// As [`Job::check_layers`]; or if memory is short.
-    pub fn extra_layers(
-        &self,
+    /// As [`ExtraLayers::check`]; or if memory is short.
+    pub fn of(
+        job: &Job,
         outcome: &Outcome,
         wanted: &[Aov],
         progress: &dyn Progress,
@@ -80,7 +66,7 @@ impl Job {
         let film = &outcome.rendered.film;
         let window = film.window();
         let mut layers = Picture::new(window.width as usize, window.height as usize)?;
-        let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
+        let mut settings = RenderSettings { stop: Stop::default(), ..job.render.clone() };
         if let Some(reached) = outcome.rendered.reached {
             (settings.spp, settings.samples) = (reached.spp, 0..reached.spp);
         }
@@ -92,127 +78,139 @@ impl Job {
             layers.push_channel("samples.count", (0..window.pixels()).map(count).collect())?;
         }
         if wanted.iter().any(|aov| aov.is_visible())
-            && !self.push_visible(&mut layers, &settings, wanted, progress)?
+            && !push_visible(job, &mut layers, &settings, wanted, progress)?
         {
             return Ok(None);
         }
         if wanted.iter().any(|aov| aov.is_light())
-            && (outcome.rendered.cancelled || !self.push_light(&mut layers, &settings, wanted, progress)?)
+            && (outcome.rendered.cancelled || !push_light(job, &mut layers, &settings, wanted, progress)?)
         {
             return Ok(None);
         }
         if wanted.iter().any(|aov| aov.is_work())
-            && (outcome.rendered.cancelled || !self.push_work(&mut layers, &settings, wanted, progress)?)
+            && (outcome.rendered.cancelled || !push_work(job, &mut layers, &settings, wanted, progress)?)
         {
             return Ok(None);
         }
         Ok(Some(ExtraLayers(layers)))
     }
 
-    /// False if it was interrupted.
-    fn push_work(
-        &self,
-        layers: &mut Picture,
-        settings: &RenderSettings,
-        wanted: &[Aov],
-        progress: &dyn Progress,
-    ) -> Result<bool, Error> {
-        let with_accel = wanted.iter().any(|aov| aov.is_accel_work());
-        let (scene, camera) = (self.scene(), self.camera());
-        let work = bilux_transport::work(scene, camera, self.renders(), settings, with_accel, progress)?;
-        let Some(work) = work else { return Ok(false) };
-        for (aov, samples) in [
-            (Aov::Rays, work.rays),
-            (Aov::PathLength, work.path_length),
-            (Aov::Nodes, work.nodes),
-            (Aov::Tests, work.tests),
-        ] {
-            if let Some(layer) = aov.layer().filter(|_| wanted.contains(&aov)) {
-                layers.push_channel(format!("{layer}.mean"), samples)?;
-            }
+    /// Adds them, and their metadata, to a picture of the same window.
+    ///
+    /// # Errors
+    /// If the picture has a different size, or already has such layers.
+    pub fn push(&self, picture: &mut Picture) -> Result<(), Error> {
+        for channel in self.0.channels() {
+            picture.push_channel(channel.name.clone(), channel.samples.clone())?;
         }
-        Ok(true)
+        picture.metadata.extend(self.0.metadata.clone());
+        Ok(())
     }
+}
 
-    /// False if it was interrupted.
-    fn push_visible(
-        &self,
-        layers: &mut Picture,
-        settings: &RenderSettings,
-        wanted: &[Aov],
-        progress: &dyn Progress,
-    ) -> Result<bool, Error> {
-        let mut mattes: Vec<(Cryptomatte, Vec<u32>)> = Vec::new();
-        for aov in wanted.iter().filter(|aov| aov.is_matte()) {
-            let mut matte = Cryptomatte::new(aov.layer().unwrap_or_default());
-            let ids = self.subject.names(*aov).iter().map(|name| matte.add(name)).collect();
-            mattes.push((matte, ids));
+/// False if it was interrupted.
+fn push_work(
+    job: &Job,
+    layers: &mut Picture,
+    settings: &RenderSettings,
+    wanted: &[Aov],
+    progress: &dyn Progress,
+) -> Result<bool, Error> {
+    let with_accel = wanted.iter().any(|aov| aov.is_accel_work());
+    let (scene, camera) = (job.scene(), job.camera());
+    let work = bilux_transport::work(scene, camera, job.renders(), settings, with_accel, progress)?;
+    let Some(work) = work else { return Ok(false) };
+    for (aov, samples) in [
+        (Aov::Rays, work.rays),
+        (Aov::PathLength, work.path_length),
+        (Aov::Nodes, work.nodes),
+        (Aov::Tests, work.tests),
+    ] {
+        if let Some(layer) = aov.layer().filter(|_| wanted.contains(&aov)) {
+            layers.push_channel(format!("{layer}.mean"), samples)?;
         }
-        let next = self.subject.next_pose.as_deref().unwrap_or(&self.subject);
-        let time = self.settings.time + 1.0 / self.settings.fps;
-        let moment = Moment { scene: &next.scene, camera: &*next.camera, time };
-        let what = Wanted {
-            position: wanted.contains(&Aov::Position),
-            uv: wanted.contains(&Aov::Uv),
-            motion: wanted.contains(&Aov::Motion).then_some(moment),
-            ids: mattes.iter().map(|(_, ids)| ids.clone()).collect(),
-        };
-        let (scene, camera, integrator) = (self.scene(), self.camera(), self.renders());
-        let samples = settings.spp;
-        let seen = bilux_transport::visible(scene, camera, integrator, settings, (&what, samples), progress)?;
-        let Some(seen) = seen else { return Ok(false) };
-        push_points(layers, &seen)?;
-        for ((matte, _), pixels) in mattes.iter().zip(&seen.mattes) {
-            let pixels: &[Ranks] = pixels;
-            matte.push(layers, pixels)?;
-        }
-        Ok(true)
     }
+    Ok(true)
+}
 
-    /// The same for parts of the light.
-    fn push_light(
-        &self,
-        layers: &mut Picture,
-        settings: &RenderSettings,
-        wanted: &[Aov],
-        progress: &dyn Progress,
-    ) -> Result<bool, Error> {
-        self.check_layers(wanted)?;
-        let by_events = wanted.contains(&Aov::Direct) || wanted.contains(&Aov::Indirect);
-        let mut division = LightDivision { by_events, ..LightDivision::default() };
-        let groups = LightGroups::of(self.scene());
-        if wanted.contains(&Aov::Groups) {
-            division.groups.clone_from(&groups.of_lights);
-            division.group_count = groups.names.len() as u32;
-        }
-        let (scene, camera) = (self.scene(), self.camera());
-        let parts = light_parts(scene, camera, self.renders(), settings, &division, progress)?;
-        let Some(parts) = parts else { return Ok(false) };
-        let mut push = |layer: &str, film: &Film| -> Result<(), Error> {
-            let window = film.window();
-            let light = |i| {
-                let (x, y) = window.position(i);
-                film.pixel(x, y)
-            };
-            let pixels: Vec<Rgb> = (0..window.pixels()).map(light).collect();
-            Ok(layers.push_rgb(layer, &pixels)?)
+/// False if it was interrupted.
+fn push_visible(
+    job: &Job,
+    layers: &mut Picture,
+    settings: &RenderSettings,
+    wanted: &[Aov],
+    progress: &dyn Progress,
+) -> Result<bool, Error> {
+    let mut mattes: Vec<(Cryptomatte, Vec<u32>)> = Vec::new();
+    for aov in wanted.iter().filter(|aov| aov.is_matte()) {
+        let mut matte = Cryptomatte::new(aov.layer().unwrap_or_default());
+        let ids = job.subject.names(*aov).iter().map(|name| matte.add(name)).collect();
+        mattes.push((matte, ids));
+    }
+    let next = job.subject.next_pose.as_deref().unwrap_or(&job.subject);
+    let time = job.settings.time + 1.0 / job.settings.fps;
+    let moment = Moment { scene: &next.scene, camera: &*next.camera, time };
+    let what = Wanted {
+        position: wanted.contains(&Aov::Position),
+        uv: wanted.contains(&Aov::Uv),
+        motion: wanted.contains(&Aov::Motion).then_some(moment),
+        ids: mattes.iter().map(|(_, ids)| ids.clone()).collect(),
+    };
+    let (scene, camera, integrator) = (job.scene(), job.camera(), job.renders());
+    let samples = settings.spp;
+    let seen = bilux_transport::visible(scene, camera, integrator, settings, (&what, samples), progress)?;
+    let Some(seen) = seen else { return Ok(false) };
+    push_points(layers, &seen)?;
+    for ((matte, _), pixels) in mattes.iter().zip(&seen.mattes) {
+        let pixels: &[Ranks] = pixels;
+        matte.push(layers, pixels)?;
+    }
+    Ok(true)
+}
+
+/// The same for parts of the light.
+fn push_light(
+    job: &Job,
+    layers: &mut Picture,
+    settings: &RenderSettings,
+    wanted: &[Aov],
+    progress: &dyn Progress,
+) -> Result<bool, Error> {
+    ExtraLayers::check(job, wanted)?;
+    let by_events = wanted.contains(&Aov::Direct) || wanted.contains(&Aov::Indirect);
+    let mut division = LightDivision { by_events, ..LightDivision::default() };
+    let groups = LightGroups::of(job.scene());
+    if wanted.contains(&Aov::Groups) {
+        division.groups.clone_from(&groups.of_lights);
+        division.group_count = groups.names.len() as u32;
+    }
+    let (scene, camera) = (job.scene(), job.camera());
+    let parts = light_parts(scene, camera, job.renders(), settings, &division, progress)?;
+    let Some(parts) = parts else { return Ok(false) };
+    let mut push = |layer: &str, film: &Film| -> Result<(), Error> {
+        let window = film.window();
+        let light = |i| {
+            let (x, y) = window.position(i);
+            film.pixel(x, y)
         };
-        for (film, (aov, layer)) in
-            parts.by_events.iter().flatten().zip([(Aov::Direct, "direct"), (Aov::Indirect, "indirect")])
-        {
-            if wanted.contains(&aov) {
-                push(layer, film)?;
-            }
-        }
-        let named = groups.layers();
-        for (film, (layer, _)) in parts.groups.iter().zip(&named) {
+        let pixels: Vec<Rgb> = (0..window.pixels()).map(light).collect();
+        Ok(layers.push_rgb(layer, &pixels)?)
+    };
+    for (film, (aov, layer)) in
+        parts.by_events.iter().flatten().zip([(Aov::Direct, "direct"), (Aov::Indirect, "indirect")])
+    {
+        if wanted.contains(&aov) {
             push(layer, film)?;
         }
-        if wanted.contains(&Aov::Groups) {
-            layers.metadata.extend(named.into_iter().map(|(layer, name)| (format!("bilux.{layer}"), name)));
-        }
-        Ok(true)
     }
+    let named = groups.layers();
+    for (film, (layer, _)) in parts.groups.iter().zip(&named) {
+        push(layer, film)?;
+    }
+    if wanted.contains(&Aov::Groups) {
+        layers.metadata.extend(named.into_iter().map(|(layer, name)| (format!("bilux.{layer}"), name)));
+    }
+    Ok(true)
 }
 
 impl Subject {

@@ -3,9 +3,7 @@
 
 pub use crate::metadata::{FINGERPRINT, SETTINGS, SOFTWARE, is_handed_on};
 use crate::settings::{RENDER, Settings};
-use crate::{Job, Outcome};
 use bilux_math::Mat4;
-use bilux_pictures::Picture;
 use bilux_scene::{Parameters, Value};
 
 /// Settings that change no picture with a fixed number of samples.
@@ -23,30 +21,13 @@ const WITHOUT_EFFECT: [&str; 11] = [
     "time_limit",
 ];
 
-impl Job {
-    /// Adds to a picture what it says about itself. `denoiser` is the name of the one that smoothed it, if any did.
-    pub fn describe(&self, picture: &mut Picture, outcome: &Outcome, denoiser: Option<&str>) {
-        let mut note = |key: &str, value: String| picture.metadata.insert(key.to_owned(), value);
-        note(SOFTWARE, concat!("Bilux ", env!("CARGO_PKG_VERSION")).to_owned());
-        note(FINGERPRINT, self.fingerprint().to_owned());
-        let matrices = self.camera().matrices(self.scene().shutter()[0]);
-        note("worldToCamera", row_vectors(&matrices.to_camera));
-        note("worldToNDC", row_vectors(&matrices.to_film));
-        // What was interrupted cannot be made again.
-        if !outcome.rendered.cancelled {
-            let reached = outcome.rendered.reached.map_or(self.settings().spp, |reached| reached.spp);
-            note(SETTINGS, options(self.settings(), reached, denoiser));
-        }
-    }
-}
-
 /// A matrix for row vectors, row by row, as OpenEXR stores it.
-fn row_vectors(matrix: &Mat4) -> String {
+pub(crate) fn row_vectors(matrix: &Mat4) -> String {
     matrix.to_cols_array().map(|x| (x + 0.0).to_string()).join(" ")
 }
 
 /// The options that give these settings, whatever the scene file says.
-fn options(settings: &Settings, spp: u32, denoiser: Option<&str>) -> String {
+pub(crate) fn options(settings: &Settings, spp: u32, denoiser: Option<&str>) -> String {
     let mut all = Parameters::default();
     let own = settings.integrator.entry.parameters.iter();
     for parameter in RENDER.parameters.iter().chain(own) {

@@ -67,14 +67,14 @@ pub struct Explanation {
     pub findings: Vec<Finding>,
 }
 
-impl Job {
-    /// Measures the scene as its camera sees it. A pure function of scene and settings: no clock is read.
+impl Explanation {
+    /// Measures a scene as its camera sees it. A pure function of scene and settings: no clock is read.
     ///
     /// # Errors
     /// As [`Job::render`].
-    pub fn explain(&self) -> Result<Explanation, Error> {
-        let choice = self.plan()?.map(|plan| plan.choice.clone());
-        let measures = self.subject.measures();
+    pub fn of(job: &Job) -> Result<Explanation, Error> {
+        let choice = job.plan()?.map(|plan| plan.choice.clone());
+        let measures = job.subject.measures();
         let findings = findings(&measures, choice.as_ref());
         Ok(Explanation { choice, measures, findings })
     }
@@ -268,7 +268,7 @@ mod tests {
         let mut user = Parameters::default();
         user.set("size", "64x48");
         user.set("seed", Value::Integer(1));
-        Job::new(scene, &user).unwrap().explain().unwrap()
+        Explanation::of(&Job::new(scene, &user).unwrap()).unwrap()
     }
 
     fn generated(name: &str) -> bilux_scene::SceneBuilder {

@@ -1,69 +1,16 @@
 //! What is derived from a render besides its light: layers, and the denoised picture.
 
-use crate::settings::Settings;
-use crate::{Denoised, Error, Job, JobRequest, Outcome};
+use crate::{Error, Outcome};
 use bilux_math::Rgb;
-use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, Task, denoiser, repainted};
+use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, repainted};
 use bilux_pictures::{Picture, PictureError};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{Film, push_variance};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Arc;
-use std::time::Duration;
-
-/// The value of the setting `denoise` that lets the kind of picture decide.
-const FOR_DISPLAY: &str = "display";
-
-impl JobRequest {
-    /// The denoiser that the picture is to have, if any: the one that the setting `denoise` names, or, if the setting leaves
-    /// it open, the best one for pictures for a display that noise or time ends.
-    pub(crate) fn denoiser_name<'a>(&self, settings: &'a Settings) -> Option<&'a str> {
-        let is_open = settings.denoise == FOR_DISPLAY;
-        match self.denoised {
-            Denoised::No => None,
-            _ if settings.denoise == "off" => None,
-            Denoised::ForDisplay if is_open => settings.stop.is_any().then_some("auto"),
-            Denoised::IfAsked if is_open => None,
-            Denoised::IfAsked | Denoised::ForDisplay => Some(&settings.denoise),
-        }
-    }
-}
-
-impl Job {
-    /// What denoises the picture, if anything does ([`JobRequest::denoised`]).
-    ///
-    /// # Errors
-    /// If the denoiser that was asked for is not available.
-    pub fn denoiser(&self) -> Result<Option<&Arc<DenoiserChoice>>, Error> {
-        if let (None, Some(name)) = (self.known.denoiser.get(), self.request.denoiser_name(&self.settings)) {
-            let task = Task {
-                size: (self.render.width as usize, self.render.height as usize),
-                threads: self.settings.threads,
-                // Any more of it is better spent on samples.
-                time: self.render.stop.time_limit.map(|limit| limit / 4),
-                sandboxed: self.request.sandboxed,
-            };
-            // Another thread may have been faster, with the same result.
-            let _ = self.known.denoiser.set(Some(Arc::new(denoiser(name, &task)?)));
-        }
-        Ok(self.known.denoiser.get().and_then(Option::as_ref))
-    }
-
-    /// The time set aside for denoising.
-    pub(crate) fn denoising_time(&self) -> Result<Duration, Error> {
-        Ok(self.denoiser()?.map_or(Duration::ZERO, |chosen| chosen.time))
-    }
-
-    /// Whether albedo and the like are wanted.
-    pub(crate) fn keeps_features(&self) -> bool {
-        let is_kept = |aov: &Aov| aov.is_feature() || *aov == Aov::Guides;
-        self.request.layers.iter().any(is_kept) || self.request.denoiser_name(&self.settings).is_some()
-    }
-}
 
 impl Outcome {
-    /// The picture with the layers that are wanted and were kept ([`JobRequest::layers`]).
+    /// The picture with the layers that are wanted and were kept ([`JobRequest::layers`](crate::JobRequest::layers)).
     ///
     /// # Errors
     /// If memory is short.

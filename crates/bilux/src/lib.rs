@@ -43,7 +43,6 @@ mod scene_warnings;
 pub mod series;
 pub mod session;
 pub mod settings;
-mod shadow;
 pub mod strategies;
 pub mod tables;
 pub mod watch;

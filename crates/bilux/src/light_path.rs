@@ -32,14 +32,14 @@ pub struct PathSegment {
     pub from_camera: bool,
 }
 
-impl Job {
-    /// The path of one sample of a pixel, as the camera sees it.
+impl LightPath {
+    /// That of one sample of a pixel, as the camera sees it.
     ///
     /// # Errors
     /// If the pixel is outside the picture.
-    pub fn light_path(&self, x: u32, y: u32, sample: u32) -> Result<LightPath, Error> {
-        let replay = self.replay(x, y, sample)?;
-        let view = View { subject: &self.subject, time: replay.ray.time };
+    pub fn of(job: &Job, x: u32, y: u32, sample: u32) -> Result<LightPath, Error> {
+        let replay = job.replay(x, y, sample)?;
+        let view = View { subject: &job.subject, time: replay.ray.time };
         let place = |event: &Event| {
             let vertex = event.vertex.filter(|vertex| !is_direction(vertex.kind))?;
             view.on_film(vertex.at)

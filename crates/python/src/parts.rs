@@ -10,9 +10,9 @@ use crate::render::{
 };
 use crate::scene::Scene;
 use crate::watch::{Stopped, follow};
-use bilux::Job;
 use bilux::transport::aovs::Aov;
 use bilux::transport::{Division, Film, Gathering as Parts, Part, Window};
+use bilux::{Job, parts};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -63,19 +63,20 @@ impl PartRenderer {
 
     /// Whether parts may be windows of the picture.
     fn may_crop(&self, py: Python<'_>) -> PyResult<bool> {
-        without_gil(py, || self.0.may_crop_parts()).map_err(exception)
+        without_gil(py, || parts::may_crop(&self.0)).map_err(exception)
     }
 
     /// The choice of an integrator that chooses.
     fn choice(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        without_gil(py, || self.0.choice()).map_err(exception)
+        without_gil(py, || self.0.plan().map(|plan| plan.map(|plan| plan.choice.to_string())))
+            .map_err(exception)
     }
 
     /// Renders a part.
     fn render<'py>(&self, py: Python<'py>, part: PartNumbers) -> PyResult<RenderedPart<'py>> {
         let part = part_of(part);
         let (done, stopped) = follow(py, None, |watch| {
-            let done = self.0.part(&part, watch)?;
+            let done = parts::render(&self.0, &part, watch)?;
             Ok::<_, bilux::Error>((done.film.to_bytes(), done.rays, done.cancelled))
         });
         if let Stopped::Raised(error) = stopped {
@@ -141,7 +142,7 @@ impl Gathering {
     /// Begins to give out parts.
     fn begin(&self, workers: u32, threads: u32, may_crop: bool) -> PyResult<()> {
         let State { job, parts } = &mut *self.lock();
-        *parts = Some(job.gathering(Division { workers, threads, may_crop }).map_err(exception)?);
+        *parts = Some(parts::gathering(job, Division { workers, threads, may_crop }).map_err(exception)?);
         Ok(())
     }
 
@@ -199,7 +200,7 @@ impl Gathering {
         let parts = parts.ok_or_else(|| Error::new_err("the picture was taken before"))?;
         let (rendered, stopped) = follow(py, None, |watch| {
             let job = &self.lock().job;
-            let outcome = job.gathered(parts, watch)?;
+            let outcome = parts::gathered(job, parts, watch)?;
             with_layers(job, outcome, &self.aovs, (self.build, watch))
         });
         let picture = to_python(py, &rendered.ok_or_else(failed)?.map_err(exception)?, self.begun)?;

@@ -13,7 +13,7 @@ use bilux::strategies::Light;
 use bilux::transport::aovs::{AOVS, Aov, AovEntry};
 use bilux::transport::{Progress, Strategies, Window};
 use bilux::wording::in_python;
-use bilux::{Built, Denoised, Display, Job, JobRequest, Outcome, Series, Settings};
+use bilux::{Built, Denoised, Display, ExtraLayers, Job, JobRequest, Outcome, Series, Settings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
@@ -243,7 +243,7 @@ pub(crate) fn prepared(
 
 /// Checks that the job can make all that is asked for, and begins to load what denoises it.
 pub(crate) fn check_outputs(job: &Job, request: &Request) -> Result<(), bilux::Error> {
-    job.check_layers(&request.aovs)?;
+    ExtraLayers::check(job, &request.aovs)?;
     if request.aovs.contains(&Aov::Strategies) {
         check_strategies(job)?;
     }
@@ -299,7 +299,7 @@ fn push_made_later(
     progress: &dyn Progress,
 ) -> Result<Option<Warning>, bilux::Error> {
     let mut missing: Vec<&AovEntry> = Vec::new();
-    match job.extra_layers(outcome, aovs, progress)? {
+    match ExtraLayers::of(job, outcome, aovs, progress)? {
         Some(extra) => extra.push(picture)?,
         None => missing.extend(AOVS.iter().filter(|row| aovs.contains(&row.aov) && row.aov.is_extra())),
     }

@@ -1,5 +1,6 @@
 //! What a picture depends on, line by line, so that a message can say what is different.
 
+use crate::Job;
 use crate::encoding::hash_what_is_seen;
 use crate::settings::Settings;
 use bilux_scene::SceneBuilder;
@@ -13,6 +14,14 @@ pub struct Identity(pub(super) Vec<(String, String)>);
 const MAX_SHOWN: usize = 40;
 
 impl Identity {
+    /// What the samples of a job's picture depend on.
+    pub fn of(job: &Job) -> Identity {
+        let mut identity = of_settings(&job.settings, &job.render);
+        let hash = hash_what_is_seen(job.completed_scene(), &[], "");
+        identity.add("the scene, its files, or camera and studio around it", &hash.to_string());
+        identity
+    }
+
     /// Adds a line. Line breaks become spaces.
     pub fn add(&mut self, name: &str, value: &str) {
         self.0.push((name.replace(['\n', '='], " "), value.replace('\n', " ")));
@@ -75,14 +84,6 @@ pub(crate) fn of_settings(settings: &Settings, render: &RenderSettings) -> Ident
     add("first sample", render.samples.start.to_string());
     add("crop", render.crop.map_or_else(|| "none".to_owned(), |crop| crop.to_string()));
     add("intervals", render.interval.to_string());
-    identity
-}
-
-/// What the samples of a job depend on.
-pub(crate) fn of_picture(scene: &SceneBuilder, settings: &Settings, render: &RenderSettings) -> Identity {
-    let mut identity = of_settings(settings, render);
-    let hash = hash_what_is_seen(scene, &[], "");
-    identity.add("the scene, its files, or camera and studio around it", &hash.to_string());
     identity
 }
 

@@ -2,9 +2,9 @@
 
 use super::file::{Head, SavedRender, part_path, write};
 use super::identity::Identity;
+use crate::Job;
 use crate::error::CheckpointError;
-use crate::{Error, Job, Outcome};
-use bilux_transport::{Observer, Progress, Standing};
+use bilux_transport::{Observer, Standing};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -92,7 +92,7 @@ impl Observer for CheckpointWriter<'_> {
         let samples = standing.samples();
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if samples > state.samples.unwrap_or(0.0) {
-            let identity = self.identity.get_or_init(|| self.job.identity()).clone();
+            let identity = self.identity.get_or_init(|| Identity::of(self.job)).clone();
             let head = Head { identity, samples, spent: self.earlier + self.begun.elapsed() };
             match write(&self.path, &head, |out| standing.write(out)) {
                 Ok(()) => *state = State { samples: Some(samples), has_failed: false },
@@ -111,34 +111,4 @@ impl Observer for CheckpointWriter<'_> {
 /// Nanoseconds up to a time that comes `wait` after another.
 fn after(time: Duration, wait: Duration) -> u64 {
     u64::try_from(time.saturating_add(wait).as_nanos()).unwrap_or(u64::MAX)
-}
-
-impl Job {
-    /// What the samples of this picture depend on.
-    pub fn identity(&self) -> Identity {
-        super::identity::of_picture(self.completed_scene(), &self.settings, &self.render)
-    }
-
-    /// Renders the picture, all of it or what a checkpoint lacks, while an observer sees it. The time that was spent on
-    /// the checkpoint counts for a time limit.
-    ///
-    /// # Errors
-    /// As for [`Job::render`]; and if the checkpoint is that of another picture.
-    pub fn render_from(
-        &self,
-        from: Option<SavedRender>,
-        progress: &dyn Progress,
-        observer: &dyn Observer,
-    ) -> Result<Outcome, Error> {
-        let Some(SavedRender { head, checkpoint, path }) = from else {
-            return self.render_observed(None, Duration::ZERO, progress, observer);
-        };
-        let differences = self.identity().differences(&head.identity);
-        if !differences.is_empty() {
-            return Err(CheckpointError::OtherPicture { path, differences }.into());
-        }
-        // Rendering has a clock of its own.
-        let aside = head.spent.saturating_sub(checkpoint.rendering());
-        self.render_observed(Some(checkpoint), aside, progress, observer)
-    }
 }

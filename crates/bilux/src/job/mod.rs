@@ -1,23 +1,20 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
 
+mod denoising;
 mod making;
-mod ranges;
 mod rendering;
 mod subject;
+mod writing;
 
 use crate::Error;
 use crate::fingerprint::fingerprint;
-use crate::outcome::Outcome;
 use crate::request::JobRequest;
 use crate::series::Series;
 use crate::settings::Settings;
 use bilux_pictures::denoise::DenoiserChoice;
 use bilux_scene::{Camera, Orientation, Scene, SceneBuilder, Warning};
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{
-    Features, Plan, Progress, RenderSettings, Rendered, Replay, SamplePlace, Stop, Strategies, coverage,
-    shadow_alpha,
-};
+use bilux_transport::{Plan, RenderSettings};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 pub(crate) use subject::Subject;
@@ -56,8 +53,8 @@ pub(crate) struct Known {
     fingerprint: OnceLock<String>,
     /// What the integrator has chosen.
     plan: OnceLock<Option<Plan>>,
-    /// What denoises the picture.
-    pub(crate) denoiser: OnceLock<Option<Arc<DenoiserChoice>>>,
+    /// What denoises the picture, once something does.
+    denoiser: OnceLock<Arc<DenoiserChoice>>,
 }
 
 impl Job {
@@ -148,81 +145,47 @@ impl Job {
         &self.settings
     }
 
-    /// Adds to what was rendered whatever else the picture needs.
-    pub(crate) fn completed(
-        &self,
-        mut rendered: Rendered,
-        features: Option<Features>,
-    ) -> Result<Outcome, Error> {
-        let render = &self.render;
-        let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
-        let [coverage, model_coverage] = self.coverage(render, samples)?;
-        if rendered.cancelled {
-            rendered.batch_means = None;
+    /// What an integrator that chooses its strategies has chosen, once for all samples that are rendered from now on in
+    /// several ranges or parts. The picture is the same without it, but every range would begin with a choice.
+    ///
+    /// # Errors
+    /// As for [`Job::render`].
+    pub fn plan(&self) -> Result<Option<&Plan>, Error> {
+        if self.known.plan.get().is_none() {
+            let plan = bilux_transport::plan(self.scene(), self.camera(), self.integrator(), &self.render)?;
+            // Another thread may have been faster, with the same result.
+            let _ = self.known.plan.set(plan);
         }
-        if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
-            self.fingerprint().clone_into(&mut rendered.film.fingerprint);
-        }
-        let chosen = || self.chosen().map(|plan| plan.choice.clone());
-        rendered.choice = rendered.choice.or_else(chosen);
-        let linear_transfer = self.settings.linear_transfer;
-        Ok(Outcome { rendered, features, coverage, model_coverage, linear_transfer })
+        Ok(self.chosen())
     }
 
-    /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel. If a shadow is part of it,
-    /// also the coverage by the model alone.
-    fn coverage(&self, render: &RenderSettings, samples: u32) -> Result<[Option<Vec<f32>>; 2], Error> {
-        let Subject { scene, camera, integrator, catcher, .. } = &self.subject;
-        let (camera, integrator) = (&**camera, &**integrator);
-        Ok(match (self.settings.background.is_cut_out(), *catcher) {
-            (false, _) => [None, None],
-            (true, None) => [Some(coverage(scene, camera, integrator, render, samples)?), None],
-            (true, Some(catcher)) => {
-                let denoiser = self.shadow_denoiser()?;
-                let denoiser = denoiser.as_deref();
-                shadow_alpha(scene, camera, integrator, render, samples, catcher, denoiser)?.map(Some)
-            }
-        })
+    /// What it has chosen so far.
+    fn chosen(&self) -> Option<&Plan> {
+        self.known.plan.get().and_then(Option::as_ref)
+    }
+
+    /// The integrator that takes the samples.
+    pub(crate) fn renders(&self) -> &dyn PixelIntegrator {
+        self.chosen().map_or(self.integrator(), |plan| &*plan.integrator)
+    }
+
+    /// What denoises the picture, if anything does ([`JobRequest::denoised`]).
+    ///
+    /// # Errors
+    /// If the denoiser that was asked for is not available.
+    pub fn denoiser(&self) -> Result<Option<&Arc<DenoiserChoice>>, Error> {
+        if self.known.denoiser.get().is_none()
+            && let Some(chosen) = denoising::chosen(&self.request, &self.settings, &self.render)?
+        {
+            // Another thread may have been faster, with the same result.
+            let _ = self.known.denoiser.set(Arc::new(chosen));
+        }
+        Ok(self.known.denoiser.get())
     }
 
     /// True if its integrator's strategies can be shown separately.
     pub fn has_strategies(&self) -> bool {
         self.subject.integrator.has_strategies()
-    }
-
-    /// Renders a picture for each of the integrator's strategies, from the same samples as the main picture. Returns
-    /// `None` if it was stopped or there are no strategies.
-    ///
-    /// # Errors
-    /// As [`Job::render`].
-    pub fn strategies(&self, of: &Outcome, progress: &dyn Progress) -> Result<Option<Strategies>, Error> {
-        self.strategies_of(of.rendered.reached.map(|reached| reached.spp), progress)
-    }
-
-    /// The same for the first samples of each pixel; by default for all.
-    ///
-    /// # Errors
-    /// As [`Job::render`].
-    pub fn strategies_of(
-        &self,
-        samples: Option<u32>,
-        progress: &dyn Progress,
-    ) -> Result<Option<Strategies>, Error> {
-        let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
-        if let Some(samples) = samples {
-            (settings.spp, settings.samples) = (samples, 0..samples);
-        }
-        let Subject { scene, camera, integrator, .. } = &self.subject;
-        Ok(bilux_transport::strategies(scene, &**camera, &**integrator, &settings, progress)?)
-    }
-
-    /// Traces one sample again and records what happens to it.
-    ///
-    /// # Errors
-    /// If the pixel is outside the picture.
-    pub fn replay(&self, x: u32, y: u32, sample: u32) -> Result<Replay, Error> {
-        let (scene, camera, place) = (self.scene(), self.camera(), SamplePlace { x, y, sample });
-        Ok(bilux_transport::replay(scene, camera, self.renders(), &self.render, place)?)
     }
 
     /// The fingerprint of this picture: partial films merge only if it agrees.

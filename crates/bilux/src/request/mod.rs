@@ -5,7 +5,7 @@ macro_rules! settings {
     ($($(#[$what:meta])* $key:ident: $value:ty,)*) => {
         use super::{IntoSetting, JobRequest};
 
-        impl JobRequest {
+impl JobRequest {
             $(
                 $(#[$what])*
                 #[must_use]
@@ -27,6 +27,9 @@ use bilux_transport::Window;
 use bilux_transport::aovs::Aov;
 use std::ops::Range;
 use std::time::Instant;
+
+/// The value of the setting `denoise` that lets the kind of picture decide.
+const FOR_DISPLAY: &str = "display";
 
 /// What is asked of a [`Job`](crate::Job). Settings that are left out are those of the scene, or else the defaults.
 ///
@@ -151,6 +154,19 @@ impl JobRequest {
     #[must_use]
     pub fn sandboxed(self) -> JobRequest {
         JobRequest { sandboxed: true, ..self }
+    }
+
+    /// The denoiser that the picture is to have, if any: the one that the setting `denoise` names, or, if the setting leaves
+    /// it open, the best one for pictures for a display that noise or time ends.
+    pub(crate) fn denoiser_name<'a>(&self, settings: &'a Settings) -> Option<&'a str> {
+        let is_open = settings.denoise == FOR_DISPLAY;
+        match self.denoised {
+            Denoised::No => None,
+            _ if settings.denoise == "off" => None,
+            Denoised::ForDisplay if is_open => settings.stop.is_any().then_some("auto"),
+            Denoised::IfAsked if is_open => None,
+            Denoised::IfAsked | Denoised::ForDisplay => Some(&settings.denoise),
+        }
     }
 
     /// The settings of a picture of this scene.

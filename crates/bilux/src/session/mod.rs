@@ -1,6 +1,7 @@
 //! A scene that is edited while its picture is refined: what a viewer shows, and what makes many pictures of one scene.
 
 mod edit;
+mod showing;
 
 pub use edit::Edit;
 
@@ -11,6 +12,7 @@ use bilux_pictures::Picture;
 use bilux_scene::{Parameters, SceneBuilder, TreeWork, Value};
 use bilux_transport::Progress;
 use bilux_transport::aovs::Aov;
+use showing::{may_take_more, showing};
 
 /// A scene, its settings, and a picture that is refined step by step. After an edit only what changed is built anew, and
 /// the picture starts again, unless the edit changes no sample.
@@ -92,12 +94,12 @@ impl Session {
         let before = Settings::of(&self.scene, &self.request.settings)?;
         let settings = Settings::of(&scene, &request.settings)?;
         let has_room =
-            settings.spp == before.spp || settings.spp >= self.samples() && self.picture.job.may_take_more();
+            settings.spp == before.spp || settings.spp >= self.samples() && may_take_more(&self.picture.job);
         if changes_scene || !has_room || !settings.takes_samples_of(&before) {
             self.restart(scene, request)?;
             return Ok(true);
         }
-        let shown = self.picture.job.showing(&settings);
+        let shown = showing(&self.picture.job, &settings);
         shown.write_options()?;
         self.picture.job = shown;
         if let Some(outcome) = &mut self.picture.so_far {

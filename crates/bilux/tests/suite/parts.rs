@@ -2,6 +2,7 @@
 //! parts come back.
 
 use bilux::math::hash::hash_words;
+use bilux::parts;
 use bilux::prelude::*;
 use bilux::scene::texture::Texture;
 use bilux::transport::aovs::Aov;
@@ -43,7 +44,8 @@ fn gathered(settings: &Parameters, workers: u32) -> Outcome {
     let find = |hash| blobs.iter().find(|(known, _)| *known == hash).map(|(_, bytes)| &**bytes);
     let sent = bilux::encoding::decode(&encoded.document, &find).unwrap();
     let worker = Job::new(&sent, settings).unwrap();
-    let mut gathering = driver.gathering(division(workers, worker.may_crop_parts().unwrap())).unwrap();
+    let mut gathering =
+        parts::gathering(&driver, division(workers, parts::may_crop(&worker).unwrap())).unwrap();
     let mut flying: Vec<Part> = Vec::new();
     let mut round = 0u64;
     while !gathering.is_done() {
@@ -54,13 +56,13 @@ fn gathered(settings: &Parameters, workers: u32) -> Outcome {
         }
         round += 1;
         let part = flying.swap_remove(hash_words([round, 5]) as usize % flying.len());
-        let done = worker.part(&part, &Quiet).unwrap();
+        let done = parts::render(&worker, &part, &Quiet).unwrap();
         let film = Film::from_bytes(&done.film.to_bytes()).unwrap();
         gathering.add(&part, film.clone(), done.rays).unwrap();
         gathering.add(&part, film, done.rays).unwrap();
     }
     assert!(gathering.next_part().is_none());
-    driver.gathered(gathering, &Quiet).unwrap()
+    parts::gathered(&driver, gathering, &Quiet).unwrap()
 }
 
 fn assert_same(settings: &Parameters, what: &str, numbers: &[u32]) {
@@ -117,12 +119,12 @@ fn time_ends_the_picture_with_all_that_came_back() {
 #[test]
 fn a_picture_that_is_stopped_keeps_what_came_back() {
     let job = job(&settings(&[("spp", Value::Integer(40)), ("integrator", "path".into())]));
-    let mut gathering = job.gathering(division(4, false)).unwrap();
+    let mut gathering = parts::gathering(&job, division(4, false)).unwrap();
     let parts: Vec<Part> = (0..3).filter_map(|_| gathering.next_part()).collect();
-    let done = job.part(&parts[1], &Quiet).unwrap();
+    let done = parts::render(&job, &parts[1], &Quiet).unwrap();
     gathering.add(&parts[1], done.film, done.rays).unwrap();
     assert_eq!(gathering.so_far().unwrap().samples(3, 3), parts[1].samples.len() as u32);
-    let outcome = job.gathered(gathering, &Quiet).unwrap();
+    let outcome = parts::gathered(&job, gathering, &Quiet).unwrap();
     assert!(outcome.rendered.cancelled);
     assert_eq!(outcome.rendered.film.fingerprint, job.fingerprint());
 }
@@ -131,20 +133,21 @@ fn a_picture_that_is_stopped_keeps_what_came_back() {
 fn wrong_parts_are_refused() {
     let job_of = |seed| job(&settings(&[("spp", Value::Integer(8)), ("seed", Value::Integer(seed))]));
     let (job, other) = (job_of(0), job_of(1));
-    let mut gathering: Gathering = job.gathering(division(2, false)).unwrap();
+    let mut gathering: Gathering = parts::gathering(&job, division(2, false)).unwrap();
     let (first, second) = (gathering.next_part().unwrap(), gathering.next_part().unwrap());
     let message = |gathering: &mut Gathering, part: &Part, film: Film| {
         gathering.add(part, film, 0).unwrap_err().to_string()
     };
-    let film = job.part(&second, &Quiet).unwrap().film;
+    let film = parts::render(&job, &second, &Quiet).unwrap().film;
     assert!(message(&mut gathering, &first, film).contains("it should hold the samples 0..1"));
-    let film = other.part(&first, &Quiet).unwrap().film;
+    let film = parts::render(&other, &first, &Quiet).unwrap().film;
     assert!(message(&mut gathering, &first, film).contains("different scenes or settings"));
-    gathering.add(&first, job.part(&first, &Quiet).unwrap().film, 0).unwrap();
+    gathering.add(&first, parts::render(&job, &first, &Quiet).unwrap().film, 0).unwrap();
     let request = JobRequest::from(&settings(&[("spp", Value::Integer(8))])).layers(&[Aov::Interval]);
     let interval = Job::new(&scene(), request).unwrap();
     assert!(
-        interval.gathering(division(2, false)).is_err_and(|error| error.to_string().contains("'interval'"))
+        parts::gathering(&interval, division(2, false))
+            .is_err_and(|error| error.to_string().contains("'interval'"))
     );
 }
 

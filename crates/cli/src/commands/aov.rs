@@ -67,7 +67,7 @@ pub fn check_job(arguments: &Render, job: &Job) -> anyhow::Result<()> {
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
     }
-    job.check_layers(&layers(arguments)).context("--aov").map_err(usage::wrong)
+    ExtraLayers::check(job, &layers(arguments)).context("--aov").map_err(usage::wrong)
 }
 
 /// Makes the layers that are made once the picture is there; `None` if that was interrupted.
@@ -78,7 +78,7 @@ pub fn extra(
     report: &Report,
 ) -> anyhow::Result<Option<ExtraLayers>> {
     let layers = layers(arguments);
-    let extra = job.extra_layers(outcome, &layers, report)?;
+    let extra = ExtraLayers::of(job, outcome, &layers, report)?;
     if extra.is_none() {
         output::eprint(format_args!(
             "interrupted, so these layers are missing: {}",

@@ -25,7 +25,7 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     report_warnings(&scene.warnings, common)?;
     let job = Job::new(&scene, JobRequest::from(&user).max_memory(common.max_memory))?;
     report_warnings(job.warnings(), common)?;
-    let found = job.explain()?;
+    let found = Explanation::of(&job)?;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(&job, &found))?)?;
     } else {

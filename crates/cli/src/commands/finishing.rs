@@ -10,6 +10,7 @@ use crate::preview::{Observers, Preview};
 use crate::progress::Report;
 use crate::{output, usage};
 use bilux::Job;
+use bilux::checkpoint::render_from;
 use std::sync::Arc;
 
 /// Renders a picture and writes it, with what belongs to it.
@@ -30,7 +31,7 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
         let preview = preview.transpose()?.flatten();
         let ends = Some(interrupt).filter(|_| !keeping.is_asked());
         let observers = Observers { writer: writer.as_ref(), preview: preview.as_ref(), ends };
-        let outcome = job.render_from(saved, &report, &observers)?;
+        let outcome = render_from(job, saved, &report, &observers)?;
         if let Some(preview) = preview {
             preview.finish(&outcome);
         }

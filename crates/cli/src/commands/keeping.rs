@@ -9,7 +9,7 @@ use crate::lasting::Checkpoints;
 use crate::output;
 use anyhow::{Context, bail};
 use bilux::Job;
-use bilux::checkpoint::{CheckpointError, CheckpointWriter, Head, SavedRender, checkpoint_path};
+use bilux::checkpoint::{CheckpointError, CheckpointWriter, Head, Identity, SavedRender, checkpoint_path};
 use bilux::scene::{Span, Warning};
 use std::path::{Path, PathBuf};
 
@@ -147,7 +147,7 @@ fn warn_of_older(input: &Input, job: &Job, path: &Path, every: Checkpoints) -> a
     let shown = path.display();
     let head = Head::read(path);
     if let Ok(head) = &head
-        && job.identity().differences(&head.identity).is_empty()
+        && Identity::of(job).differences(&head.identity).is_empty()
     {
         warn(format!(
             "{shown}: this picture already has {} per pixel, and --resume continues from them; without --resume the render starts \

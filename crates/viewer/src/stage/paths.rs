@@ -1,6 +1,6 @@
 //! The paths of light that reach a pixel, as the page draws them into the picture.
 
-use bilux::light_path::PathSegment;
+use bilux::light_path::{LightPath, PathSegment};
 use bilux::transport::{Event, VertexKind};
 use bilux::{Error, Job};
 use serde_json::{Value, json};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// # Errors
 /// If the pixel is outside the picture.
 pub(super) fn path(job: &Job, [x, y]: [u32; 2], sample: u32) -> Result<Value, Error> {
-    let path = job.light_path(x, y, sample)?;
+    let path = LightPath::of(job, x, y, sample)?;
     let events = path.replay.events.iter().zip(&path.places);
     Ok(json!({
         "sample": sample,

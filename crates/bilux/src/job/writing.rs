@@ -1,0 +1,94 @@
+//! How a job's pictures are shown, described and written.
+
+use super::Job;
+use crate::description::{options, row_vectors};
+use crate::display::Display;
+use crate::metadata::{ASKED, FINGERPRINT, SETTINGS, SOFTWARE};
+use crate::settings::{Background, Settings};
+use crate::{Error, Outcome};
+use bilux_pictures::{Picture, WriteOptions};
+use std::path::Path;
+
+impl Job {
+    /// The options for writing a picture of this job, with automatic exposure if the settings ask for it.
+    ///
+    /// # Errors
+    /// If no tone curve has the name.
+    pub fn write_options_for(&self, picture: &Picture) -> Result<WriteOptions, Error> {
+        let mut options = self.write_options()?;
+        if self.settings.auto_exposure {
+            options.exposure += bilux_pictures::auto_exposure(picture);
+        }
+        Ok(options)
+    }
+
+    /// The options for writing any picture of this job, whatever it shows.
+    ///
+    /// # Errors
+    /// If no tone curve has the name.
+    pub fn write_options(&self) -> Result<WriteOptions, Error> {
+        let name = match self.settings.tonemap.as_str() {
+            "auto" => self.found.auto_curve,
+            name => name,
+        };
+        let tone_map = bilux_pictures::tonemap::tone_map(name)?;
+        let behind = match self.settings.background {
+            Background::Colour(colour) => Some(colour),
+            Background::Surroundings | Background::Transparent => None,
+        };
+        let exposure = self.settings.display_exposure();
+        Ok(WriteOptions { exposure, tone_map, behind, ..WriteOptions::default() })
+    }
+
+    /// How its pictures are to be shown.
+    ///
+    /// # Errors
+    /// If no tone curve has the name.
+    pub fn display(&self) -> Result<Display, Error> {
+        let WriteOptions { exposure, tone_map, behind, .. } = self.write_options()?;
+        let Settings { auto_exposure, linear_transfer: encoded, .. } = self.settings;
+        Ok(Display { exposure, auto_exposure, tone_map, behind, encoded })
+    }
+
+    /// Writes the picture.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn write(&self, outcome: &Outcome, path: &Path) -> Result<(), Error> {
+        let mut picture = outcome.picture()?;
+        self.describe(&mut picture, outcome, None);
+        Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)
+    }
+
+    /// The film's exact sums, its coverage and its display, as a picture that an `.exr` can hold and `merge` can merge.
+    ///
+    /// # Errors
+    /// If memory is short.
+    pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
+        let mut picture = outcome.rendered.film.to_partial()?;
+        if let Some(coverage) = &outcome.coverage {
+            picture.push_channel("A", coverage.clone())?;
+        }
+        self.display()?.record(&mut picture);
+        if let Some(spp) = self.settings.asked_spp() {
+            picture.metadata.insert(ASKED.to_owned(), spp.to_string());
+        }
+        self.describe(&mut picture, outcome, None);
+        Ok(picture)
+    }
+
+    /// Adds to a picture what it says about itself. `denoiser` is the name of the one that smoothed it, if any did.
+    pub fn describe(&self, picture: &mut Picture, outcome: &Outcome, denoiser: Option<&str>) {
+        let mut note = |key: &str, value: String| picture.metadata.insert(key.to_owned(), value);
+        note(SOFTWARE, concat!("Bilux ", env!("CARGO_PKG_VERSION")).to_owned());
+        note(FINGERPRINT, self.fingerprint().to_owned());
+        let matrices = self.camera().matrices(self.scene().shutter()[0]);
+        note("worldToCamera", row_vectors(&matrices.to_camera));
+        note("worldToNDC", row_vectors(&matrices.to_film));
+        // What was interrupted cannot be made again.
+        if !outcome.rendered.cancelled {
+            let reached = outcome.rendered.reached.map_or(self.settings().spp, |reached| reached.spp);
+            note(SETTINGS, options(self.settings(), reached, denoiser));
+        }
+    }
+}
