@@ -11,18 +11,10 @@ use super::repository::{Repository, TextFile};
 use super::violation::Violation;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The crates that still have some, and what would dissolve them.
-const STILL: &[&str] = &[
-    // The kernels of one tree are compiled for each level of instructions: every file of them names the trait that `level` makes
-    // of them, which calls them all. Trees and the storage that maps them from files are built of each other.
-    "crates/accel",
-];
-
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let folder = |file: &TextFile| Some(file.path.split_once("/src/")?.0.to_owned());
     let crates: BTreeSet<String> = repository.rust().filter_map(|(file, _)| folder(file)).collect();
-    let crates = crates.iter().filter(|folder| !STILL.contains(&folder.as_str()));
-    crates.flat_map(|folder| check_crate(&Modules::read(repository, folder))).collect()
+    crates.iter().flat_map(|folder| check_crate(&Modules::read(repository, folder))).collect()
 }
 
 /// Which parts of a folder use which, each with the file and the line of the first use.

@@ -11,6 +11,7 @@
 //! `docs/adr/0003-bsp-trees.md` records what was tried and measured.
 
 mod cell;
+mod choice;
 mod facing;
 mod partition;
 mod path;

@@ -53,9 +53,6 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// Maximum number of polygons in a leaf that could still be split.
-pub const LEAF: usize = 4;
-
 /// Maximum number of references per polygon.
 pub const GROWTH: f64 = 4.0;
 

@@ -6,6 +6,9 @@ use super::plane::{Plane, Side, Space};
 use crate::mesh::TriangleMesh;
 use bilux_math::DVec3;
 
+/// Maximum number of polygons in a leaf that could still be split.
+pub(super) const LEAF: usize = 4;
+
 /// What the rules inspect in a polygon or an object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
@@ -73,7 +76,7 @@ impl Partition for Polygons<'_> {
     }
 
     fn is_small(&self) -> bool {
-        self.pieces.len() <= super::paper::LEAF
+        self.pieces.len() <= LEAF
     }
 
     fn items(&self) -> Vec<Item> {

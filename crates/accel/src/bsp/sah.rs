@@ -11,6 +11,7 @@
 //! Planes perpendicular to an axis are cheaper, and are stored, traversed and costed as such.
 
 use super::cell::Cell;
+use super::choice::{AXIS_STEP, Choice};
 use super::pieces::{Parts, Pieces};
 use super::plane::{Plane, Side, Space};
 use super::sweep;
@@ -37,9 +38,6 @@ pub const GROWTH: f64 = 8.0;
 /// Maximum inner nodes above a leaf, beyond twice those of a balanced tree of triangles. Around a vertex that many
 /// triangles share, a plane pays off at every scale, without end.
 const DEPTH: usize = 8;
-
-/// The cost of a plane perpendicular to an axis, in triangle tests.
-pub(super) const AXIS_STEP: f64 = 0.4;
 
 /// The cost of any other plane, in triangle tests.
 const STEP: f64 = 0.8;
@@ -81,15 +79,6 @@ enum PartitionCell {
     Box(DVec3, DVec3),
     /// A box cut by planes that are not axis-aligned.
     Polyhedron(Cell),
-}
-
-/// A plane and its expected cost, in triangle tests.
-#[derive(Clone, Copy)]
-pub(super) struct Choice {
-    pub(super) plane: Plane,
-    pub(super) cost: f64,
-    /// Whether what lies in the plane goes left.
-    pub(super) on_left: bool,
 }
 
 struct Grower<'a> {
@@ -194,18 +183,6 @@ impl Grower<'_> {
         let choice =
             Choice::new(plane, step, cell.areas(&plane).map(|a| a / cell.area()), [left, right, on])?;
         (choice.cost < limit).then_some(choice)
-    }
-}
-
-impl Choice {
-    /// From the ratios of the two parts' surface areas to the whole's, and the numbers of references left, right and
-    /// in the plane. `None` for a plane that separates nothing.
-    pub(super) fn new(plane: Plane, step: f64, areas: [f64; 2], counts: [usize; 3]) -> Option<Choice> {
-        let [left, right, on] = counts.map(|count| count as f64);
-        let on_left = areas[0] < areas[1];
-        let cost = step + areas[0] * left + areas[1] * right + areas[0].min(areas[1]) * on;
-        // Also rejects NaN.
-        (cost >= step && areas[0] > 0.0 && areas[1] > 0.0).then_some(Choice { plane, cost, on_left })
     }
 }
 

@@ -1,8 +1,8 @@
 //! Every plane perpendicular to an axis that touches a piece, evaluated in one sweep per axis [Wald 2006].
 
+use super::choice::{AXIS_STEP, Choice};
 use super::pieces::Pieces;
 use super::plane::Plane;
-use super::sah::{AXIS_STEP, Choice};
 use bilux_math::DVec3;
 
 /// The cheapest axis-aligned plane of a box that leaves at most `most` references; among equally cheap ones, the

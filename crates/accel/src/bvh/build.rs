@@ -30,26 +30,29 @@ impl Item {
     }
 }
 
-/// See [`Tree::over`].
-pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
-    let mut items: Vec<Item> = (0..len as u32)
-        .into_par_iter()
-        .filter_map(|index| {
-            let bounds = bounds(index);
-            (!bounds.is_empty()).then(|| Item { planes: planes_of(&bounds), index })
-        })
-        .collect();
-    if items.is_empty() {
-        return (Tree { root: BvhNode::default(), pairs: Vec::new() }, Vec::new());
+impl Tree {
+    /// Builds a tree over items `0..len`, and the order that its leaves' ranges refer to. Items with an empty box are
+    /// left out.
+    pub(crate) fn over(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
+        let mut items: Vec<Item> = (0..len as u32)
+            .into_par_iter()
+            .filter_map(|index| {
+                let bounds = bounds(index);
+                (!bounds.is_empty()).then(|| Item { planes: planes_of(&bounds), index })
+            })
+            .collect();
+        if items.is_empty() {
+            return (Tree { root: BvhNode::default(), pairs: Vec::new() }, Vec::new());
+        }
+        let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
+        let mut pairs = vec![Pair::default(); items.len() - 1];
+        let root = subtree(
+            Task { items: &mut items, first_item: 0, pairs: &mut pairs, first_pair: 0, depth: 1 },
+            planes,
+        );
+        let order = items.iter().map(|item| item.index).collect();
+        (compact(root, pairs), order)
     }
-    let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
-    let mut pairs = vec![Pair::default(); items.len() - 1];
-    let root = subtree(
-        Task { items: &mut items, first_item: 0, pairs: &mut pairs, first_pair: 0, depth: 1 },
-        planes,
-    );
-    let order = items.iter().map(|item| item.index).collect();
-    (compact(root, pairs), order)
 }
 
 /// Items to put under one node, and space for the pairs below it: one fewer than there are items.

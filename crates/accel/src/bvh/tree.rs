@@ -1,6 +1,5 @@
 //! The bounding volume hierarchy itself, over any items that have a bounding box.
 
-use super::build;
 use crate::accelerator::TreeShape;
 use crate::counters::Count;
 use crate::slab::SlabRay;
@@ -52,12 +51,6 @@ struct StackEntry {
 }
 
 impl Tree {
-    /// Builds a tree over items `0..len`, and the order that its leaves' ranges refer to. Items with an empty box are
-    /// left out.
-    pub(crate) fn over(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
-        build::build(len, bounds)
-    }
-
     /// Whether `hits` is true of any slot of the order in the leaves that the ray passes through up to `limit`.
     #[inline(always)]
     pub(crate) fn find<C: Count>(

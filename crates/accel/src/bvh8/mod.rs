@@ -5,12 +5,14 @@
 
 mod build;
 mod compact;
+mod compact_layout;
 mod kernel;
 mod layout;
 mod mapped;
 mod near;
 mod overlap;
 mod refit;
+mod shape;
 mod storage;
 mod summary;
 #[cfg(test)]
@@ -23,9 +25,8 @@ use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, registry::Entry};
-use kernel::{Blocker, NodeFormat, TreeView, Wide};
-use layout::Ref;
-use mapped::Units;
+use kernel::{Blocker, TreeView, Units, Wide};
+use shape::shape;
 use summary::TreeSummary;
 
 /// Rays whose answers are collected before they are handed on.
@@ -123,21 +124,4 @@ impl Traverse for Bvh8 {
     fn shape(&self) -> TreeShape {
         shape::<Wide>(self.view())
     }
-}
-
-/// The statistics of a tree, whatever its layout.
-fn shape<F: NodeFormat>(view: Option<TreeView>) -> TreeShape {
-    let mut shape = TreeShape::default();
-    let Some(TreeView { units, outline }) = view else { return shape };
-    let mut stack = vec![(outline.root, 1)];
-    while let Some((reference, depth)) = stack.pop() {
-        if reference.is_node() {
-            shape.nodes += 1;
-            let children = (0..layout::WIDTH).map(|k| F::child(&units[reference.unit()..], k).1);
-            stack.extend(children.filter(|child| *child != Ref::EMPTY).map(|child| (child, depth + 1)));
-        } else {
-            shape.add_leaf(depth, reference.blocks() * layout::LANES);
-        }
-    }
-    shape
 }

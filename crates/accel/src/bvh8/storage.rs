@@ -7,10 +7,10 @@
 
 use super::Bvh8;
 use super::build::binary::MAX_DEPTH;
+use super::kernel::{HEADER, Units};
 use super::layout::{
     self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NO_TRIANGLE, NODE_UNITS, Ref, Unit, WIDTH,
 };
-use super::mapped::Units;
 use super::summary::TreeSummary;
 use crate::cpu_level::CpuLevel;
 use bilux_math::hash::mix64;
@@ -18,7 +18,6 @@ use std::io::{self, Read, Write};
 
 const MAGIC: &[u8; 8] = b"BILUXBV8";
 const VERSION: u32 = 2;
-pub(super) const HEADER: usize = 64;
 const UNIT: usize = size_of::<Unit>();
 
 /// Why a file is not a valid tree.

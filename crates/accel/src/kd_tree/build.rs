@@ -1,6 +1,6 @@
 //! Top-down building. No step depends on the number of threads.
 
-use super::clip::{Planes, clipped_bounds};
+use super::clip::{Planes, Reference, clipped_bounds};
 use super::split::{Split, best_split};
 use super::tree::{KdNode, MAX_DEPTH, MAX_NODES, Tree};
 use crate::mesh::TriangleMesh;
@@ -11,13 +11,6 @@ use rayon::prelude::*;
 const MAX_REFERENCES_EACH: usize = 6;
 /// Below this many references a subtree is built on one thread.
 const PARALLEL: usize = 8192;
-
-/// The part of a triangle that lies in a cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reference {
-    pub(super) planes: Planes,
-    pub(super) index: u32,
-}
 
 /// A tree over a mesh's finite triangles. Its references are indices of the mesh's triangles.
 pub(super) fn build(mesh: &TriangleMesh) -> Result<Tree, BuildError> {

@@ -3,6 +3,13 @@
 /// Minimum and maximum corner.
 pub(super) type Planes = [[f32; 3]; 2];
 
+/// The part of a triangle that lies in a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reference {
+    pub(super) planes: Planes,
+    pub(super) index: u32,
+}
+
 /// The bounding box of the part of a triangle that lies in `region`; `None` if there is none.
 ///
 /// Uses Sutherland–Hodgman clipping [Sutherland 1974] in f64, against the region enlarged by `2⁻⁴⁸` of the triangle's

@@ -1,7 +1,6 @@
 //! Chooses the next plane.
 
-use super::build::Reference;
-use super::clip::Planes;
+use super::clip::{Planes, Reference};
 
 /// Cost of visiting a node, in triangle tests.
 const NODE_COST: f64 = 0.75;

@@ -1,8 +1,10 @@
 //! Capsules: thick lines with round ends.
 
 use super::roots::{roots, without_origin};
-use super::{Crossing, Sphere, outwards, wide};
+use super::rounding::{outwards, wide};
+use super::sphere::Sphere;
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// All points within a radius of a line segment: a cylinder between two hemispheres. The front is outside. In a hit,

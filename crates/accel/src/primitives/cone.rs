@@ -1,8 +1,9 @@
 //! Truncated cones and cylinders.
 
 use super::roots::{roots, without_origin};
-use super::{Crossing, outwards, wide};
+use super::rounding::{outwards, wide};
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// The lateral surface of a cone between two circles; with equal radii, a cylinder. It has no caps; the front is

@@ -1,7 +1,8 @@
 //! Curves as ribbons that face the ray: hair, grass, threads.
 
-use super::{Crossing, outwards, wide};
+use super::rounding::{outwards, wide};
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// A piece of a cubic Bézier curve, rendered as a ribbon that turns to face every ray: the right model for what is

@@ -1,7 +1,8 @@
 //! Flat discs.
 
-use super::{Crossing, outwards, wide};
+use super::rounding::{outwards, wide};
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// A flat disc; its front is the side that the normal points to. In a hit, `u` is the distance from the centre in

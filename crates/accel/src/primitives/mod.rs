@@ -28,6 +28,7 @@ mod curve;
 mod disc;
 mod quadric;
 mod roots;
+mod rounding;
 mod sphere;
 mod tree;
 
@@ -41,8 +42,6 @@ pub use sphere::Sphere;
 pub use tree::PrimitiveTree;
 
 use crate::ray::Ray;
-use bilux_math::Aabb;
-use bilux_math::glam::DVec3;
 
 /// Any indexed primitives with known bounding boxes and crossings.
 pub trait Primitives: Send + Sync {
@@ -118,24 +117,5 @@ impl Primitives for Vec<Shape> {
 
     fn crossings(&self, index: u32, ray: &Ray, visit: &mut dyn FnMut(Crossing)) {
         self[index as usize].crossings(ray, ray.exclude.index == index, visit);
-    }
-}
-
-/// Converts exactly.
-fn wide(v: [f32; 3]) -> DVec3 {
-    DVec3::from(v.map(f64::from))
-}
-
-/// The bounding box of two corners, rounded outwards.
-fn outwards(low: DVec3, high: DVec3) -> [[f32; 3]; 2] {
-    [low.to_array().map(|x| (x as f32).next_down()), high.to_array().map(|x| (x as f32).next_up())]
-}
-
-/// The box in the form that the trees use; empty when a corner is not finite.
-fn aabb([low, high]: [[f32; 3]; 2]) -> Aabb {
-    if low.iter().chain(&high).all(|x| x.is_finite()) {
-        Aabb { min: low.into(), max: high.into() }
-    } else {
-        Aabb::EMPTY
     }
 }

@@ -1,8 +1,9 @@
 //! Second-degree surfaces, clipped to a box.
 
 use super::roots::{roots, without_origin};
-use super::{Crossing, outwards, wide};
+use super::rounding::{outwards, wide};
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// The points `p` of a box with `p·S p + 2 l·p + k = 0`: ellipsoids, paraboloids, hyperboloids, saddles. The front is

@@ -1,8 +1,9 @@
 //! Spheres.
 
 use super::roots::{roots, without_origin};
-use super::{Crossing, outwards, wide};
+use super::rounding::{outwards, wide};
 use crate::ray::Ray;
+use crate::triangle::Crossing;
 use bilux_math::glam::DVec3;
 
 /// A whole sphere; the front is outside. Hits have no `u` and `v` (both are 0).

@@ -1,12 +1,12 @@
 //! A bounding volume hierarchy over anything that has bounding boxes and crossings.
 
-use super::{Crossing, Primitives, aabb};
+use super::Primitives;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::bvh::tree::Tree;
 use crate::counters::Count;
 use crate::ray::{Culling, Hit, Query, Ray};
 use crate::slab::SlabRay;
-use crate::triangle::PreparedRay;
+use crate::triangle::{Crossing, PreparedRay};
 use bilux_math::Aabb;
 use std::ops::ControlFlow;
 
@@ -96,5 +96,14 @@ impl<P: Primitives> Traverse for PrimitiveTree<P> {
 
     fn shape(&self) -> TreeShape {
         self.tree.shape()
+    }
+}
+
+/// The box in the form that the trees use; empty when a corner is not finite.
+fn aabb([low, high]: [[f32; 3]; 2]) -> Aabb {
+    if low.iter().chain(&high).all(|x| x.is_finite()) {
+        Aabb { min: low.into(), max: high.into() }
+    } else {
+        Aabb::EMPTY
     }
 }

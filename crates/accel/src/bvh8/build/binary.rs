@@ -3,7 +3,7 @@
 //! No step depends on the number of threads: boxes are merged by minima and maxima and items are counted in integers,
 //! so the order in which chunks finish does not matter.
 
-use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
+use super::costs::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
 use super::spatial::Cutter;
 use super::split::{Halves, around, best_split, halve, partition};

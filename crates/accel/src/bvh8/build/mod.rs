@@ -4,6 +4,7 @@
 
 pub(super) mod binary;
 mod collapse;
+mod costs;
 mod emit;
 mod item;
 mod morton;

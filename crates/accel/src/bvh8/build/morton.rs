@@ -1,7 +1,7 @@
 //! The fast builder: items in space-filling-curve order, split where the highest bits change [Lauterbach 2009].
 
 use super::binary::{Binary, BinaryNode, NodePairs, PARALLEL, depth_allows};
-use super::collapse::{costs_of_inner, costs_of_leaf};
+use super::costs::{costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
 use super::split::around;
 use crate::bvh8::layout::LANES;

@@ -4,7 +4,7 @@
 //! largest gain first, so that the outcome does not depend on the number of threads.
 
 use super::binary::{Binary, BinaryNode, MAX_DEPTH};
-use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
+use super::costs::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::Bounds;
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;

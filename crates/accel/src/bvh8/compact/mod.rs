@@ -4,7 +4,6 @@
 //! It takes less than half the memory of [`Bvh8`] where triangles share their corners, and rays are slower; the hits
 //! are the same, to the bit. `docs/adr/0008-bvh8.md` records what was tried.
 
-pub(super) mod layout;
 mod pack;
 #[cfg(test)]
 mod tests;
@@ -12,6 +11,7 @@ mod tests;
 use super::Bvh8;
 use super::kernel::{self, Compact, TreeView};
 use super::layout::Unit;
+use super::shape::shape;
 use super::summary::TreeSummary;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
@@ -88,6 +88,6 @@ impl Traverse for CompactBvh8 {
     }
 
     fn shape(&self) -> TreeShape {
-        super::shape::<Compact>(self.view())
+        shape::<Compact>(self.view())
     }
 }

@@ -1,6 +1,6 @@
 //! A compact tree from a wide one: the same nodes and leaves, in the same order, with pools in between.
 
-use super::layout::{CORNER_WORDS, NODE_UNITS, POOL, block, link, put, write_node};
+use crate::bvh8::compact_layout::{CORNER_WORDS, NODE_UNITS, POOL, block, link, put, write_node};
 use crate::bvh8::layout::{self, LANES, MAX_UNITS, NO_TRIANGLE, Planes, Ref, Unit, WIDTH};
 use crate::registry::BuildError;
 

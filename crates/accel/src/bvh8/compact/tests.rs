@@ -1,7 +1,7 @@
 //! What is packed matches the original: boxes contain the originals, and triangles are the same to the bit.
 
-use super::layout::{self, BLOCK_UNITS, NODE_UNITS};
 use super::{Bvh8, CompactBvh8};
+use crate::bvh8::compact_layout::{self as layout, BLOCK_UNITS, NODE_UNITS};
 use crate::bvh8::layout::{self as wide, LANES, NO_TRIANGLE, Planes, Ref, Unit};
 use crate::{Accelerator, BuildOptions, TriangleMesh};
 use bilux_math::hash::{hash_words, unit_f32};

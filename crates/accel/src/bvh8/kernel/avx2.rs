@@ -1,14 +1,19 @@
 //! The AVX2 and FMA kernels on eight lanes.
 
+use super::axes::Reorder;
 use super::level::{BatchLevel, Level, lanes};
 use super::stack::Stack;
 use crate::bvh8::layout::Ref;
 use std::arch::x86_64::*;
 
-super::entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
-super::batch_entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::entries::entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::entries::batch_entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
 struct Avx2;
+
+impl Reorder for Avx2 {
+    super::axes::reorder_by_lanes!();
+}
 
 impl Level for Avx2 {
     super::lane_ray::of_eight!();

@@ -1,15 +1,20 @@
 //! The AVX-512 kernels on eight lanes: masks, and compression for more than two children.
 
+use super::axes::Reorder;
 use super::level::{BatchLevel, Level};
 use super::node_format::NodeFormat;
 use super::stack::Stack;
 use crate::bvh8::layout::Ref;
 use std::arch::x86_64::*;
 
-super::entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
-super::batch_entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::entries::entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::entries::batch_entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
 struct Avx512;
+
+impl Reorder for Avx512 {
+    super::axes::reorder_by_lanes!();
+}
 
 impl Level for Avx512 {
     super::lane_ray::of_eight!();

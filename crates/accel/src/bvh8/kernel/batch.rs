@@ -1,28 +1,17 @@
 //! Many rays at once: prepared in vectors, then traced as a packet where they are coherent, else each on its own
 //! path.
 
+use super::blocker::somewhere;
 use super::level::BatchLevel;
 use super::node_format::Wide;
 use super::packet::{self, Packet};
-use super::{TreeView, body, plain, primitive, stream};
+use super::view::TreeView;
+use super::{body, plain, stream};
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
-use std::num::NonZero;
 
 /// Batches of fewer rays than this are traced one by one, which is faster.
 const FEW: usize = 8;
-
-/// A hit somewhere on what a ray hits.
-#[inline(always)]
-pub(super) fn somewhere(blocker: NonZero<u32>) -> Hit {
-    on(primitive(blocker))
-}
-
-/// A hit somewhere on a primitive.
-#[inline(always)]
-pub(super) fn on(primitive: u32) -> Hit {
-    Hit { t: 0.0, u: 0.0, v: 0.0, primitive, instance: 0 }
-}
 
 /// Answers each ray by its index: with its nearest hit or, where `ANY`, with a primitive
 /// that it hits.

@@ -3,9 +3,9 @@
 //! Nothing is fused: each product and difference is rounded as in `PreparedRay::cross`, first in f32 and, where the
 //! signs leave a triangle, in f64.
 
+use super::axes::{AXES, Axes, Reorder};
 use super::doubles::Doubles;
 use super::lane_ray::{SIZES, halves};
-use super::level::Level;
 use super::node_format::NodeFormat;
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Ray};
@@ -38,7 +38,7 @@ impl BlockRay {
     /// # Safety
     /// The machine must have the level.
     #[inline(always)]
-    pub(super) unsafe fn new<L: Level>(ray: &Ray) -> BlockRay {
+    pub(super) unsafe fn new<L: Reorder>(ray: &Ray) -> BlockRay {
         // SAFETY: as the caller promises.
         unsafe {
             let (origin, direction) = halves(ray);
@@ -70,7 +70,7 @@ impl BlockRay {
     /// # Safety
     /// The machine must have the level, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn signs<L: Level, F: NodeFormat>(&self, block: *const u8) -> (u32, Sheared) {
+    pub(super) unsafe fn signs<L: Reorder, F: NodeFormat>(&self, block: *const u8) -> (u32, Sheared) {
         // SAFETY: as the caller promises.
         unsafe {
             let corners = F::corners::<L>(block, self.axes);
@@ -169,31 +169,4 @@ impl Crossings {
         // SAFETY: both are 16 bytes.
         unsafe { std::mem::transmute([self.v, self.w]) }
     }
-}
-
-/// Bytes of a row of three corners along one axis.
-const ROW_BYTES: usize = 3 * LANES * 4;
-
-/// Which axes of space are x, y and z of sheared space, and the byte offsets of their rows from the start of a block.
-#[repr(C, align(16))]
-pub(in crate::bvh8) struct Axes {
-    pub(super) order: [u32; 4],
-    /// The same, as a byte shuffle.
-    pub(super) bytes: [u8; 16],
-    pub(super) rows: [usize; 3],
-}
-
-/// Indexed by which components are the maximum, one bit each: the last of them becomes z.
-static AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), axes(2), axes(2)];
-
-const fn axes(z: usize) -> Axes {
-    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    let order = [x as u32, y as u32, z as u32, z as u32];
-    let mut bytes = [0; 16];
-    let mut byte = 0;
-    while byte < 16 {
-        bytes[byte] = (order[byte / 4] * 4) as u8 + (byte % 4) as u8;
-        byte += 1;
-    }
-    Axes { order, bytes, rows: [x * ROW_BYTES, y * ROW_BYTES, z * ROW_BYTES] }
 }

@@ -1,23 +1,15 @@
 //! The body of the wide kernels, which is the same for all levels.
 
+use super::blocker::Blocker;
 use super::level::{Boxes, Level, lanes};
-use super::node_format::NodeFormat;
+use super::node_format::{NodeFormat, reference};
 use super::stack::{Stack, StackStorage};
-use super::{Blocker, TreeView, leaf, plain};
+use super::view::TreeView;
+use super::{leaf, plain};
 use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-
-/// The reference to a child.
-///
-/// # Safety
-/// `node` must point to a node, and `child` be one of eight.
-#[inline(always)]
-pub(super) unsafe fn reference<F: NodeFormat>(node: *const u8, child: usize) -> Ref {
-    // SAFETY: a node has eight references.
-    unsafe { Ref(*node.add(F::REFERENCES + child * 4).cast::<u32>()) }
-}
 
 /// Prefetches the cache lines of a node, or of the first block of a leaf, so that they are there when needed.
 #[inline(always)]

@@ -1,13 +1,11 @@
 //! Reads the compact layout: bytes become planes, and corners are gathered from the pool.
 
 use super::node_format::NodeFormat;
-use crate::bvh8::compact::layout;
+use crate::bvh8::compact_layout as layout;
 use crate::bvh8::layout::{Planes, Ref, Unit};
 
 #[cfg(target_arch = "x86_64")]
-use super::block::Axes;
-#[cfg(target_arch = "x86_64")]
-use super::level::Level;
+use super::axes::{Axes, Reorder};
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
@@ -143,7 +141,7 @@ impl NodeFormat for Compact {
     // SAFETY: as the trait demands.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
+    unsafe fn corners<L: Reorder>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
         // SAFETY: a block says how many units further on its pool begins; the pool has all corners that the bytes of
         // the block name, and at least one number after the last.
         unsafe {
@@ -165,7 +163,7 @@ impl NodeFormat for Compact {
 /// The machine must have the level, and the pool must have the corners and a number after the last.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-unsafe fn four<L: Level>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [__m128; 3] {
+unsafe fn four<L: Reorder>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [__m128; 3] {
     // SAFETY: as the caller promises.
     unsafe {
         let (a, b) = (corner::<L>(pool, *numbers, axes), corner::<L>(pool, *numbers.add(1), axes));
@@ -182,7 +180,7 @@ unsafe fn four<L: Level>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [
 /// As for [`four`].
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-unsafe fn corner<L: Level>(pool: *const f32, number: u8, axes: &Axes) -> __m128 {
+unsafe fn corner<L: Reorder>(pool: *const f32, number: u8, axes: &Axes) -> __m128 {
     // SAFETY: as the caller promises.
     unsafe { L::reorder(_mm_loadu_ps(pool.add(usize::from(number) * 3)), axes) }
 }

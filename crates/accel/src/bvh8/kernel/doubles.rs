@@ -1,6 +1,6 @@
 //! Four doubles, for the exact stage of the triangle test on the four triangles of a block.
 
-use super::packet::{declare, define};
+use super::wide::{declare, define};
 use std::arch::x86_64::*;
 
 /// Four doubles. A comparison sets all bits of a lane, or none; with a NaN, none.

@@ -14,9 +14,9 @@
 //! For a regular ray, all of this is finite and no distance that counts is negative. So no NaN can occur, and distances
 //! compare like integers of the same bits, which takes a quarter of the time.
 
-use super::TreeView;
 use super::level::Boxes;
 use super::node_format::NodeFormat;
+use super::view::TreeView;
 use crate::bvh8::summary::FAR_PAD;
 use crate::ray::Ray;
 use crate::slab::{SLACK, STEEPEST};
@@ -109,7 +109,7 @@ macro_rules! of_eight {
 
         // SAFETY: as the trait demands.
         #[inline(always)]
-        unsafe fn prepare(ray: &$crate::Ray, view: &super::TreeView<'_>) -> Option<Self::LaneRay> {
+        unsafe fn prepare(ray: &$crate::Ray, view: &super::view::TreeView<'_>) -> Option<Self::LaneRay> {
             // SAFETY: as the trait demands.
             unsafe { super::lane_ray::LaneRay::new(ray, view) }
         }
@@ -118,12 +118,6 @@ macro_rules! of_eight {
         unsafe fn splat(bits: u32) -> __m256i {
             // SAFETY: as the trait demands.
             unsafe { _mm256_set1_epi32(bits as i32) }
-        }
-
-        #[inline(always)]
-        unsafe fn reorder(numbers: __m128, axes: &super::block::Axes) -> __m128 {
-            // SAFETY: as the trait demands.
-            unsafe { _mm_permutevar_ps(numbers, _mm_load_si128(axes.order.as_ptr().cast())) }
         }
     };
 }

@@ -4,9 +4,9 @@
 //! keeps the compiler from hoisting that work to before it is known to be needed.
 
 use super::block::{BlockRay, Crossings};
+use super::blocker::{Blocker, blocker};
 use super::level::Level;
 use super::node_format::NodeFormat;
-use super::{Blocker, blocker};
 use crate::bvh8::layout::{LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;

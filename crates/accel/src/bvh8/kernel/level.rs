@@ -1,21 +1,21 @@
 //! The operations on a node that a level of instructions provides.
 
-use super::block::Axes;
+use super::axes::Reorder;
 use super::doubles::Doubles;
-use super::node_format::NodeFormat;
-use super::packet::Wide;
+use super::node_format::{NodeFormat, reference};
 use super::stack::Stack;
-use super::{TreeView, body::reference};
+use super::view::TreeView;
+use super::wide::Wide;
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::ray::Ray;
-use std::arch::x86_64::{__m128, __m256i};
+use std::arch::x86_64::__m256i;
 
 /// A level, as the traversal by a single ray needs it. Distances are the bits of non-negative floats.
 ///
 /// # Safety
 /// Functions must be called only on machines that have the level, with pointers to whole nodes and with stacks that
 /// have space for [`WIDTH`] more entries.
-pub(in crate::bvh8) trait Level {
+pub(in crate::bvh8) trait Level: Reorder {
     /// A distance for each child.
     type Eight: Copy;
     /// A ray that is prepared for boxes.
@@ -29,9 +29,6 @@ pub(in crate::bvh8) trait Level {
     unsafe fn splat(bits: u32) -> Self::Eight;
     /// A bit for each lane where the first is less than or equal to the second.
     unsafe fn at_most(enter: Self::Eight, leave: Self::Eight) -> u32;
-    // SAFETY: as the trait says.
-    /// Permutes coordinates of world space into the order of sheared space.
-    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
     /// A bit for each child whose box the ray hits up to the limit, and the distances at which it enters them.
     #[inline(always)]
     unsafe fn intersect_children<F: NodeFormat, B: Boxes<Eight = Self::Eight>>(

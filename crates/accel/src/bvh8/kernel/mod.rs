@@ -4,122 +4,24 @@
 //! into it. The caller has checked that the machine supports them.
 #![allow(unsafe_code)] // Loads by pointer and instructions of a level; each block says why it is sound.
 
-/// The queries of a level, each compiled for its features with all of the body inlined.
-#[cfg(target_arch = "x86_64")]
-macro_rules! entries {
-    ($level:ty, $features:literal) => {
-        /// See [`super::closest`]; for [`crate::Query::PLAIN`].
-        ///
-        /// # Safety
-        /// The machine must have the level, and the view must be sound; this applies to all that follow.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest<F: super::NodeFormat, C: $crate::counters::Count>(
-            units: &[super::Unit],
-            outline: &super::TreeSummary,
-            ray: &$crate::Ray,
-            count: &mut C,
-        ) -> Option<$crate::Hit> {
-            let view = super::TreeView { units, outline };
-            // SAFETY: as the caller promises.
-            unsafe { super::body::closest::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
-        }
-
-        /// See [`super::closest`].
-        // SAFETY: as above.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest_by<F: super::NodeFormat, C: $crate::counters::Count>(
-            view: super::TreeView<'_>,
-            ray: &$crate::Ray,
-            query: &$crate::Query,
-            count: &mut C,
-        ) -> Option<$crate::Hit> {
-            // SAFETY: as the caller promises.
-            unsafe { super::body::closest::<$level, F, C, false>(view, ray, query, count) }
-        }
-
-        /// See [`super::any`]; for [`crate::Query::PLAIN`].
-        // SAFETY: as above.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn any<F: super::NodeFormat, C: $crate::counters::Count>(
-            units: &[super::Unit],
-            outline: &super::TreeSummary,
-            ray: &$crate::Ray,
-            count: &mut C,
-        ) -> $crate::bvh8::kernel::Blocker {
-            let view = super::TreeView { units, outline };
-            // SAFETY: as the caller promises.
-            unsafe { super::body::any::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
-        }
-
-        /// See [`super::any`].
-        // SAFETY: as above.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn any_by<F: super::NodeFormat, C: $crate::counters::Count>(
-            view: super::TreeView<'_>,
-            ray: &$crate::Ray,
-            query: &$crate::Query,
-            count: &mut C,
-        ) -> $crate::bvh8::kernel::Blocker {
-            // SAFETY: as the caller promises.
-            unsafe { super::body::any::<$level, F, C, false>(view, ray, query, count) }
-        }
-    };
-}
-#[cfg(target_arch = "x86_64")]
-use entries;
-
-/// The same for batches, at levels that support them.
-#[cfg(target_arch = "x86_64")]
-macro_rules! batch_entries {
-    ($level:ty, $features:literal) => {
-        /// See [`super::closest_each`].
-        // SAFETY: as above.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest_each(
-            view: super::TreeView<'_>,
-            rays: &[$crate::Ray],
-            query: &$crate::Query,
-            hits: &mut [Option<$crate::Hit>],
-        ) {
-            let rays = &rays[..rays.len().min(hits.len())];
-            // SAFETY: as the caller promises.
-            unsafe { super::batch::each::<$level, false>(view, rays, query, |index, hit| hits[index] = hit) }
-        }
-
-        /// See [`super::any_each`].
-        // SAFETY: as above.
-        #[target_feature(enable = $features)]
-        pub(super) unsafe fn any_each(
-            view: super::TreeView<'_>,
-            rays: &[$crate::Ray],
-            query: &$crate::Query,
-            blockers: &mut [$crate::bvh8::kernel::Blocker],
-        ) {
-            let rays = &rays[..rays.len().min(blockers.len())];
-            let note = |index: usize, hit: Option<$crate::Hit>| {
-                blockers[index] = hit.and_then(|hit| super::blocker(hit.primitive));
-            };
-            // SAFETY: as the caller promises.
-            unsafe { super::batch::each::<$level, true>(view, rays, query, note) }
-        }
-    };
-}
-#[cfg(target_arch = "x86_64")]
-use batch_entries;
-
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
+mod axes;
+#[cfg(target_arch = "x86_64")]
 mod batch;
 #[cfg(target_arch = "x86_64")]
 mod block;
+mod blocker;
 #[cfg(target_arch = "x86_64")]
 mod body;
 mod compact;
 #[cfg(target_arch = "x86_64")]
 mod doubles;
+#[cfg(target_arch = "x86_64")]
+mod entries;
 #[cfg(target_arch = "x86_64")]
 mod lane_ray;
 #[cfg(target_arch = "x86_64")]
@@ -136,46 +38,20 @@ mod sse42;
 mod stack;
 #[cfg(target_arch = "x86_64")]
 mod stream;
+mod units;
+mod view;
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
-use super::layout::Unit;
-use super::summary::TreeSummary;
 use crate::counters::{Count, NoCounters};
 use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
-use std::num::NonZero;
 
+pub(super) use blocker::{Blocker, primitive};
 pub(super) use compact::Compact;
 pub(super) use node_format::{NodeFormat, Wide};
-
-/// A primitive that a ray hits, if there is one: its complement, so that the whole fits into one register. No primitive
-/// has the number `u32::MAX`.
-pub(super) type Blocker = Option<NonZero<u32>>;
-
-#[inline(always)]
-fn blocker(primitive: u32) -> Blocker {
-    NonZero::new(!primitive)
-}
-
-/// The primitive of a [`Blocker`].
-#[inline(always)]
-pub(super) fn primitive(blocker: NonZero<u32>) -> u32 {
-    !blocker.get()
-}
-
-/// The tree to traverse. The root is a node or a leaf of `units`, and so is everything that it refers to.
-#[derive(Clone, Copy)]
-pub(super) struct TreeView<'a> {
-    pub(super) units: &'a [Unit],
-    pub(super) outline: &'a TreeSummary,
-}
-
-impl<'a> TreeView<'a> {
-    /// `None` for a tree without triangles.
-    #[inline(always)]
-    pub(super) fn of(units: &'a [Unit], outline: &'a TreeSummary) -> Option<TreeView<'a>> {
-        (!units.is_empty()).then_some(TreeView { units, outline })
-    }
-}
+pub(super) use units::{HEADER, Units};
+pub(super) use view::TreeView;
 
 /// One query at a level: by the kernel for [`Query::PLAIN`], or by the one for all other queries.
 #[cfg(target_arch = "x86_64")]

@@ -3,9 +3,7 @@
 use crate::bvh8::layout::{self, Planes, Ref, Unit};
 
 #[cfg(target_arch = "x86_64")]
-use super::block::Axes;
-#[cfg(target_arch = "x86_64")]
-use super::level::Level;
+use super::axes::{Axes, Reorder};
 #[cfg(target_arch = "x86_64")]
 use crate::bvh8::layout::LANES;
 #[cfg(target_arch = "x86_64")]
@@ -61,7 +59,18 @@ pub(in crate::bvh8) trait NodeFormat {
     // SAFETY: as the trait says.
     /// The corners of four triangles: `[axis][corner]`, axes in the order of sheared space. Requires the level.
     #[cfg(target_arch = "x86_64")]
-    unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3];
+    unsafe fn corners<L: Reorder>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3];
+}
+
+/// The reference to a child.
+///
+/// # Safety
+/// `node` must point to a node, and `child` be one of eight.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(super) unsafe fn reference<F: NodeFormat>(node: *const u8, child: usize) -> Ref {
+    // SAFETY: a node has eight references.
+    unsafe { Ref(*node.add(F::REFERENCES + child * 4).cast::<u32>()) }
 }
 
 /// The layout of [`crate::Bvh8`].
@@ -129,7 +138,7 @@ impl NodeFormat for Wide {
     // SAFETY: as the trait demands.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
+    unsafe fn corners<L: Reorder>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
         // SAFETY: a block is aligned to 32 bytes and holds nine rows of four numbers.
         unsafe {
             let rows = |axis: usize| {

@@ -1,8 +1,9 @@
 //! The reference that the wide kernels are tested against, for every machine and every ray: the box tests of
 //! [`SlabRay`] and the triangle test itself.
 
+use super::blocker::{Blocker, blocker};
 use super::node_format::NodeFormat;
-use super::{Blocker, TreeView, blocker};
+use super::view::TreeView;
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
 use crate::counters::Count;

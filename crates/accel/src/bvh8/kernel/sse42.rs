@@ -4,18 +4,18 @@
 //! with the origin moved by the pad. Each step is rounded in proportion to the distance, and the moved origin once:
 //! less than the increase of the pad for the fused levels. See `docs/adr/0008-bvh8.md`.
 
-use super::TreeView;
-use super::block::Axes;
+use super::axes::{Axes, Reorder};
 use super::doubles::Halves;
 use super::lane_ray::{LEVEL, MIN, ROWS, SHORTEST, SIZES, halves};
 use super::level::{Boxes, Level};
 use super::node_format::NodeFormat;
+use super::view::TreeView;
 use crate::bvh8::summary::FAR_PAD;
 use crate::ray::Ray;
 use crate::slab::SLACK;
 use std::arch::x86_64::*;
 
-super::entries!(Sse42, "sse4.2,popcnt");
+super::entries::entries!(Sse42, "sse4.2,popcnt");
 
 struct Sse42;
 
@@ -29,6 +29,18 @@ struct LaneRay {
     enter: [__m128; 3],
     leave: [__m128; 3],
     nearest: __m128i,
+}
+
+impl Reorder for Sse42 {
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let bytes = _mm_load_si128(axes.bytes.as_ptr().cast());
+            _mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(numbers), bytes))
+        }
+    }
 }
 
 impl Level for Sse42 {
@@ -56,16 +68,6 @@ impl Level for Sse42 {
             let misses =
                 _mm_packs_epi32(_mm_cmpgt_epi32(enter[0], leave[0]), _mm_cmpgt_epi32(enter[1], leave[1]));
             _mm_movemask_epi8(_mm_packs_epi16(misses, _mm_setzero_si128())) as u32 ^ 0xff
-        }
-    }
-
-    // SAFETY: as the trait demands.
-    #[inline(always)]
-    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let bytes = _mm_load_si128(axes.bytes.as_ptr().cast());
-            _mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(numbers), bytes))
         }
     }
 }

@@ -4,13 +4,14 @@
 //! node or leaf, prefetches what comes next, and hands over to the next ray, which proceeds while the first would
 //! wait.
 
-use super::batch;
+use super::blocker::{primitive, somewhere};
 use super::body::{self, Start, choose, prefetch};
+use super::leaf;
 use super::level::{BatchLevel, Boxes};
 use super::node_format::Wide;
 use super::packet::{Lane, Packet, Ready, Tails};
 use super::stack::{Stack, StackStorage};
-use super::{TreeView, leaf, primitive};
+use super::view::TreeView;
 use crate::bvh8::layout::Ref;
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
@@ -55,7 +56,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
                         query,
                         &mut NoCounters,
                     );
-                    found.map(batch::somewhere)
+                    found.map(somewhere)
                 } else {
                     body::search::<L, Wide, NoCounters, PLAIN>(view, ray, start, query, &mut NoCounters)
                 },

@@ -1,7 +1,7 @@
 //! The first stage of the triangle test for a group of rays, in single precision: signs that are true where they are not
 //! zero, and a distance with bounds.
 
-use super::wide::Wide;
+use super::super::wide::Wide;
 
 /// What single precision knows of a triangle that may be hit.
 pub(super) struct Estimate<W> {

@@ -1,7 +1,7 @@
 //! The exact stage of the triangle test for half a group of rays, in double precision.
 
+use super::super::wide::Half;
 use super::orientation::Corners;
-use super::wide::Half;
 
 /// What it finds.
 pub(super) struct Exact<H: Half> {

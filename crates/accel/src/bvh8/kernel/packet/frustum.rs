@@ -1,11 +1,11 @@
 //! The frustum that bounds all rays of a packet, and whether the rays are coherent enough for it to be useful.
 #![allow(clippy::needless_range_loop)] // Iterator adaptors would not be compiled for the level.
 
-use super::super::TreeView;
 use super::super::level::BatchLevel;
+use super::super::view::TreeView;
+use super::super::wide::Wide;
 use super::rays::{Packet, Row};
 use super::ready::Ready;
-use super::wide::Wide;
 use crate::ray::Ray;
 use std::arch::x86_64::*;
 
@@ -135,6 +135,37 @@ impl Frustum {
             let enter = _mm256_castps_si256(_mm256_max_ps(a, b));
             let leave = _mm256_min_epi32(_mm256_castps_si256(_mm256_min_ps(c, d)), limit);
             (L::at_most(enter, leave), enter)
+        }
+    }
+}
+
+impl Packet {
+    /// A bit for each ray of a group that hits the box of a child up to its limit.
+    ///
+    /// # Safety
+    /// The machine must have the level; the group must have been prepared, and `node` must point to a node.
+    #[inline(always)]
+    pub(super) unsafe fn intersect_child<W: Wide>(
+        &self,
+        from: usize,
+        frustum: &Frustum,
+        node: *const u8,
+        child: usize,
+    ) -> u32 {
+        // SAFETY: as the caller promises; a node holds six rows of eight numbers.
+        unsafe {
+            let plane = |row: usize| W::splat(*node.add(row + child * 4).cast::<f32>());
+            let enter = |k: usize| {
+                let bias = W::load(self.enter_bias[k].at(from));
+                plane(frustum.enter_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
+            };
+            let leave = |k: usize| {
+                let bias = W::load(self.leave_bias[k].at(from));
+                plane(frustum.leave_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
+            };
+            let (a, b) = (enter(0).max(enter(1)), enter(2).max(W::load(self.nearest.at(from))));
+            let (c, d) = (leave(0).min(leave(1)), leave(2).min(W::load(self.limit.at(from))));
+            a.max(b).le(c.min(d))
         }
     }
 }

@@ -8,16 +8,16 @@
 //! The boxes are tested as in [`super::super::lane_ray`], and the triangles as in [`super::super::block`], operation by
 //! operation. So the hits are the same.
 
-use super::super::TreeView;
-use super::super::body::{prefetch, reference};
+use super::super::body::prefetch;
 use super::super::level::BatchLevel;
-use super::super::node_format;
+use super::super::node_format::{self, reference};
 use super::super::stack::{CAPACITY, MAX_AT_START, Stack};
+use super::super::view::TreeView;
+use super::super::wide::Wide;
 use super::orientation::Mixed;
 use super::rays::{Packet, RAYS, Row};
 use super::ready::Ready;
 use super::triangle::Group;
-use super::wide::Wide;
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::ray::{Hit, Query};
 use std::mem::MaybeUninit;

@@ -18,19 +18,18 @@ mod orientation;
 mod rays;
 mod ready;
 mod triangle;
-mod wide;
 
 pub(super) use masked::Tails;
 pub(super) use rays::{Packet, RAYS};
 pub(super) use ready::{Lane, Ready};
-pub(super) use wide::{Wide, declare, define};
 
-use super::TreeView;
-use super::batch;
-use super::body::{prefetch, reference};
+use super::blocker::on;
+use super::body::prefetch;
 use super::level::BatchLevel;
-use super::node_format;
+use super::node_format::{self, reference};
 use super::stack::{Stack, StackStorage};
+use super::view::TreeView;
+use super::wide::Wide;
 use crate::bvh8::layout::Ref;
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
@@ -72,7 +71,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
         for lane in 0..rays.len() {
             let primitive = *packet.primitive.at(lane);
             if ANY {
-                answer(lane, (done >> lane & 1 == 1).then_some(batch::on(primitive)));
+                answer(lane, (done >> lane & 1 == 1).then_some(on(primitive)));
             } else if primitive == u32::MAX {
                 answer(lane, None);
             } else {

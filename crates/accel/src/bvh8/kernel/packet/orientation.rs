@@ -1,9 +1,9 @@
 //! Which axes of space are x, y and z of sheared space, for a group of rays.
 
+use super::super::wide::{Float, Wide};
 use super::frustum::Frustum;
 use super::rays::Packet;
 use super::ready::Ready;
-use super::wide::{Float, Wide};
 use crate::bvh8::layout::LANES;
 
 /// Corners: `[axis][corner]`.
@@ -101,7 +101,7 @@ impl<W: Wide> Orientation<W> for &Frustum {
     #[inline(always)]
     unsafe fn depth(self, packet: &Packet, from: usize) -> Float<W> {
         // SAFETY: as the trait demands.
-        unsafe { super::wide::Narrow::load(packet.direction[self.axes[2]].at(from)) }
+        unsafe { super::super::wide::Narrow::load(packet.direction[self.axes[2]].at(from)) }
     }
 
     #[inline(always)]
@@ -266,7 +266,7 @@ impl<W: Wide> Orientation<W> for MixedLanes<W> {
     #[inline(always)]
     unsafe fn depth(self, packet: &Packet, from: usize) -> Float<W> {
         // SAFETY: as the trait demands.
-        unsafe { super::wide::Narrow::load(packet.depth.at(from)) }
+        unsafe { super::super::wide::Narrow::load(packet.depth.at(from)) }
     }
 
     #[inline(always)]

@@ -1,7 +1,6 @@
 //! Up to 64 rays, as a structure of arrays.
 
-use super::frustum::Frustum;
-use super::wide::Wide;
+use super::super::wide::Wide;
 use crate::ray::Ray;
 use crate::slab::SLACK;
 use std::arch::x86_64::*;
@@ -133,39 +132,10 @@ impl Packet {
         }
     }
 
-    /// A bit for each ray of a group that hits the box of a child up to its limit.
-    ///
-    /// # Safety
-    /// The machine must have the level; the group must have been prepared, and `node` must point to a node.
-    #[inline(always)]
-    pub(super) unsafe fn intersect_child<W: Wide>(
-        &self,
-        from: usize,
-        frustum: &Frustum,
-        node: *const u8,
-        child: usize,
-    ) -> u32 {
-        // SAFETY: as the caller promises; a node holds six rows of eight numbers.
-        unsafe {
-            let plane = |row: usize| W::splat(*node.add(row + child * 4).cast::<f32>());
-            let enter = |k: usize| {
-                let bias = W::load(self.enter_bias[k].at(from));
-                plane(frustum.enter_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
-            };
-            let leave = |k: usize| {
-                let bias = W::load(self.leave_bias[k].at(from));
-                plane(frustum.leave_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
-            };
-            let (a, b) = (enter(0).max(enter(1)), enter(2).max(W::load(self.nearest.at(from))));
-            let (c, d) = (leave(0).min(leave(1)), leave(2).min(W::load(self.limit.at(from))));
-            a.max(b).le(c.min(d))
-        }
-    }
-
     /// After hits: how far the rays of a group still search.
     ///
     /// # Safety
-    /// As for [`Packet::intersect_child`].
+    /// The machine must have the level, and the group must have been prepared.
     #[inline(always)]
     pub(super) unsafe fn set_limits<W: Wide>(&mut self, from: usize) {
         // SAFETY: as the caller promises.

@@ -1,12 +1,12 @@
 //! Prepares rays for boxes, a group at a time.
 #![allow(clippy::needless_range_loop)] // Iterator adaptors would not be compiled for the level.
 
-use super::super::TreeView;
 use super::super::lane_ray::{ROWS, span};
 use super::super::level::{BatchLevel, Boxes};
 use super::super::node_format::NodeFormat;
+use super::super::view::TreeView;
+use super::super::wide::Wide;
 use super::rays::{Packet, Row};
-use super::wide::Wide;
 use crate::bvh8::layout::WIDTH;
 use crate::bvh8::summary::BIAS_PAD;
 use crate::ray::Ray;

@@ -2,11 +2,11 @@
 
 use super::super::leaf::block_bytes;
 use super::super::node_format;
+use super::super::wide::{Float, Half, Narrow, Wide};
 use super::estimate::{Estimate, edge, estimate};
 use super::exact::{Exact, exact};
 use super::orientation::{Corners, Orientation};
 use super::rays::{Packet, RAYS, Row};
-use super::wide::{Float, Half, Narrow, Wide};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE};
 use crate::ray::{Culling, Hit, Query};
 

@@ -11,21 +11,21 @@
 //! A step is a power of two, so that a multiple of it is exact and only the sum is rounded, equally in every kernel,
 //! fused or not. A box is the smallest whose *decoded* planes contain the true box. [Ylitie 2017]
 
+use super::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
 use crate::bvh::tree::union;
-use crate::bvh8::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
 
 /// Units of a node.
-pub(in crate::bvh8) const NODE_UNITS: usize = 3;
+pub(super) const NODE_UNITS: usize = 3;
 /// Units of a block.
-pub(in crate::bvh8) const BLOCK_UNITS: usize = 1;
+pub(super) const BLOCK_UNITS: usize = 1;
 /// Corners of the largest pool: as many as a byte can distinguish.
-pub(in crate::bvh8) const POOL: usize = 256;
+pub(super) const POOL: usize = 256;
 /// Bytes from the start of a node to the first planes.
-pub(in crate::bvh8) const PLANES: usize = 16;
+pub(super) const PLANES: usize = 16;
 /// Bytes from the start of a node to the references.
-pub(in crate::bvh8) const REFERENCES: usize = 64;
+pub(super) const REFERENCES: usize = 64;
 /// Bytes from the start of a block to the primitives.
-pub(in crate::bvh8) const PRIMITIVES: usize = 16;
+pub(super) const PRIMITIVES: usize = 16;
 /// Words per corner.
 pub(super) const CORNER_WORDS: usize = 3;
 
@@ -106,7 +106,7 @@ pub(super) fn write_node(units: &mut [Unit], children: &[(Planes, Ref)]) {
 
 /// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is no child.
 #[inline(always)]
-pub(in crate::bvh8) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
+pub(super) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
     let node: &[Unit; NODE_UNITS] = match node.first_chunk() {
         Some(node) => node,
         None => return (EMPTY, Ref::EMPTY),
@@ -142,7 +142,7 @@ pub(super) fn link(units: &mut [Unit], block: usize, pool: usize) {
 
 /// The corners of a triangle, and its primitive.
 #[inline(always)]
-pub(in crate::bvh8) fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32) {
+pub(super) fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32) {
     let Unit(words) = units[block];
     let pool = &units[block + words[3] as usize..];
     let corner = |k: usize| {

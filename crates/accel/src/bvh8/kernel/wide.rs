@@ -16,13 +16,13 @@ macro_rules! define {
         $(#[inline(always)] unsafe fn $name($($argument)*) -> $result { unsafe { $body } })*
     };
 }
-pub(in crate::bvh8::kernel) use {declare, define};
+pub(super) use {declare, define};
 
 /// Floats, one for each ray of a group. Masks have a bit for each lane.
 ///
 /// # Safety
 /// All functions require a machine that has the level; pointers must lead to as many numbers as there are lanes.
-pub(in crate::bvh8::kernel) trait Wide: Copy {
+pub(super) trait Wide: Copy {
     /// Lanes of a vector.
     const LANES: usize;
     /// A vector of half the lanes, in double precision.
@@ -68,7 +68,7 @@ pub(super) type Float<W> = <<W as Wide>::Half as Half>::Narrow;
 ///
 /// # Safety
 /// As for [`Wide`].
-pub(in crate::bvh8::kernel) trait Half: Copy {
+pub(super) trait Half: Copy {
     /// The same number of floats.
     type Narrow: Narrow;
 
@@ -88,7 +88,7 @@ pub(in crate::bvh8::kernel) trait Half: Copy {
 ///
 /// # Safety
 /// As for [`Wide`].
-pub(in crate::bvh8::kernel) trait Narrow: Copy {
+pub(super) trait Narrow: Copy {
     declare! {
         load(from: *const f32) -> Self;
         store(self, to: *mut f32) -> ();
