@@ -158,7 +158,7 @@ fn push_visible(
     };
     let (scene, camera, integrator) = (job.scene(), job.camera(), job.renders());
     let samples = settings.spp;
-    let seen = bilux_transport::visible(scene, camera, integrator, settings, (&what, samples), progress)?;
+    let seen = bilux_transport::visible(scene, camera, integrator, settings, &what, samples, progress)?;
     let Some(seen) = seen else { return Ok(false) };
     push_points(layers, &seen)?;
     for ((matte, _), pixels) in mattes.iter().zip(&seen.mattes) {

@@ -25,7 +25,8 @@ pub(crate) struct Decoded {
 /// The texels of a picture file, or of one of its layers; `None` if it has no colour channels.
 pub(crate) fn decoded(
     bytes: &[u8],
-    (hint, layer): (Option<&str>, Option<&str>),
+    hint: Option<&str>,
+    layer: Option<&str>,
     means: SampleMeaning,
     limits: &Limits,
 ) -> Result<Option<Decoded>, PictureError> {
@@ -175,7 +176,7 @@ mod tests {
                 assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
                 for means in [SampleMeaning::Colours, SampleMeaning::SrgbColours, SampleMeaning::Numbers] {
                     let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), means).unwrap();
-                    let at_once = decoded(&bytes, (None, None), means, &limits).unwrap().unwrap().image;
+                    let at_once = decoded(&bytes, None, None, means, &limits).unwrap().unwrap().image;
                     assert_eq!(
                         format!("{at_once:?}"),
                         format!("{by_planes:?}"),
@@ -230,7 +231,7 @@ mod tests {
         for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
             let options = WriteOptions { bit_depth, ..WriteOptions::default() };
             let bytes = write_bytes("png", &picture, &options).unwrap();
-            let decoded = decoded(&bytes, (None, None), SampleMeaning::Colours, &Limits::default());
+            let decoded = decoded(&bytes, None, None, SampleMeaning::Colours, &Limits::default());
             let image = decoded.unwrap().unwrap().image;
             let texture = bilux_scene::Texture::of("", std::sync::Arc::new(image), false);
             assert!((texture.texel(0, 0).r - 1.0).abs() < 1e-4, "{bit_depth:?}: {:?}", texture.texel(0, 0));

@@ -157,13 +157,15 @@ impl<'o> Reading<'o> {
     pub(crate) fn decode(
         &mut self,
         bytes: &[u8],
-        (hint, layer): (Option<&str>, Option<&str>),
+        hint: Option<&str>,
+        layer: Option<&str>,
         means: SampleMeaning,
-        (name, at): (&str, &Span),
+        name: &str,
+        at: &Span,
     ) -> Result<Image, FormatError> {
         // The decoder's planes and the texels exist at the same time for a moment.
         let limits = Limits::new(self.budget.left() / 2);
-        let decoded = decoded(bytes, (hint, layer), means, &limits).map_err(|e| {
+        let decoded = decoded(bytes, hint, layer, means, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
         let Decoded { mut image, mut warnings } = decoded.ok_or_else(|| {
@@ -289,14 +291,15 @@ impl<'o> Reading<'o> {
         holds: Texels,
         at: &Span,
     ) -> Result<Arc<Texture>, FormatError> {
-        self.texture_of_layer(folder, (name, None), holds, at)
+        self.texture_of_layer(folder, name, None, holds, at)
     }
 
     /// The same of one layer of a picture.
     pub(crate) fn texture_of_layer(
         &mut self,
         folder: Option<&Path>,
-        (name, layer): (&str, Option<&str>),
+        name: &str,
+        layer: Option<&str>,
         holds: Texels,
         at: &Span,
     ) -> Result<Arc<Texture>, FormatError> {
@@ -309,7 +312,7 @@ impl<'o> Reading<'o> {
         let hint = path.extension().and_then(|e| e.to_str());
         let is_data = holds != Texels::Colours;
         let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::Colours };
-        let image = self.decode(&bytes, (hint, layer), means, (name, at))?;
+        let image = self.decode(&bytes, hint, layer, means, name, at)?;
         self.release(bytes);
         self.kept_bytes += image.size();
         let channel = if let Texels::Numbers(channel) = holds { channel } else { None };

@@ -3,8 +3,9 @@
 use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{build, check_strategies, interrupted};
+use crate::render::{build, interrupted};
 use crate::scene::Scene;
+use crate::strategies::check_strategies;
 use crate::values;
 use crate::watch::{Stopped, follow};
 use bilux::strategies::Light;
@@ -29,7 +30,7 @@ pub(crate) fn replay(
     let user = values::keywords(settings)?;
     let builder = scene.get().builder(py).clone();
     let (built, [x, y, sample]) = (&scene.get().built, place);
-    let replay = without_gil(py, || build((&builder, built), &user, max_memory)?.0.replay(x, y, sample));
+    let replay = without_gil(py, || build(&builder, built, &user, max_memory)?.0.replay(x, y, sample));
     let replay = replay.map_err(exception)?;
     let events = replay.events.iter().map(|event| (event.depth, event.what.clone())).collect();
     let (ray, radiance) = (replay.ray, replay.radiance.to_array());
@@ -55,7 +56,7 @@ pub(crate) fn strategies(
     let builder = scene.get().builder(py).clone();
     let built = &scene.get().built;
     let made = without_gil(py, || {
-        let (job, _) = build((&builder, built), &user, max_memory)?;
+        let (job, _) = build(&builder, built, &user, max_memory)?;
         check_strategies(&job).map(|()| job)
     });
     let job = made.map_err(exception)?;

@@ -31,6 +31,7 @@ mod scene;
 mod shown;
 mod source;
 mod spec;
+mod strategies;
 mod surroundings;
 mod texture;
 mod turntable;

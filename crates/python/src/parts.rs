@@ -33,7 +33,7 @@ fn built(py: Python<'_>, scene: &Bound<'_, Scene>, request: &Request) -> PyResul
     crate::forks::check()?;
     let own = scene.get();
     let scene = own.builder(py).clone();
-    without_gil(py, || prepared((&scene, &own.built), request)).map_err(exception)
+    without_gil(py, || prepared(&scene, &own.built, request)).map_err(exception)
 }
 
 fn film_of(py: Python<'_>, film: &Bound<'_, PyAny>) -> PyResult<Film> {
@@ -57,7 +57,7 @@ impl PartRenderer {
         max_memory: u64,
         loaded_at: f32,
     ) -> PyResult<PartRenderer> {
-        let request = Request::new(settings, &[], (fast, max_memory, loaded_at))?;
+        let request = Request::new(settings, &[], fast, max_memory, loaded_at)?;
         Ok(PartRenderer(built(scene.py(), scene, &request)?.job))
     }
 
@@ -117,7 +117,7 @@ impl Gathering {
         max_memory: u64,
         loaded_at: f32,
     ) -> PyResult<Gathering> {
-        let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
+        let request = Request::new(settings, &aov, fast, max_memory, loaded_at)?;
         let py = scene.py();
         let Prepared { job, build } = built(py, scene, &request)?;
         let (own, builder) = (scene.get(), scene.get().builder(py).clone());
@@ -126,7 +126,7 @@ impl Gathering {
             check_outputs(&job, &request)?;
             // What denoises it is looked for now, so that it is missed before anything is rendered.
             job.denoiser()?;
-            with_next_pose(job, (&builder, &own.built), &request)
+            with_next_pose(job, &builder, &own.built, &request)
         });
         let job = checked.map_err(exception)?;
         let Request { aovs, begun, .. } = request;
@@ -201,7 +201,7 @@ impl Gathering {
         let (rendered, stopped) = follow(py, None, |watch| {
             let job = &self.lock().job;
             let outcome = parts::gathered(job, parts, watch)?;
-            with_layers(job, outcome, &self.aovs, (self.build, watch))
+            with_layers(job, outcome, &self.aovs, self.build, watch)
         });
         let picture = to_python(py, &rendered.ok_or_else(failed)?.map_err(exception)?, self.begun)?;
         match stopped {

@@ -22,13 +22,14 @@ pub(crate) struct Progressive {
 impl Progressive {
     pub(crate) fn new(
         py: Python<'_>,
-        scene: (&SceneBuilder, &Mutex<Built>),
+        scene: &SceneBuilder,
+        built: &Mutex<Built>,
         user: &Parameters,
         max_memory: u64,
         callback: Option<Py<PyAny>>,
     ) -> PyResult<Progressive> {
         crate::forks::check()?;
-        let (job, _) = without_gil(py, || build(scene, user, max_memory)).map_err(exception)?;
+        let (job, _) = without_gil(py, || build(scene, built, user, max_memory)).map_err(exception)?;
         warn(py, job.warnings())?;
         let shown = job.display().map_err(exception)?;
         Ok(Progressive { picture: Mutex::new(bilux::Progressive::new(job)), shown, callback })

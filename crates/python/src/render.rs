@@ -4,14 +4,14 @@ use crate::errors::{Error, exception, of_scene, warn};
 use crate::loading::Origin;
 use crate::memory;
 use crate::picture::Picture;
+use crate::strategies::{check_strategies, push_strategies};
 use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
 use bilux::pictures::denoise::preload;
 use bilux::scene::{Object, Parameters, SceneBuilder, SceneError, Span, Warning};
-use bilux::strategies::Light;
 use bilux::transport::aovs::{AOVS, Aov, AovEntry};
-use bilux::transport::{Progress, Strategies, Window};
+use bilux::transport::{Progress, Window};
 use bilux::wording::in_python;
 use bilux::{Built, Denoised, Display, ExtraLayers, Job, JobRequest, Outcome, Series, Settings};
 use pyo3::prelude::*;
@@ -50,7 +50,9 @@ impl Request {
     pub(crate) fn new(
         settings: &Bound<'_, PyDict>,
         layers: &[String],
-        (fast, max_memory, loaded_at): (bool, u64, f32),
+        fast: bool,
+        max_memory: u64,
+        loaded_at: f32,
     ) -> PyResult<Request> {
         let (begun, series) = (Instant::now(), Series::default());
         let user = values::keywords(settings)?;
@@ -107,13 +109,14 @@ fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
 /// If anything is wrong with the scene or its settings; with what the callback raised; `Interrupted` after Ctrl-C.
 pub(crate) fn render(
     py: Python<'_>,
-    scene: (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     request: Request,
     callback: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Picture> {
     crate::forks::check()?;
     let begun = request.begun;
-    let (rendered, stopped) = follow(py, callback, |watch| rendered(scene, request, watch));
+    let (rendered, stopped) = follow(py, callback, |watch| rendered(scene, built, request, watch));
     if let Stopped::Raised(error) = stopped {
         return Err(error);
     }
@@ -154,24 +157,26 @@ pub(crate) fn interrupted(py: Python<'_>, picture: Option<Picture>) -> PyResult<
 
 /// Does the work; `None` if it was stopped before the first sample.
 fn rendered(
-    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     request: Request,
     watch: &Watch,
 ) -> Result<Option<Rendered>, bilux::Error> {
-    let Prepared { job, build } = prepared((scene, built), &request)?;
+    let Prepared { job, build } = prepared(scene, built, &request)?;
     if watch.is_cancelled() {
         return Ok(None);
     }
     check_outputs(&job, &request)?;
-    let job = with_next_pose(job, (scene, built), &request)?;
+    let job = with_next_pose(job, scene, built, &request)?;
     let outcome = job.render(watch)?;
-    Ok(Some(with_layers(&job, outcome, &request.aovs, (build, watch))?))
+    Ok(Some(with_layers(&job, outcome, &request.aovs, build, watch)?))
 }
 
 /// The job with the next pose of meshes that move by themselves, if the layer of motion is wanted.
 pub(crate) fn with_next_pose(
     job: Job,
-    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     request: &Request,
 ) -> Result<Job, bilux::Error> {
     if !scene.inventory.moves() || !request.aovs.contains(&Aov::Motion) {
@@ -195,7 +200,7 @@ pub(crate) fn with_next_pose(
         object.mesh = later.mesh;
     }
     let request = JobRequest::from(&request.user).max_memory(request.max_memory);
-    let (next, _) = build_of((&next, built), request.in_series(series))?;
+    let (next, _) = build_of(&next, built, request.in_series(series))?;
     Ok(job.moving_to(&next))
 }
 
@@ -214,7 +219,8 @@ pub(crate) struct BuildWork {
 
 /// Builds the scene, with the limits that apply by default.
 pub(crate) fn prepared(
-    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     request: &Request,
 ) -> Result<Prepared, bilux::Error> {
     let mut user = request.user.clone();
@@ -228,7 +234,7 @@ pub(crate) fn prepared(
     let settings = Settings::of(scene, &user)?;
     let asked = request.of_job(&user, &settings)?;
     let building = Instant::now();
-    let (job, trees) = build_of((scene, built), asked)?;
+    let (job, trees) = build_of(scene, built, asked)?;
     let seconds = building.elapsed().as_secs_f64();
     let time = job.settings().time;
     if scene.inventory.moves() && time != request.loaded_at {
@@ -259,7 +265,8 @@ pub(crate) fn with_layers(
     job: &Job,
     outcome: Outcome,
     aovs: &[Aov],
-    (build, progress): (BuildWork, &dyn Progress),
+    build: BuildWork,
+    progress: &dyn Progress,
 ) -> Result<Rendered, bilux::Error> {
     let denoiser = job.denoiser()?.filter(|_| !outcome.rendered.cancelled);
     let mut picture = match denoiser {
@@ -315,41 +322,20 @@ fn push_made_later(
     Ok((!names.is_empty()).then(|| Warning { message, at: Span::default() }))
 }
 
-/// Refuses an integrator without strategies.
-pub(crate) fn check_strategies(job: &Job) -> Result<(), bilux::Error> {
-    if job.has_strategies() {
-        return Ok(());
-    }
-    let name = job.settings().integrator.entry.name;
-    let others = bilux::transport::integrators::with_strategies();
-    Err(bilux::Error::Settings(format!(
-        "integrator: '{name}' has no separate strategies: choose one of {}",
-        others.collect::<Vec<_>>().join(", ")
-    )))
-}
-
-/// Adds what each strategy finds: `strategy_NAME`, weighted, whose sum is the picture, and `unweighted_NAME`.
-fn push_strategies(found: &Strategies, picture: &mut bilux::pictures::Picture) -> Result<(), bilux::Error> {
-    for one in &found.pictures {
-        for (light, beginning) in [(Light::Weighted, "strategy"), (Light::Unweighted, "unweighted")] {
-            picture.push_rgb(&format!("{beginning}_{}", one.strategy), light.of(one))?;
-        }
-    }
-    Ok(())
-}
-
 /// The job, with what earlier renders of the scene have built, and the number of trees that were missing.
 pub(crate) fn build(
-    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     user: &Parameters,
     max_memory: u64,
 ) -> Result<(Job, u64), bilux::Error> {
-    build_of((scene, built), JobRequest::from(user).max_memory(memory::within_limits(max_memory)))
+    build_of(scene, built, JobRequest::from(user).max_memory(memory::within_limits(max_memory)))
 }
 
 /// As [`build`], with more that is asked for.
 fn build_of(
-    (scene, built): (&SceneBuilder, &Mutex<Built>),
+    scene: &SceneBuilder,
+    built: &Mutex<Built>,
     asked: JobRequest,
 ) -> Result<(Job, u64), bilux::Error> {
     let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);

@@ -316,11 +316,11 @@ impl Scene {
         loaded_at: f32,
         callback: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Picture> {
-        let request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
+        let request = Request::new(settings, &aov, fast, max_memory, loaded_at)?;
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
         let origin = self.origin(py).clone();
-        render(py, (&scene, &self.built), Request { crop, origin, ..request }, callback)
+        render(py, &scene, &self.built, Request { crop, origin, ..request }, callback)
     }
 
     fn _progressive(
@@ -332,7 +332,7 @@ impl Scene {
     ) -> PyResult<Progressive> {
         let user = values::keywords(settings)?;
         let scene = self.builder(py).clone();
-        Progressive::new(py, (&scene, &self.built), &user, max_memory, callback)
+        Progressive::new(py, &scene, &self.built, &user, max_memory, callback)
     }
 
     /// The scene as bytes.

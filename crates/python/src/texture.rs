@@ -74,7 +74,7 @@ impl Texture {
         let source = Source::of("file", file, limits.max_bytes)?.opened(py, limits.max_bytes)?;
         let (name, format) = (source.file_name(), format.or_else(|| source.extension()));
         let bytes = source.bytes();
-        let read = without_gil(py, || decoded(bytes, (format.as_deref(), data, layer), &limits));
+        let read = without_gil(py, || decoded(bytes, format.as_deref(), data, layer, &limits));
         let (image, warnings) = read.map_err(of_picture)?;
         warn_of_picture(py, &source.name(), &warnings)?;
         let image = image.ok_or_else(|| {
@@ -151,7 +151,9 @@ fn unknown(argument: &str, word: &str, known: &str) -> PyErr {
 /// The image in a file, and what is odd about that; `None` if it has no colours.
 fn decoded(
     bytes: &[u8],
-    (extension, data, layer): (Option<&str>, bool, Option<&str>),
+    extension: Option<&str>,
+    data: bool,
+    layer: Option<&str>,
     limits: &Limits,
 ) -> Result<(Option<Image>, Vec<String>), PictureError> {
     if layer.is_none()

@@ -41,7 +41,7 @@ impl Turntable {
         count: u32,
     ) -> PyResult<Turntable> {
         crate::forks::check()?;
-        let mut request = Request::new(settings, &aov, (fast, max_memory, loaded_at))?;
+        let mut request = Request::new(settings, &aov, fast, max_memory, loaded_at)?;
         let builder = scene.get().builder(py).clone();
         let asked = JobRequest::from(&request.user).max_memory(request.max_memory);
         let series = without_gil(py, || Series::turntable(&builder, &asked, count));
@@ -62,7 +62,7 @@ impl Turntable {
         let series = self.request.series.turned(index, self.count);
         let request = Request { series, begun: Instant::now(), ..self.request.clone() };
         let callback = self.callback.as_ref().map(|callback| callback.bind(py));
-        let picture = render(py, (&self.builder, &self.scene.get().built), request, callback)?;
+        let picture = render(py, &self.builder, &self.scene.get().built, request, callback)?;
         // The picture of an interrupted call is the next one again.
         self.next.store(index + 1, Ordering::Relaxed);
         Ok(Some(picture))

@@ -15,7 +15,7 @@ use crate::lights::{self, BuiltLight};
 use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec, Value};
-use crate::scene::{Scene, SceneLight, SceneParts};
+use crate::scene::{LightSurfaces, Scene, SceneLight, SceneParts};
 use crate::sides::Sides;
 use crate::spheres::PlacedSphere;
 use crate::strokes::StrokeWidths;
@@ -201,8 +201,9 @@ impl SceneBuilder {
         let size = if has_strokes { self.bounds(shutter[0]).extent().length() } else { 1.0 };
         let widths = self.stroke_widths.for_size(size);
         let geometry = Geometry::build(placed, spheres, widths, accel, &mut parts.trees)?;
-        let (panels, known) = ((&panels[..], &sphere_lights[..]), &mut parts.mesh_lights);
-        let mut all = SceneParts::new(geometry, materials, lights, panels, cameras, filtered, known);
+        let of_lights = LightSurfaces { panels: &panels, spheres: &sphere_lights };
+        let known = &mut parts.mesh_lights;
+        let mut all = SceneParts::new(geometry, materials, lights, of_lights, cameras, filtered, known);
         all.group_surfaces(|object| match self.objects.get(object) {
             Some(object) => [name_of(object), self.group_of(object)].map(str::to_owned),
             None => groups.get(object - self.objects.len()).cloned().unwrap_or_default(),

@@ -73,7 +73,7 @@ impl Schedule {
             });
         }
         if let Some(watch) = &mut schedule.watch {
-            watch.go_on((done, earlier), noise.unwrap_or_default());
+            watch.go_on(done, earlier, noise.unwrap_or_default());
         }
         let next = schedule.start.saturating_add(done);
         schedule.left.retain(|samples| samples.end > next);

@@ -91,7 +91,7 @@ pub fn shadow_alpha(
                 let (ray, _) = eye.sample(SamplePlace { x, y, sample });
                 let mut sampler = PixelSampler::new(settings.seed, x, y, sample);
                 sampler.enter(STREAM);
-                sums.add(&mut tracer, &ray, (&lights, catcher), (&mut sampler, tries));
+                sums.add(&mut tracer, &ray, &lights, catcher, &mut sampler, tries);
             }
         }
     };
@@ -149,8 +149,10 @@ impl Sums {
         &mut self,
         tracer: &mut Tracer,
         ray: &Ray,
-        (lights, catcher): (&[usize], ShadowCatcher),
-        (sampler, tries): (&mut PixelSampler, u32),
+        lights: &[usize],
+        catcher: ShadowCatcher,
+        sampler: &mut PixelSampler,
+        tries: u32,
     ) {
         let hidden = hidden(tracer, ray, catcher);
         self.model += hidden;

@@ -75,7 +75,7 @@ impl StopMonitor {
     }
 
     /// Goes on where another monitor was after so many samples, which took so long.
-    pub(crate) fn go_on(&mut self, (done, earlier): (u32, Duration), memory: NoiseMemory) {
+    pub(crate) fn go_on(&mut self, done: u32, earlier: Duration, memory: NoiseMemory) {
         (self.done, self.earlier) = (done, earlier);
         (self.reached, self.meter) = (memory.reached, memory.meter);
     }

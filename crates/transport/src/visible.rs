@@ -79,7 +79,8 @@ pub fn visible(
     camera: &dyn Camera,
     integrator: &dyn PixelIntegrator,
     settings: &RenderSettings,
-    (wanted, samples): (&Wanted, u32),
+    wanted: &Wanted,
+    samples: u32,
     progress: &dyn Progress,
 ) -> Result<Option<Visible>, RenderError> {
     settings.check()?;

@@ -70,7 +70,7 @@ pub fn work(
         eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
         pool.install(|| {
             let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
-                count(integrator, &eye, tile, sums, (&samples, with_accel), progress);
+                count(integrator, &eye, tile, sums, &samples, with_accel, progress);
             };
             tiles.par_iter_mut().for_each(each);
         });
@@ -84,7 +84,8 @@ fn count(
     eye: &CameraRays,
     tile: &Window,
     sums: &mut [Sums],
-    (samples, with_accel): (&Range<u32>, bool),
+    samples: &Range<u32>,
+    with_accel: bool,
     progress: &dyn Progress,
 ) {
     let mut tracer = Tracer::new(eye.context.scene, with_accel);

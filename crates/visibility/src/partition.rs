@@ -208,7 +208,7 @@ impl Tree {
             let mut part = |region, polygon| Piece {
                 triangle: piece.triangle,
                 polygon,
-                tests: self.test_if_needed(&piece, index, region, range, (half, slack.radius)),
+                tests: self.test_if_needed(&piece, index, region, range, half, slack.radius),
             };
             if range.1 > inner {
                 sides.front.push(part(Region::Front, clip(&piece.polygon, &plane, inner)));
@@ -232,7 +232,8 @@ impl Tree {
         node: u32,
         region: Region,
         (low, high): (f64, f64),
-        (half, radius): (f64, f64),
+        half: f64,
+        radius: f64,
     ) -> Option<u32> {
         let clear = match region {
             Region::Front => low > half + radius,

@@ -98,12 +98,13 @@ pub fn write(
     arguments: &Render,
     job: &Job,
     outcome: &Outcome,
-    (output, layers): (&Path, &Layers),
+    output: &Path,
+    layers: &Layers,
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
     if let Some(interval) = &outcome.rendered.interval {
-        write_interval((interval, outcome), output, common)?;
+        write_interval(interval, outcome, output, common)?;
     }
     if !layers.kept.is_empty() && !is_exr(output) {
         let path = output.with_extension("layers.exr");
@@ -129,7 +130,7 @@ pub fn write(
         output::eprint(format_args!("{}: interrupted, so it was not written", folder.display()));
         return Ok(false);
     };
-    write_strategies((&strategies, outcome), &folder, &job.write_options()?)?;
+    write_strategies(&strategies, outcome, &folder, &job.write_options()?)?;
     if !common.quiet {
         output::eprint(format_args!(
             "{}: {} strategies for paths of up to {MAX_EDGES} edges, {seconds:.2} s{}",
@@ -156,7 +157,8 @@ pub fn is_exr(path: &Path) -> bool {
 
 /// Writes `OUT.interval.exr`.
 fn write_interval(
-    (interval, outcome): (&Interval, &Outcome),
+    interval: &Interval,
+    outcome: &Outcome,
     output: &Path,
     common: &Common,
 ) -> anyhow::Result<()> {
@@ -184,7 +186,8 @@ fn write_interval(
 
 /// Writes `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets that show all of them.
 fn write_strategies(
-    (strategies, outcome): (&Strategies, &Outcome),
+    strategies: &Strategies,
+    outcome: &Outcome,
     folder: &Path,
     options: &WriteOptions,
 ) -> anyhow::Result<()> {

@@ -51,11 +51,11 @@ pub fn finish(input: &Input, job: &Job, target: &Target, build_seconds: f64) -> 
     let outcome = Arc::new(outcome);
     let extra = aov::extra(arguments, job, &outcome, &report)?;
     let layers = aov::Layers { kept: &aov::layers(arguments), extra: extra.as_ref() };
-    let denoising = written::write(input, job, &outcome, (denoiser, &layers), output)?;
+    let denoising = written::write(input, job, &outcome, denoiser, &layers, output)?;
     let is_whole = !outcome.rendered.cancelled && denoising != Denoising::CutShort;
     let overrun = time_limit::overrun(job, &outcome, [before, rendered, input.begun.get().elapsed()]);
     log::report_sample_failures(&outcome);
-    let all_aovs = aov::write(arguments, job, &outcome, (output, &layers), common, interrupt)?;
+    let all_aovs = aov::write(arguments, job, &outcome, output, &layers, common, interrupt)?;
     let rendered = log::Rendered {
         job,
         outcome: &outcome,

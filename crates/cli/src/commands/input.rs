@@ -132,7 +132,8 @@ impl Input<'_> {
     pub fn job(
         &self,
         scene: &SceneBuilder,
-        (user, series): (&Parameters, &Series),
+        user: &Parameters,
+        series: &Series,
         output: &Path,
     ) -> anyhow::Result<Job> {
         let arguments = self.arguments;
@@ -188,7 +189,8 @@ impl Input<'_> {
         &self,
         job: Job,
         scene: &SceneBuilder,
-        (user, series): (&Parameters, &Series),
+        user: &Parameters,
+        series: &Series,
         output: &Path,
     ) -> anyhow::Result<Job> {
         if !scene.inventory.moves() || !aov::wants(self.arguments, Aov::Motion) {
@@ -196,7 +198,7 @@ impl Input<'_> {
         }
         let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
         next.movement = scene.movement.clone();
-        Ok(job.moving_to(&self.job(&next, (user, series), output)?))
+        Ok(job.moving_to(&self.job(&next, user, series, output)?))
     }
 }
 

@@ -48,12 +48,12 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     }
     if let ([target], true) = (&targets[..], arguments.lasting.watch) {
         return watching::run(target, common, interrupt, |watched| {
-            render_one(target, &user, arguments, common, (interrupt, Some(watched)))
+            render_one(target, &user, arguments, common, interrupt, Some(watched))
         });
     }
     let mut failed = 0;
     for target in &targets {
-        match render_one(target, &user, arguments, common, (interrupt, None)) {
+        match render_one(target, &user, arguments, common, interrupt, None) {
             Ok(DONE) => {}
             Ok(status) => return Ok(status),
             Err(error) => {
@@ -141,7 +141,8 @@ fn render_one(
     user: &Parameters,
     arguments: &Render,
     common: &Common,
-    (interrupt, watched): (&Interrupt, Option<&Watched>),
+    interrupt: &Interrupt,
+    watched: Option<&Watched>,
 ) -> anyhow::Result<u8> {
     under_way(&target.scene, &target.output, arguments.json);
     interrupt.ends_itself(false);
@@ -198,13 +199,13 @@ fn render_scene(
     }
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let output = &target.output;
-    let mut job = input.job(scene, (&user, series), output)?;
+    let mut job = input.job(scene, &user, series, output)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was set otherwise than by --at.
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
-        job = input.job(scene, (&user, series), output)?;
+        job = input.job(scene, &user, series, output)?;
     }
-    let job = input.with_next_pose(job, scene, (&user, series), output)?;
+    let job = input.with_next_pose(job, scene, &user, series, output)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     // That the studio lights a model without light is part of the line about its picture.
@@ -234,12 +235,12 @@ fn render_scene(
         let posed = if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
             posed.movement = scene.movement.clone();
-            &input.job(&posed, (&user, &series), output)?
+            &input.job(&posed, &user, &series, output)?
         } else {
             &job
         };
         let shown = posed.at_time(time).begun_at(input.begun.get());
-        let shown = input.with_next_pose(shown, scene, (&user, &series), output)?;
+        let shown = input.with_next_pose(shown, scene, &user, &series, output)?;
         let status = finish(input, &shown, &numbered, build_seconds)?;
         if status != DONE {
             finished.stop();

@@ -60,7 +60,8 @@ pub fn write(
     input: &Input,
     job: &Job,
     outcome: &Arc<Outcome>,
-    (denoiser, layers): (Option<&Arc<DenoiserChoice>>, &Layers),
+    denoiser: Option<&Arc<DenoiserChoice>>,
+    layers: &Layers,
     output: &Path,
 ) -> anyhow::Result<Denoising> {
     let Input { arguments, common, interrupt, .. } = *input;

@@ -118,7 +118,7 @@ pub(super) fn decode<'d>(
     let extension = Path::new(&name).extension().and_then(|e| e.to_str());
     let hint = kind.strip_prefix("image/").or(extension);
     let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::SrgbColours };
-    let decoded = reading.decode(&bytes, (hint, None), means, (&name, &at))?;
+    let decoded = reading.decode(&bytes, hint, None, means, &name, &at)?;
     release(bytes, reading);
     Ok((name, Arc::new(decoded)))
 }

@@ -28,7 +28,7 @@ pub(super) fn validate_images(
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => oddities.note(&error.without_place(), || image.at()),
             Ok((_, bytes)) => {
-                validate::image((image, number), &bytes, root, oddities);
+                validate::image(image, number, &bytes, root, oddities);
                 release(bytes, reading);
                 if !pictures.contain(number)
                     && let Err(error) = decode(document, image, false, reading)

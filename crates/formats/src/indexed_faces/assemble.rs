@@ -50,7 +50,7 @@ pub(crate) fn assemble(
             (run, welder.run) = (run + 1, welder.run + 1);
         }
         let made = piece.made.len();
-        if piece.add_face((face, corners), &mut welder, &mut triangulator).is_none() {
+        if piece.add_face(face, corners, &mut welder, &mut triangulator).is_none() {
             let what =
                 "a concave polygon has too many corners to triangulate exactly and is treated as convex";
             sink.oddities.note(what, || place(indexed.places.at(face)));
@@ -269,7 +269,8 @@ impl<'s> Piece<'s> {
     /// Returns `None` if a polygon could not be triangulated properly.
     fn add_face(
         &mut self,
-        (face, corners): (usize, &[Corner]),
+        face: usize,
+        corners: &[Corner],
         welder: &mut Welder,
         triangulator: &mut Triangulator,
     ) -> Option<()> {

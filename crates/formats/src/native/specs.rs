@@ -176,7 +176,7 @@ impl Native<'_, '_> {
         let name = file.text("texture")?;
         let layer = table.find("layer").map(|item| item.text("layer")).transpose()?;
         let is_plain = |key: &str| matches!(key, "texture" | "layer" | "channel");
-        match self.reading.texture_of_layer(part.folder.as_deref(), (name, layer), holds, &file.at) {
+        match self.reading.texture_of_layer(part.folder.as_deref(), name, layer, holds, &file.at) {
             Ok(texture) if table.entries.iter().all(|(key, ..)| is_plain(key)) => Ok(Some(texture)),
             Ok(texture) => Ok(Some(Arc::new(placed(&texture, table)?))),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),

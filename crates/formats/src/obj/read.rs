@@ -88,7 +88,7 @@ impl Obj<'_, '_, '_> {
             }
             let (budget, origin) = (&self.reading.budget, self.reading.origin);
             spare.resize_with(texts.len(), Block::default);
-            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, (file, origin), budget, block);
+            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, file, origin, budget, block);
             let parts: Vec<Block> = match texts.len() {
                 0 => return Ok(()),
                 1 => spare.drain(..).zip(&texts).map(parse).collect(),

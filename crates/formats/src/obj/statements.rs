@@ -19,7 +19,8 @@ const MANY: usize = 4096;
 /// Reads a block of whole lines into an empty one.
 pub(super) fn read_block(
     text: &[u8],
-    (file, origin): (&Arc<str>, DVec3),
+    file: &Arc<str>,
+    origin: DVec3,
     budget: &Budget,
     block: Block,
 ) -> Block {

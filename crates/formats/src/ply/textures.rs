@@ -30,7 +30,7 @@ impl Ply<'_, '_, '_> {
             let material = match textures.get(number as usize) {
                 Some((file, offset)) => {
                     let key = format!("{number} {file}");
-                    self.texture((file, *offset), &key, scene, &mut materials)?;
+                    self.texture(file, *offset, &key, scene, &mut materials)?;
                     Some((key, *offset as u64))
                 }
                 None => None,
@@ -65,13 +65,14 @@ impl Ply<'_, '_, '_> {
             let what = "textures after the first, since faces do not say which they have";
             self.oddities.not_shown(what, || places.at(*other));
         }
-        self.texture((file, *offset), "", scene, materials)
+        self.texture(file, *offset, "", scene, materials)
     }
 
     /// Adds a texture as a material.
     fn texture(
         &mut self,
-        (file, offset): (&str, usize),
+        file: &str,
+        offset: usize,
         key: &str,
         scene: &mut SceneBuilder,
         materials: &mut HashMap<String, usize>,

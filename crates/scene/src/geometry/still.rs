@@ -62,7 +62,7 @@ impl Still {
         let owner = |(i, range): (usize, &Range<u32>)| std::iter::repeat_n(i as u32, range.len());
         let owners = ranges.iter().enumerate().flat_map(owner).collect();
         let (tree, joined) = match last.and_then(|last| last.kept_apart(&keys, &ranges)) {
-            Some(apart) => apart.build(&keys, &ranges, &mesh, (trees, accel))?,
+            Some(apart) => apart.build(&keys, &ranges, &mesh, trees, accel)?,
             None => {
                 let tree = tree(mesh.clone(), accel, &mut trees.work)?;
                 (tree.clone(), (keys.clone(), tree))
@@ -132,7 +132,8 @@ impl Apart {
         keys: &[StillKey],
         ranges: &Ranges,
         mesh: &TriangleMesh,
-        (trees, accel): (&mut ObjectTrees, &AccelChoice),
+        trees: &mut ObjectTrees,
+        accel: &AccelChoice,
     ) -> Result<Built, SceneError> {
         let part = |chosen: &[Range<u32>], work: &mut TreeWork| {
             let corners = |range: &Range<u32>| &mesh.triangles()[range.start as usize..range.end as usize];

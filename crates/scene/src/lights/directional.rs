@@ -82,11 +82,11 @@ impl Light for Directional {
 impl LightTracing for Directional {
     fn sample_le(&self, bounds: &Aabb, _time: f32, u_point: Vec2, _u: Vec2) -> Option<EmissionSample> {
         let pdf_emission = self.emission_pdf(bounds, 1.0, -self.towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -self.towards, self.irradiance, (pdf_emission, 1.0))
+        ray(bounds, Across::Anywhere(u_point), -self.towards, self.irradiance, pdf_emission, 1.0)
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, _u: Vec2, aim: Vec2) -> Option<EmissionSample> {
-        ray(bounds, Across::At(aim), -self.towards, self.irradiance, (1.0, 1.0))
+        ray(bounds, Across::At(aim), -self.towards, self.irradiance, 1.0, 1.0)
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

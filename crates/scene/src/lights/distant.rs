@@ -28,7 +28,8 @@ pub(super) fn ray(
     place: Across,
     direction: Vec3,
     le: Rgb,
-    (pdf_emission, pdf_direct): (f32, f32),
+    pdf_emission: f32,
+    pdf_direct: f32,
 ) -> Option<EmissionSample> {
     let (centre, radius) = (bounds.centre(), bounds.radius());
     let across = Frame::from_normal(direction);

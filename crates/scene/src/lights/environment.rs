@@ -132,14 +132,14 @@ impl LightTracing for Environment {
         let towards = warp::sample_sphere(u_direction);
         let pdf_direct = warp::sphere_pdf_solid_angle();
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), pdf_emission, pdf_direct)
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let towards = warp::sample_sphere(u);
         let pdf_direct = warp::sphere_pdf_solid_angle();
         let pdf = self.unaimed_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, pdf_direct))
+        ray(bounds, Across::At(aim), -towards, self.le(towards), pdf, pdf_direct)
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

@@ -328,12 +328,12 @@ impl LightTracing for EnvironmentMap {
         let (towards, place, _) = self.sample(&self.sent, u_direction)?;
         let pdf_direct = self.pdf(&self.asked, towards);
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -towards, self.le_at(place), (pdf_emission, pdf_direct))
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le_at(place), pdf_emission, pdf_direct)
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let (towards, place, pdf) = self.sample(&self.sent, u)?;
-        ray(bounds, Across::At(aim), -towards, self.le_at(place), (pdf, self.pdf(&self.asked, towards)))
+        ray(bounds, Across::At(aim), -towards, self.le_at(place), pdf, self.pdf(&self.asked, towards))
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {

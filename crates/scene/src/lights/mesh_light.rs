@@ -75,6 +75,16 @@ impl Picture {
     }
 }
 
+/// What a surface emits.
+pub struct SurfaceEmission {
+    /// Everywhere, if there is no picture.
+    pub radiance: Rgb,
+    /// What it is where it varies.
+    pub picture: Option<Picture>,
+    /// From which sides.
+    pub sides: Sides,
+}
+
 /// The minimum brightness of a triangle, relative to the mean: a few points may miss the bright parts of a triangle.
 const MIN_SHARE: f64 = 0.1;
 
@@ -88,7 +98,7 @@ impl MeshLight {
         mirrored: bool,
         first: Primitive,
         motion: Motion,
-        (radiance, picture, sides): (Rgb, Option<Picture>, Sides),
+        SurfaceEmission { radiance, picture, sides }: SurfaceEmission,
         classic: Option<Rgb>,
     ) -> Option<MeshLight> {
         let areas: Vec<f64> = triangles.iter().map(|t| f64::from(area(t))).map(finite_or_zero).collect();
@@ -193,7 +203,8 @@ impl MeshLight {
     /// A ray from a point of a triangle, emitted with density `pdf_emission`; `None` if that is zero.
     fn ray(
         &self,
-        (triangle, weights): (usize, [f32; 3]),
+        triangle: usize,
+        weights: [f32; 3],
         time: f32,
         direction: Vec3,
         pdf_emission: f32,
@@ -313,7 +324,7 @@ impl LightTracing for MeshLight {
         };
         let direction = Frame::from_normal(n_light).to_world(warp::sample_cosine_hemisphere(u)).normalize();
         let pdf_emission = self.emission_pdf(bounds, pdf_area, direction, n_light.dot(direction).abs());
-        self.ray((triangle, weights), time, direction, pdf_emission)
+        self.ray(triangle, weights, time, direction, pdf_emission)
     }
 
     fn sample_le_aimed(&self, _: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
@@ -321,7 +332,7 @@ impl LightTracing for MeshLight {
         let (LightTriangle { normal, pdf_area, .. }, direction) =
             (self.facet(triangle, time), warp::square_to_sphere(aim).normalize());
         let leaves = self.sides == Sides::Both || normal.dot(direction) > 0.0;
-        leaves.then(|| self.ray((triangle, weights), time, direction, pdf_area)).flatten()
+        leaves.then(|| self.ray(triangle, weights, time, direction, pdf_area)).flatten()
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

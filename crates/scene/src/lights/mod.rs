@@ -29,7 +29,7 @@ pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
 pub use light::{ClassicLighting, Light, LightTracing, Receiver};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
-pub use mesh_light::{MeshLight, Picture};
+pub use mesh_light::{MeshLight, Picture, SurfaceEmission};
 pub use sphere::SphereLight;
 
 use crate::error::SceneError;

@@ -71,12 +71,12 @@ impl LightTracing for Sun {
         let towards = self.direction(u_direction);
         let pdf_direct = warp::cap_pdf_solid_angle(self.height);
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        ray(bounds, Across::Anywhere(u_point), -towards, self.radiance, (pdf_emission, pdf_direct))
+        ray(bounds, Across::Anywhere(u_point), -towards, self.radiance, pdf_emission, pdf_direct)
     }
 
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let pdf = warp::cap_pdf_solid_angle(self.height);
-        ray(bounds, Across::At(aim), -self.direction(u), self.radiance, (pdf, pdf))
+        ray(bounds, Across::At(aim), -self.direction(u), self.radiance, pdf, pdf)
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

@@ -3,7 +3,7 @@
 use crate::corners::corner_uvs;
 use crate::geometry::Geometry;
 use crate::kept::{Kept, Place, Same};
-use crate::lights::{MeshLight, Picture};
+use crate::lights::{MeshLight, Picture, SurfaceEmission};
 use crate::materials::Material;
 use crate::mesh::Mesh;
 use crate::texture::ColourMap;
@@ -60,7 +60,8 @@ fn of_object(
         uvs: corner_uvs(mesh),
         mesh: mesh.clone(),
     });
-    let given = (material.emission(), picture, material.emission_sides());
+    let (radiance, sides) = (material.emission(), material.emission_sides());
+    let emitted = SurfaceEmission { radiance, picture, sides };
     let mirrored = object.motion.at(0.0).mirrors();
-    MeshLight::new(triangles, mirrored, geometry.first_primitive(index), motion, given, classic)
+    MeshLight::new(triangles, mirrored, geometry.first_primitive(index), motion, emitted, classic)
 }

@@ -27,7 +27,7 @@ use bilux_math::{Aabb, Rgb, Transform, Vec3};
 pub use enclosure::Enclosure;
 use may_pass::MayPass;
 pub(crate) use mesh_lights::MeshLights;
-pub(crate) use parts::SceneParts;
+pub(crate) use parts::{LightSurfaces, SceneParts};
 pub use scene_light::SceneLight;
 pub use shading::Shading;
 use sheets::Sheets;

@@ -46,32 +46,35 @@ pub(crate) struct SceneParts {
     pub(super) shading: Vec<ObjectShading>,
 }
 
-/// An object that came from a light, and the light's classic colour.
-type Panel = (usize, Rgb);
-
-/// The name of a sphere that came from a light, and its classic colour if that was given.
-type SphereName = (String, Option<Rgb>);
+/// The surfaces that came from lights.
+#[derive(Clone, Copy)]
+pub(crate) struct LightSurfaces<'a> {
+    /// Objects, and the light's classic colour.
+    pub(crate) panels: &'a [(usize, Rgb)],
+    /// The name of each sphere, and its classic colour if that was given.
+    pub(crate) spheres: &'a [(String, Option<Rgb>)],
+}
 
 impl SceneParts {
     pub(crate) fn new(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
         mut lights: Vec<SceneLight>,
-        (panels, sphere_lights): (&[Panel], &[SphereName]),
+        of_lights: LightSurfaces<'_>,
         cameras: Vec<(String, Arc<dyn Camera>)>,
         textures: Vec<Vec<Arc<Texture>>>,
         mesh_lights: &mut MeshLights,
     ) -> SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
-            let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
+            let classic = of_lights.panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
             let material = &materials[object.material as usize];
             if let Some(light) = mesh_lights.of_object(&geometry, i as u32, material, classic) {
                 object_lights[i] = Some(lights.len() as u32);
                 lights.push(SceneLight::new(&object.mesh.name, light));
             }
         }
-        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(sphere_lights).enumerate() {
+        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(of_lights.spheres).enumerate() {
             let material = &materials[sphere.material as usize];
             let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
             let primitive = geometry.sphere_primitive(i as u32);

@@ -70,7 +70,7 @@ impl Sheets {
         let is_one_sided = |o: u32| parts.is_one_sided_object(o);
         let one_sided: Vec<u32> = (0..objects.len() as u32).filter(|&object| is_one_sided(object)).collect();
         let probes = (MAX_PROBES_OF_ALL / one_sided.len().max(1)).clamp(1, MAX_PROBES);
-        let has_shell = |object: &u32| sheets.has_shell(parts, accelerator, (*object, probes), time);
+        let has_shell = |object: &u32| sheets.has_shell(parts, accelerator, *object, probes, time);
         one_sided.par_iter().any(has_shell).then_some(sheets)
     }
 
@@ -79,7 +79,8 @@ impl Sheets {
         &self,
         parts: &SceneParts,
         accelerator: &dyn Accelerator,
-        (object, probes): (u32, usize),
+        object: u32,
+        probes: usize,
         time: f32,
     ) -> bool {
         let first = parts.geometry.first_primitive(object);
@@ -165,7 +166,8 @@ impl SceneParts {
         &self,
         sheets: &Sheets,
         ray: &Ray,
-        (hit, object): (&Hit, u32),
+        hit: &Hit,
+        object: u32,
         front: Vec3,
         end: Option<End>,
     ) -> bool {

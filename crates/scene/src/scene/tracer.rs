@@ -71,7 +71,7 @@ impl SceneParts {
     /// It does not where the camera sees through its back, nor where the ray starts or ends on the other shell of a
     /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray and the hit, and of nothing
     /// else, except for labels.
-    fn stops(&self, ray: &Ray, hit: &Hit, (sheets, end): (Option<&Sheets>, Option<End>)) -> bool {
+    fn stops(&self, ray: &Ray, hit: &Hit, sheets: Option<&Sheets>, end: Option<End>) -> bool {
         let object = self.geometry.object_of(hit);
         let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
         if is_one_sided && (ray.mask != u32::MAX || sheets.is_some()) {
@@ -82,7 +82,7 @@ impl SceneParts {
             if ray.mask != u32::MAX && towards_camera <= 0.0 {
                 return false;
             }
-            if sheets.is_some_and(|sheets| self.is_between_shells(sheets, ray, (hit, object), front, end)) {
+            if sheets.is_some_and(|sheets| self.is_between_shells(sheets, ray, hit, object, front, end)) {
                 return false;
             }
         }
@@ -105,7 +105,7 @@ impl SceneParts {
     /// True if a surface stops a ray wherever the ray hits it, which [`SceneParts::stops`] then need not decide.
     ///
     /// `n` is the normal at the ray's end, or zero.
-    fn surely_stops(&self, ray: &Ray, blocker: Primitive, (sheets, n): (&Option<Sheets>, Vec3)) -> bool {
+    fn surely_stops(&self, ray: &Ray, blocker: Primitive, sheets: &Option<Sheets>, n: Vec3) -> bool {
         let object = self.geometry.object_of_primitive(blocker);
         let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
         if has_holes || !is_one_sided || (ray.mask == u32::MAX && sheets.is_none()) {
@@ -157,8 +157,8 @@ impl<'s> Tracer<'s> {
         if !scene.parts.may_pass(ray) && scene.sheets.is_none() {
             return question(self, ray, &scene.query);
         }
-        let shells = (scene.sheets.as_ref(), self.end);
-        let stops = |hit: &Hit| scene.parts.stops(ray, hit, shells);
+        let (sheets, end) = (scene.sheets.as_ref(), self.end);
+        let stops = |hit: &Hit| scene.parts.stops(ray, hit, sheets, end);
         question(self, ray, &Query { filter: Some(&stops), ..scene.query })
     }
 
@@ -209,7 +209,7 @@ impl<'s> Tracer<'s> {
         if !parts.may_pass(ray) && sheets.is_none() {
             return true;
         }
-        parts.stops(ray, hit, (sheets, self.end))
+        parts.stops(ray, hit, sheets, self.end)
     }
 
     /// The tree of the whole scene, if it can be asked in batches.
@@ -281,7 +281,7 @@ impl<'s> Tracer<'s> {
         for (i, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
             let blocker = self.blockers[i];
             *occluded = blocker.is_some();
-            if blocker.is_some_and(|blocker| !scene.parts.surely_stops(ray, blocker, (&scene.sheets, n(i)))) {
+            if blocker.is_some_and(|blocker| !scene.parts.surely_stops(ray, blocker, &scene.sheets, n(i))) {
                 // It may pass what it hits. Asked again, and counted once.
                 self.counters.rays -= 1;
                 *occluded = self.ending_on(ray, n(i), |tracer| tracer.occluded(ray));

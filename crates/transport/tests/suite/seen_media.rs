@@ -64,7 +64,7 @@ fn alpha(scene: &Scene, settings: &RenderSettings) -> Vec<f32> {
 fn mattes(scene: &Scene, settings: &RenderSettings) -> Visible {
     let wanted = Wanted { ids: vec![vec![5, 9]], ..Wanted::default() };
     let camera = &*scene.cameras()[0].1;
-    visible(scene, camera, &*integrator("path"), settings, (&wanted, 8), &Silent).unwrap().unwrap()
+    visible(scene, camera, &*integrator("path"), settings, &wanted, 8, &Silent).unwrap().unwrap()
 }
 
 fn near(a: Rgb, b: [f64; 3], within: f64) -> bool {

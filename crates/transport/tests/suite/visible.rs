@@ -10,8 +10,8 @@ use bilux_transport::{RenderSettings, Silent, Visible, Window, features, visible
 
 fn seen(scene: &Scene, settings: &RenderSettings, wanted: &Wanted) -> Visible {
     let camera = &*scene.cameras()[0].1;
-    let wanted = (wanted, settings.spp);
-    visible(scene, camera, &*integrator("path"), settings, wanted, &Silent).unwrap().unwrap()
+    let samples = settings.spp;
+    visible(scene, camera, &*integrator("path"), settings, wanted, samples, &Silent).unwrap().unwrap()
 }
 
 /// A ball that rises by a metre in a second, seen from 8 metres away, and the floor.

@@ -39,7 +39,8 @@ impl Edits {
     pub(super) fn change(
         &mut self,
         session: &mut Session,
-        (part, number): (Part, usize),
+        part: Part,
+        number: usize,
         key: &str,
         value: Value,
     ) -> Result<(), Error> {
@@ -182,7 +183,7 @@ mod tests {
     #[test]
     fn undo_in_a_scene_that_was_opened_anew_is_the_new_file() {
         let (mut before, mut edits) = (session(), Edits::default());
-        edits.change(&mut before, (Part::Light, 1), "radiance", Value::Number(7.0)).unwrap();
+        edits.change(&mut before, Part::Light, 1, "radiance", Value::Number(7.0)).unwrap();
         let mut scene = session().scene().clone();
         scene.lights[1].parameters.set("radiance", 3.0f32);
         let mut settings = Parameters::default();
@@ -210,7 +211,7 @@ mod tests {
             (Part::Material, 0, "reflectance", 0.25),
         ];
         for (part, number, key, value) in changes {
-            edits.change(&mut session, (part, number), key, Value::Number(value)).unwrap();
+            edits.change(&mut session, part, number, key, Value::Number(value)).unwrap();
         }
         let now = radiances(&session);
         assert_eq!(now, [Value::Number(2.0), Value::Number(4.0), at_first[2].clone()]);

@@ -119,7 +119,7 @@ impl Keeper {
             SceneRequest::Undo if !self.edits.can_undo() => return Ok(false),
             SceneRequest::Redo if !self.edits.can_redo() => return Ok(false),
             SceneRequest::Edit { part, number, key, value } => {
-                self.edits.change(session, (part, number), &key, value).map_err(|error| error.to_string())
+                self.edits.change(session, part, number, &key, value).map_err(|error| error.to_string())
             }
             SceneRequest::Undo => self.edits.undo(session).map_err(|error| error.to_string()),
             SceneRequest::Redo => self.edits.redo(session).map_err(|error| error.to_string()),

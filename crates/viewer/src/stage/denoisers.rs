@@ -45,8 +45,10 @@ impl Denoising {
     /// Begins; in the end the inbox rings.
     pub(super) fn begin(
         outcome: &Outcome,
-        (by, task): (&'static str, Task),
-        (facts, changes): (Facts, u64),
+        by: &'static str,
+        task: Task,
+        facts: Facts,
+        changes: u64,
         inbox: Arc<Inbox>,
     ) -> Result<Denoising, Error> {
         let outcome = outcome.clone();

@@ -35,8 +35,8 @@ impl Stage {
             return Ok(());
         };
         let by = self.denoisers.name().unwrap_or(self.denoisers.for_previews.name);
-        let (inbox, about) = (self.inbox.clone(), (facts, self.refinement.changes));
-        self.denoisers.work = Some(Denoising::begin(outcome, (by, self.task()), about, inbox)?);
+        let (inbox, changes) = (self.inbox.clone(), self.refinement.changes);
+        self.denoisers.work = Some(Denoising::begin(outcome, by, self.task(), facts, changes, inbox)?);
         Ok(())
     }
 

@@ -160,7 +160,7 @@ impl<'a> Task<'a> {
         // again.
         if let (Some(cutter), Some(split)) = (cutter, &split) {
             let spare = self.items.len() - self.count;
-            let cut = cutter.best(items, bounds, (&split.bounds, split.cost), spare);
+            let cut = cutter.best(items, bounds, &split.bounds, split.cost, spare);
             let cut = cut.filter(|cut| depth_allows(depth, cut.counts));
             if let Some((halves, count)) = cut.and_then(|cut| cutter.apply(self.items, self.count, &cut)) {
                 self.count = count;

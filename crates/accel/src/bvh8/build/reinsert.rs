@@ -29,6 +29,13 @@ struct Tree {
     items: Vec<[u32; 2]>,
 }
 
+/// A node of the tree without its place.
+struct Node {
+    bounds: Bounds,
+    below: u32,
+    items: [u32; 2],
+}
+
 /// A subtree, where to put it, and by how much the areas shrink.
 #[derive(Clone, Copy)]
 struct Move {
@@ -178,12 +185,12 @@ impl Tree {
         }
     }
 
-    fn take(&self, place: u32) -> (Bounds, u32, [u32; 2]) {
+    fn take(&self, place: u32) -> Node {
         let place = place as usize;
-        (self.bounds[place], self.below[place], self.items[place])
+        Node { bounds: self.bounds[place], below: self.below[place], items: self.items[place] }
     }
 
-    fn put(&mut self, place: u32, (bounds, below, items): (Bounds, u32, [u32; 2])) {
+    fn put(&mut self, place: u32, Node { bounds, below, items }: Node) {
         let at = place as usize;
         (self.bounds[at], self.below[at], self.items[at]) = (bounds, below, items);
         if below != LEAF {

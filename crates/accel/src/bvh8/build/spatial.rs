@@ -101,7 +101,8 @@ impl<'a> Cutter<'a> {
         &self,
         items: &[Item],
         bounds: &Bounds,
-        (halves, cost): (&[Bounds; 2], f32),
+        halves: &[Bounds; 2],
+        cost: f32,
         spare: usize,
     ) -> Option<Cut> {
         if halves[0].shared_half_area(&halves[1]) <= self.least_overlap {

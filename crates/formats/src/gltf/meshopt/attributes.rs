@@ -26,7 +26,7 @@ pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Resul
     let block = (BLOCK_BYTES / stride / GROUP * GROUP).min(LARGEST_BLOCK);
     for elements in elements.chunks_mut(block * stride) {
         for (k, last) in last.iter_mut().enumerate() {
-            column(&mut bytes, elements, (k, stride), last)?;
+            column(&mut bytes, elements, k, stride, last)?;
         }
     }
     if bytes.0.is_empty() { Ok(()) } else { Err(Broken) }
@@ -36,7 +36,8 @@ pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Resul
 fn column(
     bytes: &mut Bytes,
     elements: &mut [u8],
-    (k, stride): (usize, usize),
+    k: usize,
+    stride: usize,
     last: &mut u8,
 ) -> Result<(), Broken> {
     let count = elements.len() / stride;

@@ -53,7 +53,8 @@ fn extension_for(kind: &str) -> Option<&'static str> {
 
 /// Compares the bytes of an image, which is the one of this number, with the document's description of it.
 pub(in crate::gltf) fn compare(
-    (image, number): (JsonNode, usize),
+    image: JsonNode,
+    number: usize,
     bytes: &[u8],
     root: JsonNode,
     oddities: &mut Oddities,

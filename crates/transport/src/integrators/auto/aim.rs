@@ -8,7 +8,7 @@
 //! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
 //! aimed.
 
-use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
+use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
 use crate::emission::Guide;
 use crate::photons::{MergeCounts, Merging};
@@ -70,7 +70,7 @@ pub(super) fn learn(
             &round,
             merging,
             &all_sets,
-            (&grid, &tiles, iteration),
+            GridPass { grid: &grid, tiles: &tiles, iteration },
             Some(&by_tile),
         );
         counters += rays;

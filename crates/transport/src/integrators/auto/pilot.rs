@@ -183,7 +183,8 @@ pub(super) fn look(
     let sums = |round: &PilotRound, pilot: &mut Pilot| -> Vec<Vec<[f64; SET_COUNT]>> {
         let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; SET_COUNT]; tile.pixels()]).collect();
         for iteration in 0..SAMPLES {
-            one_sample(round, merging, &techniques, (&grid, &tiles, iteration), pilot, &mut sums);
+            let pass = GridPass { grid: &grid, tiles: &tiles, iteration };
+            one_sample(round, merging, &techniques, pass, pilot, &mut sums);
         }
         sums
     };
@@ -195,34 +196,38 @@ pub(super) fn look(
     pilot
 }
 
+/// One sample of each of a grid's pixels.
+#[derive(Clone, Copy)]
+pub(super) struct GridPass<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) tiles: &'a [Window],
+    /// The number of the sample.
+    pub(super) iteration: u32,
+}
+
 /// Takes one sample of each pixel.
 fn one_sample(
     round: &PilotRound,
     merging: &Merging,
     techniques: &(impl Fn(&MergeCounts) -> TechniqueCounts<SET_COUNT> + Sync),
-    (grid, tiles, iteration): (&Grid, &[Window], u32),
+    pass: GridPass<'_>,
     pilot: &mut Pilot,
     sums: &mut [Vec<[f64; SET_COUNT]>],
 ) {
-    let (looked, counters) = sample_all::<SET_COUNT, PilotSample, IterationSplats>(
-        round,
-        merging,
-        techniques,
-        (grid, tiles, iteration),
-        None,
-    );
+    let (looked, counters) =
+        sample_all::<SET_COUNT, PilotSample, IterationSplats>(round, merging, techniques, pass, None);
     pilot.counters += counters;
     // One after the other, so that sums do not depend on threads.
     for (index, looks) in looked.into_iter().enumerate() {
         for (look, sum) in looks.iter().zip(&mut sums[index]) {
             pilot.steps = std::mem::take(&mut pilot.steps).plus(&look.steps, 1.0);
-            pilot.blocks[index].add(&look.sample, share(&tiles[index]));
+            pilot.blocks[index].add(&look.sample, share(&pass.tiles[index]));
             for (sum, found) in sum.iter_mut().zip(look.sample.sums) {
                 *sum += found / f64::from(SAMPLES);
             }
             for (film, seen) in &look.seen {
-                let Some(index) = grid.tile_at(*film) else { continue };
-                pilot.blocks[index].add(&Sample::seen(seen), share(&tiles[index]));
+                let Some(index) = pass.grid.tile_at(*film) else { continue };
+                pilot.blocks[index].add(&Sample::seen(seen), share(&pass.tiles[index]));
             }
         }
     }
@@ -236,7 +241,7 @@ pub(super) fn sample_all<const N: usize, T, O>(
     PilotRound { eye, light }: &PilotRound,
     merging: &Merging,
     techniques: &(impl Fn(&MergeCounts) -> TechniqueCounts<N> + Sync),
-    (grid, tiles, iteration): (&Grid, &[Window], u32),
+    GridPass { grid, tiles, iteration }: GridPass<'_>,
     visitor: Option<&O>,
 ) -> (Vec<Vec<T>>, Counters)
 where
