@@ -16,7 +16,7 @@ use std::path::Path;
 pub fn run(input: &Input, job: &Job, path: &Path) -> anyhow::Result<u8> {
     let Input { arguments, common, interrupt, .. } = *input;
     let [x, y, sample] = arguments.replay.unwrap_or_default();
-    let light_path = LightPath::of(&job, x, y, sample).context("--replay")?;
+    let light_path = LightPath::of(job, x, y, sample).context("--replay")?;
     output::print(&light_path.replay)?;
     if is_stdout(path) {
         return Ok(DONE);
