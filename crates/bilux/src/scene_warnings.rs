@@ -59,8 +59,8 @@ fn of_boundaries(given: &SceneBuilder, scene: &Scene) -> Option<Warning> {
         )
     } else {
         format!(
-            "the mesh of '{name}'{others} is open, but is the boundary of a medium that scatters light: a ray through a hole does \
-             not notice where the medium begins or ends; close the mesh"
+            "the mesh of '{name}'{others} is open, or some of its faces look inwards, but it is the boundary of a medium that \
+             scatters light: rays do not notice there where the medium begins or ends; close it, or turn them"
         )
     };
     Some(Warning { message, at: Span::default() })
