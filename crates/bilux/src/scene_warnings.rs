@@ -4,8 +4,7 @@ use crate::presets::{Ground, Studio};
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{
-    Camera, CameraSample, Mesh, Object, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer,
-    Warning,
+    Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
 };
 
 /// Warnings about a scene: `given` is the scene before anything missing was added, `scene` is as the camera sees it.
@@ -43,10 +42,7 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
 fn of_boundaries(given: &SceneBuilder, scene: &Scene) -> Option<Warning> {
     let scatters = |index: u32| scene.material_of(index).medium().is_some_and(|medium| medium.scatters());
     let all = (0..).zip(&given.objects).filter(|(index, _)| scatters(*index));
-    let is_wrong = |(index, object): &(u32, &Object)| {
-        scene.enclosure(*index).is_none() && object.mesh.signed_volume() <= 0.0 || !object.mesh.is_closed()
-    };
-    let mut wrong = all.filter(is_wrong).map(|(_, object)| object);
+    let mut wrong = all.map(|(_, object)| object).filter(|object| !object.mesh.has_inside());
     let first = wrong.next()?;
     let others = match wrong.count() {
         0 => String::new(),

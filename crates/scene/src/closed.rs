@@ -12,7 +12,7 @@ const CRACK: f32 = 1.0 / 2048.0;
 const LATTICES: [f32; 4] = [0.37, 0.83, 0.11, 0.61];
 
 impl Mesh {
-    /// True if a mesh is closed and has an inside, but for cracks that nobody sees: along each edge it has as many triangles in one direction
+    /// True if a mesh is closed, but for cracks that nobody sees: along each edge it has as many triangles in one direction
     /// as in the other, where vertices that are closer than [`CRACK`] count as one.
     pub fn is_closed(&self) -> bool {
         let bounds = self.bounds();
@@ -43,8 +43,13 @@ impl Mesh {
         self.triangles.par_iter().map(around).reduce(|| 0, u64::wrapping_add) == 0
     }
 
+    /// True if a mesh is closed and its faces look outwards.
+    pub fn has_inside(&self) -> bool {
+        self.is_closed() && self.signed_volume() > 0.0
+    }
+
     /// The volume inside a closed mesh, in units of its space cubed: negative where its faces look inwards.
-    pub fn signed_volume(&self) -> f64 {
+    fn signed_volume(&self) -> f64 {
         let Some(first) = self.positions.first() else { return 0.0 };
         let beyond = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|i| (self.positions[i as usize] - *first).as_dvec3());
@@ -63,7 +68,10 @@ mod tests {
     #[test]
     fn boxes_and_spheres_are_closed_and_sheets_are_not() {
         let mut cuboid = shapes::cuboid(Aabb { min: Vec3::ZERO, max: Vec3::ONE });
-        assert!(cuboid.is_closed() && (cuboid.signed_volume() - 1.0).abs() < 1e-6);
+        assert!(cuboid.has_inside() && (cuboid.signed_volume() - 1.0).abs() < 1e-6);
+        let mut inwards = cuboid.clone();
+        inwards.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        assert!(inwards.is_closed() && !inwards.has_inside());
         // The seam of a sphere whose sines and cosines are not quite those of a full turn.
         let mut seam = cuboid.clone();
         let copies: Vec<Vec3> = seam.positions.iter().map(|p| *p + Vec3::splat(1e-7)).collect();

@@ -37,7 +37,7 @@ impl Enclosure {
             let scatters = material.medium().is_some_and(|medium| medium.scatters());
             let has_holes = passes.has_holes || passes.is_one_sided;
             let to_world = placed.motion.static_transform().filter(|_| scatters && !has_holes)?;
-            if !placed.mesh.is_closed() || placed.mesh.signed_volume() <= 0.0 {
+            if !placed.mesh.has_inside() {
                 return None;
             }
             let bounds = widened(to_world.bounds(&placed.mesh.bounds()));

@@ -127,7 +127,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         mut visit: impl FnMut(&mut Task, Step, Option<Connection<N>>),
     ) {
         let is_open = z.is_open();
-        let is_lit = is_open && !(z.at.is_in_medium() && z.media.hide_lights(task.context.scene));
+        let is_lit = is_open && !z.media.hide_lights(task.context.scene, &z.at);
         let u = task.sample.sampler.next_1d();
         for index in task.context.lights.sample(u) {
             let u = task.sample.sampler.next_2d();

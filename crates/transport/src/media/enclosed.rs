@@ -2,6 +2,7 @@
 
 use super::Media;
 use super::nested::NONE;
+use crate::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Flight, MediumEvent, WalkChannel};
 use bilux_scene::{Enclosure, Ray, Scene};
@@ -44,9 +45,9 @@ impl Media {
         self.walls(scene).is_some_and(|walls| !walls.bounds.contains(p))
     }
 
-    /// True where a surface is certain to lie between a point in here and every light.
+    /// True where a surface is certain to lie between a vertex in these media and every light.
     #[inline]
-    pub(crate) fn hide_lights(&self, scene: &Scene) -> bool {
-        self.walls(scene).is_some_and(|walls| !walls.holds_light)
+    pub(crate) fn hide_lights(&self, scene: &Scene, at: &Interaction) -> bool {
+        at.is_in_medium() && self.walls(scene).is_some_and(|walls| !walls.holds_light)
     }
 }

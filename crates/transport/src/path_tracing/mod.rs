@@ -284,7 +284,7 @@ impl PathTracing {
     /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`. The depth of the vertex
     /// and what the sample sees of it are for the record.
     fn direct(&self, task: &mut Task, from: &Vertex, (depth, seen): (u32, Rgb)) -> Rgb {
-        if from.at.is_delta() || from.at.is_in_medium() && from.media.hide_lights(task.context.scene) {
+        if from.at.is_delta() || from.media.hide_lights(task.context.scene, from.at) {
             self.skip_lights(task);
             return Rgb::BLACK;
         }
