@@ -6,9 +6,9 @@ pub mod rays;
 
 use bilux_formats::{FormatError, ReadOptions};
 use bilux_pictures::{Limits, format_named};
-use bilux_scene::{AccelChoice, SceneBuilder};
+use bilux_scene::{AccelChoice, SceneBuilder, Spec};
 use std::path::PathBuf;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 /// The memory limit for decoding a picture.
 ///
@@ -48,6 +48,17 @@ pub fn read_materials(bytes: &[u8]) {
     let triangle =
         b"mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
     build(bilux_formats::read_bytes(triangle, "obj", Some(&FOLDER), "scene", &options()));
+}
+
+/// Reads the bytes as a file of a lamp, and makes its light.
+pub fn read_luminaire(bytes: &[u8]) {
+    match bilux_formats::read_distribution(bytes, "lamp", &options()) {
+        Ok((distribution, _)) => {
+            let spec = Spec::new("", "luminaire").with("distribution", Arc::new(distribution));
+            let _ = bilux_scene::lights::build(&spec, &[]);
+        }
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
 }
 
 fn options() -> ReadOptions {

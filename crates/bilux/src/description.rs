@@ -65,7 +65,7 @@ fn text(value: &Value) -> String {
         Value::Text(value) => value.clone(),
         Value::List(values) => values.iter().map(text).collect::<Vec<_>>().join(","),
         // No setting is one.
-        Value::Texture(_) | Value::Material(_) | Value::Grid(_) => String::new(),
+        Value::Texture(_) | Value::Material(_) | Value::Grid(_) | Value::Distribution(_) => String::new(),
     }
 }
 

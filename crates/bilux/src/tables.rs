@@ -118,6 +118,7 @@ pub fn values(kind: ParameterKind) -> String {
         ParameterKind::NumberTexture { min, max } => format!("{min} to {max}, or a texture"),
         ParameterKind::Texture => "texture".to_owned(),
         ParameterKind::Grid => "grid".to_owned(),
+        ParameterKind::Distribution => "a file of a lamp".to_owned(),
         ParameterKind::Stops { min, max } => format!("[position, colour {min} to {max}], several"),
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),

@@ -9,7 +9,7 @@ use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::texture::{Channel, Image};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
+use bilux_scene::{IntensityDistribution, Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read;
@@ -57,6 +57,8 @@ pub(crate) struct Reading<'o> {
     textures: HashMap<(PathBuf, Option<String>, Texels), Arc<Texture>>,
     /// By file and name.
     pub(crate) grids: HashMap<(PathBuf, String), Arc<Grid>>,
+    /// By file.
+    pub(crate) distributions: HashMap<PathBuf, Arc<IntensityDistribution>>,
     /// The bytes of textures and grids.
     texture_bytes: u64,
     /// The part of these bytes that is in [`Reading::textures`] or [`Reading::grids`].
@@ -95,6 +97,7 @@ impl<'o> Reading<'o> {
             locator: Locator::new(folder, options.allow_outside),
             textures: HashMap::new(),
             grids: HashMap::new(),
+            distributions: HashMap::new(),
             texture_bytes: 0,
             kept_bytes: 0,
             picture_faults: Vec::new(),
@@ -201,6 +204,14 @@ impl<'o> Reading<'o> {
     /// Counts a grid as one that the next read finds again.
     pub(crate) fn keep(&mut self, grid: &Grid) {
         self.kept_bytes += grid.bytes();
+    }
+
+    /// Charges memory for an intensity distribution that the next read finds again, for good.
+    pub(crate) fn keep_distribution(&mut self, bytes: u64, file: &str) -> Result<(), FormatError> {
+        self.budget.take_bytes(bytes, file)?;
+        self.texture_bytes += bytes;
+        self.kept_bytes += bytes;
+        Ok(())
     }
 
     /// Notes what is wrong with a picture that could be read.

@@ -4,7 +4,7 @@ use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{ColourSpace, Picture, write_atomically};
 use bilux_scene::media::Grid;
-use bilux_scene::{SceneBuilder, Span, Texture, Warning};
+use bilux_scene::{IntensityDistribution, SceneBuilder, Span, Texture, Warning};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub(crate) struct Writing<'o> {
     textures: Vec<(Texture, String)>,
     /// Grids written so far, and the file of each.
     pub(crate) grids: Vec<(Arc<Grid>, String)>,
+    /// Intensity distributions that are written already, each with its file.
+    pub(crate) distributions: Vec<(Arc<IntensityDistribution>, String)>,
     /// Everything that the format could not hold.
     pub(crate) warnings: Vec<Warning>,
 }
@@ -46,6 +48,7 @@ impl<'o> Writing<'o> {
             beside: Vec::new(),
             textures: Vec::new(),
             grids: Vec::new(),
+            distributions: Vec::new(),
             warnings: Vec::new(),
         }
     }

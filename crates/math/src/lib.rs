@@ -8,6 +8,7 @@ pub mod colour;
 pub mod frame;
 pub mod hash;
 pub mod motion;
+pub mod photometry;
 pub mod registry;
 pub mod transcendental;
 pub mod transform;

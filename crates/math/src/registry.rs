@@ -45,6 +45,8 @@ pub enum ParameterKind {
     Texture,
     /// A grid of numbers in space; none by default.
     Grid,
+    /// A measured luminous intensity distribution; none by default.
+    Distribution,
     /// Colours of a gradient, each channel within the bounds: a list of `[position, colour]`.
     Stops {
         /// Minimum channel.

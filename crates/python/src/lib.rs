@@ -6,6 +6,7 @@
 mod accel;
 mod adding;
 mod arrays;
+mod distribution;
 mod encoded;
 mod ending;
 mod errors;
@@ -71,7 +72,7 @@ mod _bilux {
     #[pymodule_export]
     use crate::turntable::Turntable;
     #[pymodule_export]
-    use crate::values::{Grid, Spec};
+    use crate::values::{Grid, IntensityDistribution, Spec};
 
     /// The licences of Bilux, and of everything in this package that others wrote.
     ///

@@ -46,6 +46,24 @@ pub(crate) struct Spec {
 #[pyclass(frozen, module = "bilux")]
 pub(crate) struct Grid(pub(crate) Arc<bilux::scene::media::Grid>);
 
+/// A measured luminous intensity distribution, for the light `luminaire`.
+///
+/// Args:
+///     azimuths: angles C of the measured half planes in degrees, ascending, such as 0 to 360; one stands for all.
+///     polar_angles: angles γ in degrees from the lamp's axis, which points downwards unless it is turned; ascending within 0 to 180.
+///     candela: an array (azimuths, polar_angles), none of them negative. Between these angles the intensity is bilinear, and
+///         outside of them it is 0.
+///     name: a name for messages and written files.
+///
+/// Example:
+///     >>> cosine = np.cos(np.radians(np.linspace(0, 90, 91))).clip(0)
+///     >>> lamp = bilux.IntensityDistribution([0], np.linspace(0, 90, 91), [1000 * cosine])
+///     >>> round(lamp.lumens)
+///     3142
+///     >>> light = bilux.lights.luminaire(distribution=lamp, position=(0, 2.5, 0))
+#[pyclass(frozen, module = "bilux")]
+pub(crate) struct IntensityDistribution(pub(crate) Arc<bilux::scene::IntensityDistribution>);
+
 /// Where values may name textures and materials.
 pub(crate) trait Resolve {
     /// The index of a texture.
@@ -120,6 +138,9 @@ pub(crate) fn value(name: &str, argument: &Bound<'_, PyAny>, resolve: &mut dyn R
     if let Ok(grid) = argument.cast::<Grid>() {
         return Ok(Value::Grid(grid.get().0.clone()));
     }
+    if let Ok(distribution) = argument.cast::<IntensityDistribution>() {
+        return Ok(Value::Distribution(distribution.get().0.clone()));
+    }
     if let Ok(material) = argument.cast::<Spec>() {
         return Ok(Value::Material(resolve.material(material)?));
     }
@@ -184,6 +205,9 @@ fn object<'py>(py: Python<'py>, value: &Value, scene: &SceneBuilder) -> PyResult
             None => py.None().into_bound(py),
         },
         Value::Grid(grid) => Bound::new(py, Grid(grid.clone()))?.into_any(),
+        Value::Distribution(distribution) => {
+            Bound::new(py, IntensityDistribution(distribution.clone()))?.into_any()
+        }
         Value::Material(index) => match scene.materials.get(*index) {
             Some(spec) => Bound::new(py, Spec::of(py, "materials", spec, scene)?)?.into_any(),
             None => py.None().into_bound(py),

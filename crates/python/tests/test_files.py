@@ -321,3 +321,22 @@ def test_grids_are_read_from_files_and_bytes(tmp_path):
     np.save(tmp_path / "negative.npy", values - 1)
     with pytest.warns(match="1 voxels are negative"):
         bilux.Grid.read(tmp_path / "negative.npy")
+
+
+def test_lamps_are_read_from_files_and_made_of_arrays(tmp_path):
+    angles = np.linspace(0, 90, 91)
+    candela = 1000 * np.cos(np.radians(angles)).clip(0)
+    lamp = bilux.IntensityDistribution([0], angles, [candela], name="lambertian")
+    assert lamp.lumens == pytest.approx(1000 * np.pi, rel=1e-4) and lamp.at(60, 123) == pytest.approx(500)
+    scene = bilux.Scene()
+    scene.add_light(bilux.lights.luminaire(distribution=lamp, position=(0, 2, 0)))
+    scene.save(tmp_path / "lamp.toml")
+    for file in (tmp_path / "lamp-lamp-1.ies", (tmp_path / "lamp-lamp-1.ies").read_bytes()):
+        assert bilux.IntensityDistribution.read(file).lumens == pytest.approx(lamp.lumens)
+    assert pickle.loads(pickle.dumps(lamp)).lumens == lamp.lumens
+    with pytest.raises(ValueError, match=r"its shape is \(1, 91\), but must be .*\(2, 91\)"):
+        bilux.IntensityDistribution([0, 90], angles, [candela])
+    with pytest.raises(ValueError, match="polar angles do not ascend"):
+        bilux.IntensityDistribution([0], angles[::-1], [candela])
+    with pytest.raises(bilux.FormatError, match="no file of a lamp"):
+        bilux.IntensityDistribution.read(b"nothing")

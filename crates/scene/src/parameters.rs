@@ -4,6 +4,7 @@ mod value;
 
 use crate::error::{SceneError, nearest_name};
 use crate::grid::Grid;
+use crate::intensity_distribution::IntensityDistribution;
 pub use crate::span::Span;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
@@ -206,6 +207,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The intensity distribution under a key, if there is one.
+    pub fn distribution(&self, key: &str) -> Option<Arc<IntensityDistribution>> {
+        match self.value(key) {
+            Value::Distribution(distribution) => Some(distribution),
+            _ => None,
+        }
+    }
+
     /// The material under a key, as an index; an invalid index if none is given.
     pub fn material(&self, key: &str) -> usize {
         match self.value(key) {
@@ -243,6 +252,7 @@ fn parse_default(kind: ParameterKind, text: &str) -> Value {
         ParameterKind::Text
         | ParameterKind::Texture
         | ParameterKind::Grid
+        | ParameterKind::Distribution
         | ParameterKind::Material
         | ParameterKind::Choice(_) => Value::Text(text.to_owned()),
         _ => {
@@ -308,6 +318,9 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
         ParameterKind::Grid => {
             (matches!(value, Value::Grid(_)), "{ grid = \"FILE\" } or { kind = \"cloud\" }".to_owned())
         }
+        ParameterKind::Distribution => {
+            (matches!(value, Value::Distribution(_)), "the name of an IES or EULUMDAT file".to_owned())
+        }
         ParameterKind::Stops { min, max } => {
             let is_right = |stops: Vec<(f32, Rgb)>| {
                 let within = |c: f32| number_in(Some(f64::from(c)), min, max);
@@ -350,5 +363,6 @@ fn describe(value: &Value) -> String {
         Value::Texture(_) => "a texture".to_owned(),
         Value::Material(_) => "a material".to_owned(),
         Value::Grid(_) => "a grid".to_owned(),
+        Value::Distribution(_) => "an intensity distribution".to_owned(),
     }
 }

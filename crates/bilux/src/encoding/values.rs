@@ -6,10 +6,11 @@ use bilux_math::motion::Motion;
 use bilux_math::motion::numbers::MotionNumbers;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::texture::{Channel, Filter, Formula, Image, Texels, UvTransform, Wrap};
-use bilux_scene::{Parameters, Span, Spec, Texture, Value};
+use bilux_scene::{Goniometer, IntensityDistribution, Parameters, Span, Spec, Texture, Value};
 use std::sync::Arc;
 
 words! {
+    Goniometer [Goniometer::C, Goniometer::B, Goniometer::A]
     Wrap [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]
     Filter [Filter::Linear, Filter::Nearest]
     Channel [Channel::R, Channel::G, Channel::B, Channel::A]
@@ -70,6 +71,7 @@ impl Coded for Value {
             Value::Texture(index) => tagged(5, &|to| index.write(to)),
             Value::Material(index) => tagged(6, &|to| index.write(to)),
             Value::Grid(grid) => tagged(7, &|to| grid.write(to)),
+            Value::Distribution(distribution) => tagged(8, &|to| distribution.write(to)),
         }
     }
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
@@ -82,8 +84,25 @@ impl Coded for Value {
             5 => Value::Texture(Coded::read(from)?),
             6 => Value::Material(Coded::read(from)?),
             7 => Value::Grid(Coded::read(from)?),
+            8 => Value::Distribution(Coded::read(from)?),
             tag => return Err(from.wrong(format!("no value has the tag {tag}"))),
         })
+    }
+}
+
+impl Coded for Arc<IntensityDistribution> {
+    fn write(&self, to: &mut Encoder) {
+        to.name(&self.name().to_owned());
+        self.goniometer().write(to);
+        self.azimuths().to_vec().write(to);
+        self.polar_angles().to_vec().write(to);
+        self.candela().to_vec().write(to);
+    }
+    fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
+        let (name, goniometer) = (String::read(from)?, Coded::read(from)?);
+        let (azimuths, polar, candela) = (Coded::read(from)?, Coded::read(from)?, Coded::read(from)?);
+        let read = IntensityDistribution::new(&name, goniometer, azimuths, polar, candela);
+        read.map(Arc::new).map_err(|why| from.wrong(why))
     }
 }
 

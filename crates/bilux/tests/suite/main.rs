@@ -7,6 +7,7 @@ mod fog;
 mod ground;
 mod own_light;
 mod parts;
+mod photometry;
 mod request;
 mod session;
 mod typed;

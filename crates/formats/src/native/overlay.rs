@@ -141,6 +141,6 @@ fn text(value: &Value) -> Option<String> {
         Value::List(items) => {
             format!("[{}]", items.iter().map(text).collect::<Option<Vec<_>>>()?.join(", "))
         }
-        Value::Texture(_) | Value::Material(_) | Value::Grid(_) => return None,
+        Value::Texture(_) | Value::Material(_) | Value::Grid(_) | Value::Distribution(_) => return None,
     })
 }

@@ -116,6 +116,7 @@ fn values(kind: ParameterKind) -> Value {
         }
         ParameterKind::Texture => json!({ "oneOf": [texture(&[]), formula()] }),
         ParameterKind::Grid => grid(),
+        ParameterKind::Distribution => described("string", "a file of a lamp, relative to this file"),
         ParameterKind::Stops { min, max } => {
             let stop = json!([{ "type": "number" }, { "oneOf": colour(min, max) }]);
             let stop = json!({ "type": "array", "prefixItems": stop, "minItems": 2, "maxItems": 2 });
@@ -171,7 +172,7 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
     let numbers: Vec<Value> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     Some(match parameter.kind {
         _ if text.is_empty() => return None,
-        ParameterKind::Texture | ParameterKind::Grid => return None,
+        ParameterKind::Texture | ParameterKind::Grid | ParameterKind::Distribution => return None,
         ParameterKind::Bool => json!(text == "true"),
         ParameterKind::Choice(_) | ParameterKind::Text | ParameterKind::Material => json!(text),
         _ => match <[Value; 1]>::try_from(numbers) {

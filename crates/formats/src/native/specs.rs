@@ -106,6 +106,11 @@ impl Native<'_, '_> {
         item: &Item,
         part: &Part,
     ) -> Result<Option<Value>, FormatError> {
+        if kind == Some(ParameterKind::Distribution) {
+            let file = item.text(key)?;
+            let distribution = self.reading.distribution(part.folder.as_deref(), file, &item.at)?;
+            return Ok(Some(Value::Distribution(distribution)));
+        }
         let TomlValue::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
         if kind == Some(ParameterKind::Grid) {
             return self.grid(key, table, part).map(|grid| Some(Value::Grid(grid)));

@@ -5,6 +5,7 @@ use super::words::{is_bare, number, quoted};
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::grids::file_of;
+use crate::luminaires;
 use crate::ply::encode;
 use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
@@ -196,6 +197,7 @@ fn value_text(
             None => return Ok(None),
         },
         Value::Grid(grid) => return grid_text(grid, scene, writing),
+        Value::Distribution(distribution) => quoted(&luminaires::file_of(distribution, writing)),
         Value::Material(index) => match material_names(&scene.materials).get(*index) {
             Some(name) => quoted(name),
             None => return Ok(None),

@@ -23,6 +23,7 @@ mod grids;
 mod grids_in_scenes;
 mod hostile;
 mod left_out;
+mod luminaires;
 mod materials_of_exporters;
 mod messages;
 mod native;

@@ -14,7 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from . import trimesh
-from ._bilux import Accel, Grid, Picture, Spec, Texture, __version__, compare, licenses, read_picture
+from ._bilux import Accel, Grid, IntensityDistribution, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
 from ._tables import (
@@ -51,6 +51,7 @@ __all__ = [
     "FormatError",
     "Grid",
     "Hits",
+    "IntensityDistribution",
     "Interrupted",
     "Mesh",
     "NearestPoints",

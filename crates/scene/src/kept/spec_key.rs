@@ -2,17 +2,19 @@
 
 use super::Same;
 use crate::grid::Grid;
+use crate::intensity_distribution::IntensityDistribution;
 use crate::parameters::{Spec, Value};
 use crate::texture::Texture;
 use std::sync::Arc;
 
 /// A spec with everything that it refers to: numbers by their bits, textures by their addresses, other materials by
 /// their own specs. Its place in the file and its name do not count.
-#[derive(Clone, PartialEq, Eq, Hash)]
+#[derive(Clone, Default, PartialEq, Eq, Hash)]
 pub(crate) struct SpecKey {
     bytes: Vec<u8>,
     textures: Vec<Same<Texture>>,
     grids: Vec<Same<Grid>>,
+    distributions: Vec<Same<IntensityDistribution>>,
 }
 
 /// Materials that refer to others more deeply than this are not compared.
@@ -24,7 +26,7 @@ impl SpecKey {
     /// The key of a spec in a scene with these textures and materials; `None` where it refers to one that there is
     /// not, or to too many.
     pub(crate) fn of(spec: &Spec, textures: &[Arc<Texture>], materials: &[Spec]) -> Option<SpecKey> {
-        let mut key = SpecKey { bytes: Vec::new(), textures: Vec::new(), grids: Vec::new() };
+        let mut key = SpecKey::default();
         key.push_spec(spec, textures, materials, 0)?;
         Some(key)
     }
@@ -64,6 +66,7 @@ impl SpecKey {
             Value::Texture(_) => 5,
             Value::Material(_) => 6,
             Value::Grid(_) => 7,
+            Value::Distribution(_) => 8,
         });
         match value {
             Value::Bool(yes) => self.bytes.push(u8::from(*yes)),
@@ -77,6 +80,7 @@ impl SpecKey {
                 }
             }
             Value::Grid(grid) => self.grids.push(Same(grid.clone())),
+            Value::Distribution(distribution) => self.distributions.push(Same(distribution.clone())),
             Value::Texture(index) => self.textures.push(Same(textures.get(*index)?.clone())),
             Value::Material(index) => {
                 self.push_spec(materials.get(*index)?, textures, materials, depth + 1)?;

@@ -15,6 +15,7 @@ mod environment_map;
 mod guide;
 mod light;
 mod light_triangle;
+mod luminaire;
 mod mesh_light;
 mod point;
 mod rect;
@@ -85,6 +86,7 @@ pub const LIGHTS: &[LightEntry] = &[
     point::ENTRY,
     directional::ENTRY,
     spot::ENTRY,
+    luminaire::ENTRY,
     rect::ENTRY,
     sphere::ENTRY,
     environment::ENTRY,

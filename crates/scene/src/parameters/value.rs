@@ -1,6 +1,7 @@
 //! Values in scene files.
 
 use crate::grid::Grid;
+use crate::intensity_distribution::IntensityDistribution;
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ pub enum Value {
     Material(usize),
     /// A grid of numbers in space.
     Grid(Arc<Grid>),
+    /// A measured luminous intensity distribution.
+    Distribution(Arc<IntensityDistribution>),
 }
 
 impl Value {
@@ -78,5 +81,11 @@ impl From<Rgb> for Value {
 impl From<Vec3> for Value {
     fn from(v: Vec3) -> Value {
         Value::triple(v.to_array())
+    }
+}
+
+impl From<Arc<IntensityDistribution>> for Value {
+    fn from(distribution: Arc<IntensityDistribution>) -> Value {
+        Value::Distribution(distribution)
     }
 }

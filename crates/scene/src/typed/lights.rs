@@ -42,6 +42,25 @@ typed! {
         /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
+    /// Lamp with a measured intensity distribution, from an IES or EULUMDAT file.
+    Luminaire = "luminaire" {
+        /// Position (m); default `0 5 0`.
+        position: bilux_math::Vec3,
+        /// Direction of its axis, from which γ is measured: down for a lamp that hangs (m); default `0 -1 0`.
+        direction: bilux_math::Vec3,
+        /// Direction of the half plane C 0, which is made perpendicular to the axis (m); default `1 0 0`.
+        c0: bilux_math::Vec3,
+        /// Intensity over direction: a file (.ies, .ldt); none is the same in all directions, 1000 lm; default `none`.
+        distribution: impl Into<crate::Value>,
+        /// What it emits in all directions together; -1 takes the lumens of the file, 683 of which are 1 W (W); default `-1`.
+        flux: bilux_math::Rgb,
+        /// Factor on its light, such as its colour; default `1`.
+        scale: bilux_math::Rgb,
+        /// Colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π; default `-1`.
+        classic: bilux_math::Rgb,
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
+        group: &str,
+    }
     /// Rectangular area light, visible to the camera.
     Rect = "rect" {
         /// Centre (m); default `0 5 0`.

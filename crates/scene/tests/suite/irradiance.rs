@@ -5,7 +5,8 @@ use bilux_math::transcendental::{atan2_f64, sin_cos};
 use bilux_math::{DVec3, Frame, Motion, Transform, Vec2, Vec3, warp};
 use bilux_scene::generators::shapes;
 use bilux_scene::{
-    AccelChoice, LIGHTS, Light, LightSample, Object, Ray, Scene, SceneBuilder, Spec, Surface, Tracer,
+    AccelChoice, Goniometer, IntensityDistribution, LIGHTS, Light, LightSample, Object, Ray, Scene,
+    SceneBuilder, Spec, Surface, Tracer,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -102,6 +103,22 @@ fn places(kind: &str) -> Vec<Place> {
             let spec = if kind == "spot" { spec.with("look_at", at) } else { spec };
             let half = 20.0 * size;
             place(format!("{kind} {d} away"), [half, 0.0], at, f64::from(LIGHT) / (d * d), 1.0, |b| {
+                b.lights.push(spec)
+            })
+        }),
+        // The axis is turned from the floor's point by 30 degrees, and C 0 points to that side: 30 degrees of γ in the plane C 180.
+        "luminaire" => at_distances(&|size, distance, at| {
+            let up = at + Vec3::Y * (size * distance);
+            let d = f64::from(up.y) - f64::from(at.y);
+            let (azimuths, polar) = (vec![0.0, 90.0, 270.0, 360.0], vec![0.0, 20.0, 60.0]);
+            let candela = [[1.0; 3], [1.0, 10.0, 30.0], [1.0, 20.0, 70.0], [1.0; 3]].concat();
+            let made = IntensityDistribution::new("", Goniometer::C, azimuths, polar, candela).unwrap();
+            let (sine, cosine) = sin_cos(30f32.to_radians());
+            let spec =
+                spec().with("position", up).with("distribution", Arc::new(made)).with("scale", 683.0f32);
+            let spec = spec.with("direction", Vec3::new(sine, -cosine, 0.0)).with("c0", Vec3::X);
+            let expected = (0.5 * (10.0 + 20.0) * 0.75 + 0.5 * (30.0 + 70.0) * 0.25) / (d * d);
+            place(format!("luminaire {d} away"), [20.0 * size, 0.0], at, expected, 1.0, |b| {
                 b.lights.push(spec)
             })
         }),

@@ -7,7 +7,9 @@ use crate::common::{
 };
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{CameraSample, Object, Ray, Scene, SceneBuilder, Spec, Texture, Value};
+use bilux_scene::{
+    CameraSample, Goniometer, IntensityDistribution, Object, Ray, Scene, SceneBuilder, Spec, Texture, Value,
+};
 use bilux_transport::{
     FILTERS, Filter, LightSubpaths, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators,
 };
@@ -23,11 +25,20 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
         Spec::new("", "environment").with("radiance", 0.5f32).with("ground", 0.1f32).with("zenith", 1.0f32),
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
         sphere(Vec3::new(-0.5, 2.5, 0.0), 0.3),
+        lamp(Vec3::new(-0.3, 2.5, 1.0)),
     ];
     for (turn, light) in lights.into_iter().enumerate() {
         let name = light.kind.clone();
         assert_like_path_in_turn(turn, &name, &built(&without_mirrors(light)), &["light", "bdpt"]);
     }
+}
+
+/// A lamp whose light is of a measured kind: other in each half plane, and none above it.
+fn lamp(position: Vec3) -> Spec {
+    let (azimuths, polar) = (vec![0.0, 40.0, 200.0, 360.0], vec![0.0, 25.0, 60.0, 110.0]);
+    let candela = (0..16).map(|i| (700 * ((5 * i + 3) % 11)) as f32).collect();
+    let made = IntensityDistribution::new("odd", Goniometer::C, azimuths, polar, candela).unwrap();
+    Spec::new("", "luminaire").with("position", position).with("distribution", Arc::new(made))
 }
 
 /// A lamp that moves over a floor from left to right while the shutter is open lights both halves alike, in a single iteration

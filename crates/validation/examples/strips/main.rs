@@ -51,6 +51,7 @@ fn main() -> Result<(), Failure> {
     let files = tempfile::tempdir()?;
     write_textures(files.path())?;
     write_grids(files.path())?;
+    write_lamps(files.path())?;
     for (table, entry) in materials.chain(textures).chain(lights) {
         for parameter in entry.parameters {
             let path = format!("{}/{}-{}.jpg", folder(table), entry.name, parameter.name);
@@ -144,6 +145,27 @@ fn write_grids(folder: &Path) -> Result<(), Failure> {
     };
     write("smoke.npy", &puffs)?;
     Ok(write("heat.npy", &heat)?)
+}
+
+/// Lamps: a narrow beam, a wide one with a gap below, and one that shines to one side.
+fn write_lamps(folder: &Path) -> Result<(), Failure> {
+    let polar = "0 15 30 45 60 75 90";
+    for (name, planes, azimuths, candela) in [
+        ("narrow.ies", 1, "0", "2000 900 60 0 0 0 0"),
+        ("wide.ies", 1, "0", "100 180 500 700 400 90 0"),
+        (
+            "wall.ies",
+            3,
+            "0 90 180",
+            "300 700 1200 900 500 200 0\n300 300 200 100 40 10 0\n300 100 20 5 0 0 0",
+        ),
+    ] {
+        let text = format!(
+            "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 7 {planes} 1 2 0 0 0 1 1 0\n{polar}\n{azimuths}\n{candela}\n"
+        );
+        fs::write(folder.join(name), text)?;
+    }
+    Ok(())
 }
 
 /// A normal map of round bumps, and a sky with a sun.

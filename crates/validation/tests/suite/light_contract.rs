@@ -4,8 +4,8 @@ use bilux_math::glam::DVec3;
 use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::shapes::{cuboid, icosphere, quad};
 use bilux_scene::{
-    AccelChoice, ClassicLight, ClassicLighting, EmissionSample, LIGHTS, Light, LightSample, LightTracing,
-    Mesh, Object, Primitive, SceneBuilder, Spec, Surface, Texture, Value,
+    AccelChoice, ClassicLight, ClassicLighting, EmissionSample, Goniometer, IntensityDistribution, LIGHTS,
+    Light, LightSample, LightTracing, Mesh, Object, Primitive, SceneBuilder, Spec, Surface, Texture, Value,
 };
 use bilux_validation::chi_square::uniforms;
 use bilux_validation::light_contract::{CHECKS, LightCase};
@@ -110,6 +110,23 @@ fn by_picture(sides: f64) -> LightCase {
     LightCase { power: Some(mean * 0.8 * 0.5 * TAU * sides), ..placed }
 }
 
+/// A lamp that is turned, with angles at uneven distances, other intensities in all of them, and none in many directions.
+fn luminaire(goniometer: Goniometer) -> LightCase {
+    let azimuths = match goniometer {
+        Goniometer::C => vec![0.0, 31.0, 90.0, 155.0, 250.0, 360.0],
+        _ => vec![-80.0, -40.0, -10.0, 12.0, 55.0, 85.0],
+    };
+    let polar = vec![4.0, 20.0, 75.0, 80.0, 130.0, 171.0];
+    let candela = (0..36).map(|i| [0.0, 900.0, 40.0, 350.0, 0.0, 2000.0, 610.0][i * 5 % 7]).collect();
+    let made = IntensityDistribution::new("odd", goniometer, azimuths, polar, candela).unwrap();
+    let spec = Spec::new("", "luminaire").with("distribution", Arc::new(made));
+    let spec = spec.with("position", Vec3::new(0.7, 2.0, -0.4)).with("c0", Vec3::new(0.3, 0.2, -1.0));
+    with_light(
+        &format!("luminaire {goniometer:?}"),
+        spec.with("direction", Vec3::new(-0.6, -1.0, 0.3)).with("scale", Rgb::new(700.0, 650.0, 400.0)),
+    )
+}
+
 fn with_light(name: &str, spec: Spec) -> LightCase {
     case(name, 0.0, |builder| builder.lights.push(spec))
 }
@@ -151,6 +168,7 @@ fn cases() -> Vec<LightCase> {
         with_light("panel that shines away", beside.clone().with("sides", "front").with("edge_u", -Vec3::X)),
         with_light("panel that shines on the block", beside.with("sides", "front")),
     ]);
+    cases.extend(Goniometer::ALL.map(luminaire));
     let sun = |x: usize, y: usize| if (x, y) == (41, 9) { 900.0 } else { 0.0 };
     let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
     let picture =
@@ -300,6 +318,21 @@ const PLANTED: &[Bug] = &[
         "spot",
         "emitted samples add up to the power",
         Defect::Sent(|s| EmissionSample { le: Rgb::WHITE * 100.0, ..s }),
+    ),
+    (
+        "the mean intensity in all directions",
+        "luminaire C",
+        "emitted samples add up to the power",
+        Defect::Sent(|s| EmissionSample { le: Rgb::grey(1000.0), ..s }),
+    ),
+    (
+        "an angle in the wrong half plane",
+        "luminaire C",
+        "direct sampling finds the emitted light",
+        Defect::Sent(|s| EmissionSample {
+            direction: Vec3::new(s.direction.x, s.direction.y, -s.direction.z),
+            ..s
+        }),
     ),
     (
         "a cosine counted twice",

@@ -89,6 +89,7 @@ fn text(value: &Value) -> String {
         Value::List(list) => list.iter().map(text).collect::<Vec<_>>().join(","),
         Value::Texture(index) | Value::Material(index) => index.to_string(),
         Value::Grid(grid) => grid.name().to_owned(),
+        Value::Distribution(distribution) => distribution.name().to_owned(),
     }
 }
 

@@ -13,6 +13,7 @@ pub(super) fn value_json(value: &bilux::scene::Value) -> Value {
         V::List(list) => list.iter().map(value_json).collect(),
         V::Texture(_) => json!({ "texture": true }),
         V::Grid(grid) => json!({ "grid": grid.name() }),
+        V::Distribution(distribution) => json!({ "distribution": distribution.name() }),
         V::Material(index) => json!({ "material": index }),
     }
 }
