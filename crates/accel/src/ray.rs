@@ -34,6 +34,11 @@ impl Ray {
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0, exclude, mask }
     }
 
+    /// Whether its direction is zero: what a camera returns where its film sees nothing.
+    pub fn is_nowhere(&self) -> bool {
+        self.direction == [0.0; 3]
+    }
+
     /// The point at `t`.
     pub fn at(&self, t: f32) -> [f32; 3] {
         std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])

@@ -12,6 +12,7 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
     let mut warnings: Vec<Warning> = of_boundaries(given, scene).into_iter().collect();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
+    camera.warnings().iter().for_each(|message| warn(message));
     if camera_is_inside_solid(scene, camera) {
         warn(
             "the camera is inside a transparent object and sees everything through it: move the camera out, unless \

@@ -9,6 +9,7 @@ mod asc;
 mod bake;
 mod blocks;
 mod budget;
+mod camera_loss;
 mod cloud;
 mod colours;
 mod error;

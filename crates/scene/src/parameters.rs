@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::intensity_distribution::IntensityDistribution;
 pub use crate::span::Span;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{DVec3, Rgb, Vec3};
 use std::sync::Arc;
 pub use value::Value;
 
@@ -148,6 +148,11 @@ impl<'a> Reader<'a> {
         self.value(key).as_number().unwrap_or_default() as f32
     }
 
+    /// A number in double precision.
+    pub fn number_f64(&self, key: &str) -> f64 {
+        self.value(key).as_number().unwrap_or_default()
+    }
+
     /// The minimum and maximum of a key; both 0 if it is not a number.
     pub fn range(&self, key: &str) -> [f64; 2] {
         match self.parameters.iter().find(|p| p.name == key).map(|p| p.kind) {
@@ -179,6 +184,23 @@ impl<'a> Reader<'a> {
     /// Three numbers, or one for all three.
     pub fn vector(&self, key: &str) -> Vec3 {
         triple(&self.value(key)).map_or(Vec3::ZERO, Vec3::from)
+    }
+
+    /// Three numbers, or one for all three, in double precision.
+    pub fn vector_f64(&self, key: &str) -> DVec3 {
+        match self.value(key) {
+            Value::List(list) => {
+                let number = |i: usize| list.get(i).and_then(Value::as_number).unwrap_or_default();
+                DVec3::new(number(0), number(1), number(2))
+            }
+            one => DVec3::splat(one.as_number().unwrap_or_default()),
+        }
+    }
+
+    /// A parameter, except these, that has another value in another spec of the same row.
+    pub(crate) fn differs(&self, other: &Reader, except: &[&str]) -> Option<&'static str> {
+        let rows = self.parameters.iter().map(|row| row.name).filter(|name| !except.contains(name));
+        rows.into_iter().find(|name| self.value(name) != other.value(name))
     }
 
     /// A colour; white if a texture is given.

@@ -267,7 +267,7 @@ impl PartTally<'_> {
         if let Some(both_ends) = both_ends {
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             both_ends.sample(&ray, is_wanted, &mut task, self);
-        } else if is_wanted {
+        } else if is_wanted && !ray.is_nowhere() {
             self.found.clear();
             let found = Some(std::mem::take(&mut self.found));
             state.record = Some(Box::new(Record { found, events: None }));

@@ -114,6 +114,8 @@ impl dyn PixelIntegrator {
 
     /// Takes a sample of a pixel: from the camera where it `is_wanted`, and all splats.
     pub fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        // Where the film sees nothing, only light subpaths are left.
+        let is_wanted = is_wanted && !ray.is_nowhere();
         match self.light_subpaths() {
             Some(subpaths) => subpaths.sample(ray, is_wanted, task, splats),
             None if is_wanted => self.radiance(ray, task),

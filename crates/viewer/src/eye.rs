@@ -61,7 +61,7 @@ impl Eye {
             pivot: position + ahead * far,
             zoom: f64::from(settings.view.zoom),
             up: nearest_axis(reader.vector("up").as_dvec3()),
-            is_parallel: row.entry.parameters.iter().all(|p| p.name != "fov"),
+            is_parallel: camera.spec.kind == "orthographic",
             radius,
         })
     }

@@ -84,7 +84,9 @@ impl Job {
         note(FINGERPRINT, self.fingerprint().to_owned());
         let matrices = self.camera().matrices(self.scene().shutter()[0]);
         note("worldToCamera", row_vectors(&matrices.to_camera));
-        note("worldToNDC", row_vectors(&matrices.to_film));
+        if let Some(to_film) = &matrices.to_film {
+            note("worldToNDC", row_vectors(to_film));
+        }
         // What was interrupted cannot be made again.
         if !outcome.rendered.cancelled {
             let reached = outcome.rendered.reached.map_or(self.settings().spp, |reached| reached.spp);

@@ -261,6 +261,17 @@ pub struct Settings {
     pub given: Parameters,
 }
 
+/// The size of the pictures that the chosen camera was calibrated with.
+fn calibrated_size(scene: &SceneBuilder, settings: &Parameters) -> Option<[u32; 2]> {
+    let wanted = match settings.find("camera") {
+        Some((Value::Text(name), _)) => name.clone(),
+        Some((Value::Integer(number), _)) => number.to_string(),
+        _ => "0".to_owned(),
+    };
+    let by_name = scene.cameras.iter().find(|camera| camera.spec.name == wanted);
+    by_name.or_else(|| scene.cameras.get(wanted.parse::<usize>().ok()?))?.calibrated_size()
+}
+
 impl Settings {
     /// The samples per pixel of the picture, unless noise or time alone decides their number.
     pub fn asked_spp(&self) -> Option<u32> {
@@ -276,6 +287,11 @@ impl Settings {
         let mut all = scene.settings.clone();
         for (key, value, span) in &user.0 {
             all.set_at(key, value.clone(), span.clone());
+        }
+        if all.find("size").is_none()
+            && let Some([width, height]) = calibrated_size(scene, &all)
+        {
+            all.set("size", format!("{width}x{height}"));
         }
         Settings::resolve(&all)
     }

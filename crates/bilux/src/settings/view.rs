@@ -5,6 +5,7 @@
 
 use crate::Error;
 use bilux_math::Vec3;
+use bilux_math::registry::Entry;
 use bilux_math::transcendental::{atan, tan};
 use bilux_scene::cameras::{CAMERAS, CameraSpec};
 use bilux_scene::{Reader, SceneBuilder, SceneError, Value};
@@ -74,15 +75,19 @@ impl View {
         }
         if self.zoom != 1.0 {
             let Some(row) = CAMERAS.iter().find(|row| row.entry.name == camera.spec.kind) else { return };
-            // Each kind of camera has one of these; wrong values are refused where the camera is built.
+            // Wrong values are refused where the camera is built.
             let Ok(reader) = Reader::new(&camera.spec, &row.entry) else { return };
-            let (key, value) = match row.entry.parameters.iter().any(|p| p.name == "fov") {
-                true => ("fov", narrowed(reader.number("fov"), self.zoom)),
-                false => ("height", reader.number("height") / self.zoom),
-            };
-            let [least, most] = reader.range(key);
-            camera.spec.parameters.set(key, value.clamp(least as f32, most as f32));
-            camera.keyframes.iter_mut().for_each(|(_, changes)| changes.0.retain(|(own, ..)| own != key));
+            let values: Vec<_> = magnified(&reader, &row.entry, f64::from(self.zoom))
+                .into_iter()
+                .map(|(key, value)| {
+                    let [least, most] = reader.range(key);
+                    (key, value.clamp(least, most))
+                })
+                .collect();
+            for (key, value) in values {
+                camera.spec.parameters.set(key, Value::Number(value));
+                camera.keyframes.iter_mut().for_each(|(_, changes)| changes.0.retain(|(own, ..)| own != key));
+            }
         }
     }
 }
@@ -100,6 +105,27 @@ impl View {
         let ahead = self.look_at.unwrap_or(reader.vector("look_at")) - eye;
         let is_along = axis.cross(ahead).length() <= 1e-4 * ahead.length();
         (!is_along).then_some(axis * own.dot(axis).signum())
+    }
+}
+
+/// The parameters of a camera whose picture is magnified by a factor: each kind of camera has some of these.
+fn magnified(reader: &Reader, entry: &Entry, zoom: f64) -> Vec<(&'static str, f64)> {
+    let has = |key: &str| entry.parameters.iter().any(|p| p.name == key);
+    if has("fx") {
+        // Around the middle of the picture, where the axis need not be.
+        let away = |key: &str, side: &str| {
+            let middle = 0.5 * (reader.number_f64(side) - 1.0);
+            middle + (reader.number_f64(key) - middle) * zoom
+        };
+        let scaled = ["fx", "fy", "skew"].map(|key| (key, reader.number_f64(key) * zoom));
+        return scaled
+            .into_iter()
+            .chain([("cx", away("cx", "width")), ("cy", away("cy", "height"))])
+            .collect();
+    }
+    match has("fov") {
+        true => vec![("fov", f64::from(narrowed(reader.number("fov"), zoom as f32)))],
+        false => vec![("height", f64::from(reader.number("height") / zoom as f32))],
     }
 }
 

@@ -1,8 +1,14 @@
 //! Cameras. Each camera has its own file; the table is [`CAMERAS`].
 
+mod central;
+mod opencv;
+mod opencv_fisheye;
 mod orthographic;
 mod perspective;
 mod pinhole;
+mod pixels;
+mod pose;
+mod radial;
 
 pub use pinhole::Pinhole;
 
@@ -11,7 +17,7 @@ use crate::parameters::{Parameters, Reader, Spec};
 use bilux_accel::Ray;
 use bilux_math::glam::Vec4;
 use bilux_math::registry::Entry;
-use bilux_math::{Mat4, Vec2, Vec3};
+use bilux_math::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A sample of the film, the lens and time.
@@ -45,16 +51,17 @@ pub struct CameraConnection {
 pub struct CameraMatrices {
     /// To the space of the camera: x to the right, y upwards, z forwards, in metres.
     pub to_camera: Mat4,
-    /// To the film, 0..=1 on both axes, y downwards, with z and w for the division by w. \[OpenEXR\]
-    pub to_film: Mat4,
+    /// To the film, 0..=1 on both axes, y downwards, with z and w for the division by w. \[OpenEXR\] `None` where straight lines
+    /// are curved in the picture: no matrix does that.
+    pub to_film: Option<Mat4>,
 }
 
 impl CameraMatrices {
     /// Those of a camera at a position with these axes, whose film is given in the camera's own space.
-    fn new(position: Vec3, [right, up, forward]: [Vec3; 3], film: Mat4) -> CameraMatrices {
+    fn new(position: Vec3, [right, up, forward]: [Vec3; 3], film: Option<Mat4>) -> CameraMatrices {
         let rotation = Mat4::from_cols(right.extend(0.0), up.extend(0.0), forward.extend(0.0), Vec4::W);
         let to_camera = rotation.transpose() * Mat4::from_translation(-position);
-        CameraMatrices { to_camera, to_film: film * to_camera }
+        CameraMatrices { to_camera, to_film: film.map(|film| film * to_camera) }
     }
 }
 
@@ -73,25 +80,36 @@ impl CameraConnection {
 
 /// Something that turns points of the film into rays.
 pub trait Camera: Send + Sync {
-    /// The ray of a sample; its direction is of unit length.
+    /// The ray of a sample. Its direction is of unit length, or zero ([`Ray::is_nowhere`]) where nothing reaches the film, as
+    /// beyond the circle of a fisheye lens.
     fn ray(&self, sample: &CameraSample) -> Ray;
     /// Connects a point of the scene through a point on the lens (as in [`CameraSample`]) at a time in seconds.
     ///
-    /// This is the inverse of [`Camera::ray`], off the film too. `None` when the point is behind the camera.
+    /// This is the inverse of [`Camera::ray`], off the film too. `None` when no ray sees the point, as behind the camera.
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
     /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;
     /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
-    /// the film. `None` behind the camera.
+    /// the film. `None` where no ray sees it, as behind the camera.
     fn project(&self, p: Vec3, time: f32) -> Option<Vec2>;
+    /// The same in double precision, for those who measure in pictures.
+    fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2>;
+    /// The ray through a point of the film and the middle of the lens in double precision: where it starts, and its unit
+    /// direction. `None` where the film sees nothing.
+    fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]>;
     /// The transforms of points in the world at a time in seconds.
     fn matrices(&self, time: f32) -> CameraMatrices;
     /// The height of the film's view at a point, in metres perpendicular to the axis, at a time in seconds. Divided by
-    /// the number of pixel rows, it is the width of a pixel there.
+    /// the number of pixel rows, it is the width of a pixel there. Where pixels differ, as in a panorama, it is that of those in
+    /// the middle.
     fn height_at(&self, p: Vec3, time: f32) -> f32;
     /// The camera as a pinhole that does not move, if it is one: many of its rays can be computed at once.
     fn pinhole(&self) -> Option<Pinhole> {
         None
+    }
+    /// What users should know about its picture: each is a sentence.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
     }
     /// True when its rays depend on [`CameraSample::lens`].
     fn has_lens(&self) -> bool;
@@ -112,7 +130,8 @@ pub struct CameraEntry {
 }
 
 /// All cameras.
-pub const CAMERAS: &[CameraEntry] = &[perspective::ENTRY, orthographic::ENTRY];
+pub const CAMERAS: &[CameraEntry] =
+    &[perspective::ENTRY, orthographic::ENTRY, opencv::ENTRY, opencv_fisheye::ENTRY];
 
 /// A camera as a scene describes it: a spec, and the changes at keyframes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -127,6 +146,14 @@ impl CameraSpec {
     /// A camera that does not move.
     pub fn new(spec: Spec) -> CameraSpec {
         CameraSpec { spec, keyframes: Vec::new() }
+    }
+
+    /// The width and height in pixels of the pictures that it was calibrated with, if its parameters are in pixels.
+    pub fn calibrated_size(&self) -> Option<[u32; 2]> {
+        let row = CAMERAS.iter().find(|row| row.entry.name == self.spec.kind)?;
+        row.entry.parameters.iter().find(|parameter| parameter.name == "fx")?;
+        let reader = Reader::new(&self.spec, &row.entry).ok()?;
+        Some(["width", "height"].map(|side| reader.integer(side) as u32))
     }
 }
 
@@ -174,6 +201,12 @@ fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
     let (t0, t1) = (keys[low].0, keys[high].0);
     let fraction = if t1 > t0 { ((time - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 0.0 };
     (&keys[low].1, &keys[high].1, fraction)
+}
+
+/// What is wrong with a camera that has no axes.
+fn without_axes(reader: &Reader) -> SceneError {
+    let message = "a camera must not look along its own up direction, nor at its own position";
+    SceneError::invalid(message, reader.span("look_at"))
 }
 
 /// The right, up and forward axes of a camera that looks from one point to another.

@@ -1,11 +1,13 @@
 //! `orthographic`: parallel rays, as in a plan.
 
 use super::perspective::{MIRRORED, vector};
-use super::{Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, around, look};
+use super::{
+    Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, around, look, without_axes,
+};
 use crate::error::SceneError;
 use bilux_accel::Ray;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Mat4, Vec2, Vec3};
+use bilux_math::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 pub(super) const ENTRY: CameraEntry = CameraEntry {
@@ -34,13 +36,8 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             .iter()
             .map(|(time, reader)| {
                 let position = reader.vector("position");
-                let axes =
-                    look(position, reader.vector("look_at"), reader.vector("up")).ok_or_else(|| {
-                        SceneError::invalid(
-                            "a camera must not look along its own up direction, nor at its own position",
-                            reader.span("look_at"),
-                        )
-                    })?;
+                let axes = look(position, reader.vector("look_at"), reader.vector("up"))
+                    .ok_or_else(|| without_axes(reader))?;
                 Ok((*time, Key { position, axes, half_height: reader.number("height") * 0.5 }))
             })
             .collect::<Result<Vec<_>, SceneError>>()?;
@@ -110,6 +107,20 @@ impl Camera for Orthographic {
         Some(seen * 0.5 + 0.5)
     }
 
+    fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2> {
+        let Key { position, axes, half_height } = self.key_at(time);
+        let (away, [right, up, _]) = (p - position.as_dvec3(), axes.map(Vec3::as_dvec3));
+        let seen = DVec2::new(away.dot(right) / f64::from(self.aspect), -away.dot(up));
+        Some(seen / f64::from(half_height) * 0.5 + 0.5)
+    }
+
+    fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]> {
+        let Key { position, axes, half_height } = self.key_at(time);
+        let [right, up, forward] = axes.map(Vec3::as_dvec3);
+        let aside = (film * 2.0 - 1.0) * DVec2::new(f64::from(self.aspect), -1.0) * f64::from(half_height);
+        Some([position.as_dvec3() + right * aside.x + up * aside.y, forward])
+    }
+
     fn matrices(&self, time: f32) -> CameraMatrices {
         let Key { position, axes, half_height } = self.key_at(time);
         let half = 0.5 / half_height;
@@ -131,7 +142,7 @@ impl Camera for Orthographic {
             0.0,
             1.0,
         ]);
-        CameraMatrices::new(position, axes, film)
+        CameraMatrices::new(position, axes, Some(film))
     }
 
     fn height_at(&self, _p: Vec3, time: f32) -> f32 {

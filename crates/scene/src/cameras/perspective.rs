@@ -1,12 +1,15 @@
 //! `perspective`: a pinhole, or a thin lens if an aperture is given.
 
-use super::{Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, Pinhole, around, look};
+use super::pose::look_f64;
+use super::{
+    Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, Pinhole, around, look, without_axes,
+};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::tan;
-use bilux_math::{Mat4, Vec2, Vec3};
+use bilux_math::{DVec2, DVec3, Mat4, Vec2, Vec3};
 use std::sync::Arc;
 
 pub(super) const ENTRY: CameraEntry = CameraEntry {
@@ -47,10 +50,38 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 kind: ParameterKind::Number { min: 0.0, max: 1e9 },
                 default: "0",
             },
+            fraction("principal_x", "where the axis meets the picture, from its left edge, in widths", "0.5"),
+            fraction(
+                "principal_y",
+                "where the axis meets the picture, from its upper edge, in heights",
+                "0.5",
+            ),
+            fraction(
+                "shift_x",
+                "lens shift to the right, in longer sides of the picture, as in Blender",
+                "0",
+            ),
+            fraction("shift_y", "lens shift upwards, in longer sides of the picture, as in Blender", "0"),
+            Parameter {
+                name: "pixel_aspect",
+                summary: "width of a pixel over its height: fy / fx of a camera matrix",
+                unit: "",
+                kind: ParameterKind::Number { min: 1e-3, max: 1e3 },
+                default: "1",
+            },
+            Parameter {
+                name: "skew",
+                summary: "by how much the picture leans to the right downwards: s / fx of a camera matrix",
+                unit: "",
+                kind: ParameterKind::Number { min: -100.0, max: 100.0 },
+                default: "0",
+            },
             MIRRORED,
         ],
     },
     build: |keys, aspect| {
+        let pixel_aspect = keys.first().map_or(1.0, |(_, reader)| reader.number("pixel_aspect"));
+        let aspect = aspect * pixel_aspect;
         let keys = keys
             .iter()
             .map(|(time, reader)| Ok((*time, Key::read(reader, aspect)?)))
@@ -69,6 +100,11 @@ pub(super) const fn vector(name: &'static str, summary: &'static str, default: &
     Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
 }
 
+/// A part of the picture's width or height.
+const fn fraction(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: -100.0, max: 100.0 }, default }
+}
+
 pub(super) const MIRRORED: Parameter = Parameter {
     name: "mirrored",
     summary: "mirror left and right, as left-handed cameras do",
@@ -79,7 +115,7 @@ pub(super) const MIRRORED: Parameter = Parameter {
 
 struct Perspective {
     keys: Vec<(f32, Key)>,
-    /// Width over height; negative when mirrored.
+    /// Width of the film over its height; negative when mirrored.
     aspect: f32,
     /// The constant result of [`Perspective::key_at`] when there is only one key.
     static_key: Option<(Key, [Vec3; 3])>,
@@ -94,6 +130,10 @@ struct Key {
     tan_half_fov: f32,
     aperture: f32,
     focus: f32,
+    /// From the axis to the middle of the film: in half its width to the right, in half its height upwards.
+    offset: Vec2,
+    /// By how much x grows with y, downwards, on the film at distance 1.
+    skew: f32,
     mirrored: bool,
 }
 
@@ -107,15 +147,11 @@ impl Key {
             tan_half_fov: tan(reader.number("fov").to_radians() * 0.5) * wider,
             aperture: reader.number("aperture"),
             focus: reader.number("focus"),
+            offset: offset(reader, aspect),
+            skew: reader.number("skew"),
             mirrored: reader.bool("mirrored"),
         };
-        match look(key.position, key.look_at, key.up) {
-            Some(_) => Ok(key),
-            None => Err(SceneError::invalid(
-                "a camera must not look along its own up direction, nor at its own position",
-                reader.span("look_at"),
-            )),
-        }
+        look(key.position, key.look_at, key.up).map(|_| key).ok_or_else(|| without_axes(reader))
     }
 
     fn lerp(&self, other: &Key, t: f32) -> Key {
@@ -127,9 +163,20 @@ impl Key {
             tan_half_fov: mix(self.tan_half_fov, other.tan_half_fov),
             aperture: mix(self.aperture, other.aperture),
             focus: mix(self.focus, other.focus),
+            offset: self.offset.lerp(other.offset, t),
+            skew: mix(self.skew, other.skew),
             mirrored: self.mirrored,
         }
     }
+}
+
+/// [`Key::offset`] by the principal point and the lens shift, for a film of this width over height.
+fn offset(reader: &Reader, aspect: f32) -> Vec2 {
+    let of = |x: &str, y: &str| Vec2::new(reader.number(x), reader.number(y));
+    let principal = of("principal_x", "principal_y") - 0.5;
+    let sides = Vec2::new(aspect, 1.0);
+    let shift = of("shift_x", "shift_y") * (sides.max_element() / sides);
+    (shift + Vec2::new(-principal.x, principal.y)) * 2.0
 }
 
 impl Perspective {
@@ -148,11 +195,45 @@ impl Perspective {
 
     /// The camera as it would be without a lens.
     fn pinhole_at(&self, key: &Key, axes: [Vec3; 3]) -> Pinhole {
+        let axes = if key.offset == Vec2::ZERO && key.skew == 0.0 { axes } else { self.oblique(key, axes) };
         Pinhole { position: key.position, axes, tan_half_fov: key.tan_half_fov, aspect: self.aspect }
     }
 }
 
+impl Perspective {
+    /// The frame of a film that is shifted or skewed.
+    fn oblique(&self, key: &Key, [right, up, forward]: [Vec3; 3]) -> [Vec3; 3] {
+        let up = up + right * self.lean(key);
+        let aside = key.offset * Vec2::new(self.aspect, 1.0) * key.tan_half_fov;
+        [right, up, forward + right * aside.x + up * aside.y]
+    }
+
+    /// By how much x changes with y, upwards, on the film at distance 1.
+    fn lean(&self, key: &Key) -> f32 {
+        // In a mirrored picture to the right is to the left.
+        key.skew * self.aspect.signum()
+    }
+
+    /// The point of the film by that of the plane at distance 1, with x to the right and y upwards.
+    fn film_of(&self, key: &Key, seen: Vec2) -> Vec2 {
+        let x = seen.x - self.lean(key) * seen.y;
+        let half = Vec2::new(x / (key.tan_half_fov * self.aspect), -seen.y / key.tan_half_fov);
+        (half + Vec2::new(-key.offset.x, key.offset.y)) * 0.5 + 0.5
+    }
+}
+
 impl Key {
+    /// The axes in double precision; those of single precision where there are none.
+    fn axes_f64(&self, axes: [Vec3; 3]) -> [DVec3; 3] {
+        let [position, look_at, up] = [self.position, self.look_at, self.up].map(Vec3::as_dvec3);
+        look_f64(position, look_at, up).unwrap_or(axes.map(Vec3::as_dvec3))
+    }
+
+    /// Half the width and the height of the film at distance 1.
+    fn half_f64(&self, aspect: f32) -> DVec2 {
+        DVec2::new(f64::from(aspect), 1.0) * f64::from(self.tan_half_fov)
+    }
+
     /// Distance of the focal plane, along the axis.
     fn focus(&self) -> f32 {
         if self.focus > 0.0 { self.focus } else { (self.look_at - self.position).length() }
@@ -193,8 +274,7 @@ impl Camera for Perspective {
         // The film point at distance 1, seen from the centre of the lens, of the ray's point on the focal plane.
         let aside = if lens == Vec2::ZERO { lens } else { lens / key.focus() };
         let seen = Vec2::new(away.dot(right), away.dot(up)) / depth + aside;
-        let film =
-            Vec2::new(seen.x / (key.tan_half_fov * self.aspect), -seen.y / key.tan_half_fov) * 0.5 + 0.5;
+        let film = self.film_of(&key, seen);
         let distance2 = away.length_squared();
         let distance = distance2.sqrt();
         let density = key.density(self.aspect, depth / distance, distance2);
@@ -211,25 +291,46 @@ impl Camera for Perspective {
         let (key, [right, up, forward]) = self.key_at(time);
         let away = p - key.position;
         let depth = away.dot(forward);
-        let seen = Vec2::new(away.dot(right) / self.aspect, -away.dot(up)) / (depth * key.tan_half_fov);
-        (depth > 0.0).then(|| seen * 0.5 + 0.5)
+        let (x, y) = (away.dot(right) - self.lean(&key) * away.dot(up), away.dot(up));
+        let seen = Vec2::new(x / self.aspect, -y) / (depth * key.tan_half_fov);
+        (depth > 0.0).then(|| (seen + Vec2::new(-key.offset.x, key.offset.y)) * 0.5 + 0.5)
+    }
+
+    fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2> {
+        let (key, axes) = self.key_at(time);
+        let away = p - key.position.as_dvec3();
+        let [x, y, depth] = key.axes_f64(axes).map(|axis| away.dot(axis));
+        let (half, offset) = (key.half_f64(self.aspect), key.offset.as_dvec2());
+        let seen = DVec2::new(x - f64::from(self.lean(&key)) * y, y) / (depth * half) - offset;
+        (depth > 0.0).then(|| seen * DVec2::new(0.5, -0.5) + 0.5)
+    }
+
+    fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]> {
+        let (key, axes) = self.key_at(time);
+        let [right, up, forward] = key.axes_f64(axes);
+        let half = key.half_f64(self.aspect);
+        let seen = ((film - 0.5) * DVec2::new(2.0, -2.0) + key.offset.as_dvec2()) * half;
+        let x = seen.x + f64::from(self.lean(&key)) * seen.y;
+        Some([key.position.as_dvec3(), (right * x + up * seen.y + forward).normalize()])
     }
 
     fn matrices(&self, time: f32) -> CameraMatrices {
         let (key, axes) = self.key_at(time);
         let half = 0.5 / key.tan_half_fov;
+        // Not minus 0, where nothing leans.
+        let leaning = 0.0 - self.lean(&key) * half / self.aspect;
         // The plane at 1 m is at 0, what is infinitely far away at 1.
         let film = Mat4::from_cols_array(&[
             half / self.aspect,
             0.0,
             0.0,
             0.0, //
-            0.0,
+            leaning,
             -half,
             0.0,
             0.0, //
-            0.5,
-            0.5,
+            0.5 - key.offset.x * 0.5,
+            0.5 + key.offset.y * 0.5,
             1.0,
             1.0, //
             0.0,
@@ -237,7 +338,7 @@ impl Camera for Perspective {
             -1.0,
             0.0,
         ]);
-        CameraMatrices::new(key.position, axes, film)
+        CameraMatrices::new(key.position, axes, Some(film))
     }
 
     fn height_at(&self, p: Vec3, time: f32) -> f32 {

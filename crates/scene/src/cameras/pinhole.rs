@@ -7,7 +7,8 @@ use bilux_math::{Vec2, Vec3};
 pub struct Pinhole {
     /// Where the rays start.
     pub position: Vec3,
-    /// Unit vectors: to the right, upwards, forwards.
+    /// To the right and upwards along the film, and to its middle at distance 1. They are unit vectors and perpendicular unless
+    /// the film is shifted or skewed: each such film is what an oblique frame makes of a plain one, at no cost for the plain one.
     pub(super) axes: [Vec3; 3],
     /// Half the height of the film at distance 1.
     pub(super) tan_half_fov: f32,

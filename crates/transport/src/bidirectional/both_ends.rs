@@ -67,7 +67,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         if self.splats {
             connect_to_camera(task, &light_path, &self.techniques, tally);
         }
-        if is_wanted {
+        if is_wanted && !ray.is_nowhere() {
             self.follow(ray, &light_path, task, tally);
         }
     }

@@ -17,6 +17,7 @@ pub(crate) struct QueuedSample {
 impl QueuedSample {
     /// A sample with both subpaths, or without the one from the camera.
     pub(crate) fn new((ray, state): (Ray, SampleState), is_wanted: bool) -> QueuedSample {
+        let is_wanted = is_wanted && !ray.is_nowhere();
         QueuedSample { ray, state, is_wanted, has_beams: false }
     }
 

@@ -100,7 +100,7 @@ impl SampleQueue for PathQueue {
                     return false;
                 }
                 let (now, later) = waiting.split_at(waiting.len().min(PATHS - self.active.len()));
-                self.begin(rays, now, tracer);
+                self.begin(rays, now, tracer, sink);
                 waiting = later;
             }
             if self.active.is_empty() {
@@ -124,7 +124,13 @@ impl SampleQueue for PathQueue {
 
 impl PathQueue {
     /// Begins the paths of some samples.
-    fn begin<'a>(&mut self, rays: &CameraRays<'a>, places: &[SamplePlace], tracer: &mut Tracer<'a>) {
+    fn begin<'a>(
+        &mut self,
+        rays: &CameraRays<'a>,
+        places: &[SamplePlace],
+        tracer: &mut Tracer<'a>,
+        sink: &mut SampleSink,
+    ) {
         let mut begin = |place, ray: Ray, state| {
             let path = Path::new(&ray, Media::at_start(tracer, &ray));
             let (direct, beta) = (Rgb::BLACK, Rgb::WHITE);
@@ -148,7 +154,10 @@ impl PathQueue {
         }
         for &place in places {
             let (ray, state) = rays.sample(place);
-            begin(place, ray, state);
+            match ray.is_nowhere() {
+                true => sink.add(place, Rgb::BLACK),
+                false => begin(place, ray, state),
+            }
         }
     }
 

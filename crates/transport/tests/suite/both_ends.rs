@@ -347,7 +347,14 @@ fn lenses_and_cameras_without_perspective() {
         spec.with("position", Vec3::new(0.0, 2.0, 5.0)).with("look_at", Vec3::new(0.0, 0.5, 0.0))
     };
     let lens = seen("perspective").with("fov", 40.0f32).with("aperture", 0.3f32).with("focus", 4.0f32);
-    for spec in [lens, seen("orthographic").with("height", 3.0f32)] {
+    let shifted =
+        seen("perspective").with("shift_y", 0.2f32).with("pixel_aspect", 1.4f32).with("skew", 0.2f32);
+    let barrel =
+        seen("opencv").with("k1", -0.4f32).with("k2", 0.1f32).with("p1", 0.02f32).with("s1", 0.03f32);
+    // It sees nothing in its corners.
+    let folding = seen("opencv").with("k1", -0.9f32).with("fx", 480.0f32);
+    let fisheye = seen("opencv-fisheye").with("k1", -0.1f32).with("fx", 200.0f32).with("fy", 170.0f32);
+    for spec in [lens, seen("orthographic").with("height", 3.0f32), shifted, barrel, folding, fisheye] {
         let name = spec.kind.clone();
         builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];
         assert_like_path(&name, &built(&builder), &["light", "bdpt"]);

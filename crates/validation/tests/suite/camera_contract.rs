@@ -1,6 +1,6 @@
 //! Every registered camera keeps its contract, and every check can fail.
 
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{DVec2, DVec3, Vec2, Vec3};
 use bilux_scene::cameras::{CameraSpec, build};
 use bilux_scene::{
     CAMERAS, Camera, CameraConnection, CameraMatrices, CameraSample, Parameters, Ray, Span, Spec, Value,
@@ -10,6 +10,35 @@ use std::sync::Arc;
 
 fn spec(kind: &str) -> Spec {
     Spec::new("", kind).with("position", Vec3::new(1.0, 2.0, 4.0)).with("look_at", Vec3::new(0.2, 0.5, -0.5))
+}
+
+fn shifted(spec: Spec) -> Spec {
+    let spec = spec.with("principal_x", 0.4f32).with("principal_y", 0.55f32).with("shift_x", 0.1f32);
+    spec.with("shift_y", -0.2f32).with("pixel_aspect", 1.3f32).with("skew", 0.1f32).with("fov", 55.0f32)
+}
+
+fn calibrated(kind: &str) -> Spec {
+    let spec = spec(kind).with("width", 640).with("height", 480).with("fx", 500.0f32).with("fy", 520.0f32);
+    spec.with("cx", 300.5f32).with("cy", 260.0f32).with("skew", 4.0f32)
+}
+
+fn with_all(spec: Spec, numbers: &[(&str, f64)]) -> Spec {
+    numbers.iter().fold(spec, |spec, (key, value)| spec.with(key, Value::Number(*value)))
+}
+
+fn barrel(spec: Spec) -> Spec {
+    with_all(spec, &[("k1", -0.31), ("k2", 0.12), ("k3", -0.02), ("p1", 0.001), ("p2", -0.0007)])
+}
+
+fn rational(spec: Spec) -> Spec {
+    let radial = [("k1", 1.1), ("k2", 0.3), ("k3", 0.02), ("k4", 1.5), ("k5", 0.6), ("k6", 0.05)];
+    let rest = [("p1", 2e-3), ("p2", -3e-3), ("s1", 4e-3), ("s2", -1e-3), ("s3", -2e-3), ("s4", 5e-4)];
+    with_all(with_all(spec, &radial), &rest)
+}
+
+fn fisheye(spec: Spec) -> Spec {
+    let lens = [("k1", -0.02), ("k2", 0.004), ("k3", -0.003), ("k4", 0.0004), ("fx", 280.0), ("fy", 285.0)];
+    with_all(spec, &lens)
 }
 
 fn still(name: &str, spec: Spec, aspect: f32) -> (String, Arc<dyn Camera>, f32) {
@@ -39,6 +68,29 @@ fn cameras() -> Vec<(String, Arc<dyn Camera>, f32)> {
         still("wide", spec("perspective").with("fov", 100.0f32), 2.4),
         still("upright", spec("perspective").with("fov", 20.0f32), 0.5),
         still("mirrored", spec("perspective").with("mirrored", true), 1.6),
+        still("shifted", shifted(spec("perspective")), 1.5),
+        still("shifted, mirrored", shifted(spec("perspective")).with("mirrored", true), 0.7),
+        still("shifted lens", shifted(lens.clone()), 1.5),
+        moving("moving shift", shifted(spec("perspective")), &[("shift_x", Value::Number(0.3))], 0.6),
+        still("calibrated", calibrated("opencv"), 4.0 / 3.0),
+        still("calibrated, mirrored", calibrated("opencv").with("mirrored", true), 4.0 / 3.0),
+        still("barrel", barrel(calibrated("opencv")), 4.0 / 3.0),
+        still("rational", rational(calibrated("opencv")), 4.0 / 3.0),
+        still("rational, of another shape", rational(calibrated("opencv")).with("mirrored", true), 1.0),
+        still("folds over", calibrated("opencv").with("k1", -0.3f32), 4.0 / 3.0),
+        still("calibrated fisheye", fisheye(calibrated("opencv-fisheye")), 4.0 / 3.0),
+        still(
+            "narrow fisheye",
+            calibrated("opencv-fisheye").with("k1", -0.15f32).with("fx", 170.0f32),
+            4.0 / 3.0,
+        ),
+        still(
+            "fisheye all around",
+            calibrated("opencv-fisheye").with("fx", 80.0f32).with("fy", 80.0f32),
+            4.0 / 3.0,
+        ),
+        moving("moving fisheye", fisheye(calibrated("opencv-fisheye")), &there[..1], 0.4),
+        moving("moving matrix", calibrated("opencv"), &there[..1], 0.4),
         still("lens", lens.clone(), 1.5),
         still("lens, focused near", lens.clone().with("focus", 1.5f32).with("mirrored", true), 1.5),
         still("plan", spec("orthographic").with("height", 3.0f32), 1.7),
@@ -82,6 +134,14 @@ impl Camera for BuggyCamera {
         (self.defect)(&*self.camera, p, Vec2::ZERO, time).map(|seen| seen.film)
     }
 
+    fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2> {
+        (self.defect)(&*self.camera, p.as_vec3(), Vec2::ZERO, time).map(|seen| seen.film.as_dvec2())
+    }
+
+    fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]> {
+        self.camera.ray_f64(film, time)
+    }
+
     fn matrices(&self, time: f32) -> CameraMatrices {
         self.camera.matrices(time)
     }
@@ -115,6 +175,57 @@ const PLANTED: &[(&str, &str, &str, Defect)] = &[
         |c, from, lens, time| {
             let seen = c.connect(from, lens, time)?;
             Some(CameraConnection { film: seen.film + Vec2::splat(1e-4), ..seen })
+        },
+    ),
+    (
+        "half a pixel aside",
+        "rational",
+        "in double precision, pixels come back exactly",
+        |c, from, lens, time| {
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { film: seen.film + Vec2::splat(0.5 / 1000.0), ..seen })
+        },
+    ),
+    (
+        "y down for up",
+        "calibrated fisheye",
+        "points on a ray project to its film position",
+        |c, from, lens, time| {
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { film: Vec2::new(seen.film.x, 1.0 - seen.film.y), ..seen })
+        },
+    ),
+    (
+        "a rotation transposed",
+        "rational",
+        "points on a ray project to its film position",
+        |c, from, lens, time| {
+            let to_camera = c.matrices(time).to_camera;
+            let eye = to_camera.inverse().transform_point3(Vec3::ZERO);
+            let turned = to_camera.transform_vector3(to_camera.transform_vector3(from - eye));
+            c.connect(eye + turned, lens, time)
+        },
+    ),
+    (
+        "the Jacobian of distortion left out",
+        "barrel",
+        "the density matches that of neighbouring rays",
+        |c, from, lens, time| {
+            // The density of the same camera without distortion.
+            let seen = c.connect(from, lens, time)?;
+            let distance2 = from.distance_squared(seen.p);
+            let cos = -seen.wi.dot(c.forward(time));
+            let density = 500.0 * 520.0 / (640.0 * 480.0 * cos * cos * cos * distance2);
+            Some(CameraConnection { density, ..seen })
+        },
+    ),
+    (
+        "3% of importance too much",
+        "calibrated fisheye",
+        "every ray reaches the film once",
+        |c, from, lens, time| {
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { density: seen.density * 1.03, ..seen })
         },
     ),
     ("a cosine too few", "wide", "the density matches that of neighbouring rays", |c, from, lens, time| {

@@ -1,6 +1,7 @@
 //! Everything in the scene other than meshes: cameras, lights and animations.
 
 use super::Document;
+use crate::camera_loss::{field_of_view, not_perspective};
 use crate::values::{colour, number, vector};
 use crate::writing::Writing;
 use bilux_math::glam::{Mat3, Mat4, Quat};
@@ -56,7 +57,8 @@ impl Document<'_> {
             let half = number(spec, "height").unwrap_or(2.0) * 0.5;
             json!({ "type": "orthographic", "orthographic": { "xmag": half, "ymag": half, "znear": 0.0, "zfar": 1e6 } })
         } else {
-            let fov = number(spec, "fov").unwrap_or(40.0).to_radians();
+            not_perspective(spec, "glTF", writing);
+            let fov = field_of_view(spec).to_radians();
             let mut lens = json!({ "yfov": fov, "znear": 0.001 });
             // With an aspect ratio, images of another shape show no less.
             if let Some(shape) =

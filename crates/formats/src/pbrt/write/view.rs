@@ -1,6 +1,7 @@
 //! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
 use super::document::{Document, float, numbers};
+use crate::camera_loss::{field_of_view, not_perspective};
 use crate::values::{number, vector};
 use crate::writing::Writing;
 use bilux_math::Vec3;
@@ -92,7 +93,8 @@ impl Document<'_> {
             self.line(&format!("Camera \"orthographic\" \"float screenwindow\" [ {window} ]"));
             return;
         }
-        let vertical = number(spec, "fov").unwrap_or(40.0);
+        not_perspective(spec, "pbrt", writing);
+        let vertical = field_of_view(spec);
         // In pbrt, the field of view applies to the shorter side.
         let shorter = match aspect < 1.0 {
             true => 2.0 * atan(tan(0.5 * vertical.to_radians()) * aspect).to_degrees(),

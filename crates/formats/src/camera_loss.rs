@@ -1,0 +1,41 @@
+//! What cameras lose in formats that know only plain perspective ones.
+
+use crate::writing::Writing;
+use bilux_math::transcendental::atan;
+use bilux_scene::Spec;
+
+/// Warns about a camera that is more than a perspective one.
+pub(crate) fn not_perspective(spec: &Spec, format: &str, writing: &mut Writing) {
+    if spec.kind != "perspective" {
+        writing.warn(format!(
+            "{format} files cannot store cameras of the kind '{}': a perspective one from the same place is written",
+            spec.kind
+        ));
+    }
+    let plain = [
+        ("principal_x", 0.5),
+        ("principal_y", 0.5),
+        ("shift_x", 0.0),
+        ("shift_y", 0.0),
+        ("pixel_aspect", 1.0),
+        ("skew", 0.0),
+    ];
+    for (key, default) in plain {
+        if spec.kind == "perspective" && spec.number(key).is_some_and(|value| value != default) {
+            writing.warn(format!("{format} files cannot store '{key}' of a camera: left out"));
+        }
+    }
+}
+
+/// The vertical field of view in degrees that is nearest to a camera's.
+pub(crate) fn field_of_view(spec: &Spec) -> f32 {
+    let in_pixels = |key: &str, default: f32| spec.number(key).unwrap_or(default);
+    let degrees = match spec.kind.as_str() {
+        "opencv" | "opencv-fisheye" => {
+            2.0 * atan(0.5 * in_pixels("height", 480.0) / in_pixels("fy", 525.0)).to_degrees()
+        }
+        "perspective" => return spec.number("fov").unwrap_or(40.0),
+        _ => spec.number("fov").unwrap_or(90.0),
+    };
+    degrees.clamp(1.0, 120.0)
+}
