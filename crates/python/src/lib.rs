@@ -6,6 +6,7 @@
 mod accel;
 mod adding;
 mod arrays;
+mod cameras;
 mod distribution;
 mod encoded;
 mod ending;

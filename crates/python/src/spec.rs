@@ -1,5 +1,6 @@
 //! Materials, lights and cameras as users name them: a row of a table, and values of its parameters.
 
+use crate::cameras::Measuring;
 use crate::errors::of_scene;
 use crate::values::{self, Spec, Unresolved};
 use bilux::math::registry::Entry;
@@ -53,6 +54,70 @@ impl Spec {
             all.update(changes.as_mapping())?;
         }
         Spec::new(&self.table, &self.kind, &all, &self.name)
+    }
+
+    /// Of a camera: the pixels at which it sees points of the world.
+    ///
+    /// Pixels have their centres at whole numbers, as the indices of arrays and as in OpenCV.
+    ///
+    /// Args:
+    ///     points: an array (n, 3), in metres.
+    ///     size: width and height of the picture in pixels; by default that of the pictures which it was calibrated with.
+    ///
+    /// Returns:
+    ///     An array (n, 2) of float64, column and row of each; NaN where the camera does not see the point. Pixels beside the
+    ///     picture are right too.
+    ///
+    /// Raises:
+    ///     TypeError: if it is no camera.
+    ///     ValueError: if nothing says the size, or the points have another shape.
+    ///
+    /// Example:
+    ///     >>> camera = bilux.cameras.perspective(position=(0, 0, 4), look_at=(0, 0, 0))
+    ///     >>> camera.project([[0, 0, 0]], size=(640, 480))
+    ///     array([[319.5, 239.5]])
+    #[pyo3(signature = (points, *, size = None))]
+    fn project<'py>(
+        &self,
+        py: Python<'py>,
+        points: &Bound<'py, PyAny>,
+        size: Option<[u32; 2]>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        Measuring::new(py, self, size)?.project(py, points)
+    }
+
+    /// Of a camera: the rays of pixels, through the middle of the lens.
+    ///
+    /// Args:
+    ///     pixels: an array (n, 2), column and row of each; centres are at whole numbers.
+    ///     size: width and height of the picture in pixels; by default that of the pictures which it was calibrated with.
+    ///
+    /// Returns:
+    ///     Origins and unit directions, two arrays (n, 3) of float64; NaN where the camera sees nothing.
+    ///
+    /// Raises:
+    ///     TypeError: if it is no camera.
+    ///     ValueError: if nothing says the size, or the pixels have another shape.
+    ///
+    /// Example:
+    ///     >>> camera = bilux.cameras.perspective(position=(0, 0, 4), look_at=(0, 0, 0))
+    ///     >>> origins, directions = camera.rays([[319.5, 239.5]], size=(640, 480))
+    ///     >>> origins, directions
+    ///     (array([[0., 0., 4.]]), array([[ 0.,  0., -1.]]))
+    #[pyo3(signature = (pixels, *, size = None))]
+    fn rays<'py>(
+        &self,
+        py: Python<'py>,
+        pixels: &Bound<'py, PyAny>,
+        size: Option<[u32; 2]>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let [origins, directions] = Measuring::new(py, self, size)?.rays(py, pixels)?;
+        Ok((origins, directions))
+    }
+
+    /// What is odd about the pictures of a calibrated camera.
+    fn _oddities(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(Measuring::new(py, self, None)?.oddities())
     }
 
     fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> PyResult<bool> {

@@ -47,7 +47,14 @@ def test_everything_is_documented_and_its_examples_run(name, folder):
 
 
 @pytest.mark.parametrize(
-    "page", ["README.md", "crates/python/README.md", "docs/tutorials/python.md", "docs/tutorials/python-coming-from.md"]
+    "page",
+    [
+        "README.md",
+        "crates/python/README.md",
+        "docs/tutorials/python.md",
+        "docs/tutorials/python-coming-from.md",
+        "docs/tutorials/calibrated.md",
+    ],
 )
 def test_every_example_of_the_pages_runs(page, folder, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text("utf-8"), re.DOTALL)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from ._bilux import Spec, rows
+from ._calibrated import of_opencv
 
 
 class Parameter(NamedTuple):
@@ -127,9 +128,25 @@ class Makers(Table):
         return [*super().__dir__(), *self]
 
 
+class Cameras(Makers):
+    """The kinds of camera. Those of OpenCV take its matrices too, and what has a dash in its name has an underscore here.
+
+    Example:
+        >>> camera = bilux.cameras.perspective(position=(0, 1, 4), look_at=(0, 0, 0), fov=35)
+    """
+
+    def __getattr__(self, kind: str) -> Callable[..., Spec]:
+        known = kind.replace("_", "-")
+        make = super().__getattr__(known if known in self._entries and not kind.startswith("_") else kind)
+        return of_opencv(known, make) if known.startswith("opencv") else make
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(kind.replace("-", "_") for kind in self)]
+
+
 accels = Table("accels", "acceleration structures for ray queries")
 aovs = Table("aovs", "what a render can give besides its picture")
-cameras = Makers("cameras", "kinds of camera")
+cameras = Cameras("cameras", "kinds of camera")
 denoisers = Table("denoisers", "denoisers, the best first")
 densities = Table("densities", "densities of media that are formulas, for `Grid.computed`")
 filters = Table("filters", "pixel reconstruction filters")

@@ -1,0 +1,170 @@
+"""Cameras that were calibrated with OpenCV: its own functions are the reference."""
+
+import numpy as np
+import pytest
+
+import bilux
+
+K = np.array([[510.0, 2.5, 331.2], [0, 498.0, 228.7], [0, 0, 1]])
+SIZE = (640, 480)
+LENSES = {
+    "none": None,
+    "four": [-0.21, 0.05, 0.001, -0.002],
+    "five": [-0.28, 0.11, 0.0007, 0.0004, -0.018],
+    "rational": [1.2, 0.4, 0.001, -0.0015, 0.02, 1.5, 0.7, 0.06],
+    "prism": [0.1, -0.05, 0.001, -0.0015, 0.02, 0.05, 0.01, 0.002, 0.003, -0.001, 0.002, 0.0007],
+}
+FISHEYE = [-0.02, 0.005, -0.003, 0.0004]
+
+
+def pose(seed=1):
+    """A rotation and a translation."""
+    random = np.random.default_rng(seed)
+    axes, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    return axes * np.sign(np.linalg.det(axes)), random.normal(size=3) * 2
+
+
+def points_seen(rotation, shift, count=200, spread=0.5):
+    """Points of the world ahead of the camera."""
+    random = np.random.default_rng(2)
+    depth = random.uniform(1, 9, size=(count, 1))
+    ahead = np.hstack([random.uniform(-spread, spread, size=(count, 2)) * depth, depth])
+    return (ahead - shift) @ rotation
+
+
+@pytest.mark.parametrize("lens", LENSES)
+def test_points_are_seen_where_opencv_sees_them(lens):
+    cv2 = pytest.importorskip("cv2", reason="needs OpenCV: pip install opencv-python-headless")
+    rotation, shift = pose()
+    square = K * [[1, 0, 1], [1, 1, 1], [1, 1, 1]]  # cv2.projectPoints knows no skew.
+    camera = bilux.cameras.opencv(square, R=rotation, t=shift, distortion=LENSES[lens], size=SIZE)
+    points = points_seen(rotation, shift)
+    coefficients = None if LENSES[lens] is None else np.array(LENSES[lens])
+    expected, _ = cv2.projectPoints(points, cv2.Rodrigues(rotation)[0], shift, square, coefficients)
+    found = camera.project(points)
+    assert np.abs(found - expected[:, 0]).max() < 1e-4
+    # And the way back, which OpenCV iterates.
+    pixels = expected[:, 0]
+    origins, directions = camera.rays(pixels)
+    assert np.allclose(origins, -rotation.T @ shift, atol=1e-12)
+    criteria = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 200, 1e-14)
+    zero = np.zeros(5) if coefficients is None else coefficients
+    # Version 5 has one function where 4 had two.
+    undistort = getattr(cv2, "undistortPointsIter", cv2.undistortPoints)
+    plane = undistort(pixels[:, None], square, zero, R=None, P=None, criteria=criteria)[:, 0]
+    towards = np.hstack([plane, np.ones((len(plane), 1))])
+    towards = towards / np.linalg.norm(towards, axis=1, keepdims=True) @ rotation
+    assert np.abs(directions - towards).max() < 1e-6
+
+
+def test_fisheye_lenses_see_points_where_opencv_sees_them():
+    cv2 = pytest.importorskip("cv2", reason="needs OpenCV: pip install opencv-python-headless")
+    rotation, shift = pose(3)
+    narrow = K * [[0.5, 0.5, 1], [1, 0.5, 1], [1, 1, 1]]
+    camera = bilux.cameras.opencv_fisheye(narrow, R=rotation, t=shift, distortion=FISHEYE, size=SIZE)
+    points = points_seen(rotation, shift, spread=1.5)
+    expected, _ = cv2.fisheye.projectPoints(
+        points[:, None], cv2.Rodrigues(rotation)[0], shift, narrow, np.array(FISHEYE), None, narrow[0, 1] / narrow[0, 0]
+    )
+    assert np.abs(camera.project(points) - expected[:, 0]).max() < 1e-4
+
+
+@pytest.mark.parametrize("kind", ["opencv", "opencv_fisheye"])
+def test_pixels_come_back(kind):
+    lens = FISHEYE if kind == "opencv_fisheye" else LENSES["prism"]
+    rotation, shift = pose(5)
+    camera = getattr(bilux.cameras, kind)(K, R=rotation, t=shift, distortion=lens, size=SIZE)
+    columns, rows = np.meshgrid(np.arange(0, 640, 7), np.arange(0, 480, 7))
+    pixels = np.stack([columns.ravel(), rows.ravel()], axis=1)
+    origins, directions = camera.rays(pixels)
+    assert np.allclose(np.linalg.norm(directions, axis=1), 1)
+    assert np.abs(camera.project(origins + directions * 3) - pixels).max() < 1e-4
+
+
+def test_all_ways_to_say_a_pose_are_one():
+    rotation, shift = pose(7)
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, shift
+    one = bilux.cameras.opencv(K, matrix, size=SIZE)
+    assert one == bilux.cameras.opencv(K, matrix[:3], size=SIZE) == bilux.cameras.opencv(K, R=rotation, t=shift, size=SIZE)
+    angle = np.arccos((np.trace(rotation) - 1) / 2)
+    axis = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    turned = bilux.cameras.opencv(K, R=axis / (2 * np.sin(angle)) * angle, t=shift, size=SIZE)
+    points = points_seen(rotation, shift)
+    assert np.abs(turned.project(points) - one.project(points)).max() < 1e-6
+
+
+def test_pictures_show_points_where_they_are_projected():
+    """A small ball that glows: the middle of its light is the pixel of its middle."""
+    rotation, shift = pose(9)
+    camera = bilux.cameras.opencv(K, R=rotation, t=shift, distortion=LENSES["five"], size=SIZE)
+    for ahead in ([0.4, -0.3, 1.2], [-0.5, 0.25, 1.1]):
+        place = rotation.T @ (np.array(ahead) - shift)
+        scene = bilux.Scene()
+        scene.add_light(bilux.lights.sphere(position=tuple(place), radius=0.01, radiance=1))
+        scene.add_mesh([[90, 90, 90], [91, 90, 90], [90, 91, 90]], [[0, 1, 2]])
+        scene.add_camera(camera)
+        picture = scene.render(spp=16, integrator="path", tonemap="none", denoise=False)
+        assert (picture.width, picture.height) == SIZE
+        light = picture.pixels[..., 1].astype(float)
+        middle = [(light.sum(axis) * np.arange(light.shape[1 - axis])).sum() / light.sum() for axis in (0, 1)]
+        assert np.abs(np.array(middle) - camera.project([place])[0]).max() < 0.1
+
+
+def test_cameras_of_other_kinds_need_a_size():
+    camera = bilux.cameras.perspective(position=(0, 0, 4), look_at=(0, 0, 0), fov=40)
+    assert camera.project([[0, 0, 0]], size=(640, 480)) == pytest.approx(np.array([[319.5, 239.5]]))
+    with pytest.raises(ValueError, match="size: give"):
+        camera.project([[0, 0, 0]])
+    with pytest.raises(TypeError, match="bilux.lights"):
+        bilux.lights.point().project([[0, 0, 0]])
+    assert np.isnan(camera.project([[0, 0, 9]], size=(64, 48))).all(), "behind the camera"
+    with pytest.raises(ValueError, match="pixels: its shape"):
+        camera.rays([[1, 2, 3]], size=(64, 48))
+
+
+def turned(K):
+    return np.asarray(K).T
+
+
+MISTAKES = {
+    "K: it must be upper triangular.*transpose": dict(K=turned(K)),
+    "K: its shape": dict(K=np.eye(4)),
+    "K: the focal lengths": dict(K=np.diag([-1.0, 1, 1])),
+    "size: give": dict(size=None),
+    r"size: .* is no width": dict(size=(640.5, 480)),
+    "size: K has its principal point": dict(size=(300, 480)),
+    "R: it is no rotation.*0.21 off.*scales by 1.1": dict(R=np.eye(3) * 1.1, t=[0, 0, 0]),
+    "R: it mirrors": dict(R=np.diag([1.0, 1, -1]), t=[0, 0, 0]),
+    "t: R and t belong together": dict(R=np.eye(3)),
+    "t: it has 2 numbers": dict(R=np.eye(3), t=[0, 0]),
+    "world_to_camera: give it, or R and t": dict(world_to_camera=np.eye(4), R=np.eye(3), t=[0, 0, 0]),
+    "world_to_camera: its last row.*transpose": dict(
+        world_to_camera=np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 2, 3, 1]])
+    ),
+    "distortion: there are 3": dict(distortion=[0.1, 0.2, 0.3]),
+    "distortion: the last two": dict(distortion=[0.0] * 12 + [0.1, 0]),
+    "distortion: the camera's lens model ends .* folds over": dict(distortion=[-0.9, 0, 0, 0]),
+    "not all of its numbers are finite": dict(distortion=[np.nan, 0, 0, 0]),
+    "beyond: 'grey'": dict(beyond="grey"),
+    "fx: the matrices say it": dict(fx=3),
+}
+
+
+@pytest.mark.parametrize("message", MISTAKES)
+def test_mistakes_name_their_argument(message):
+    with pytest.raises(ValueError, match=message):
+        bilux.cameras.opencv(**(dict(K=K, size=SIZE) | MISTAKES[message]))
+
+
+def test_pixels_beyond_a_fold_are_black_if_that_is_wanted():
+    camera = bilux.cameras.opencv(K, distortion=[-0.9, 0, 0, 0], size=SIZE, beyond="black")
+    _, directions = camera.rays([[0, 0], [320, 240]])
+    assert np.isnan(directions[0]).all() and np.isfinite(directions[1]).all()
+    scene = bilux.Scene()
+    scene.add_mesh([[90, 90, 90], [91, 90, 90], [90, 91, 90]], [[0, 1, 2]])
+    scene.add_light(bilux.lights.environment(radiance=1.0))
+    scene.add_camera(camera)
+    with pytest.warns(bilux.SceneWarning, match="folds over"):
+        pixels = scene.render(size=(64, 48), spp=4, integrator="path", tonemap="none", denoise=False).pixels
+    assert (pixels[0, 0] == 0).all() and np.allclose(pixels[24, 32], 1)
