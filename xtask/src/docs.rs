@@ -145,6 +145,9 @@ fn parameter(parameter: &Value) -> String {
         default => format!("`{default}`"),
     };
     let (name, summary, values, unit) = (cell("name"), cell("summary"), cell("values"), cell("unit"));
+    let units = parameter["units"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let units = units.filter(|other| *other != unit).collect::<Vec<_>>().join(", ");
+    let unit = if units.is_empty() { unit } else { format!("{unit}; as text: {units}") };
     format!("| `{name}` | {summary} | {values} | {unit} | {default} |\n")
 }
 

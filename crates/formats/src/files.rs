@@ -11,7 +11,9 @@ use crate::writing::{Writing, write_all};
 use crate::{FormatError, ReadOptions, WriteOptions};
 use bilux_math::DVec3;
 use bilux_pictures::{ForeignFormat, PICTURE_FORMATS, foreign_format};
-use bilux_scene::{SceneBuilder, UpHint, Warning};
+use bilux_scene::lights::in_numbers;
+use bilux_scene::{SceneBuilder, Spec, UpHint, Value, Warning};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -149,11 +151,23 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
         }
         warn_of_vertices(scene, &mut writing);
         let scene = &*without_media(scene, row.capabilities, &mut writing);
+        let scene = &*with_numbers(scene, row);
         let scene = with_pictures(scene, row.capabilities, &mut writing);
         let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;
     }
     write_all(path, writing)
+}
+
+/// Lights with numbers in place of quantities such as `800 lm`, unless the format is our own.
+fn with_numbers<'s>(scene: &'s SceneBuilder, row: &SceneFormatEntry) -> Cow<'s, SceneBuilder> {
+    let is_text =
+        |light: &Spec| light.parameters.0.iter().any(|(_, value, _)| matches!(value, Value::Text(_)));
+    if row.entry.name == "toml" || !scene.lights.iter().any(is_text) {
+        return Cow::Borrowed(scene);
+    }
+    let lights = scene.lights.iter().map(in_numbers).collect();
+    Cow::Owned(SceneBuilder { lights, ..scene.clone() })
 }
 
 /// Refuses to write to one of the files that a scene was read from ([`SceneBuilder::files`]).

@@ -10,9 +10,10 @@ use bilux_math::transcendental::{cos_f64, sin_f64};
 pub enum Goniometer {
     /// Half planes about the axis: the polar angle is γ, from the axis, and the azimuth is C, from C0 to C90.
     C,
-    /// Planes about C0, for floodlights: the polar angle is H + 90° from -C0, and the azimuth is V, from the axis to C90.
+    /// Planes about C90, for floodlights, whose beam is the axis and whose upper side is C0: the polar angle is H + 90° from C90, and the
+    /// azimuth is V, from the axis to C0.
     B,
-    /// Planes about C90, for headlights: the polar angle is V + 90° from -C90, and the azimuth is H, from the axis to C0.
+    /// Planes about C0, for headlights, likewise: the polar angle is V + 90° from -C0, and the azimuth is H, from the axis to -C90.
     A,
 }
 

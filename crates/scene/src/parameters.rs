@@ -1,5 +1,6 @@
 //! Parameters as written in scene files, and how a row of a table reads them.
 
+mod quantity;
 mod value;
 
 use crate::error::{SceneError, nearest_name};
@@ -8,8 +9,11 @@ use crate::intensity_distribution::IntensityDistribution;
 pub use crate::span::Span;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{DVec3, Rgb, Vec3};
+pub use quantity::units_of;
+pub(crate) use quantity::{Measure, Quantity};
 use std::sync::Arc;
 pub use value::Value;
+use value::describe;
 
 /// Keys with their values, in the order written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,7 +63,8 @@ impl Spec {
         self.parameters.find(key)?.0.as_number().map(|x| x as f32)
     }
 
-    /// The colour under a key, if there is one; white for a texture.
+    /// The colour under a key, if there is one; white for a texture. A flux in place of an intensity stays a flux: [`crate::lights::in_numbers`]
+    /// makes it an intensity first.
     pub fn colour(&self, key: &str) -> Option<Rgb> {
         match self.parameters.find(key)?.0 {
             Value::List(list) => {
@@ -67,6 +72,7 @@ impl Spec {
                 Some(Rgb::new(channel(0)?, channel(1)?, channel(2)?))
             }
             Value::Texture(_) => Some(Rgb::WHITE),
+            Value::Text(text) => Some(Quantity::read(text).ok()?.colour),
             one => one.as_number().map(|x| Rgb::grey(x as f32)),
         }
     }
@@ -205,7 +211,10 @@ impl<'a> Reader<'a> {
 
     /// A colour; white if a texture is given.
     pub fn colour(&self, key: &str) -> Rgb {
-        triple(&self.value(key)).map_or(Rgb::WHITE, Rgb::from_array)
+        match self.value(key) {
+            Value::Text(text) => Quantity::read(&text).map_or(Rgb::WHITE, |quantity| quantity.colour),
+            value => triple(&value).map_or(Rgb::WHITE, Rgb::from_array),
+        }
     }
 
     /// The stops of a gradient, in order.
@@ -314,6 +323,13 @@ fn stops(value: &Value) -> Option<Vec<(f32, Rgb)>> {
 /// The expected value, where a value has the wrong kind or is out of range.
 fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
     let number_in = |v: Option<f64>, min: f64, max: f64| v.is_some_and(|x| x >= min && x <= max);
+    if let (
+        ParameterKind::Colour { min, max } | ParameterKind::ColourTexture { min, max },
+        Value::Text(text),
+    ) = (parameter.kind, value)
+    {
+        return quantity::colour_of(parameter, text, [min, max]).map(|_| ());
+    }
     let (fits, wanted) = match parameter.kind {
         ParameterKind::Bool => (matches!(value, Value::Bool(_)), "true or false".to_owned()),
         ParameterKind::Integer { min, max } => (
@@ -372,19 +388,4 @@ fn meant(value: &Value, words: &[&str]) -> String {
     let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
     let nearest = if let Value::Text(text) = value { nearest_name(text, &words) } else { None };
     nearest.map_or_else(String::new, |word| format!("; did you mean '{word}'?"))
-}
-
-fn describe(value: &Value) -> String {
-    match value {
-        Value::Bool(b) => b.to_string(),
-        Value::Integer(i) => i.to_string(),
-        // A whole number with a point is told apart from one without.
-        Value::Number(x) => format!("{x:?}"),
-        Value::Text(t) => format!("\"{t}\""),
-        Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
-        Value::Texture(_) => "a texture".to_owned(),
-        Value::Material(_) => "a material".to_owned(),
-        Value::Grid(_) => "a grid".to_owned(),
-        Value::Distribution(_) => "an intensity distribution".to_owned(),
-    }
 }

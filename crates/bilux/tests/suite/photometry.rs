@@ -49,12 +49,17 @@ fn room(light: Spec) -> SceneBuilder {
 }
 
 /// The illuminance at a point of the floor in lux: by the light that it reflects into a camera that sees a square millimetre.
-fn illuminance(mut scene: SceneBuilder, at: Vec3, integrator: &str, spp: i64) -> f64 {
+fn illuminance(scene: SceneBuilder, at: Vec3, integrator: &str, spp: i64) -> f64 {
+    illuminance_of(scene, at, integrator, spp, 1e-3)
+}
+
+/// The same of a square with this side.
+fn illuminance_of(mut scene: SceneBuilder, at: Vec3, integrator: &str, spp: i64, side: f32) -> f64 {
     let spec = Spec::new("eye", "orthographic")
         .with("position", at + Vec3::Y)
         .with("look_at", at)
         .with("up", Vec3::Z)
-        .with("height", 1e-3f32);
+        .with("height", side);
     scene.cameras.push(CameraSpec { spec, keyframes: Vec::new() });
     let mut settings = Parameters::default();
     settings.set("size", "1x1");
@@ -146,4 +151,110 @@ fn the_lumens_of_a_file_pass_through_a_sphere_around_the_lamp() {
     // Without a file it is 1000 lm; planted bug: π for 4π.
     let found = through_a_sphere(Spec::new("", "luminaire").with("position", LAMP));
     assert!(off(found, 1000.0) < ALLOWED && off(4.0 * found, 1000.0) > 0.5, "{found}");
+}
+
+/// A light that is given as text, and the illuminance at the origin in lux that a closed form says.
+fn lights_in_units() -> Vec<(Spec, f64)> {
+    let above = |kind: &str, key: &str, text: &str| {
+        let spec = Spec::new("lamp", kind).with("position", Vec3::new(0.0, 2.0, 0.0));
+        spec.with("look_at", Vec3::ZERO).with(key, text)
+    };
+    let no_cone = |mut spec: Spec| {
+        spec.parameters.0.retain(|(key, ..)| key != "look_at");
+        spec
+    };
+    let point = |text: &str| no_cone(above("point", "intensity", text));
+    let panel = |key: &str, text: &str| no_cone(above("rect", key, text)).with("edge_v", Vec3::Z * 0.5);
+    let ball = no_cone(above("sphere", "intensity", "800 lm")).with("radius", 0.25f32);
+    let sun = Spec::new("sun", "directional")
+        .with("direction", Vec3::new(0.0, -4.0, 3.0))
+        .with("irradiance", "500 lux");
+    // What a panel of 1 m by 0.5 m gives 2 m below its middle, of its radiance: four times what a corner gives. [Howell 2010, C-11]
+    let part = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * atan2_f64(b, (1.0 + a * a).sqrt());
+    let factor = 4.0 * 0.5 * (part(0.25, 0.125) + part(0.125, 0.25));
+    let cone = [10f64, 20.0].map(|angle| 0.5 * sin_cos_f64(angle.to_radians()).1).iter().sum::<f64>();
+    let spot =
+        |text: &str| above("spot", "intensity", text).with("angle", 20.0f32).with("inner_angle", 10.0f32);
+    vec![
+        (point("800 lm"), 800.0 / (4.0 * PI) / 4.0),
+        (point("0.8 klm 2700 K"), 800.0 / (4.0 * PI) / 4.0),
+        (point("100 cd"), 100.0 / 4.0),
+        (point("40 W"), 40.0 * 683.0 / (4.0 * PI) / 4.0),
+        (spot("100 cd"), 100.0 / 4.0),
+        (spot("800 lm"), 800.0 / (2.0 * PI * (1.0 - cone)) / 4.0),
+        (panel("radiance", "2000 nit"), 2000.0 * factor),
+        (panel("intensity", "800 lm"), 800.0 / (2.0 * PI * 0.5) * factor),
+        (panel("intensity", "800 lm").with("sides", "front").with("edge_u", Vec3::NEG_X), 0.0),
+        (panel("intensity", "800 lm").with("sides", "front"), 800.0 / (PI * 0.5) * factor),
+        (ball, 800.0 / (4.0 * PI) / 4.0),
+        (sun, 500.0 * 0.8),
+        (Spec::new("sky", "environment").with("radiance", "1000 cd/m2 6500 K"), 1000.0 * PI),
+        (no_cone(above("luminaire", "flux", "800 lm")), 800.0 / (4.0 * PI) / 4.0),
+    ]
+}
+
+#[test]
+fn lights_in_photometric_units_give_the_illuminance_of_their_closed_forms() {
+    for (light, wanted) in lights_in_units() {
+        let found = illuminance(room(light.clone()), Vec3::ZERO, "path", 4096);
+        let allowed = if light.kind == "environment" { 4e-3 } else { 2.0 * ALLOWED };
+        assert!((found - wanted).abs() <= allowed * wanted, "{light:?}: {found} for {wanted}");
+    }
+}
+
+/// Both ends find the same mean over 4 m by 4 m of the floor, in lux.
+#[test]
+fn light_paths_find_the_same_illuminance() {
+    let point = Spec::new("", "point").with("position", LAMP).with("intensity", "800 lm 4000 K");
+    let ball = Spec::new("", "sphere").with("position", LAMP).with("intensity", "800 lm");
+    for light in [lamp(&file(0.5, |c| c)), point, ball] {
+        let mean = |integrator: &str, spp: i64| {
+            illuminance_of(room(light.clone()), Vec3::ZERO, integrator, spp, 4.0)
+        };
+        let path = mean("path", 1 << 12);
+        for integrator in ["light", "bdpt"] {
+            let found = mean(integrator, 1 << 16);
+            assert!(off(found, path) < 0.03, "{}, {integrator}: {found} for {path}", light.kind);
+        }
+    }
+}
+
+/// Planted bugs: a lumen for a candela, π for 4π, watts for lumen, and a panel's other side forgotten.
+#[test]
+fn a_wrong_unit_is_noticed() {
+    let point = |text: &str| {
+        let light = Spec::new("", "point").with("position", Vec3::new(0.0, 2.0, 0.0)).with("intensity", text);
+        illuminance(room(light), Vec3::ZERO, "path", 4)
+    };
+    let wanted = 800.0 / (4.0 * PI) / 4.0;
+    assert!(off(point("800 lm"), wanted) < ALLOWED);
+    for wrong in ["800 cd", "3200 lm", "800 W", "400 lm"] {
+        assert!(off(point(wrong), wanted) > 0.3, "{wrong}");
+    }
+}
+
+/// A floodlight of type B whose beam is level shines up where V is positive, and to its right where H is: half as much 30 degrees up,
+/// a quarter 30 degrees to the right.
+#[test]
+fn floodlights_and_headlights_shine_up_and_to_the_right() {
+    for (kind, candela) in [(2, "0 0 0\n0 1000 500\n0 250 0\n"), (3, "0 0 0\n0 1000 500\n0 250 0\n")] {
+        let text =
+            format!("IESNA91\nTILT=NONE\n1 -1 1 3 3 {kind} 2 0 0 0\n1 1 9\n-30 0 30\n-30 0 30\n{candela}");
+        // Level, along -z; its right is +x.
+        let light = lamp(&text).with("direction", Vec3::NEG_Z).with("c0", Vec3::Y);
+        let built = room(light).build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let (sine, cosine) = sin_cos_f64(29.99f64.to_radians());
+        let (sine, cosine) = (sine as f32, cosine as f32);
+        for (direction, wanted) in [
+            (Vec3::NEG_Z, 1000.0),
+            (Vec3::new(0.0, sine, -cosine), 500.0),
+            (Vec3::new(0.0, -sine, -cosine), 0.0),
+            (Vec3::new(sine, 0.0, -cosine), 250.0),
+            (Vec3::new(-sine, 0.0, -cosine), 0.0),
+        ] {
+            let sample = built.lights()[0].light.sample_li(LAMP + direction, 0.0, Vec2::ZERO);
+            let found = sample.map_or(0.0, |sample| sample.li.luminance() * LUMENS_PER_WATT);
+            assert!((found - wanted).abs() < 1.0, "type {kind}, {direction}: {found} for {wanted}");
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::DONE;
 use crate::arguments::List;
 use crate::{output, usage};
 use anyhow::anyhow;
-use bilux::math::registry::{Entry, Parameter};
+use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use bilux::tables::{TABLES, values};
 use serde_json::json;
 
@@ -49,11 +49,26 @@ fn row_text(row: &Entry, width: usize) -> String {
     let width = row.parameters.iter().map(|p| p.name.len()).max().unwrap_or(0);
     for p in row.parameters {
         let unit = if p.unit.is_empty() { String::new() } else { format!(", in {}", p.unit) };
+        let unit = match units_of(p) {
+            units if units.is_empty() => unit,
+            units => format!("{unit}, or as text in {}", units.join(", ")),
+        };
         let default =
             if p.default.is_empty() { "required".to_owned() } else { format!("[default: {}]", p.default) };
         text += &format!("\n      {:<width$}  {} ({}{unit}) {default}", p.name, p.summary, values(p.kind));
     }
     text
+}
+
+/// The units in which its value can be a text.
+fn units_of(p: &Parameter) -> Vec<&'static str> {
+    match p.kind {
+        ParameterKind::Colour { .. } | ParameterKind::ColourTexture { .. } => {
+            let units = bilux::scene::parameters::units_of(p.unit);
+            if units.is_empty() { units } else { units.into_iter().chain(["K"]).collect() }
+        }
+        _ => Vec::new(),
+    }
 }
 
 fn row_json(row: &Entry) -> serde_json::Value {
@@ -63,7 +78,7 @@ fn row_json(row: &Entry) -> serde_json::Value {
 
 fn parameter_json(p: &Parameter) -> serde_json::Value {
     json!({
-        "name": p.name, "summary": p.summary, "unit": p.unit,
+        "name": p.name, "summary": p.summary, "unit": p.unit, "units": units_of(p),
         "values": values(p.kind), "default": p.default,
     })
 }

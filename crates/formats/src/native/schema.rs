@@ -98,7 +98,13 @@ fn property(parameter: &Parameter) -> Value {
 fn values(kind: ParameterKind) -> Value {
     let colour = |min: f64, max: f64| {
         let channel = json!({ "type": "number", "minimum": min, "maximum": max });
-        vec![json!({ "type": "array", "items": channel, "minItems": 3, "maxItems": 3 }), channel]
+        let mut all =
+            vec![json!({ "type": "array", "items": channel, "minItems": 3, "maxItems": 3 }), channel];
+        // No light is limited to 1.
+        if max > 1.0 {
+            all.push(described("string", "a quantity of light, such as 800 lm 2700 K"));
+        }
+        all
     };
     match kind {
         ParameterKind::Bool => json!({ "type": "boolean" }),

@@ -229,3 +229,47 @@ fn a_lamp_that_is_wrong_or_missing_or_outside_is_an_error_at_its_place() {
     assert!(refused("\"../../lamp.ies\"").contains("scene.toml:3"));
     assert!(refused("3").contains("text"));
 }
+
+/// Quantities as text are kept in TOML, and are numbers in formats that have no units.
+#[test]
+fn quantities_of_light_are_read_written_and_refused_with_their_place() {
+    let temporary = tempfile::tempdir().unwrap();
+    let of = |text: &str| {
+        let path = temporary.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        read(&path, &ReadOptions::default()).map_err(|error| error.to_string())
+    };
+    let scene = of(
+        "[[light]]\nkind = \"point\"\nintensity = \"683 lm\"\n[[light]]\nkind = \"rect\"\nradiance = \"1366 nit\"\n\
+         [[material]]\nname = \"m\"\nkind = \"diffuse\"\nemission = \"2000 nit 3000 K\"\n[[model]]\nshape = \"floor\"\nmaterial = \"m\"\n",
+    )
+    .unwrap();
+    for (name, text) in
+        [("out.toml", "\"683 lm\""), ("out.gltf", "\"intensity\""), ("out.pbrt", "0.07957747")]
+    {
+        let out = temporary.path().join(name);
+        write(&out, &scene, &WriteOptions::default()).unwrap();
+        let written = std::fs::read_to_string(&out).unwrap();
+        assert!(written.contains(text), "{name}: {written}");
+        let back = read(&out, &ReadOptions::default()).unwrap();
+        let light = bilux_scene::lights::in_numbers(&back.lights[0]);
+        let intensity = light.colour("intensity").unwrap();
+        assert!((intensity.g * 4.0 * std::f32::consts::PI - 1.0).abs() < 1e-5, "{name}: {intensity:?}");
+    }
+    for (light, why) in [
+        (
+            "kind = \"point\"\nintensity = \"800 lumn\"",
+            ":3:1: point.intensity is \"800 lumn\", but must be a colour",
+        ),
+        ("kind = \"point\"\nintensity = \"800 lumn\"", "there is no unit 'lumn'; did you mean 'lumen'?"),
+        ("kind = \"point\"\nintensity = \"-5 cd\"", "-5 cd is negative"),
+        ("kind = \"environment\"\nradiance = \"800 lm\"", "this is a radiance, and '800 lm' is a flux"),
+        ("kind = \"directional\"\nirradiance = \"1e20 lux\"", "this is too much"),
+        ("kind = \"point\"\nposition = \"5 K\"", "three numbers"),
+    ] {
+        let error = of(&format!("[[light]]\n{light}\n")).unwrap_err();
+        assert!(error.contains(why), "{error}");
+    }
+    let error = of("[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = \"5000 K\"\n").unwrap_err();
+    assert!(error.contains("a colour [r, g, b] with each from 0 to 1"), "{error}");
+}

@@ -33,6 +33,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    flux_per_intensity: super::NO_INTENSITY,
     build: |reader, _| {
         let towards = (-reader.vector("direction")).try_normalize().ok_or_else(|| {
             SceneError::invalid("a light's direction must not be zero", reader.span("direction"))

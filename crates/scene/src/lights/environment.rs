@@ -46,6 +46,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             super::GROUP,
         ],
     },
+    flux_per_intensity: super::NO_INTENSITY,
     build: |reader, textures| {
         let (scale, backdrop) = (reader.colour("scale"), reader.bool("backdrop"));
         if let Some(index) = reader.texture("radiance") {

@@ -48,6 +48,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    flux_per_intensity: super::NO_INTENSITY,
     build,
 };
 
@@ -90,8 +91,8 @@ fn axes(reader: &Reader, goniometer: Goniometer) -> Result<[DVec3; 3], SceneErro
     let c90 = c0.cross(axis);
     Ok(match goniometer {
         Goniometer::C => [axis, c0, c90],
-        Goniometer::B => [-c0, axis, c90],
-        Goniometer::A => [-c90, axis, c0],
+        Goniometer::B => [c90, axis, c0],
+        Goniometer::A => [-c0, axis, -c90],
     })
 }
 

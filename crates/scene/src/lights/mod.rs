@@ -35,7 +35,7 @@ pub use sphere::SphereLight;
 
 use crate::error::SceneError;
 use crate::mesh::Mesh;
-use crate::parameters::{Reader, Spec, Value};
+use crate::parameters::{Measure, Quantity, Reader, Spec, Value};
 use crate::texture::Texture;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec3};
@@ -77,6 +77,8 @@ pub enum BuiltLight {
 pub struct LightEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
+    /// The flux in W of an intensity of 1 W/sr, for lights with an intensity.
+    pub flux_per_intensity: fn(&Reader) -> f32,
     /// Makes one from its parameters and the scene's textures.
     pub build: fn(&Reader, &[Arc<Texture>]) -> Result<BuiltLight, SceneError>,
 }
@@ -104,8 +106,41 @@ pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<BuiltLight, Scene
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("light", &spec.kind, names, &spec.span))?;
-    (row.build)(&Reader::new(spec, &row.entry)?, textures)
+    let spec = in_numbers_of(spec, row)?;
+    (row.build)(&Reader::new(&spec, &row.entry)?, textures)
 }
+
+/// The same light with numbers in place of quantities such as `800 lm`, in the units of the table; the same where something is wrong with
+/// it.
+pub fn in_numbers(spec: &Spec) -> Spec {
+    let row = LIGHTS.iter().find(|row| row.entry.name == spec.kind);
+    row.and_then(|row| in_numbers_of(spec, row).ok()).unwrap_or_else(|| spec.clone())
+}
+
+fn in_numbers_of(spec: &Spec, row: &LightEntry) -> Result<Spec, SceneError> {
+    let reader = Reader::new(spec, &row.entry)?;
+    let mut plain = spec.clone();
+    for (key, value, _) in &mut plain.parameters.0 {
+        let parameter = row.entry.parameters.iter().find(|parameter| parameter.name == key);
+        let (Value::Text(text), Some(parameter)) = (&*value, parameter) else { continue };
+        if !matches!(parameter.kind, ParameterKind::Colour { .. } | ParameterKind::ColourTexture { .. }) {
+            continue;
+        }
+        let Ok(Quantity { measure, colour }) = Quantity::read(text) else { continue };
+        let is_spread = measure == Some(Measure::Flux) && parameter.unit == INTENSITY;
+        *value = Value::from(if is_spread { colour / (row.flux_per_intensity)(&reader) } else { colour });
+    }
+    Ok(plain)
+}
+
+/// The unit of the lights' intensities.
+const INTENSITY: &str = "W/sr";
+
+/// For lights that have no intensity.
+const NO_INTENSITY: fn(&Reader) -> f32 = |_| 1.0;
+
+/// For lights whose intensity is the same in all directions.
+const ALL_AROUND: fn(&Reader) -> f32 = |_| 4.0 * std::f32::consts::PI;
 
 /// The layer of light that a light belongs to.
 pub(crate) fn group_of(spec: &Spec) -> String {

@@ -5,6 +5,7 @@ use crate::error::SceneError;
 use crate::mesh::Mesh;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 pub(super) const ENTRY: LightEntry = LightEntry {
@@ -34,6 +35,8 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    // Each side sends π times its intensity.
+    flux_per_intensity: |reader| if reader.text("sides") == "front" { PI } else { 2.0 * PI },
     build: |reader, _| {
         let (p, u, v) = (reader.vector("position"), reader.vector("edge_u"), reader.vector("edge_v"));
         let area = u.cross(v).length();

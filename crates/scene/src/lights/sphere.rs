@@ -42,6 +42,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    flux_per_intensity: super::ALL_AROUND,
     build: |reader, _| {
         let radius = reader.number("radius");
         // If the square of the radius is out of range, the sphere is too small for any ray.

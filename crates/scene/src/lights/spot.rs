@@ -6,6 +6,7 @@ use super::{
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
+use crate::parameters::Reader;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::cos;
@@ -28,22 +29,37 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             GROUP,
         ],
     },
+    flux_per_intensity: |reader| {
+        let [cos_inner, cos_outer] = cosines(reader);
+        flux_per_intensity(cos_inner, cos_outer)
+    },
     build: |reader, _| {
         let position = reader.vector("position");
         let axis = (reader.vector("look_at") - position).try_normalize().ok_or_else(|| {
             SceneError::invalid("a spotlight must not point at its own position", reader.span("look_at"))
         })?;
-        let outer = reader.number("angle");
+        let [cos_inner, cos_outer] = cosines(reader);
         Ok(BuiltLight::Light(Arc::new(Spot {
             position,
             axis,
             intensity: reader.colour("intensity"),
-            cos_outer: cos(outer.to_radians()),
-            cos_inner: cos(reader.number("inner_angle").min(outer).to_radians()),
+            cos_outer,
+            cos_inner,
             classic: given_classic(reader),
         })))
     },
 };
+
+/// The cosines of the angles at which the cone begins to fade and ends.
+fn cosines(reader: &Reader) -> [f32; 2] {
+    let outer = reader.number("angle");
+    [reader.number("inner_angle").min(outer), outer].map(|angle| cos(angle.to_radians()))
+}
+
+/// The smooth edge emits half of the light in its range of cosines.
+fn flux_per_intensity(cos_inner: f32, cos_outer: f32) -> f32 {
+    TAU * (1.0 - 0.5 * (cos_inner + cos_outer))
+}
 
 const fn angle(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     let kind = ParameterKind::Number { min: 0.0, max: 180.0 };

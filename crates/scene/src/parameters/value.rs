@@ -89,3 +89,19 @@ impl From<Arc<IntensityDistribution>> for Value {
         Value::Distribution(distribution)
     }
 }
+
+/// A value as messages show it.
+pub(super) fn describe(value: &Value) -> String {
+    match value {
+        Value::Bool(b) => b.to_string(),
+        Value::Integer(i) => i.to_string(),
+        // A whole number with a point is told apart from one without.
+        Value::Number(x) => format!("{x:?}"),
+        Value::Text(t) => format!("\"{t}\""),
+        Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
+        Value::Texture(_) => "a texture".to_owned(),
+        Value::Material(_) => "a material".to_owned(),
+        Value::Grid(_) => "a grid".to_owned(),
+        Value::Distribution(_) => "an intensity distribution".to_owned(),
+    }
+}
