@@ -37,6 +37,10 @@ pub struct Convert {
     /// The value that is pale yellow, so that several heat maps can be compared [default: the maximum of the picture]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true, requires = "heat_map", value_parser = parse_positive, help_heading = help::OUTPUT)]
     pub heat_max: Option<f32>,
+    /// Photometric units for --heat-map luminance: cd/m2, or lx for the illuminance of matt surfaces, which needs the layer
+    /// albedo. A scale with numbers is added below the picture, which must hold light, such as an EXR
+    #[arg(long, value_name = "UNIT", requires = "heat_map", value_parser = ["cd/m2", "lx"], help_heading = help::OUTPUT)]
+    pub unit: Option<String>,
     #[command(flatten)]
     pub posed: Posed,
 }

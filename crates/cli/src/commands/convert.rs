@@ -72,7 +72,7 @@ fn converted(arguments: &Convert, common: &Common) -> anyhow::Result<Picture> {
     let (input, layer) = (&arguments.input, arguments.layer.as_deref());
     let picture = read_picture(input, &Limits::new(common.max_memory), common)?;
     if let Some(channel) = &arguments.heat_map {
-        return heat_map(&picture, channel, arguments.heat_max, common.quiet);
+        return heat_map(&picture, channel, arguments, common.quiet);
     }
     let holds_layers = bilux::pictures::format_of_path(&arguments.output)?.entry.name == "exr";
     if holds_layers && layer.is_none() {

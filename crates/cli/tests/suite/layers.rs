@@ -267,3 +267,47 @@ fn scenes_are_explained() {
     let text = done(path, "explain dark.toml --set size=32x24 --set integrator=path");
     assert!(text.contains("the integrator is 'path'"), "{text}");
 }
+
+/// A matt floor under 683 lx from the zenith shows 1,000 of a scale up to that with its colour, in both units, and the scale below.
+#[test]
+fn heat_maps_have_photometric_units_and_a_scale() {
+    let folder = folder();
+    let path = folder.path();
+    let scene = "[camera]\nkind = \"orthographic\"\nposition = [0, 1, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nheight = 0.1\n\
+                 [[material]]\nname = \"grey\"\nkind = \"diffuse\"\nreflectance = [0.25, 0.5, 0.75]\n[[model]]\nshape = \"floor\"\nmaterial = \"grey\"\n\
+                 [[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\nirradiance = \"500 lx\"\n";
+    fs::write(path.join("lit.toml"), scene).unwrap();
+    done(path, "render lit.toml -i path -o lit.exr --size 120x20 --spp 1 -q --aov albedo --denoise=off");
+    let ramp = |share: f32| bilux::pictures::metrics::ramp(share).to_array();
+    let luminance = 500.0 / std::f32::consts::PI * (0.2126 * 0.25 + 0.7152 * 0.5 + 0.0722 * 0.75);
+    for (unit, most, shown) in [("lx", 1000.0, 500.0), ("cd/m2", 100.0, luminance), ("lx", 2000.0, 500.0)] {
+        done(
+            path,
+            &format!("convert lit.exr -o map.png --heat-map luminance --unit {unit} --heat-max {most} -q"),
+        );
+        let map = opened(path, "map.png");
+        assert_eq!((map.width(), map.height()), (120, 20 + 10 + 9), "{unit}");
+        let found = map.rgb(60, 10).to_array();
+        let near = |wanted: [f32; 3]| found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.006);
+        assert!(near(ramp(shown / most)), "{unit}: {found:?} for {:?}", ramp(shown / most));
+        // Planted bugs: without the lumens of a watt, and without π.
+        assert!(!near(ramp(shown / most / 683.0)) && !near(ramp(shown / most / std::f32::consts::PI)));
+        let end = map.rgb(119, 25).to_array();
+        assert!(end.iter().zip(ramp(1.0)).all(|(a, b)| (a - b).abs() < 0.006), "{end:?}");
+        assert!((0..120).any(|x| map.rgb(x, 34).r > 0.9), "numbers below the scale");
+    }
+    let said = run(path, "convert lit.exr -o map.png --heat-map luminance --unit lx");
+    assert!(String::from_utf8_lossy(&said.stderr).contains("pale yellow is 500 and more"), "{said:?}");
+    done(path, "render lit.toml -i path -o bare.exr --size 8x8 --spp 1 -q --denoise=off");
+    for (options, said) in [
+        ("lit.exr -o x.png --heat-map luminance --unit lumen", "possible values: cd/m2, lx"),
+        ("lit.exr -o x.png --unit lx", "--heat-map"),
+        ("lit.exr -o x.png --heat-map albedo --unit lx", "only luminance has photometric units"),
+        ("map.png -o x.png --heat-map luminance --unit cd/m2", "a picture for displays"),
+        ("bare.exr -o x.png --heat-map luminance --unit lx", "--aov albedo"),
+    ] {
+        let output = run(path, &format!("convert {options}"));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
+    }
+}
