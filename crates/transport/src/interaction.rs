@@ -3,6 +3,7 @@
 //! A density over solid angle becomes one over the next vertex: per area of a surface, with the cosine there, or per volume of
 //! a medium, without. [Pauly 2000]
 
+use crate::ball::Ball;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
@@ -107,21 +108,36 @@ impl Interaction {
         Some(self.surface()?.n_geom.dot(direction).abs())
     }
 
-    /// The sine between two directions at a point of a medium, on which depends how often rays are merged there; 1 at a surface.
+    /// The sine between two directions at a point of a medium, on which depends how often beams are merged there; 1 where there are
+    /// none.
     #[inline]
-    pub(crate) fn sine(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_in_medium() { wo.cross(wi).length() } else { 1.0 }
+    pub(crate) fn sine<const N: usize>(&self, wo: Vec3, wi: Vec3, techniques: &TechniqueCounts<N>) -> f32 {
+        match self {
+            Interaction::Medium(MediumPoint { even: Some(sigma_t), .. })
+                if techniques.has_beams_in(*sigma_t) =>
+            {
+                wo.cross(wi).length()
+            }
+            _ => 1.0,
+        }
     }
 
-    /// How often merging counts this vertex, but for the [sine](Interaction::sine) of the angle at it, in a channel.
+    /// How often merging counts this vertex, but for the [sine](Interaction::sine) of the angle at it, in a channel. `ball` is that in which
+    /// it is merged if it is a point of a dense medium.
     #[inline]
-    pub(crate) fn merged<const N: usize>(&self, techniques: &TechniqueCounts<N>, channel: u8) -> PerSet<N> {
-        match self {
-            Interaction::Surface(..) => techniques.eta,
-            Interaction::Medium(point) => match point.even {
-                Some(sigma_t) => techniques.crossings(sigma_t, channel),
-                None => PerSet::ZERO,
-            },
+    pub(crate) fn merged<const N: usize>(
+        &self,
+        techniques: &TechniqueCounts<N>,
+        channel: u8,
+        ball: Option<Ball>,
+    ) -> PerSet<N> {
+        match (self, ball) {
+            (Interaction::Surface(..), _) => techniques.eta,
+            (_, Some(ball)) => techniques.points * ball.volume,
+            (Interaction::Medium(MediumPoint { even: Some(sigma_t), .. }), None) => {
+                techniques.crossings(*sigma_t, channel)
+            }
+            _ => PerSet::ZERO,
         }
     }
 

@@ -5,6 +5,7 @@
 //! and seed: the bytes are the same for any number of threads, any crop, and any split into sample ranges.
 
 pub mod aovs;
+mod ball;
 mod batch_means;
 mod beam;
 mod bidirectional;
@@ -39,6 +40,7 @@ pub mod partial;
 mod passes;
 mod path_tracing;
 mod photon_beams;
+mod photon_grid;
 mod photon_tracing;
 mod photons;
 mod pixel_integrator;

@@ -28,6 +28,16 @@ impl Events {
         }
     }
 
+    /// Of a path that merges the ends of two into one event, behind a surface or not.
+    #[inline]
+    pub(crate) fn merged(self, other: Events, is_inside: bool) -> Events {
+        let Events { counted, in_row } = self.joined(other);
+        match is_inside {
+            true => Events { counted, in_row: in_row - 1 },
+            false => Events { counted: counted - 1, in_row },
+        }
+    }
+
     /// Of a path that connects the ends of two.
     #[inline]
     pub(crate) fn joined(self, other: Events) -> Events {

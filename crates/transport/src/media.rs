@@ -10,6 +10,7 @@
 //!
 //! Materials without a priority take no part. Their refractive index is relative to whatever surrounds them.
 
+mod balls;
 mod between;
 mod coincident;
 mod enclosed;
@@ -88,6 +89,11 @@ impl Media {
             NONE => Medium::VACUUM,
             object => scene.material_of(object).medium().unwrap_or(Medium::VACUUM),
         }
+    }
+
+    /// The object whose inside scatters light here, and the scattering coefficient there, per metre; `None` where none does.
+    pub(crate) fn scattering(&self, scene: &Scene) -> Option<(u32, Rgb)> {
+        (self.inside != NONE).then(|| (self.inside, self.medium(scene).sigma_s))
     }
 
     /// What lies along a part of a ray, from here up to there in metres, for light that passes.

@@ -1,10 +1,9 @@
 //! Traces the light subpaths of one iteration, whose vertices are kept as photons.
 
-use crate::beam::Beam;
-use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
+use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex, is_connectible};
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
-use crate::photons::{MergeCounts, Merging, Photon, PhotonPosition, PhotonWalk, Photons};
+use crate::photons::{MergeCounts, Merging, PhotonPaths, PhotonWalk, Photons, TracedPhotons};
 use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
 use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, TechniqueCounts};
@@ -24,11 +23,12 @@ pub(crate) fn iterations(
     samples.clone().step_by(step as usize).map(move |first| first..end.min(first + step))
 }
 
-/// The pixels whose light subpaths an iteration traces, and those of them that keep their beams: every so many.
+/// The pixels whose light subpaths an iteration traces, and those of them that keep their beams and points: every so many.
 struct Followed {
     width: u64,
     step: u64,
     beam_step: u64,
+    point_step: u64,
     counts: MergeCounts,
 }
 
@@ -45,8 +45,10 @@ impl Followed {
         };
         let traced = count(step);
         let beam_step = step * merging.beam_step(scene, iteration, traced) as u64;
-        let counts = merging.counts(scene, iteration, [traced, count(beam_step)], pixels as f32);
-        Followed { width, step, beam_step, counts }
+        let point_step = step * Merging::point_step(traced) as u64;
+        let paths = PhotonPaths { all: traced, with_beams: count(beam_step), with_points: count(point_step) };
+        let counts = merging.counts(scene, iteration, paths, pixels as f32);
+        Followed { width, step, beam_step, point_step, counts }
     }
 
     fn is_traced(&self, at: (u32, u32)) -> bool {
@@ -56,19 +58,15 @@ impl Followed {
     fn has_beams(&self, at: (u32, u32)) -> bool {
         is_nth(at, self.width, self.beam_step)
     }
+
+    fn has_points(&self, at: (u32, u32)) -> bool {
+        is_nth(at, self.width, self.point_step)
+    }
 }
 
 /// Every pixel of so many, row by row.
 fn is_nth((x, y): (u32, u32), width: u64, step: u64) -> bool {
     (u64::from(y) * width + u64::from(x)).is_multiple_of(step)
-}
-
-/// What the light subpaths of a tile leave.
-struct OfTile<const N: usize> {
-    photons: Vec<(PhotonPosition, Photon<N>)>,
-    /// Those of the photons, where distances in media are not the same in all channels.
-    walks: Vec<PhotonWalk>,
-    beams: Vec<Beam<N>>,
 }
 
 impl Photons {
@@ -105,7 +103,7 @@ impl<const N: usize> Photons<N> {
         let (radius, techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
-            let (mut photons, mut walks, mut beams) = (Vec::new(), Vec::new(), Vec::new());
+            let mut traced = TracedPhotons::NONE;
             let mut tally = visitor.map(O::tally);
             let places: Vec<(u32, u32)> = (0..tile.pixels())
                 .map(|i| tile.position(i))
@@ -119,7 +117,7 @@ impl<const N: usize> Photons<N> {
                 let mut samples: Vec<_> = places.iter().map(sample).collect();
                 let context = &eye.context;
                 paths.trace(&mut samples, context, &mut tracer, merging.roulette_depth, &techniques);
-                beams.append(&mut paths.beams);
+                traced.beams.append(&mut paths.beams);
                 if let Some(tally) = &mut tally {
                     let mut current = None;
                     let add = |i: usize, film, technique, found: &Contribution<N>| {
@@ -131,33 +129,35 @@ impl<const N: usize> Photons<N> {
                     };
                     paths.connect_to_camera(&mut samples, context, &mut tracer, &techniques, add);
                 }
-                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
                 let is_coloured = scene.has_coloured_distances();
+                let has_points = |at| techniques.points != PerSet::ZERO && followed.has_points(at);
                 for (i, sample) in samples.iter().enumerate() {
-                    let vertices = || paths.of(i).filter(is_kept);
-                    photons.extend(vertices().filter_map(Vertex::photon));
+                    let channel = sample.state.channel;
+                    let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
+                    traced.surfaces.extend(paths.of(i).filter(is_kept).filter_map(Vertex::photon));
                     if is_coloured {
-                        let channel = sample.state.channel;
-                        let on_surface = vertices().filter(|vertex| !vertex.at.is_in_medium());
-                        walks.extend(on_surface.map(|vertex| PhotonWalk { odds: vertex.odds, channel }));
+                        let is_kept = |vertex: &&Vertex<N>| !vertex.at.is_in_medium() && is_kept(vertex);
+                        let walk = |vertex: &Vertex<N>| PhotonWalk { odds: vertex.odds, channel };
+                        traced.walks.extend(paths.of(i).filter(is_kept).map(walk));
+                    }
+                    if has_points(places[i]) {
+                        let is_kept = |vertex: &&Vertex<N>| is_connectible(vertex, &techniques);
+                        let point = |vertex: &Vertex<N>| vertex.medium_photon(scene, channel);
+                        traced.points.extend(paths.of(i).filter(is_kept).filter_map(point));
                     }
                 }
             }
             if let (Some(visitor), Some(tally)) = (visitor, tally) {
                 visitor.take(index, tally);
             }
-            (OfTile { photons, walks, beams }, tracer.counters)
+            (traced, tracer.counters)
         };
-        let (parts, counters): (Vec<OfTile<N>>, Vec<Counters>) =
+        let (parts, counters): (Vec<TracedPhotons<N>>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
-        let mut all = OfTile { photons: Vec::new(), walks: Vec::new(), beams: Vec::new() };
-        for mut part in parts {
-            all.photons.append(&mut part.photons);
-            all.walks.append(&mut part.walks);
-            all.beams.append(&mut part.beams);
-        }
+        let mut all = TracedPhotons::NONE;
+        parts.into_iter().for_each(|part| all.append(part));
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(all.photons, &all.walks, all.beams, radius, techniques), counted)
+        (Photons::new(all, radius, techniques), counted)
     }
 }

@@ -22,9 +22,12 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     pub(crate) eta: PerSet<N>,
     /// The same for beams that cross in a medium: light subpaths whose beams are kept, times the width of merging, in metres.
     pub(crate) beams: PerSet<N>,
-    /// Media of a larger extinction in any channel, per metre, have no beams: light subpaths have many short ones there, and
-    /// connections find as much.
+    /// Media of a larger extinction in any channel, per metre, have points in place of beams: light subpaths have many short ones there.
     pub(crate) densest: f32,
+    /// Light subpaths whose points in those media are merged.
+    pub(crate) points: PerSet<N>,
+    /// The merging radius, in metres; that of points may be [smaller](crate::ball::Ball).
+    pub(crate) radius: f32,
     /// Light subpaths are connected with the camera, and merged, also where they come straight from a light: on surfaces, and in
     /// media with [equiangular points](crate::equiangular). In other media they always are.
     ///
@@ -121,6 +124,8 @@ impl TechniqueCounts {
         eta: PerSet([0.0]),
         beams: PerSet([0.0]),
         densest: 0.0,
+        points: PerSet([0.0]),
+        radius: 0.0,
         direct: true,
     };
     /// With or without splats, and with or without connections.
@@ -151,13 +156,16 @@ impl<const N: usize> TechniqueCounts<N> {
             eta: PerSet::ZERO,
             beams: PerSet::ZERO,
             densest: 0.0,
+            points: PerSet::ZERO,
+            radius: 0.0,
             direct: true,
         };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
             (all.splats.0[k], all.connections.0[k]) = (set.splats.0[0], set.connections.0[0]);
             (all.eta.0[k], all.beams.0[k]) = (set.eta.0[0], set.beams.0[0]);
-            (all.densest, all.direct) = (set.densest, set.direct);
+            all.points.0[k] = set.points.0[0];
+            (all.densest, all.radius, all.direct) = (set.densest, set.radius, set.direct);
         }
         all
     }

@@ -60,9 +60,12 @@ fn the_nearest_point_is_the_nearest_of_all_triangles() {
         let [a, b, c] = triangles[primitive as usize].map(of);
         assert!((a + (b - a) * f64::from(u) + (c - a) * f64::from(v)).distance(of(found)) < 1e-5);
         assert_eq!(tree.nearest_point(point, distance * 0.999), None);
+        assert_eq!(tree.clearance(point, f32::INFINITY), distance);
+        assert_eq!(tree.clearance(point, distance * 0.999), distance * 0.999);
         assert!(tree.nearest_point(point, distance * 1.001).is_some());
     }
     assert_eq!(tree.nearest_point([f32::NAN; 3], f32::INFINITY), None);
+    assert_eq!(tree.clearance([f32::NAN; 3], 2.0), 2.0);
     assert_eq!(tree.nearest_point([0.0; 3], f32::NAN), None);
 }
 

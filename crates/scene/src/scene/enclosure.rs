@@ -17,6 +17,8 @@ pub struct Enclosure {
     pub is_solid: bool,
     /// A light may be inside.
     pub holds_light: bool,
+    /// The medium is the same everywhere, and so dense that it is known how [far](crate::Scene::clearance) its points are from surfaces.
+    pub is_dense: bool,
 }
 
 impl Enclosure {
@@ -42,7 +44,7 @@ impl Enclosure {
             }
             let bounds = widened(to_world.bounds(&placed.mesh.bounds()));
             let holds_light = lit.iter().any(|place| !place.intersection(bounds).is_empty());
-            Some(Enclosure { bounds, is_solid: !material.is_interface(), holds_light })
+            Some(Enclosure { bounds, is_solid: !material.is_interface(), holds_light, is_dense: false })
         };
         geometry.objects().iter().zip(passes).map(of).collect()
     }

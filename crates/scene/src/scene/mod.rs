@@ -1,5 +1,6 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
+mod clearance;
 mod enclosure;
 mod may_pass;
 mod mesh_lights;
@@ -243,6 +244,19 @@ impl Scene {
     #[inline]
     pub fn enclosure(&self, object: u32) -> Option<&Enclosure> {
         self.parts.enclosures.get(object as usize)?.as_ref()
+    }
+
+    /// Whether the inside of an object is a dense medium whose [clearance](Scene::clearance) is known.
+    #[inline]
+    pub fn is_dense(&self, object: u32) -> bool {
+        self.enclosure(object).is_some_and(|enclosure| enclosure.is_dense)
+    }
+
+    /// The distance in metres from a point of a dense medium, inside this object, to the nearest triangle of anything that does not move, or
+    /// `within` where that is less. `None` where the medium is not dense, or its boundary not known.
+    #[inline]
+    pub fn clearance(&self, object: u32, p: Vec3, within: f32) -> Option<f32> {
+        self.is_dense(object).then(|| self.parts.clearance.at(p, within))
     }
 
     /// True when some object is the boundary of a medium without a surface of its own: of fog, smoke, a cloud.

@@ -1,5 +1,6 @@
 //! What a scene consists of at all times.
 
+use super::clearance::Clearance;
 use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
 use super::mesh_lights::MeshLights;
@@ -37,6 +38,7 @@ pub(crate) struct SceneParts {
     pub(super) passes: Vec<MayPass>,
     /// For each object of triangles; none at all where no medium scatters.
     pub(super) enclosures: Vec<Option<Enclosure>>,
+    pub(super) clearance: Clearance,
     pub(super) disperses: bool,
     pub(super) absorbs: bool,
     pub(super) scatters: bool,
@@ -106,7 +108,8 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
-        let enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
+        let mut enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
+        let clearance = Clearance::of(&geometry, &materials, &mut enclosures);
         let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();
@@ -126,6 +129,7 @@ impl SceneParts {
             hides_backs,
             passes,
             enclosures,
+            clearance,
             disperses,
             absorbs,
             scatters,

@@ -4,9 +4,10 @@
 //! Here stands what happens to *one* pair of subpaths. [`super::queue`] follows many pairs at a time, and finds the
 //! same light, bit for bit.
 
-use super::connect::{Connection, merged, to_light, to_vertex};
+use super::connect::{Connection, to_light, to_vertex};
 use super::{
     CameraSubpath, Subpath, Vertex, connect_to_camera, crossed, emitted, from_infinity, light_vertices,
+    merged,
 };
 use crate::equiangular::EquiangularSample;
 use crate::mis::Partial;
@@ -152,8 +153,8 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         if let Some(photons) = self.photons
             && !z.at.is_delta()
         {
-            tally.spend(Step::Lookup, 1);
-            merged(task, photons, z, |technique, found| tally.add_sample(technique, found));
+            let has_looked = merged(task, photons, z, |technique, found| tally.add_sample(technique, found));
+            tally.spend(Step::Lookup, usize::from(has_looked));
         }
     }
 

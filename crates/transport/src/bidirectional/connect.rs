@@ -1,17 +1,15 @@
 //! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
-use super::vertex::{Vertex, count};
+use super::vertex::Vertex;
 use crate::emission::light_number;
 use crate::interaction::Interaction;
 use crate::limits::MAX_CONNECTED_ROW;
 use crate::media::Passage;
-use crate::photons::Photons;
 use crate::segment::Segment;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
 use crate::through::Through;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
-use bilux_scene::media::mean;
 use bilux_scene::{Ray, Tracer, TransportMode};
 
 /// A connection, before it is known what lies between its ends.
@@ -92,7 +90,7 @@ pub(crate) fn to_camera<const N: usize>(
     let ray = task.context.scene.to_camera(y.at.spawn_to(seen.p));
     let arriving = seen.density * y.at.cos(seen.wi).unwrap_or(1.0);
     let back = y.at.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance);
-    let others = y.partial.others(arriving, back, y.at.sine(y.wo, seen.wi));
+    let others = y.partial.others(arriving, back, y.at.sine(y.wo, seen.wi, techniques));
     let light = task.sample.seen(y.beta * scattered * seen.density, y.is_split());
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: 1 },
@@ -143,7 +141,7 @@ pub(crate) fn to_light<const N: usize>(
     let from_light = z.partial.others_of_direct(
         arriving,
         back,
-        z.at.sine(z.wo, sample.wi),
+        z.at.sine(z.wo, sample.wi, techniques),
         z.at.finds_direct_light(techniques),
     );
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
@@ -197,8 +195,9 @@ pub(crate) fn to_vertex<const N: usize>(
         z.at.pdf_solid_angle(direction, z.wo, TransportMode::Importance),
         y.at.pdf_solid_angle(-direction, y.wo, TransportMode::Radiance),
     ];
-    let from_camera = y.partial.others(pdf_z * cos(y) / distance2, back[1], y.at.sine(y.wo, direction));
-    let from_light = z.partial.others(pdf_y * cos(z) / distance2, back[0], z.at.sine(z.wo, direction));
+    let sine = |vertex: &Vertex<N>| vertex.at.sine(vertex.wo, direction, techniques);
+    let from_camera = y.partial.others(pdf_z * cos(y) / distance2, back[1], sine(y));
+    let from_light = z.partial.others(pdf_y * cos(z) / distance2, back[0], sine(z));
     let light = task.sample.seen(z.beta * f_z * f_y * y.beta / distance2, z.is_split() || y.is_split());
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: z.count() },
@@ -216,40 +215,6 @@ pub(crate) fn to_vertex<const N: usize>(
     let through = Through { media, distance: Some(distance2.sqrt()), seed: task.sample.seed() };
     let segment = Segment { ray: spawn_between(&z.at, &y.at), n, through };
     Some(Connection { join, segment })
-}
-
-/// Merges a camera vertex on a surface with all photons around it, and visits the light that each of them brings.
-pub(crate) fn merged<const N: usize>(
-    task: &Task,
-    photons: &Photons<N>,
-    z: &Vertex<N>,
-    mut visit: impl FnMut(Technique, &Contribution<N>),
-) {
-    let Interaction::Surface(surface, bsdf) = &z.at else { return };
-    let facing = bsdf.facing(z.wo, TransportMode::Radiance);
-    photons.around(surface.p, |position, y, walk| {
-        // Densities are those of one channel.
-        if walk.is_some_and(|walk| walk.channel != task.sample.channel) {
-            return;
-        }
-        // Merge only on the same surface, not with the other side of a sheet or around a corner.
-        let counted = z.events().counted + position.counted();
-        if counted > task.context.max_depth || surface.n_geom.dot(y.n_geom) < 0.5 {
-            return;
-        }
-        let Some((scattered, pdf, back)) = facing.eval_and_pdfs(y.wo) else { return };
-        // Photons arrive per area of the surface that they fell on, and grazing ones are rare; `eval` contains the
-        // cosine to the shading normal. With the normal at `z`, a grazing photon from around a bend could have any
-        // brightness.
-        let cos = y.n_geom.dot(y.wo).abs();
-        let others = y.connected + y.d_vc * pdf + z.partial.before(back);
-        let light =
-            task.sample.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || position.is_split());
-        let light = walk.map_or(light, |walk| light / mean(z.odds * walk.odds));
-        let technique = Technique::Merged { s: count(position.depth()), t: z.count() };
-        let own = photons.techniques().eta;
-        visit(technique, &Contribution { own, others, origin: position.origin, ..Contribution::only(light) });
-    });
 }
 
 /// A ray from one vertex to another that ends just before the second, if that is on a surface.

@@ -83,7 +83,8 @@ pub(crate) fn connect_to_camera<const N: usize>(
     }
 }
 
-fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
+/// Whether light subpaths are connected with the camera at this vertex, and merged.
+pub(crate) fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
     y.depth > 0 || y.at.finds_direct_light(techniques)
 }
 

@@ -123,8 +123,9 @@ mod tests {
     fn techniques(counts: &MergeCounts, direct: bool) -> TechniqueCounts<N> {
         let (splats, connections) = (PerSet([1.0, 0.25, 0.0]), PerSet([1.0, 0.0, 1.0]));
         let per_set = |often: f32| PerSet([often, 0.0, 2.0 * often]);
-        let (eta, beams) = (per_set(counts.eta), per_set(counts.beams));
-        TechniqueCounts { splats, connections, eta, beams, densest: counts.densest, direct }
+        let MergeCounts { densest, radius, .. } = *counts;
+        let [eta, beams, points] = [counts.eta, counts.beams, counts.points].map(per_set);
+        TechniqueCounts { splats, connections, eta, beams, densest, points, radius, direct }
     }
 
     /// Compares all contributions of all samples, and the steps of all together.
@@ -187,7 +188,11 @@ mod tests {
         let mut foggy = mixed();
         let fog = Spec::new("", "interface").with("scattering", 0.05f32).with("absorption", 0.01f32);
         put(&mut foggy, "fog", ball(Vec3::new(0.0, 0.7, 0.0), 9.0, 8, true), fog);
+        let mut milky = mixed();
+        let milk = Spec::new("", "dielectric").with("scattering", 60.0f32).with("absorption", 0.5f32);
+        put(&mut milky, "milk", ball(Vec3::new(0.1, 0.7, 1.3), 0.6, 8, true), milk);
         for (name, builder) in [
+            ("milky", milky),
             ("mixed", mixed()),
             ("still life", still_life()),
             ("nested", nested),

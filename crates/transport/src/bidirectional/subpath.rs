@@ -211,7 +211,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
         let straight_from = if is_at_light { self.start.map(|start| start.light) } else { None };
         let is_left = is_at_light && !at.finds_direct_light(self.techniques);
-        let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel) };
+        let ball = media.ball(context.scene, &at, self.techniques);
+        let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel, ball) };
         let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
         self.partial.arrive(distance2, edge, connections, merged);
         if let Some(lit) = self.lit.filter(|_| !at.is_in_medium()) {
@@ -241,6 +242,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             came_split: is_split,
             media,
             arriving,
+            ball,
             straight_from,
             approach,
         })
@@ -258,7 +260,13 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         let finds_direct = self.mode == TransportMode::Importance || at.finds_direct_light(self.techniques);
-        self.partial.leave(cos, at.sine(*wo, sample.wi), pdfs, finds_direct, vertex.events.in_row);
+        self.partial.leave(
+            cos,
+            at.sine(*wo, sample.wi, self.techniques),
+            pdfs,
+            finds_direct,
+            vertex.events.in_row,
+        );
         self.approach = vertex.approach;
         self.lit = vertex.lit(1.0 / sample.pdf_solid_angle);
         self.walk.is_split = vertex.is_split();

@@ -1,11 +1,13 @@
 //! The vertices of subpaths.
 
+use crate::ball::Ball;
 use crate::equiangular::{Approach, Lit};
-use crate::interaction::Interaction;
+use crate::interaction::{Interaction, MediumPoint};
 use crate::limits::Events;
 use crate::media::Media;
 use crate::mis::Partial;
-use crate::photons::{Photon, PhotonPosition};
+use crate::photon_grid::PhotonPosition;
+use crate::photons::{MediumPhoton, Photon, PhotonWalk};
 use crate::techniques::PerSet;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
@@ -34,6 +36,8 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(super) media: Media,
     /// The density of arriving, per area or volume, over that over solid angle over the squared distance.
     pub(super) arriving: f32,
+    /// The ball in which it is merged with photons, if it is a point of a dense medium.
+    pub(super) ball: Option<Ball>,
     /// The light that its light subpath comes from, if it comes straight from there.
     pub(super) straight_from: Option<usize>,
     /// How the ray of a camera subpath came here, where [equiangular points](crate::equiangular) may be.
@@ -75,7 +79,7 @@ impl<const N: usize> Vertex<N> {
         lit.picked(scene, (lit.p - from) / distance, distance)
     }
 
-    /// The photon that is stored for merging; `None` in a medium.
+    /// The photon that is stored for merging on a surface; `None` in a medium.
     pub(crate) fn photon(&self) -> Option<(PhotonPosition, Photon<N>)> {
         let surface = self.at.surface()?;
         let counted = self.events.counted - 1;
@@ -85,6 +89,26 @@ impl<const N: usize> Vertex<N> {
         Some((
             position,
             Photon { wo, n_geom, beta, connected: self.partial.connected, d_vc: self.partial.d_vc },
+        ))
+    }
+
+    /// The photon that is stored for merging in a dense medium, of a sample whose distances have this channel.
+    pub(crate) fn medium_photon(
+        &self,
+        scene: &Scene,
+        channel: u8,
+    ) -> Option<(PhotonPosition, MediumPhoton<N>)> {
+        let (Interaction::Medium(MediumPoint { p, is_inside, .. }), Some(ball)) = (self.at, self.ball) else {
+            return None;
+        };
+        let (object, _) = self.media.scattering(scene)?;
+        let counted = self.events.counted - u32::from(!is_inside);
+        let Vertex { wo, beta, odds, partial, events, .. } = *self;
+        let walk = PhotonWalk { odds, channel };
+        let straight_from = self.straight_from.map(|light| light as u32);
+        Some((
+            PhotonPosition::new(p, counted, self.depth - counted, self.came_split, self.origin),
+            MediumPhoton { wo, beta, partial, events, object, straight_from, walk, radius: ball.radius },
         ))
     }
 

@@ -20,6 +20,7 @@ mod nested;
 mod occlusion;
 mod one_picture;
 mod path_tracing;
+mod points;
 mod queue;
 mod random_numbers;
 mod scattering;

@@ -254,7 +254,11 @@ fn densities_with_a_factor_left_out_give_other_weights() {
 
 /// Fog behind a surface, so that rows of events have a limit.
 fn inside(lights: &[&str]) -> Scene {
-    foggy(lights, &cameras()[0], Spec::new("", "dielectric").with("eta", 1.0f32), FOG)
+    foggy(lights, &cameras()[0], clear_surface(), FOG)
+}
+
+fn clear_surface() -> Spec {
+    Spec::new("", "dielectric").with("eta", 1.0f32)
 }
 
 #[test]
@@ -270,6 +274,37 @@ fn every_mis_weight_matches_its_definition_in_fog() {
             assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
             assert!(techniques.beams == PerSet::ZERO || telling[5] > 500, "{telling:?}");
         }
+    }
+}
+
+/// The same where fog is dense: its points are merged in balls.
+fn with_points(set: TechniqueCounts) -> TechniqueCounts {
+    TechniqueCounts { densest: 0.1, points: PerSet([2000.0]), radius: 0.5, ..set }
+}
+
+fn is_dense(scene: &Scene) -> bool {
+    (0..scene.geometry().objects().len() as u32).any(|object| scene.is_dense(object))
+}
+
+#[test]
+fn every_mis_weight_matches_its_definition_in_dense_fog() {
+    let thick = FOG.map(|coefficient| coefficient * 3.0);
+    let boundaries = [(clear_surface(), FOG), (Spec::new("", "interface"), FOG), (clear_surface(), thick)];
+    for (i, (boundary, fog)) in boundaries.into_iter().enumerate() {
+        let scene = foggy([&["rect"][..], &["point", "rect"]][i % 2], &cameras()[0], boundary, fog);
+        // How far its points are from surfaces is known where it is thick.
+        assert_eq!(is_dense(&scene), i == 2);
+        let techniques = TechniqueCounts { direct: i % 2 == 0, ..with_points(sets()[1 + i % 2]) };
+        let Verdict { compared, wrong, worst, telling, .. } =
+            verdict(&scene, &techniques, Flaw::None, Some(fog[0] + fog[1]));
+        assert!(wrong == 0, "scene {i}: {wrong} of {compared} weights are wrong, by up to {worst}");
+        assert!(compared > 3000 && telling[5] > 500, "{telling:?}");
+    }
+    let scene = inside(&["rect"]);
+    for (flaw, part) in [(Flaw::Ball, 20), (Flaw::Survival, 20), (Flaw::Row, 1000)] {
+        let Verdict { compared, wrong, .. } =
+            verdict(&scene, &with_points(sets()[1]), flaw, Some(FOG[0] + FOG[1]));
+        assert!(wrong > compared / part, "{flaw:?}: only {wrong} of {compared} weights differ");
     }
 }
 

@@ -1,14 +1,14 @@
 //! A whole path, and how often each technique finds it by the definition.
 
-use super::PANEL_AREA;
+use super::{PANEL_AREA, is_dense};
 use crate::interaction::{Interaction, MediumPoint};
 use crate::limits::MAX_CONNECTED_ROW;
 use crate::task::Task;
-use crate::techniques::TechniqueCounts;
+use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::transcendental::{atan2_f64, exp_f64};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::TransportMode;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A vertex between the light and the camera, in both directions as the code has evaluated it.
 #[derive(Clone)]
@@ -62,6 +62,8 @@ pub(super) enum Flaw {
     /// The angle between beams that cross is left out, or that beams stand for all events along them.
     Sine,
     Extinction,
+    /// Points are merged in a larger ball.
+    Ball,
     /// Equiangular points are left out, or are as frequent as events of walks.
     Points,
     WalkedPoints,
@@ -77,9 +79,9 @@ impl Path {
     ) -> Vec<((bool, usize), f64)> {
         let count = self.nodes.len();
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
-        let [splats, connections, eta, beams] =
-            [techniques.splats, techniques.connections, techniques.eta, techniques.beams]
-                .map(|counts| f64::from(counts.0[0]));
+        let TechniqueCounts { splats, connections, eta, beams, points, .. } = techniques;
+        let [splats, connections, eta, beams, points] =
+            [splats, connections, eta, beams, points].map(|counts| f64::from(counts.0[0]));
         // Light subpaths may leave direct light to camera subpaths.
         let leaves_direct = flaw != Flaw::Direct
             && match &self.nodes[0].at {
@@ -113,7 +115,10 @@ impl Path {
             let node = &self.nodes[i - 1];
             let copies = match i {
                 1 if leaves_direct => 0.0,
-                _ if node.at.is_in_medium() => beams * self.crossing(node, flaw),
+                _ if node.at.is_in_medium() => match self.ball(task, node, techniques, flaw) {
+                    Some(volume) => points * volume,
+                    None => beams * self.crossing(node, flaw),
+                },
                 _ if flaw == Flaw::MergedTwice => 2.0 * eta,
                 _ => eta,
             };
@@ -284,6 +289,19 @@ impl Path {
         };
         let fog = if flaw == Flaw::Extinction { 1.0 } else { f64::from(self.fog.unwrap_or(1.0)) };
         sine / (fog * fog)
+    }
+
+    /// The volume in which a point of the fog, whose boundary is known or not, is merged with points; `None` where beams are.
+    fn ball(&self, task: &Task, node: &PathVertex, techniques: &TechniqueCounts, flaw: Flaw) -> Option<f64> {
+        let Interaction::Medium(MediumPoint { even: Some(extinction), .. }) = node.at else { return None };
+        let densest = extinction.max_channel();
+        if techniques.points == PerSet::ZERO || techniques.densest >= densest {
+            return None;
+        }
+        let widest = if is_dense(task.context.scene) { 1.0 } else { 0.05 };
+        let radius = f64::from(techniques.radius.min(widest / densest));
+        let radius = if flaw == Flaw::Ball { 1.3 * radius } else { radius };
+        Some(4.0 / 3.0 * PI * radius * radius * radius)
     }
 
     fn survival(&self, distance: f32, flaw: Flaw) -> f64 {

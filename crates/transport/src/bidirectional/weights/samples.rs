@@ -9,8 +9,8 @@ use crate::bidirectional::*;
 use crate::equiangular::Equiangular;
 use crate::mis::Partial;
 use crate::photon_beams::PhotonBeams;
-use crate::photons::Photons;
-use crate::photons::{Photon, PhotonPosition, PhotonWalk};
+use crate::photon_grid::PhotonPosition;
+use crate::photons::{Photon, PhotonWalk, Photons, TracedPhotons};
 use crate::task::Task;
 use crate::techniques::*;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -159,6 +159,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         return;
     }
     crossed_beams(task, verdict, start, (y, z));
+    merged_points(task, verdict, start, (y, z));
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
         if light_end.depth == 0 && !techniques.direct {
@@ -169,20 +170,54 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
         };
         let position = PhotonPosition { p: surface.p, ..position };
         let photon = Photon { n_geom: surface.n_geom, ..photon };
-        let photons = Photons::new(
-            vec![(position, photon)],
-            &[PhotonWalk { odds: light_end.odds, channel: task.sample.channel }],
-            Vec::new(),
-            1.0,
-            *techniques,
-        );
+        let walk = PhotonWalk { odds: light_end.odds, channel: task.sample.channel };
+        let traced =
+            TracedPhotons { surfaces: vec![(position, photon)], walks: vec![walk], ..TracedPhotons::NONE };
+        let photons = Photons::new(traced, 1.0, *techniques);
         // One vertex replaces both: it scatters as it does at the camera's end.
-        let mut nodes = y.nodes(b, true, camera_end.wo, false);
-        let shared = nodes.pop().unwrap();
-        let behind = nodes.len();
-        nodes.extend(z.nodes(a, false, light_end.wo, false));
-        nodes[behind].from_light = shared.from_light;
-        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
+        let path = merged_path(task, verdict, start, (y, b), (z, a));
+        merged(task, &photons, camera_end, |_, found| {
+            verdict.look(task, found, (true, b + 2), &path);
+        });
+    }
+}
+
+/// The points of a subpath in fog, by index.
+fn in_fog(subpath: &Traced) -> Vec<usize> {
+    let is_in_fog = |i: &usize| subpath.vertices[*i].at.is_in_medium();
+    (0..subpath.vertices.len()).filter(is_in_fog).collect()
+}
+
+/// The path that two vertices, merged into the one of the camera subpath, are part of.
+fn merged_path(
+    task: &Task,
+    verdict: &Verdict,
+    start: Start,
+    (y, b): (&Traced, usize),
+    (z, a): (&Traced, usize),
+) -> Path {
+    let mut nodes = y.nodes(b, true, z.vertices[a].wo, false);
+    let shared = nodes.pop().unwrap();
+    let behind = nodes.len();
+    nodes.extend(z.nodes(a, false, y.vertices[b].wo, false));
+    nodes[behind].from_light = shared.from_light;
+    Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) }
+}
+
+/// Moves each point of the light subpath in fog to each of the camera subpath.
+fn merged_points(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Traced, &Traced)) {
+    let techniques = &{ verdict.techniques };
+    for (a, b) in in_fog(z).into_iter().flat_map(|a| in_fog(y).into_iter().map(move |b| (a, b))) {
+        let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
+        if !is_connectible(light_end, techniques) {
+            continue;
+        }
+        let photon = light_end.medium_photon(task.context.scene, task.sample.channel);
+        let Some((position, photon)) = photon else { continue };
+        let position = PhotonPosition { p: camera_end.at.p(), ..position };
+        let traced = TracedPhotons { points: vec![(position, photon)], ..TracedPhotons::NONE };
+        let photons = Photons::new(traced, 1.0, *techniques);
+        let path = merged_path(task, verdict, start, (y, b), (z, a));
         merged(task, &photons, camera_end, |_, found| {
             verdict.look(task, found, (true, b + 2), &path);
         });
@@ -192,13 +227,9 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
 /// Moves each beam of the light subpath to where a beam of the camera subpath has an event, so that they cross there.
 fn crossed_beams(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Traced, &Traced)) {
     let techniques = &{ verdict.techniques };
-    let in_fog = |subpath: &Traced| {
-        let is_in_fog = |i: &usize| subpath.vertices[*i].at.is_in_medium();
-        (0..subpath.vertices.len()).filter(is_in_fog).collect::<Vec<_>>()
-    };
     for (a, b) in in_fog(z).into_iter().flat_map(|a| in_fog(y).into_iter().map(move |b| (a, b))) {
         let (Some(eye), Some(light)) = (z.beams[a].last(), y.beams[b].last()) else { continue };
-        let (ray, camera_end, light_end) = (&z.rays[a], &z.vertices[a], &y.vertices[b]);
+        let (ray, camera_end) = (&z.rays[a], &z.vertices[a]);
         // Both a bit longer than to their events, where they would end.
         let p = camera_end.at.p();
         let mut moved = *light;
@@ -206,12 +237,7 @@ fn crossed_beams(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (
         moved.line.length *= 1.0 + 1e-5;
         let mut eye = *eye;
         eye.line.length *= 1.0 + 1e-5;
-        let mut nodes = y.nodes(b, true, camera_end.wo, false);
-        let shared = nodes.pop().unwrap();
-        let behind = nodes.len();
-        nodes.extend(z.nodes(a, false, light_end.wo, false));
-        nodes[behind].from_light = shared.from_light;
-        let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
+        let path = merged_path(task, verdict, start, (y, b), (z, a));
         // Wide enough for the rounding of where they are.
         let beams = PhotonBeams::new(vec![moved], 1e-4);
         crossed(task, &beams, &eye, ray, techniques, |_, found| {

@@ -42,6 +42,8 @@ fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> Techniq
         eta: PerSet([own.eta, film.eta.0[0], 0.0]),
         beams: PerSet([own.beams, film.beams.0[0], 0.0]),
         densest: film.densest,
+        points: PerSet([own.points, film.points.0[0], 0.0]),
+        radius: film.radius,
         direct: film.direct,
     }
 }

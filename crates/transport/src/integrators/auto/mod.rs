@@ -18,7 +18,7 @@ use crate::camera_rays::{CameraRays, CameraSpread};
 use crate::emission::Guide;
 use crate::light_choice::LightChoice;
 use crate::path_tracing::PathTracing;
-use crate::photons::{MergeCounts, Merging};
+use crate::photons::{MergeCounts, Merging, PhotonPaths};
 use crate::pixel_integrator::Plan;
 use crate::plan::{Candidate, Choice};
 use crate::settings::RenderSettings;
@@ -145,8 +145,12 @@ impl Chooser for Auto {
         let pixels = (u64::from(film.width) * u64::from(film.height)) as f32;
         let counts = |set: &Set| {
             let traced = light_paths * set.photons;
-            let beams = traced / merging.beam_step(scene, TYPICAL_ITERATION, traced);
-            merging.counts(scene, TYPICAL_ITERATION, [traced, beams], pixels)
+            let paths = PhotonPaths {
+                all: traced,
+                with_beams: traced / merging.beam_step(scene, TYPICAL_ITERATION, traced),
+                with_points: traced / Merging::point_step(traced),
+            };
+            merging.counts(scene, TYPICAL_ITERATION, paths, pixels)
         };
         let techniques = |set: &Set| {
             let light_paths = set.photons;
