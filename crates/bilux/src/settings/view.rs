@@ -124,6 +124,8 @@ fn magnified(reader: &Reader, entry: &Entry, zoom: f64) -> Vec<(&'static str, f6
             .collect();
     }
     match has("fov") {
+        // Angles of half a circle and more have no tangents.
+        true if entry.name != "perspective" => vec![("fov", reader.number_f64("fov") / zoom)],
         true => vec![("fov", f64::from(narrowed(reader.number("fov"), zoom as f32)))],
         false => vec![("height", f64::from(reader.number("height") / zoom as f32))],
     }

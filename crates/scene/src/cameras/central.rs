@@ -18,6 +18,10 @@ pub(super) trait Projection: Send + Sync + 'static {
     fn direction(&self, film: DVec2) -> Option<DVec3>;
     /// Where a direction of any length except zero is seen, and the film's area per solid angle there, in 1/sr.
     fn seen(&self, towards: DVec3) -> Option<(DVec2, f64)>;
+    /// [`Camera::repeats`].
+    fn repeats(&self, _film: DVec2) -> [Option<DVec2>; 3] {
+        [None; 3]
+    }
     /// The matrix from directions to points of the film with w for the division by w, if there is one.
     fn matrix(&self) -> Option<DMat3> {
         None
@@ -101,6 +105,10 @@ impl<P: Projection> Camera for Central<P> {
         let (film, density, _, direction) = self.seen(&pose, from.as_dvec3())?;
         let (film, density, wi) = (film.as_vec2(), density as f32, -direction.as_vec3());
         CameraConnection { film, p: pose.position.as_vec3(), wi, density }.if_finite()
+    }
+
+    fn repeats(&self, film: Vec2) -> [Option<Vec2>; 3] {
+        self.projection.repeats(film.as_dvec2()).map(|film| film.map(|film| film.as_vec2()))
     }
 
     fn density(&self, ray: &Ray, t: f32) -> f32 {

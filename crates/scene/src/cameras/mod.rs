@@ -1,9 +1,11 @@
 //! Cameras. Each camera has its own file; the table is [`CAMERAS`].
 
 mod central;
+mod fisheye;
 mod opencv;
 mod opencv_fisheye;
 mod orthographic;
+mod panorama;
 mod perspective;
 mod pinhole;
 mod pixels;
@@ -87,6 +89,11 @@ pub trait Camera: Send + Sync {
     ///
     /// This is the inverse of [`Camera::ray`], off the film too. `None` when no ray sees the point, as behind the camera.
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
+    /// Where beside the film the ray of a point on the film is too: a panorama begins again at its edges, and pixel filters reach
+    /// there.
+    fn repeats(&self, _film: Vec2) -> [Option<Vec2>; 3] {
+        [None; 3]
+    }
     /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;
     /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
@@ -130,8 +137,14 @@ pub struct CameraEntry {
 }
 
 /// All cameras.
-pub const CAMERAS: &[CameraEntry] =
-    &[perspective::ENTRY, orthographic::ENTRY, opencv::ENTRY, opencv_fisheye::ENTRY];
+pub const CAMERAS: &[CameraEntry] = &[
+    perspective::ENTRY,
+    orthographic::ENTRY,
+    fisheye::ENTRY,
+    panorama::ENTRY,
+    opencv::ENTRY,
+    opencv_fisheye::ENTRY,
+];
 
 /// A camera as a scene describes it: a spec, and the changes at keyframes.
 #[derive(Clone, Debug, Default, PartialEq)]

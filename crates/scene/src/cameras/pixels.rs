@@ -65,6 +65,11 @@ impl Pixels {
         }
     }
 
+    /// A film of this size whose axis meets its middle.
+    pub(super) fn centred(size: DVec2, focal: DVec2) -> Pixels {
+        Pixels { first: DVec2::ZERO, size, focal, centre: size * 0.5, skew: 0.0, other: None }
+    }
+
     /// The point of the plane at distance 1 by that of the film.
     pub(super) fn to_plane(self, film: DVec2) -> DVec2 {
         let at = self.first + film * self.size - self.centre;

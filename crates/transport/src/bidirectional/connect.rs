@@ -6,7 +6,7 @@ use crate::interaction::Interaction;
 use crate::limits::MAX_CONNECTED_ROW;
 use crate::media::Passage;
 use crate::segment::Segment;
-use crate::task::Task;
+use crate::task::{Context, Task};
 use crate::techniques::{Contribution, PerSet, Technique, TechniqueCounts, power_factor};
 use crate::through::Through;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -105,6 +105,13 @@ pub(crate) fn to_camera<const N: usize>(
     let segment =
         Segment { ray, n: Vec3::ZERO, through: Through { media, distance, seed: task.sample.seed() } };
     Some((seen.film, Connection { join, segment }))
+}
+
+/// A point of the film, and where else beside it pixels see the same: light that arrives there arrives everywhere.
+pub(crate) fn places_on_film(context: &Context, film: Vec2) -> impl Iterator<Item = Vec2> {
+    let reach = context.reach;
+    let beside = context.camera.repeats(film).into_iter().flatten();
+    std::iter::once(film).chain(beside.filter(move |film| reach.contains(*film)))
 }
 
 /// Connects a camera vertex with a point sampled on a light (s = 1).

@@ -1,7 +1,7 @@
 //! Light subpaths: from a light through the scene, and how the camera sees them. One at a time, or many together: both
 //! give the same vertices, bit for bit.
 
-use super::connect::{Connection, Join, to_camera};
+use super::connect::{Connection, Join, places_on_film, to_camera};
 use super::queued_sample::QueuedSample;
 use super::{Subpath, Vertex};
 use crate::beam::Beam;
@@ -78,7 +78,9 @@ pub(crate) fn connect_to_camera<const N: usize>(
         if let Some((film, connection)) = to_camera(task, y, techniques)
             && let Some(found) = connection.trace(task.tracer)
         {
-            tally.add_splat(film, connection.join.technique, &found);
+            for film in places_on_film(task.context, film) {
+                tally.add_splat(film, connection.join.technique, &found);
+            }
         }
     }
 }
@@ -264,7 +266,10 @@ impl<const N: usize> LightPaths<N> {
             }
         }
         shadow_rays.trace(tracer, |Splat { sample, film, join }, passage| {
-            add(*sample as usize, *film, join.technique, &join.along(passage));
+            let found = join.along(passage);
+            for film in places_on_film(context, *film) {
+                add(*sample as usize, film, join.technique, &found);
+            }
         });
         self.shadow_rays = shadow_rays;
     }

@@ -2,7 +2,7 @@
 //! light is seen. [Arvo 1986]
 
 use super::BatchQueue;
-use super::connect::to_camera;
+use super::connect::{places_on_film, to_camera};
 use super::light_paths::{LightPaths, light_vertices};
 use super::queued_sample::QueuedSample;
 use crate::media::Media;
@@ -36,7 +36,9 @@ impl LightTracing {
             if let Some((film, connection)) = to_camera(task, &vertex, &TECHNIQUES)
                 && let Some(found) = connection.trace(task.tracer)
             {
-                add_splat(film, found.light);
+                for film in places_on_film(task.context, film) {
+                    add_splat(film, found.light);
+                }
             }
         }
     }

@@ -354,6 +354,15 @@ fn lenses_and_cameras_without_perspective() {
     // It sees nothing in its corners.
     let folding = seen("opencv").with("k1", -0.9f32).with("fx", 480.0f32);
     let fisheye = seen("opencv-fisheye").with("k1", -0.1f32).with("fx", 200.0f32).with("fy", 170.0f32);
+    let wide = seen("fisheye").with("mapping", "equisolid").with("fov", 200.0f32);
+    let around = seen("panorama").with("position", Vec3::new(0.0, 1.2, 0.8));
+    let cylinder = around.clone().with("mapping", "cylindrical").with("fov_x", 200.0f32);
+    let cube = around.clone().with("mapping", "cube");
+    for spec in [wide, around, cylinder, cube] {
+        let name = format!("{} {:?}", spec.kind, spec.parameters.find("mapping"));
+        builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];
+        assert_like_path(&name, &built(&builder), &["light", "bdpt"]);
+    }
     for spec in [lens, seen("orthographic").with("height", 3.0f32), shifted, barrel, folding, fisheye] {
         let name = spec.kind.clone();
         builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];

@@ -94,6 +94,20 @@ fn cameras() -> Vec<(String, Arc<dyn Camera>, f32)> {
         still("lens", lens.clone(), 1.5),
         still("lens, focused near", lens.clone().with("focus", 1.5f32).with("mirrored", true), 1.5),
         still("plan", spec("orthographic").with("height", 3.0f32), 1.7),
+        moving("moving panorama", spec("panorama"), &there[..1], 0.4),
+        still("part of a panorama", with_all(spec("panorama"), &[("fov_x", 250.0), ("fov", 70.0)]), 2.0),
+        still("mirrored panorama", spec("panorama").with("mirrored", true), 2.0),
+        still("cylinder", spec("panorama").with("mapping", "cylindrical"), 3.0),
+        still(
+            "part of a cylinder",
+            with_all(spec("panorama"), &[("fov_x", 120.0), ("fov", 60.0)]).with("mapping", "cylindrical"),
+            2.0,
+        ),
+        still("cube", spec("panorama").with("mapping", "cube"), 6.0),
+        still("equisolid", spec("fisheye").with("mapping", "equisolid").with("fov", 220.0f32), 1.0),
+        still("stereographic", spec("fisheye").with("mapping", "stereographic").with("fov", 240.0f32), 1.5),
+        still("orthographic fisheye", spec("fisheye").with("mapping", "orthographic"), 0.7),
+        still("full-frame fisheye", spec("fisheye").with("fit", "diagonal").with("mirrored", true), 1.5),
         moving("moving lens", lens, &there, 0.4),
         moving("moving plan", spec("orthographic"), &wider, 0.7),
     ]);
@@ -140,6 +154,10 @@ impl Camera for BuggyCamera {
 
     fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]> {
         self.camera.ray_f64(film, time)
+    }
+
+    fn repeats(&self, film: Vec2) -> [Option<Vec2>; 3] {
+        self.camera.repeats(film)
     }
 
     fn matrices(&self, time: f32) -> CameraMatrices {
