@@ -17,8 +17,6 @@ pub struct Enclosure {
     pub is_solid: bool,
     /// A light may be inside.
     pub holds_light: bool,
-    /// The medium is the same everywhere, and so dense that it is known how [far](crate::Scene::clearance) its points are from surfaces.
-    pub is_dense: bool,
 }
 
 impl Enclosure {
@@ -44,7 +42,7 @@ impl Enclosure {
             }
             let bounds = widened(to_world.bounds(&placed.mesh.bounds()));
             let holds_light = lit.iter().any(|place| !place.intersection(bounds).is_empty());
-            Some(Enclosure { bounds, is_solid: !material.is_interface(), holds_light, is_dense: false })
+            Some(Enclosure { bounds, is_solid: !material.is_interface(), holds_light })
         };
         geometry.objects().iter().zip(passes).map(of).collect()
     }

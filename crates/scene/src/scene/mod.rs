@@ -249,11 +249,11 @@ impl Scene {
     /// Whether the inside of an object is a dense medium whose [clearance](Scene::clearance) is known.
     #[inline]
     pub fn is_dense(&self, object: u32) -> bool {
-        self.enclosure(object).is_some_and(|enclosure| enclosure.is_dense)
+        self.parts.clearance.is_known(object)
     }
 
     /// The distance in metres from a point of a dense medium, inside this object, to the nearest triangle of anything that does not move, or
-    /// `within` where that is less. `None` where the medium is not dense, or its boundary not known.
+    /// `within` where that is less. `None` where the medium is not dense, or moves.
     #[inline]
     pub fn clearance(&self, object: u32, p: Vec3, within: f32) -> Option<f32> {
         self.is_dense(object).then(|| self.parts.clearance.at(p, within))

@@ -108,8 +108,8 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
-        let mut enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
-        let clearance = Clearance::of(&geometry, &materials, &mut enclosures);
+        let enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
+        let clearance = Clearance::of(&geometry, &materials);
         let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
         let shading = geometry.objects().iter().map(|o| ObjectShading::of(o, &materials)).collect();

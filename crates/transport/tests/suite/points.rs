@@ -36,7 +36,7 @@ fn white_wax_vanishes_in_a_furnace_by_photons() {
     sky(&mut builder, 1.0);
     look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 20.0);
     let scene = built(&builder);
-    // Balls as wide as a mean free path, without connections that share the work.
+    // Balls of half a mean free path, without connections that share the work.
     let spec = Spec::new("", "vcm").with("radius", 0.04f32).with("connections", false);
     let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(32, 32, effort(16, 256)) };
     let pixels = shoot(&scene, &*integrators::build(&spec).unwrap(), &settings).film.to_rgb();

@@ -298,7 +298,7 @@ impl Path {
         if techniques.points == PerSet::ZERO || techniques.densest >= densest {
             return None;
         }
-        let widest = if is_dense(task.context.scene) { 1.0 } else { 0.05 };
+        let widest = if is_dense(task.context.scene) { 0.5 } else { 0.05 };
         let radius = f64::from(techniques.radius.min(widest / densest));
         let radius = if flaw == Flaw::Ball { 1.3 * radius } else { radius };
         Some(4.0 / 3.0 * PI * radius * radius * radius)
