@@ -46,13 +46,13 @@ impl Clearance {
         }
         let options = BuildOptions { quality: Quality::Fast, ..BuildOptions::default() };
         let tree = TriangleMesh::from_corners(corners).ok().and_then(|mesh| Bvh8::new(&mesh, &options).ok());
-        let is_dense = |bounds: Option<Aabb>| bounds.is_some() && tree.is_some();
-        Clearance { dense: of_objects.into_iter().map(is_dense).collect(), tree }
+        let is_known = |bounds: Option<Aabb>| bounds.is_some() && tree.is_some();
+        Clearance { dense: of_objects.into_iter().map(is_known).collect(), tree }
     }
 
     /// Whether the inside of an object is a dense medium.
     #[inline]
-    pub(super) fn is_known(&self, object: u32) -> bool {
+    pub(super) fn is_dense(&self, object: u32) -> bool {
         self.dense.get(object as usize).copied().unwrap_or_default()
     }
 

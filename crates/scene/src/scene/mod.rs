@@ -249,7 +249,7 @@ impl Scene {
     /// Whether the inside of an object is a dense medium whose [clearance](Scene::clearance) is known.
     #[inline]
     pub fn is_dense(&self, object: u32) -> bool {
-        self.parts.clearance.is_known(object)
+        self.parts.clearance.is_dense(object)
     }
 
     /// The distance in metres from a point of a dense medium, inside this object, to the nearest triangle of anything that does not move, or
