@@ -11,6 +11,7 @@ pub(crate) const COMMANDS: &[&str] = &[
     "explain",
     "convert",
     "denoise",
+    "sensor",
     "compare",
     "generate",
     "merge",

@@ -34,6 +34,8 @@ const TABLES: &[(&str, &str)] = &[
     ("filters", "Pixel filters"),
     ("aovs", "Arbitrary output variables"),
     ("metrics", "Metrics"),
+    ("sensor", "Sensor"),
+    ("lidar", "Laser scanner"),
     ("settings", "Settings"),
 ];
 

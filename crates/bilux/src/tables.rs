@@ -101,6 +101,16 @@ pub const TABLES: &[Table] = &[
         rows: rows!(bilux_pictures::metrics::METRICS),
     },
     Table {
+        name: "sensor",
+        summary: "what can be said of a sensor, for a picture of photons",
+        rows: || vec![bilux_pictures::sensor::SENSOR],
+    },
+    Table {
+        name: "lidar",
+        summary: "what can be said of a laser scanner",
+        rows: || vec![bilux_transport::lidar::LIDAR],
+    },
+    Table {
         name: "settings",
         summary: "the keys of [render] in scene files and of --set",
         rows: || vec![crate::settings::RENDER],

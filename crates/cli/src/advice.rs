@@ -90,7 +90,7 @@ impl Line {
         let is_file = !name.starts_with('-') && Path::new(name).extension().is_some();
         match &*self.command {
             "" => Some("name a command first, such as `bilux render model.glb -o picture.png`".to_owned()),
-            "convert" | "denoise" | "generate" if is_file => {
+            "convert" | "denoise" | "sensor" | "generate" if is_file => {
                 Some(format!("name the file to write after -o: `-o {name}`"))
             }
             "farm" if name.starts_with('-') => {
@@ -115,6 +115,7 @@ const EXAMPLES: &[(&str, &str, &str)] = &[
     ("info", "<SCENE>", "name the scene, such as `bilux info model.glb`"),
     ("convert", "<INPUT>", "name both files, such as `bilux convert model.obj -o model.glb`"),
     ("denoise", "<INPUT>", "name both pictures, such as `bilux denoise noisy.exr -o clean.png`"),
+    ("sensor", "<INPUT>", "name both pictures, such as `bilux sensor light.exr -o shot.png`"),
     ("compare", "<REFERENCE>", "name both pictures, such as `bilux compare a.png reference.png`"),
     (
         "generate",

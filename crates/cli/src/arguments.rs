@@ -9,7 +9,7 @@ use crate::values::{
 };
 pub use crate::{
     comparison::Compare, converting::Convert, denoising::Denoise, explaining::Explain, farming::Farm,
-    working::Worker,
+    sensing::Sensor, working::Worker,
 };
 use crate::{help, lasting::Lasting, serving::Serve, studio::StudioArguments};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -91,6 +91,8 @@ pub enum Command {
     Convert(Convert),
     /// Remove the noise from a picture
     Denoise(Denoise),
+    /// Make a picture of photons: what the sensor of a camera reads, with its noise
+    Sensor(Box<Sensor>),
     /// Compare pictures with references, by FLIP and other metrics
     Compare(Compare),
     /// Write a built-in scene to a file
@@ -365,7 +367,7 @@ pub struct Merge {
 )]
 pub struct List {
     /// What to list: integrators, accels, visibility, materials, textures, bsdfs, phases, densities, lights, cameras, generators,
-    /// presets, formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics or settings
+    /// presets, formats, picture-formats, tonemaps, denoisers, filters, aovs, metrics, sensor, lidar or settings
     pub what: String,
     /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]

@@ -15,7 +15,7 @@ pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
 }
 
 /// A value as a scene file would hold it: true, 3, 0.5, `1,2,3` or text.
-fn value_of(value: &str) -> Value {
+pub fn value_of(value: &str) -> Value {
     let parts: Vec<&str> = value.trim_matches(['[', ']']).split(',').map(str::trim).collect();
     match parts.as_slice() {
         [one] => scalar(one),

@@ -27,6 +27,7 @@ mod preview;
 mod progress;
 mod sandbox;
 mod sandbox_paths;
+mod sensing;
 mod serving;
 mod settings_from;
 mod signals;
@@ -81,6 +82,7 @@ fn run(arguments: Arguments) -> anyhow::Result<u8> {
         Command::Explain(explain) => commands::explain::run(&explain, common),
         Command::Convert(convert) => commands::convert::run(&convert, common),
         Command::Denoise(denoise) => commands::denoise::run(&denoise, common),
+        Command::Sensor(sensor) => commands::sensor::run(&sensor, common),
         Command::Compare(compare) => commands::compare::run(&compare, common),
         Command::Generate(generate) => commands::generate::run(&generate, common),
         Command::Merge(merge) => commands::merge::run(&merge, common),

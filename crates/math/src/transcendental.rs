@@ -5,9 +5,9 @@
 
 pub use libm::{
     acos as acos_f64, acosf as acos, asin as asin_f64, asinf as asin, atan2 as atan2_f64, atan2f as atan2,
-    atanf as atan, cos as cos_f64, cosf as cos, exp as exp_f64, expf as exp, log as ln_f64, log2f as log2,
-    logf as ln, pow as powf_f64, powf, sin as sin_f64, sincos as sin_cos_f64, sincosf as sin_cos,
-    sinf as sin, tan as tan_f64, tanf as tan,
+    atanf as atan, cos as cos_f64, cosf as cos, exp as exp_f64, expf as exp, lgamma as ln_gamma_f64,
+    log as ln_f64, log2f as log2, logf as ln, pow as powf_f64, powf, sin as sin_f64, sincos as sin_cos_f64,
+    sincosf as sin_cos, sinf as sin, tan as tan_f64, tanf as tan,
 };
 
 /// Sine and cosine for `|x| <= π/4`, without a branch, so that loops over many angles can be vectorised. The error is at

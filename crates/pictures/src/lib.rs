@@ -36,6 +36,7 @@ mod limits;
 pub mod metrics;
 mod panels;
 mod picture;
+pub mod sensor;
 pub mod tonemap;
 
 pub use channel_order::component_rank;

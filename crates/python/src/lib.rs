@@ -18,6 +18,7 @@ mod inspect;
 mod keyframes;
 mod layer;
 mod layer_names;
+mod lidar;
 mod loading;
 mod memory;
 mod output;
@@ -30,12 +31,14 @@ mod rays;
 mod reading;
 mod render;
 mod scene;
+mod sensor;
 mod shown;
 mod source;
 mod spec;
 mod strategies;
 mod surroundings;
 mod texture;
+mod transient;
 mod turntable;
 mod values;
 mod watch;
@@ -55,6 +58,8 @@ mod _bilux {
     #[pymodule_export]
     use crate::keyframes::set_keyframes;
     #[pymodule_export]
+    use crate::lidar::scan;
+    #[pymodule_export]
     use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
     use crate::picture::Picture;
@@ -70,6 +75,8 @@ mod _bilux {
     use crate::spec::rows;
     #[pymodule_export]
     use crate::texture::Texture;
+    #[pymodule_export]
+    use crate::transient::transient;
     #[pymodule_export]
     use crate::turntable::Turntable;
     #[pymodule_export]

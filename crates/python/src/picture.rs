@@ -5,6 +5,7 @@ use crate::errors::{exception, of_picture, warn};
 use crate::layer::{Layer, layers_of};
 use crate::layer_names::{Meaning, meaning};
 use crate::pickling::{self, PictureValues, shown_of, shown_values, space_of, space_value};
+use crate::sensor::sensed;
 use crate::shown;
 use crate::source::Sink;
 use bilux::Display;
@@ -255,6 +256,33 @@ impl Picture {
             denoise(&noisy, &*chosen.denoiser)
         });
         Picture::of(py, &smooth.map_err(of_picture)?, self.shown, Some(self.info.clone_ref(py)))
+    }
+
+    /// What the sensor of a camera makes of the picture's light: photons, electrons, digital numbers, with their noise [EMVA 1288].
+    ///
+    /// Args:
+    ///     parameters: those of `bilux.sensor["sensor"]`, such as exposure_time=0.01 (s), f_number=2.8, iso=400 or
+    ///         gain=0.4 (DN/e-), quantum_efficiency=(0.45, 0.6, 0.5), full_well=10000, read_noise=2.5, bit_depth=12,
+    ///         pattern="rggb", output="raw", seed=0. Samples of the picture are radiance in W/(m² sr), unless unit="cd/m2".
+    ///
+    /// Returns:
+    ///     the light that the numbers stand for, in the unit of the picture; with output="raw" the digital numbers, an array
+    ///     (height, width), or (height, width, 3) of the pattern "prism". Its `info` has "gain", "iso", "saturating_luminance"
+    ///     (cd/m²) and "saturated" (pixels).
+    ///
+    /// Raises:
+    ///     SceneError: if a parameter has a wrong name or a value out of range.
+    ///     PictureError: if the picture has no colours, or the black level leaves no room for light.
+    ///
+    /// Example:
+    ///     >>> grey = bilux.Picture(np.full((64, 64), 0.1))
+    ///     >>> raw = grey.sensor(exposure_time=0.001, pattern="mono", output="raw")
+    ///     >>> raw.pixels.shape
+    ///     (64, 64)
+    #[pyo3(signature = (**parameters))]
+    fn sensor(&self, py: Python<'_>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Picture> {
+        let (picture, shown, info) = sensed(py, &self.to_rust(py)?, parameters)?;
+        Picture::of(py, &picture, shown.unwrap_or(self.shown), Some(info))
     }
 
     /// The bytes of a PNG, for notebooks.

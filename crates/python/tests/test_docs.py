@@ -26,6 +26,8 @@ def documented():
             for member in vars(thing) | (vars(thing.__mro__[1]) if name == "Scene" else {}):
                 if not member.startswith("_") and member not in getattr(thing, "_fields", ()):
                     yield f"{name}.{member}", getattr(thing, member)
+    yield from ((f"lidar.{name}", getattr(bilux.lidar, name)) for name in bilux.lidar.__all__)
+    yield "lidar.PointCloud.save", bilux.lidar.PointCloud.save
     yield from ((f"trimesh.{name}", thing) for name, thing in vars(bilux.trimesh).items() if name == "RayMeshIntersector")
 
 
@@ -54,6 +56,7 @@ def test_everything_is_documented_and_its_examples_run(name, folder):
         "docs/tutorials/python.md",
         "docs/tutorials/python-coming-from.md",
         "docs/tutorials/calibrated.md",
+        "docs/tutorials/sensors.md",
     ],
 )
 def test_every_example_of_the_pages_runs(page, folder, monkeypatch):

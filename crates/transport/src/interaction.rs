@@ -5,6 +5,7 @@
 
 use crate::ball::Ball;
 use crate::techniques::{PerSet, TechniqueCounts};
+use crate::way::Place;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
 
@@ -145,6 +146,16 @@ impl Interaction {
     #[inline]
     pub(crate) fn finds_direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> bool {
         techniques.direct || (self.is_in_medium() && !self.is_equiangular())
+    }
+
+    /// What the lengths of paths that come along `wo` need of it.
+    pub(crate) fn place(&self, wo: Vec3) -> Place {
+        match self {
+            Interaction::Surface(surface, bsdf) => {
+                Place { p: surface.p, wo, n: surface.n_geom, eta: bsdf.relative_index() }
+            }
+            Interaction::Medium(point) => Place { p: point.p, wo, n: Vec3::ZERO, eta: 1.0 },
+        }
     }
 
     /// A ray that leaves it.

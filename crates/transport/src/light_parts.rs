@@ -17,8 +17,9 @@ use crate::settings::{RenderSettings, threads};
 use crate::splats::{Iterations, Splats};
 use crate::task::{FoundLight, Record, Task};
 use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
+use crate::way::{LengthBins, Place, Way};
 use crate::window::{TILE, Window};
-use bilux_math::{Rgb, Vec2};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Camera, Scene, Tracer};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -31,7 +32,7 @@ pub const MAX_LIGHTS: usize = u16::MAX as usize;
 const DIRECT_EDGES: u32 = 2;
 
 /// How the light of a picture is divided.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightDivision {
     /// By scattering events: what a path brings after at most one of them, or after more.
     pub by_events: bool,
@@ -39,6 +40,9 @@ pub struct LightDivision {
     pub groups: Vec<u32>,
     /// The number of groups. What shines without being a light of the scene is in the last.
     pub group_count: u32,
+    /// By the optical length of paths, from where the camera's ray begins. Only connected paths have one: integrators that merge photons
+    /// find all light outside of the intervals.
+    pub by_length: Option<LengthBins>,
 }
 
 /// The parts.
@@ -47,6 +51,8 @@ pub struct LightParts {
     pub by_events: Option<[Film; 2]>,
     /// The light of each group.
     pub groups: Vec<Film>,
+    /// The light of each interval of lengths, and last what is outside of them: too long, too short, or from infinity.
+    pub by_length: Vec<Film>,
 }
 
 impl dyn PixelIntegrator {
@@ -104,18 +110,27 @@ struct Sums<'a> {
 }
 
 impl LightDivision {
-    /// The number of parts: two by events, and one for each group.
+    /// The number of parts: two by events, one for each group, one for each interval of lengths, and one for all other lengths.
     fn count(&self) -> usize {
-        if self.by_events { 2 + self.group_count as usize } else { self.group_count as usize }
+        self.by_length.map_or(self.first_length(), |bins| self.first_length() + bins.count as usize + 1)
     }
 
-    /// The parts of light of a light, along a path of so many edges.
-    fn parts(&self, edges: u32, light: Option<usize>) -> impl Iterator<Item = usize> {
+    fn first_group(&self) -> usize {
+        if self.by_events { 2 } else { 0 }
+    }
+
+    fn first_length(&self) -> usize {
+        self.first_group() + self.group_count as usize
+    }
+
+    /// The parts of light of a light, along a path of so many edges and this length.
+    fn parts(&self, edges: u32, light: Option<usize>, length: f64) -> impl Iterator<Item = usize> {
         let by_events = self.by_events.then_some(usize::from(edges > DIRECT_EDGES));
         let group = light.and_then(|light| self.groups.get(light).copied());
         let last = self.group_count.checked_sub(1);
-        let group = group.or(last).map(|group| self.count() - self.group_count as usize + group as usize);
-        by_events.into_iter().chain(group)
+        let group = group.or(last).map(|group| self.first_group() + group as usize);
+        let by_length = self.by_length.map(|bins| self.first_length() + bins.of(length));
+        by_events.into_iter().chain(group).chain(by_length)
     }
 }
 
@@ -205,9 +220,10 @@ impl<'a> Sums<'a> {
                 film.add_iterations(splats, self.settings.samples.len() as u32)?;
             }
         }
-        let groups = films.split_off(films.len() - self.division.group_count as usize);
+        let by_length = films.split_off(self.division.first_length());
+        let groups = films.split_off(self.division.first_group());
         let by_events = <[Film; 2]>::try_from(films).ok();
-        Ok(LightParts { by_events, groups })
+        Ok(LightParts { by_events, groups, by_length })
     }
 }
 
@@ -218,7 +234,16 @@ impl<'a> LightPathVisitor<1> for Sums<'a> {
         let splats = Splats::new(self.settings, self.settings.window(), self.scale);
         let (division, count) = (self.division, self.division.count());
         let (here, found) = (vec![Rgb::BLACK; count], Vec::new());
-        PartTally { division, place: [0; 3], sum: Rgb::BLACK, here, splats: vec![splats; count], found }
+        let lengths = division.by_length.map(|_| Lengths::default());
+        PartTally {
+            division,
+            place: [0; 3],
+            sum: Rgb::BLACK,
+            here,
+            splats: vec![splats; count],
+            found,
+            lengths,
+        }
     }
 
     fn begin(tally: &mut PartTally<'a>, x: u32, y: u32, sample: u32) {
@@ -244,6 +269,38 @@ struct PartTally<'a> {
     splats: Vec<Splats<'a>>,
     /// Memory for what a path finds.
     found: Vec<FoundLight>,
+    /// The subpaths, if light is divided by lengths.
+    lengths: Option<Lengths>,
+}
+
+/// The lengths of the subpaths of a sample.
+#[derive(Default)]
+struct Lengths {
+    camera: Option<Way>,
+    /// Vertices of the camera subpath so far.
+    vertices: u32,
+    /// The light subpath up to each of its vertices.
+    light: Vec<Way>,
+    /// The connection that contributes next.
+    join: Option<(Vec3, Vec3, Option<f32>)>,
+}
+
+impl Lengths {
+    /// The length of a path that a technique has found; infinite if there is none.
+    fn of(&self, technique: Technique) -> f64 {
+        let Technique::Connected { s, t } = technique else { return f64::INFINITY };
+        let from_light = |s: u32| self.light.get(s as usize - 2);
+        let joined =
+            |way: &Way| self.join.map(|(from, towards, distance)| way.length_by(from, towards, distance));
+        let length = match (s, t) {
+            // The camera subpath ends on the light, or escapes, which is no vertex.
+            (0, t) => self.camera.filter(|_| t == self.vertices).map(|way| way.length()),
+            (1, _) => self.camera.as_ref().and_then(joined),
+            (s, 1) => from_light(s).and_then(joined),
+            (s, _) => self.camera.as_ref().and_then(joined).zip(from_light(s)).map(|(a, b)| a + b.length()),
+        };
+        length.unwrap_or(f64::INFINITY)
+    }
 }
 
 impl PartTally<'_> {
@@ -265,19 +322,29 @@ impl PartTally<'_> {
         let [x, y, sample] = self.place;
         let (ray, mut state) = eye.sample(SamplePlace { x, y, sample });
         if let Some(both_ends) = both_ends {
+            if let Some(lengths) = &mut self.lengths {
+                (lengths.camera, lengths.vertices) = (Some(Way::from(ray.origin.into())), 1);
+                lengths.light.clear();
+            }
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             both_ends.sample(&ray, is_wanted, &mut task, self);
         } else if is_wanted && !ray.is_nowhere() {
             self.found.clear();
             let found = Some(std::mem::take(&mut self.found));
-            state.record = Some(Box::new(Record { found, events: None }));
+            let way = self.lengths.as_ref().map(|_| Way::from(ray.origin.into()));
+            state.record = Some(Box::new(Record { found, events: None, way }));
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             self.sum = integrator.radiance(&ray, &mut task);
             self.found = state.record.and_then(|record| record.found).unwrap_or_default();
-            for FoundLight { edges, light, radiance } in &self.found {
-                self.division.parts(*edges, *light).for_each(|part| self.here[part] += *radiance);
+            for FoundLight { edges, light, radiance, length } in &self.found {
+                self.division.parts(*edges, *light, *length).for_each(|part| self.here[part] += *radiance);
             }
         }
+    }
+
+    /// The length of a path, if light is divided by it.
+    fn length(&self, technique: Technique) -> f64 {
+        self.lengths.as_ref().map_or(f64::INFINITY, |lengths| lengths.of(technique))
     }
 
     /// Adds the sample to the films. One that is not finite is left out of all parts, as out of the picture.
@@ -290,15 +357,40 @@ impl PartTally<'_> {
 }
 
 impl Tally<1> for PartTally<'_> {
+    fn reach(&mut self, place: impl FnOnce() -> Place) {
+        if let Some(Lengths { camera: Some(way), vertices, .. }) = &mut self.lengths {
+            way.reach(place());
+            *vertices += 1;
+        }
+    }
+
+    fn reach_from_light(&mut self, depth: u32, start: impl FnOnce() -> Way, place: impl FnOnce() -> Place) {
+        if let Some(Lengths { light, .. }) = &mut self.lengths {
+            let before = light.last().copied().filter(|_| depth > 0);
+            let mut way = before.unwrap_or_else(start);
+            way.reach(place());
+            light.push(way);
+        }
+    }
+
+    fn join(&mut self, from: Vec3, direction: Vec3, distance: Option<f32>) {
+        if let Some(lengths) = &mut self.lengths {
+            lengths.join = Some((from, direction, distance));
+        }
+    }
+
     fn add_sample(&mut self, technique: Technique, found: &Contribution) {
         let (edges, light) = (Strategy::of(technique).edges, found.weighted());
+        let length = self.length(technique);
         self.sum += light;
-        self.division.parts(edges, Some(found.origin.into())).for_each(|part| self.here[part] += light);
+        let parts = self.division.parts(edges, Some(found.origin.into()), length);
+        parts.for_each(|part| self.here[part] += light);
     }
 
     fn add_splat(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
         let (edges, light) = (Strategy::of(technique).edges, found.weighted());
-        let parts = self.division.parts(edges, Some(found.origin.into()));
+        let length = self.length(technique);
+        let parts = self.division.parts(edges, Some(found.origin.into()), length);
         parts.for_each(|part| self.splats[part].add(film, light));
     }
 }

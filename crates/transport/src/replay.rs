@@ -107,7 +107,7 @@ pub fn replay(
     eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut state) = eye.sample(place);
-    state.record = Some(Box::new(Record { events: Some(Vec::new()), found: None }));
+    state.record = Some(Box::new(Record { events: Some(Vec::new()), ..Record::default() }));
     let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
     let mut splats = Splats::new(settings, whole, scale_exponent(scene));
     splats.begin(x, y, sample);

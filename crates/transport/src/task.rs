@@ -5,6 +5,7 @@ use crate::light_choice::LightChoice;
 use crate::photons::Photons;
 use crate::sampler::PixelSampler;
 use crate::settings::Reach;
+use crate::way::{Place, Way};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
 
@@ -48,6 +49,8 @@ pub struct Record {
     pub events: Option<Vec<Event>>,
     /// The light that it finds, light by light, if that is wanted.
     pub found: Option<Vec<FoundLight>>,
+    /// The path from the camera, if the lengths of those that find light are wanted.
+    pub(crate) way: Option<Way>,
 }
 
 /// The tools of one sample.
@@ -69,6 +72,8 @@ pub struct FoundLight {
     pub light: Option<usize>,
     /// What it adds to the sample.
     pub radiance: Rgb,
+    /// The optical length of its path, in metres, if that is recorded; infinite if it comes from infinity.
+    pub length: f64,
 }
 
 /// An event along the path of a sample.
@@ -164,11 +169,25 @@ impl SampleState {
         self.sampler.seed()
     }
 
-    /// Records light, if that is recorded at all.
+    /// Records light, if that is recorded at all; `length` gives the length of its path, given that so far.
     #[inline]
-    pub(crate) fn find(&mut self, edges: u32, light: Option<usize>, radiance: Rgb) {
-        if let Some(found) = self.record.as_mut().and_then(|record| record.found.as_mut()) {
-            found.push(FoundLight { edges, light, radiance });
+    pub(crate) fn find(
+        &mut self,
+        edges: u32,
+        light: Option<usize>,
+        radiance: Rgb,
+        length: impl FnOnce(&Way) -> f64,
+    ) {
+        let Some(Record { found: Some(found), way, .. }) = self.record.as_deref_mut() else { return };
+        let length = way.as_ref().map_or(f64::INFINITY, length);
+        found.push(FoundLight { edges, light, radiance, length });
+    }
+
+    /// Records that the path from the camera has come to a vertex, if its length is recorded.
+    #[inline]
+    pub(crate) fn reach(&mut self, place: impl FnOnce() -> Place) {
+        if let Some(way) = self.record.as_mut().and_then(|record| record.way.as_mut()) {
+            way.reach(place());
         }
     }
 

@@ -3,7 +3,8 @@
 //! Everything is computed for `N` sets of techniques at once, one number per set. The first set weights the light. The others are rivals
 //! whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
 
-use bilux_math::{Rgb, Vec2};
+use crate::way::{Place, Way};
+use bilux_math::{Rgb, Vec2, Vec3};
 use std::ops::{Add, Mul};
 
 /// One number per set.
@@ -87,6 +88,24 @@ pub(crate) trait Tally<const N: usize> {
     /// Announces steps that are about to be taken.
     #[inline(always)]
     fn spend(&mut self, _step: Step, _count: usize) {}
+
+    /// Announces a vertex of the camera subpath, before what it contributes.
+    #[inline(always)]
+    fn reach(&mut self, _place: impl FnOnce() -> Place) {}
+
+    /// Announces a vertex of the light subpath, after so many events; the first one with what came before it.
+    #[inline(always)]
+    fn reach_from_light(
+        &mut self,
+        _depth: u32,
+        _start: impl FnOnce() -> Way,
+        _place: impl FnOnce() -> Place,
+    ) {
+    }
+
+    /// Announces a connection from a point in a direction, for a distance in metres unless that is infinite, before what it contributes.
+    #[inline(always)]
+    fn join(&mut self, _from: Vec3, _direction: Vec3, _distance: Option<f32>) {}
 
     /// Adds to the pixel of the camera subpath.
     fn add_sample(&mut self, technique: Technique, found: &Contribution<N>);

@@ -21,6 +21,7 @@ pub mod merge;
 mod pictures;
 pub mod render;
 mod replaying;
+pub mod sensor;
 pub mod serve;
 mod stats;
 mod targets;

@@ -7,6 +7,7 @@ mod hostile;
 mod jpeg_scans;
 mod metrics;
 mod round_trips;
+mod sensor;
 mod shared_files;
 mod textures_of_old;
 mod tone_maps;

@@ -13,7 +13,7 @@ layers are numpy arrays; `Accel` answers ray queries. What has variants is liste
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import trimesh
+from . import lidar, trimesh
 from ._bilux import Accel, Grid, IntensityDistribution, Picture, Spec, Texture, __version__, compare, licenses, read_picture
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
@@ -34,10 +34,11 @@ from ._tables import (
     materials,
     metrics,
     picture_formats,
+    sensor,
     settings,
     tonemaps,
 )
-from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy
+from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy, Transient
 from ._view import View
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ __all__ = [
     "Strategy",
     "Table",
     "Texture",
+    "Transient",
     "View",
     "__version__",
     "accels",
@@ -84,12 +86,14 @@ __all__ = [
     "generators",
     "integrators",
     "licenses",
+    "lidar",
     "lights",
     "load",
     "materials",
     "metrics",
     "picture_formats",
     "read_picture",
+    "sensor",
     "settings",
     "tonemaps",
     "trimesh",

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "set_keyframes", "strategies"]
+__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "scan", "set_keyframes", "strategies", "transient"]
 
 __version__: str
 
@@ -19,6 +19,20 @@ _Exposure = float | Literal["auto"]
 def rows(table: str) -> list[dict[str, Any]]: ...
 def licenses() -> str: ...
 def set_keyframes(scene: Scene, object: int, times: NDArray[np.float64], transforms: ArrayLike) -> None: ...
+def scan(
+    scene: Scene,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    times: NDArray[np.float64],
+    parameters: dict[str, Any],
+) -> tuple[
+    NDArray[np.int64],
+    NDArray[np.int64],
+    NDArray[np.int64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.int64],
+]: ...
 def replay(
     scene: Scene, place: tuple[int, int, int], settings: dict[str, Any], max_memory: int
 ) -> tuple[
@@ -37,6 +51,13 @@ def strategies(
     max_memory: int,
     callback: Callable[[int, int, int, float], object] | None,
 ) -> list[tuple[str, int, int, bool, Picture, Picture]] | None: ...
+def transient(
+    scene: Scene,
+    settings: dict[str, Any],
+    max_memory: int,
+    bins: tuple[float, float, int],
+    callback: Callable[[int, int, int, float], object] | None,
+) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None: ...
 def read_picture(file: _File, *, format: str | None = None) -> Picture: ...
 def compare(picture: Picture | ArrayLike, reference: Picture | ArrayLike) -> dict[str, float]: ...
 
@@ -172,6 +193,7 @@ class Picture:
     def tonemapped(self, curve: str | None = None, *, exposure: _Exposure | None = None) -> NDArray[np.float32]: ...
     def to_uint8(self, curve: str | None = None, *, exposure: _Exposure | None = None) -> NDArray[np.uint8]: ...
     def denoised(self, by: str = "auto", *, threads: int = 0) -> Picture: ...
+    def sensor(self, **parameters: Any) -> Picture: ...
     def _repr_png_(self) -> bytes: ...
     @staticmethod
     def _restored(values: Any) -> Picture: ...

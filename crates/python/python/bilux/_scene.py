@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from . import _bilux
 from ._bilux import Picture, Spec, Turntable
 from ._progress import following
-from ._types import Mesh, Object, Progress, Replay, Strategy
+from ._types import Mesh, Object, Progress, Replay, Strategy, Transient
 
 if TYPE_CHECKING:
     from ._view import View
+    from .lidar import Beams, PointCloud
 
 Path = str | os.PathLike[str]
 
@@ -381,6 +382,39 @@ class Scene(_bilux.Scene):
 
         return View(self, _sides(size), spp, operator.index(camera), settings | {"integrator": integrator})
 
+    def lidar(
+        self, beams: Beams | ArrayLike, *, pose: ArrayLike | None = None, time: float = 0.0, **scanner: Any
+    ) -> PointCloud:
+        """What a laser scanner measures: all returns of each pulse, also behind glass and by mirrors, with noise.
+
+        The scene is scanned as it is: no studio lights it or puts it on a ground. Each pulse meets moving objects where
+        they are at its time. See the tutorial "Sensors" for what is simulated and what is left out.
+
+        Args:
+            beams: a pattern such as `bilux.lidar.spinning(...)`, or an array (n, 3) of directions.
+            pose: a (4, 4) matrix from the scanner's axes (y up, looking along -z) to the scene; (n, 4, 4) for one each.
+            time: when the scan begins, in seconds.
+            **scanner: parameters of `bilux.lidar.parameters["lidar"]`, such as divergence=3 (mrad), rays=16,
+                range_noise=0.02 (m), max_range=100, returns="first", channel="red" or seed=1.
+
+        Returns:
+            a `bilux.lidar.PointCloud`: points, ranges, intensities, objects and numbers of the returns.
+
+        Raises:
+            SceneError: if a parameter has a wrong name or a value out of range, or something in the scene is wrong.
+            ValueError: if an array has a wrong shape, a direction has no length, or the pose is no rotation.
+
+        Example:
+            >>> pose = np.eye(4)
+            >>> pose[:3, 3] = 0.28, 0.5, -0.8
+            >>> cloud = bilux.generate("cornell").lidar([[0, 0, 1]], pose=pose)
+            >>> cloud.range.round(2), cloud.number
+            (array([1.36]), array([1]))
+        """
+        from .lidar import _scanned
+
+        return _scanned(self, beams, pose, time, scanner)
+
     def replay(self, x: int, y: int, sample: int = 0, **settings: Any) -> Replay:
         """Takes one sample of a picture again, and says what happens along its path.
 
@@ -419,6 +453,47 @@ class Scene(_bilux.Scene):
         with following(progress) as callback:
             found = _bilux.strategies(self, given, most, callback)
         return [Strategy(*one) for one in found or []]
+
+    def transient(
+        self,
+        bin_width: float,
+        bins: int,
+        *,
+        begin: float = 0.0,
+        progress: bool | Callable[[Progress], object] = False,
+        **settings: Any,
+    ) -> Transient | None:
+        """Renders a picture in intervals of the optical length of paths: what a time-of-flight sensor sees of a flash.
+
+        Lengths are measured from where the camera's rays begin, times the index of refraction in glass. Light of 1 m is
+        1 / 299,792,458 s old. For a flash at the camera, put a lamp there: a plate then returns its light at twice its distance.
+
+        Args:
+            bin_width: the length of each interval, in metres.
+            bins: how many there are.
+            begin: where the first one begins, in metres.
+            progress: as for `render`.
+            **settings: as for `render`, apart from `noise` and `time_limit`. The integrator is "path" or "bdpt", "path" by
+                default.
+
+        Returns:
+            the light of each interval of each pixel, and the rest; None if `progress` stopped it.
+
+        Raises:
+            SceneError: if the integrator finds light without lengths, or the intervals take too much memory.
+
+        Example:
+            >>> found = bilux.generate("cornell").transient(0.05, 40, begin=1.0, size=16, spp=4)
+            >>> found.light.shape, found.rest.shape, len(found.edges)
+            ((16, 16, 40, 3), (16, 16, 3), 41)
+        """
+        count = operator.index(bins)
+        if not 0 < count < 1 << 32:
+            raise ValueError(f"bins: {count} is no number of intervals: give at least 1")
+        given, most = self._whole({"integrator": "path"} | settings)
+        with following(progress) as callback:
+            found = _bilux.transient(self, given, most, (float(begin), float(bin_width), count), callback)
+        return None if found is None else Transient(*found, begin + bin_width * np.arange(count + 1, dtype=np.float64))
 
     def _whole(self, settings: dict[str, Any]) -> tuple[dict[str, Any], int]:
         """The settings of a picture with all of its samples, and the bytes that it may take."""

@@ -178,3 +178,22 @@ class Strategy(NamedTuple):
     merges: bool
     weighted: Picture
     unweighted: Picture
+
+
+class Transient(NamedTuple):
+    """A picture in intervals of the optical length of paths: `light` over its intervals and `rest` add up to the picture.
+
+    Attributes:
+        light: (height, width, n, 3) radiance of each interval.
+        rest: (height, width, 3) radiance of paths that are shorter or longer, or come from infinity.
+        edges: (n + 1,) ends of the intervals, in metres from where the camera's rays begin.
+    """
+
+    light: Floats
+    rest: Floats
+    edges: NDArray[np.float64]
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """The ends of the intervals as times, in seconds."""
+        return self.edges / 299_792_458.0

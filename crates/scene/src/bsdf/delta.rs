@@ -15,6 +15,33 @@ use std::ops::Range;
 type Events = [Option<BsdfSample>; 2];
 
 impl Bsdf {
+    /// The index of refraction behind the surface over that in front of it; 1 for one that has no inside.
+    pub fn relative_index(&self) -> f32 {
+        self.weighted().find_map(|(_, lobe)| lobe.index()).map_or(1.0, |(eta, _)| eta)
+    }
+
+    /// Visits every direction of the delta lobes in which light known to come along `wo` goes on. Weights are the fractions of power
+    /// that go there, probabilities 1.
+    pub fn each_smooth(&self, wo: Vec3, mut visit: impl FnMut(BsdfSample)) {
+        let visit: &mut dyn FnMut(BsdfSample) = &mut visit;
+        match self.parts() {
+            Some(parts) => parts.each(|part| part.each_smooth_of_all(wo, visit)),
+            None => self.each_smooth_of_all(wo, visit),
+        }
+    }
+
+    fn each_smooth_of_all(&self, wo: Vec3, visit: &mut dyn FnMut(BsdfSample)) {
+        for (weight, lobe) in self.weighted().filter(|(_, lobe)| lobe.is_delta()) {
+            let by = |u: f32| self.sample_delta(lobe, wo, u, TransportMode::Importance);
+            let [low, high] = [by(0.0), by(1f32.next_down())];
+            let is_other = |high: &BsdfSample| low.is_none_or(|low| low.transmits != high.transmits);
+            for sample in low.into_iter().chain(high.filter(is_other)) {
+                let share = sample.pdf_solid_angle * weight;
+                visit(BsdfSample { weight: sample.weight * share, pdf_solid_angle: 1.0, ..sample });
+            }
+        }
+    }
+
     /// Samples a direction of a delta lobe.
     pub(super) fn sample_delta(
         &self,

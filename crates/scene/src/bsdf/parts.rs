@@ -51,6 +51,11 @@ impl Bsdf {
 }
 
 impl Parts {
+    /// Visits both.
+    pub(super) fn each(&self, visit: impl FnMut(&Bsdf)) {
+        self.0.iter().for_each(visit);
+    }
+
     /// [`Bsdf::eval_and_pdf`].
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         let (mut scattered, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);

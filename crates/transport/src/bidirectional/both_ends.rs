@@ -61,7 +61,11 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             Vec::new()
         } else {
             let rays = task.tracer.counters.rays;
-            let vertices = light_vertices(task, ray.time, self.roulette_depth, &self.techniques);
+            let scene = task.context.scene;
+            let visit = |y: &Vertex<N>| {
+                tally.reach_from_light(y.depth, || y.start(scene), || y.at.place(y.wo));
+            };
+            let vertices = light_vertices(task, ray.time, self.roulette_depth, &self.techniques, visit);
             tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
             vertices
         };
@@ -180,6 +184,7 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             let Some(Connection { join, segment }) = connection else { return };
             if let Some(passage) = segment.passage(task.tracer) {
                 let join = join.equiangular(points.density(distance) / z.arriving);
+                tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
                 tally.add_sample(join.technique, &join.along(&passage));
             }
         });

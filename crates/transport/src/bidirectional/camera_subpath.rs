@@ -66,6 +66,7 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
             let Some(mut z) = vertex else {
                 return self.escape(&mut subpath, task, tally);
             };
+            tally.reach(|| z.at.place(z.wo));
             if !self.arrive(&mut subpath, &mut z, task, tally) {
                 return;
             }
@@ -74,7 +75,9 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
                 if let Some(connection) = connection
                     && let Some(found) = connection.trace(task.tracer)
                 {
-                    tally.add_sample(connection.join.technique, &found);
+                    let Connection { join, segment } = &connection;
+                    tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
+                    tally.add_sample(join.technique, &found);
                 }
             });
             self.merge(&z, task, tally);

@@ -7,6 +7,7 @@ use super::{Subpath, Vertex};
 use crate::beam::Beam;
 use crate::emission::Start;
 use crate::mis::Partial;
+use crate::segment::Segment;
 use crate::shadow_rays::ShadowRays;
 use crate::task::{Context, SampleState, Task};
 use crate::techniques::{Contribution, Step, Tally, Technique, TechniqueCounts};
@@ -25,12 +26,13 @@ impl SampleState {
 }
 
 /// Traces a light subpath: every vertex, in order, except those that scatter into single directions only, and of long walks
-/// through media those that are not to be connected.
+/// through media those that are not to be connected. `visit` is told of all of them.
 pub(crate) fn light_vertices<const N: usize>(
     task: &mut Task,
     time: f32,
     roulette_depth: u32,
     techniques: &TechniqueCounts<N>,
+    mut visit: impl FnMut(&Vertex<N>),
 ) -> Vec<Vertex<N>> {
     let mut vertices = Vec::new();
     let Some(mut subpath) = begin_at_light(task, time, techniques) else { return vertices };
@@ -38,6 +40,7 @@ pub(crate) fn light_vertices<const N: usize>(
         if !vertex.events().are_within(task.context.max_depth) {
             break;
         }
+        visit(&vertex);
         let goes_on = goes_on(&mut subpath, &vertex, roulette_depth, task);
         if vertex.is_open() {
             vertices.push(vertex);
@@ -78,6 +81,9 @@ pub(crate) fn connect_to_camera<const N: usize>(
         if let Some((film, connection)) = to_camera(task, y, techniques)
             && let Some(found) = connection.trace(task.tracer)
         {
+            let Segment { ray, through, .. } = &connection.segment;
+            // The ray ends at the camera at t = 1.
+            tally.join(y.at.p(), ray.direction.into(), through.distance);
             for film in places_on_film(task.context, film) {
                 tally.add_splat(film, connection.join.technique, &found);
             }

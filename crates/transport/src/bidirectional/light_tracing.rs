@@ -31,7 +31,7 @@ impl LightTracing {
 
     /// Follows one light subpath. `add_splat` receives the points of the film, and the light there.
     pub(crate) fn trace(&self, time: f32, task: &mut Task, mut add_splat: impl FnMut(Vec2, Rgb)) {
-        for vertex in light_vertices(task, time, self.roulette_depth, &TECHNIQUES) {
+        for vertex in light_vertices(task, time, self.roulette_depth, &TECHNIQUES, |_| {}) {
             task.sample.enter_light_vertex(vertex.depth);
             if let Some((film, connection)) = to_camera(task, &vertex, &TECHNIQUES)
                 && let Some(found) = connection.trace(task.tracer)

@@ -9,6 +9,7 @@ use crate::mis::Partial;
 use crate::photon_grid::PhotonPosition;
 use crate::photons::{MediumPhoton, Photon, PhotonWalk};
 use crate::techniques::PerSet;
+use crate::way::Way;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Scene;
 
@@ -77,6 +78,16 @@ impl<const N: usize> Vertex<N> {
         let Some(lit) = self.lit(1.0) else { return PerSet::ZERO };
         let distance = lit.p.distance(from);
         lit.picked(scene, (lit.p - from) / distance, distance)
+    }
+
+    /// Where its light subpath began, if this is its first vertex.
+    pub(super) fn start(&self, scene: &Scene) -> Way {
+        let p = self.at.p();
+        let is_infinite = |light: usize| scene.lights()[light].light.is_infinite();
+        if self.straight_from.is_some_and(is_infinite) {
+            return Way::from_infinity(p);
+        }
+        Way::from(p + self.wo * self.at.t())
     }
 
     /// The photon that is stored for merging on a surface; `None` in a medium.

@@ -11,6 +11,7 @@ use crate::segment::Segment;
 use crate::task::{Context, PathVertex, Task, VertexKind};
 use crate::through::Through;
 use crate::walk::Walk;
+use crate::way::Way;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
 use bilux_scene::{Ray, Surface, TransportMode};
@@ -104,7 +105,7 @@ impl PathTracing {
     fn glow(&self, path: &mut Path, emitted: Rgb, task: &mut Task) {
         let light = task.sample.seen(emitted, path.walk.is_split);
         path.light += light;
-        task.sample.find(path.walk.depth + 1, None, light);
+        task.sample.find(path.walk.depth + 1, None, light, Way::length);
         task.sample.note_vertex(path.walk.depth, || {
             let at = Vec3::from(path.walk.ray.origin);
             (
@@ -125,6 +126,7 @@ impl PathTracing {
     fn interact(&self, path: &mut Path, travelled: &Travelled, task: &mut Task) -> bool {
         let wo = path.walk.wo();
         let Some(at) = self.arrive(path, &travelled.arrival, task) else { return false };
+        task.sample.reach(|| at.place(wo));
         let by_walk = travelled.passage.arriving(None);
         let approach = Approach::of(&at, wo, by_walk).filter(|_| !path.walk.leaves_medium);
         let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
@@ -224,7 +226,8 @@ impl PathTracing {
                 None => (light.le(direction), 0.0),
             };
             let seen = self.seen_of(task.context, path, (index, light), found);
-            task.sample.find(path.walk.depth + 1, Some(index), path.walk.seen(task.sample) * seen);
+            let light = path.walk.seen(task.sample) * seen;
+            task.sample.find(path.walk.depth + 1, Some(index), light, |_| f64::INFINITY);
             sum += seen;
         }
         let light = path.walk.seen(task.sample) * sum;
@@ -273,7 +276,7 @@ impl PathTracing {
             _ => radiance,
         };
         let light = path.walk.seen(task.sample) * seen;
-        task.sample.find(path.walk.depth + 1, index, light);
+        task.sample.find(path.walk.depth + 1, index, light, |way| way.length_to(surface.p));
         task.sample.note_vertex(path.walk.depth, || {
             let vertex = PathVertex { kind: VertexKind::Emitter, at: surface.p, light };
             (vertex, format!("hits a light at {}", surface.p))
@@ -314,7 +317,10 @@ impl PathTracing {
         let Some(connection) = self.connection(task, light, from, u) else { return Rgb::BLACK };
         let found = connection.trace(task.tracer);
         connection.note(task.sample, depth, seen * found);
-        task.sample.find(depth + 2, Some(light), seen * found);
+        let Segment { ray, through, .. } = &connection.segment;
+        task.sample.find(depth + 2, Some(light), seen * found, |way| {
+            way.length_by(from.at.p(), ray.direction.into(), through.distance)
+        });
         found
     }
 

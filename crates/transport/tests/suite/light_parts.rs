@@ -10,7 +10,7 @@ use bilux_transport::{
 /// By scattering events, and each light for itself; what shines otherwise belongs to one more group.
 fn division(scene: &Scene) -> LightDivision {
     let lights = scene.lights().len() as u32;
-    LightDivision { by_events: true, groups: (0..lights).collect(), group_count: lights + 1 }
+    LightDivision { by_events: true, groups: (0..lights).collect(), group_count: lights + 1, by_length: None }
 }
 
 fn parts(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> LightParts {
@@ -181,7 +181,7 @@ fn the_same_for_any_number_of_threads() {
     let scene = built(&mixed());
     let films = |threads| {
         let settings = RenderSettings { threads, ..RenderSettings::new(40, 24, 3) };
-        let LightParts { by_events, groups } = parts(&scene, &Spec::new("", "vcm"), &settings);
+        let LightParts { by_events, groups, .. } = parts(&scene, &Spec::new("", "vcm"), &settings);
         (by_events.unwrap(), groups)
     };
     assert!(films(1) == films(3));

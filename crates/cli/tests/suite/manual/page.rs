@@ -125,7 +125,7 @@ fn is_whole(arguments: &[&str]) -> bool {
     match arguments {
         [option] => option.starts_with('-') || *option == "schema",
         [.., "--help"] => true,
-        ["render" | "convert" | "generate" | "denoise" | "merge" | "farm", rest @ ..] => {
+        ["render" | "convert" | "generate" | "denoise" | "sensor" | "merge" | "farm", rest @ ..] => {
             rest.iter().position(|word| *word == "-o").is_some_and(|at| at + 1 < rest.len())
         }
         // Benchmarks take minutes.

@@ -1,0 +1,40 @@
+//! What a scanner takes the echoes of a pulse for.
+
+use super::echoes::Echo;
+use super::{Keep, Return, Scanner};
+use bilux_math::Stream;
+
+impl Scanner {
+    /// Adds the returns of a pulse with these echoes, which are sorted.
+    pub(super) fn returns(&self, pulse: usize, echoes: &mut [Echo], found: &mut Vec<Return>) {
+        echoes.sort_by(|a, b| a.range.total_cmp(&b.range).then(a.object.cmp(&b.object)));
+        let begin = found.len();
+        // Each begins with an echo that is farther than this from the one before it.
+        for group in echoes.chunk_by(|a, b| b.range - a.range <= self.separation) {
+            let intensity: f64 = group.iter().map(|echo| echo.power).sum();
+            let range = group.iter().map(|echo| echo.power * echo.range).sum::<f64>() / intensity;
+            let strongest = group.iter().max_by(|a, b| a.power.total_cmp(&b.power));
+            let is_measured = (self.range[0]..=self.range[1]).contains(&range) && intensity >= self.threshold;
+            if let Some(Echo { object, .. }) = strongest.filter(|_| is_measured) {
+                found.push(Return { pulse, number: 0, count: 0, range, intensity, object: *object });
+            }
+        }
+        let count = (found.len() - begin) as u32;
+        for (number, one) in (1..).zip(&mut found[begin..]) {
+            let mut noise = Stream::new([self.seed, pulse as u64, number]);
+            (one.number, one.count) = (number as u32, count);
+            one.range += self.range_noise * noise.normal();
+            one.intensity *= (1.0 + self.intensity_noise * noise.normal()).max(0.0);
+        }
+        let all = &found[begin..];
+        let kept = match self.keep {
+            Keep::All => return,
+            Keep::First => all.first(),
+            Keep::Last => all.last(),
+            Keep::Strongest => all.iter().max_by(|a, b| a.intensity.total_cmp(&b.intensity)),
+        };
+        let kept = kept.copied();
+        found.truncate(begin);
+        found.extend(kept);
+    }
+}
