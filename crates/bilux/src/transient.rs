@@ -20,14 +20,23 @@ const SPLAT_BYTES: u64 = 3 * Film::memory_bytes(1);
 
 impl Job {
     /// Renders the picture in intervals of the optical length of paths, in metres from where the camera's ray begins, with the same samples as
-    /// [`Job::render`]: they and the rest add up to its picture. Light takes 1 s for 299,792,458 m. `None` if it was stopped.
+    /// [`Job::render`]: they and the rest add up to its picture. Light takes 1 s for 299,792,458 m. It takes the first `samples` of
+    /// each pixel, by default all. `None` if it was stopped.
     ///
     /// # Errors
     /// If the integrator finds light whose paths have no length, the intervals make no sense, they take too much memory, or as
     /// [`Job::render`].
-    pub fn transient(&self, bins: LengthBins, progress: &dyn Progress) -> Result<Option<Transient>, Error> {
+    pub fn transient(
+        &self,
+        bins: LengthBins,
+        samples: Option<u32>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Transient>, Error> {
         self.check_lengths(&bins)?;
-        let settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
+        let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
+        if let Some(samples) = samples {
+            (settings.spp, settings.samples) = (samples, 0..samples);
+        }
         let division = LightDivision { by_length: Some(bins), ..LightDivision::default() };
         let (scene, camera) = (self.scene(), self.camera());
         let parts = light_parts(scene, camera, self.renders(), &settings, &division, progress)?;
@@ -40,7 +49,11 @@ impl Job {
         Ok(Some(Transient { window, light: light.collect(), rest }))
     }
 
-    fn check_lengths(&self, bins: &LengthBins) -> Result<(), Error> {
+    /// Checks, before any work, that the picture can be divided so.
+    ///
+    /// # Errors
+    /// As [`Job::transient`].
+    pub fn check_lengths(&self, bins: &LengthBins) -> Result<(), Error> {
         let name = self.settings.integrator.entry.name;
         let renders = self.renders();
         let what = if !renders.has_light_parts() || renders.merging().is_some() {

@@ -4,14 +4,15 @@ use crate::choices::{Choices, Posed};
 pub use crate::measuring::{Bench, BenchKind};
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
-    parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
-    parse_time, parse_turntable, parse_vector,
+    parse_lengths, parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed,
+    parse_spp, parse_time, parse_turntable, parse_vector,
 };
 pub use crate::{
     comparison::Compare, converting::Convert, denoising::Denoise, explaining::Explain, farming::Farm,
     sensing::Sensor, working::Worker,
 };
 use crate::{help, lasting::Lasting, serving::Serve, studio::StudioArguments};
+use bilux::transport::LengthBins;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -274,6 +275,10 @@ pub struct Render {
     /// interval writes OUT.interval.exr, and strategies writes the folder OUT.strategies
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', help_heading = help::OUTPUT)]
     pub aov: Vec<String>,
+    /// Divide the light by the optical length of paths: N intervals of WIDTH metres from BEGIN on become layers of
+    /// OUT.lengths.exr, and what is outside of them the layer rest (path and bdpt)
+    #[arg(long, value_name = "BEGIN,WIDTH,N", value_parser = parse_lengths, help_heading = help::OUTPUT)]
+    pub lengths: Option<LengthBins>,
     /// Print one line of JSON per picture to standard output
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,

@@ -1,5 +1,6 @@
 //! Parsers for the values on the command line.
 
+use bilux::transport::LengthBins;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -172,6 +173,17 @@ fn numbers<T: std::str::FromStr, const N: usize>(text: &str, example: &str) -> R
 
 pub fn parse_crop(text: &str) -> Result<[u32; 4], String> {
     numbers(text, "the left and upper edge, the width and the height in pixels, such as 0,0,64,64")
+}
+
+/// Parses intervals of the length of paths, in metres.
+pub fn parse_lengths(text: &str) -> Result<LengthBins, String> {
+    let advice = "the beginning, the width and the number of the intervals, such as 1,0.05,40";
+    let [begin, width, count]: [f64; 3] = numbers(text, advice)?;
+    let is_whole = count.fract() == 0.0 && (1.0..=65_536.0).contains(&count);
+    if width > 0.0 && width.is_finite() && begin.is_finite() && is_whole {
+        return Ok(LengthBins { begin, width, count: count as u32 });
+    }
+    Err(format!("write {advice}: the width is above 0, and the number from 1 to 65536"))
 }
 
 pub fn parse_replay(text: &str) -> Result<[u32; 3], String> {

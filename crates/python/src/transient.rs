@@ -30,7 +30,7 @@ pub(crate) fn transient<'py>(
     let built = &scene.get().built;
     let (job, _) = without_gil(py, || build(&builder, built, &user, max_memory)).map_err(exception)?;
     let bins = LengthBins { begin, width, count };
-    let (found, stopped) = follow(py, callback, |watch| job.transient(bins, watch));
+    let (found, stopped) = follow(py, callback, |watch| job.transient(bins, None, watch));
     match stopped {
         Stopped::No => {}
         Stopped::Asked => return Ok(None),

@@ -54,7 +54,7 @@ def test_the_notebook_is_that_of_the_script_and_runs(script, tmp_path, monkeypat
     else:
         print("SKIPPED: nbclient is not installed, so this runs as a script")
         subprocess.run([sys.executable, script], check=True, timeout=120)
-    for name in re.findall(r'save(?:fig)?\("([\w.]+)"', text.replace('\\"', '"')):
+    for name in re.findall(r'save(?:fig)?\("(\w+\.png)"', text.replace('\\"', '"')):
         if importlib.util.find_spec("matplotlib") or name != "integrators.png":
             assert bilux.read_picture(tmp_path / name).to_uint8()[..., :3].std() > 8, f"{name} shows nothing"
 

@@ -1,5 +1,6 @@
 //! `--aov`: what a render writes besides its picture.
 
+use super::lengths;
 use super::targets::is_stdout;
 use crate::arguments::{Common, Render};
 use crate::assignments::from_flag;
@@ -35,6 +36,14 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
             Aov::names_that_need_all_samples()
         );
     }
+    if arguments.samples.is_some() && arguments.lengths.is_some() {
+        bail!("--lengths takes all samples: leave out --samples, or divide the picture by --crop");
+    }
+    if arguments.lengths.is_some() && is_stdout(arguments.output_or_stdout()) {
+        bail!(
+            "--lengths writes a file next to the picture, so the picture needs a file name: -o picture.png"
+        );
+    }
     if !arguments.aov.is_empty() && is_stdout(arguments.output_or_stdout()) {
         bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
     }
@@ -66,6 +75,9 @@ pub fn check_job(arguments: &Render, job: &Job) -> anyhow::Result<()> {
             others.collect::<Vec<_>>().join(", ")
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
+    }
+    if let Some(bins) = &arguments.lengths {
+        job.check_lengths(bins).context("--lengths").map_err(usage::wrong)?;
     }
     ExtraLayers::check(job, &layers(arguments)).context("--aov").map_err(usage::wrong)
 }
@@ -118,6 +130,11 @@ pub fn write(
     if layers.extra.is_none() {
         return Ok(false);
     }
+    if let Some(bins) = arguments.lengths.filter(|_| !outcome.rendered.cancelled)
+        && !lengths::write(bins, job, outcome, output, common, interrupt)?
+    {
+        return Ok(false);
+    }
     if !wants(arguments, Aov::Strategies) || outcome.rendered.cancelled {
         return Ok(!outcome.rendered.cancelled);
     }
@@ -145,7 +162,11 @@ pub fn write(
 /// The files, other than the picture and its folder of strategies, that a render writes.
 pub fn files(arguments: &Render, output: &Path) -> Vec<PathBuf> {
     let layers = !layers(arguments).is_empty() && !is_exr(output);
-    let extensions = [("layers.exr", layers), ("interval.exr", wants(arguments, Aov::Interval))];
+    let extensions = [
+        ("layers.exr", layers),
+        ("interval.exr", wants(arguments, Aov::Interval)),
+        (lengths::EXTENSION, arguments.lengths.is_some()),
+    ];
     let written = extensions.into_iter().filter(|(_, is_written)| *is_written);
     written.map(|(extension, _)| output.with_extension(extension)).collect()
 }

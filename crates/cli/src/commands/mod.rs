@@ -14,6 +14,7 @@ mod heat_map;
 pub mod info;
 mod input;
 mod keeping;
+mod lengths;
 pub mod list;
 mod log;
 pub mod manual;

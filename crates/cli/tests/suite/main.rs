@@ -10,6 +10,7 @@ mod output;
 mod overwriting;
 mod picture_layers;
 mod resume;
+mod sensors;
 mod serve;
 mod servers;
 mod witness;

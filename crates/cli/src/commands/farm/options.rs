@@ -56,6 +56,7 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
         ("--resume", render.lasting.resume, "a task's working directory is not kept"),
         ("--watch", render.lasting.watch, "a task renders once"),
         ("--preview", render.lasting.preview.is_some(), "a task has no terminal"),
+        ("--lengths", render.lengths.is_some(), "parts do not have it"),
         ("--stats", render.stats.is_some(), "a task's working directory is not kept"),
     ];
     let is_exr = aov::is_exr(Path::new(picture));
