@@ -32,7 +32,7 @@ pub mod light_path;
 pub mod memory;
 pub mod memory_limit;
 pub mod merging;
-mod metadata;
+pub mod metadata;
 mod outcome;
 mod own_light;
 pub mod parts;

@@ -32,6 +32,7 @@ mod reading;
 mod render;
 mod scene;
 mod sensor;
+mod sensors;
 mod shown;
 mod source;
 mod spec;
@@ -72,6 +73,8 @@ mod _bilux {
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]
+    use crate::sensors::{daylight_coefficients, irradiance, patch_numbers};
+    #[pymodule_export]
     use crate::spec::rows;
     #[pymodule_export]
     use crate::texture::Texture;
@@ -90,6 +93,12 @@ mod _bilux {
     #[pyfunction]
     fn licenses() -> &'static str {
         include_str!("../../../LICENSES.txt")
+    }
+
+    /// Coefficients a to e of the all-weather sky, by clearness, brightness and the zenith angle of the sun in radians.
+    #[pyfunction]
+    fn perez_coefficients(clearness: f64, brightness: f64, zenith: f64) -> [f64; 5] {
+        bilux::scene::lights::perez_coefficients(clearness, brightness, zenith)
     }
 
     /// Adds the version.

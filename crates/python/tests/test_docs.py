@@ -57,6 +57,8 @@ def test_everything_is_documented_and_its_examples_run(name, folder):
         "docs/tutorials/python-coming-from.md",
         "docs/tutorials/calibrated.md",
         "docs/tutorials/sensors.md",
+        "docs/tutorials/lux.md",
+        "docs/tutorials/daylight.md",
     ],
 )
 def test_every_example_of_the_pages_runs(page, folder, monkeypatch):
@@ -79,7 +81,7 @@ def test_every_example_of_the_pages_runs(page, folder, monkeypatch):
     check_against_pyrender(space)
 
 
-OTHERS = ["mitsuba", "pyrender", "bpy"]
+OTHERS = ["mitsuba", "pyrender", "bpy", "pyradiance"]
 
 
 def check_against_pyrender(space):

@@ -55,7 +55,8 @@ impl<'a> CameraRays<'a> {
             lights: LightChoice::new(scene),
             emission: Emission::new(scene, None),
             photons: None,
-            max_depth: settings.max_depth,
+            // The paper that receives light is no surface of the scene.
+            max_depth: settings.max_depth.saturating_add(u32::from(camera.receives())),
         };
         CameraRays { context, settings, spread, has_lens: camera.has_lens(), merges: false }
     }

@@ -111,6 +111,11 @@ pub enum RenderError {
          vcm"
     )]
     Glow,
+    /// The integrator does not find what a camera receives.
+    #[error(
+        "the camera is a meter of the light that arrives, which only path and auto measure: choose one of these"
+    )]
+    Receives,
     /// A checkpoint was made by a render that did not need something.
     #[error("the checkpoint does not hold {what}: render as before, or begin anew")]
     CheckpointLacks {

@@ -9,6 +9,9 @@ use crate::way::Place;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
 
+/// The number of no object: of the paper on which a camera [receives](bilux_scene::Camera::receives) light.
+pub(crate) const NO_OBJECT: u32 = u32::MAX;
+
 /// A vertex of a path, as far as it scatters.
 #[derive(Clone, Copy, Debug)]
 #[expect(

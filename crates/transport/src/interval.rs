@@ -25,6 +25,11 @@ const COUNT: usize = REPLICATES as usize;
 const QUANTILES: [f64; COUNT - 1] =
     [12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624];
 
+/// Half-width of an interval in standard errors, by its degrees of freedom; infinite for none.
+pub(crate) fn quantile(degrees_of_freedom: u32) -> f64 {
+    degrees_of_freedom.checked_sub(1).map_or(f64::INFINITY, |i| QUANTILES[i as usize])
+}
+
 /// The seed of a sample's sequence, and the sample's index there.
 #[inline]
 pub(crate) fn replicate(seed: u64, sample: u32) -> (u64, u32) {
@@ -108,8 +113,7 @@ impl Interval {
 
     /// Half-width of an interval in standard errors; infinite where there is only one sample.
     pub fn quantile(&self) -> f64 {
-        let below = self.degrees_of_freedom().checked_sub(1);
-        below.map_or(f64::INFINITY, |i| QUANTILES[i as usize])
+        quantile(self.degrees_of_freedom())
     }
 
     /// The mean luminance of a block of one or more pixels, and its interval: what pixels have in common (a light path

@@ -336,7 +336,7 @@ impl PartTally<'_> {
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             self.sum = integrator.radiance(&ray, &mut task);
             self.found = state.record.and_then(|record| record.found).unwrap_or_default();
-            for FoundLight { edges, light, radiance, length } in &self.found {
+            for FoundLight { edges, light, radiance, length, .. } in &self.found {
                 self.division.parts(*edges, *light, *length).for_each(|part| self.here[part] += *radiance);
             }
         }

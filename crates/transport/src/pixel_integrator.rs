@@ -37,6 +37,11 @@ pub trait PixelIntegrator: Send + Sync + 'static {
         true
     }
 
+    /// True if it finds what a camera [receives](Camera::receives).
+    fn receives(&self) -> bool {
+        false
+    }
+
     /// True if it reports each piece of light that a path finds (`Task::find`), so that light can be divided into parts.
     fn reports_light(&self) -> bool {
         false

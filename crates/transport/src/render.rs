@@ -104,6 +104,9 @@ pub fn render_from(
     if scene.has_glowing_media() && !integrator.sees_glow() {
         return Err(RenderError::Glow);
     }
+    if camera.receives() && !integrator.receives() {
+        return Err(RenderError::Receives);
+    }
     progress.begin(settings.sample_count(integrator));
     let interval = settings.interval.then(|| Interval::new(settings.window())).transpose()?;
     let empty =

@@ -66,6 +66,9 @@ pub fn strategies(
     if !integrator.has_strategies() {
         return Ok(None);
     }
+    if camera.receives() {
+        return Err(RenderError::Receives);
+    }
     let pool = threads(settings)?;
     let whole = Window::whole(settings.width, settings.height);
     let tiles = whole.tiles(TILE);

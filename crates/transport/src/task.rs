@@ -70,6 +70,8 @@ pub struct FoundLight {
     pub edges: u32,
     /// The index of the light in [`Scene::lights`]; `None` for surfaces that shine without being one of these.
     pub light: Option<usize>,
+    /// The direction of the path's last edge, from the camera's end towards the light; of any length.
+    pub towards: Vec3,
     /// What it adds to the sample.
     pub radiance: Rgb,
     /// The optical length of its path, in metres, if that is recorded; infinite if it comes from infinity.
@@ -175,12 +177,13 @@ impl SampleState {
         &mut self,
         edges: u32,
         light: Option<usize>,
+        towards: [f32; 3],
         radiance: Rgb,
         length: impl FnOnce(&Way) -> f64,
     ) {
         let Some(Record { found: Some(found), way, .. }) = self.record.as_deref_mut() else { return };
         let length = way.as_ref().map_or(f64::INFINITY, length);
-        found.push(FoundLight { edges, light, radiance, length });
+        found.push(FoundLight { edges, light, towards: Vec3::from(towards), radiance, length });
     }
 
     /// Records that the path from the camera has come to a vertex, if its length is recorded.

@@ -3,6 +3,7 @@
 mod denoising;
 mod making;
 mod rendering;
+mod sensors;
 mod subject;
 mod writing;
 

@@ -3,7 +3,7 @@
 use super::Job;
 use crate::description::{options, row_vectors};
 use crate::display::Display;
-use crate::metadata::{ASKED, FINGERPRINT, SETTINGS, SOFTWARE};
+use crate::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, SETTINGS, SOFTWARE};
 use crate::settings::{Background, Settings};
 use crate::{Error, Outcome};
 use bilux_pictures::{Picture, WriteOptions};
@@ -84,6 +84,9 @@ impl Job {
         note(FINGERPRINT, self.fingerprint().to_owned());
         let matrices = self.camera().matrices(self.scene().shutter()[0]);
         note("worldToCamera", row_vectors(&matrices.to_camera));
+        if self.camera().receives() {
+            note(MEASURES, IRRADIANCE.to_owned());
+        }
         if let Some(to_film) = &matrices.to_film {
             note("worldToNDC", row_vectors(to_film));
         }

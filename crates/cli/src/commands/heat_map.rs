@@ -5,6 +5,7 @@ use crate::converting::Convert;
 use crate::{output, usage};
 use anyhow::anyhow;
 use bilux::math::photometry::LUMENS_PER_WATT;
+use bilux::metadata::{IRRADIANCE, MEASURES};
 use bilux::pictures::metrics::false_colours;
 use bilux::pictures::{Channel, ColourSpace, Picture, label};
 use bilux::scene::SceneError;
@@ -70,12 +71,19 @@ fn photometric(picture: &Picture, name: &str, unit: &str) -> anyhow::Result<Vec<
         return wrong("a picture for displays does not say how bright it was: render an .exr, .hdr or .pfm");
     }
     let Some(light) = picture.to_rgb() else { return wrong("the picture has no colours") };
+    let in_lumens =
+        |factor: f32| light.iter().map(|light| light.luminance() * (factor * LUMENS_PER_WATT)).collect();
     if unit != "lx" {
-        return Ok(light.iter().map(|radiance| radiance.luminance() * LUMENS_PER_WATT).collect());
+        return Ok(in_lumens(1.0));
+    }
+    if picture.metadata.get(MEASURES).is_some_and(|measured| measured == IRRADIANCE) {
+        return Ok(in_lumens(std::f32::consts::PI));
     }
     let [Some(r), Some(g), Some(b)] = ["R", "G", "B"].map(|name| picture.channel(&format!("albedo.{name}")))
     else {
-        return wrong("illuminance is found by how much of it surfaces reflect: render with --aov albedo");
+        return wrong(
+            "illuminance is found by how much of it surfaces reflect: render with --aov albedo, or with the camera irradiance",
+        );
     };
     // A matt surface reflects its albedo of the light that it receives, over π in each direction.
     let received =

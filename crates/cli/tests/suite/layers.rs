@@ -298,6 +298,15 @@ fn heat_maps_have_photometric_units_and_a_scale() {
     }
     let said = run(path, "convert lit.exr -o map.png --heat-map luminance --unit lx");
     assert!(String::from_utf8_lossy(&said.stderr).contains("pale yellow is 500 and more"), "{said:?}");
+    // A meter below the same light needs no albedo, and no surface.
+    let [eye, meter] = [
+        "orthographic\"\nposition = [0, 1, 0]\nlook_at = [0, 0, 0]",
+        "irradiance\"\nposition = [0, 0.5, 0]\nlook_at = [0, 1, 0]",
+    ];
+    fs::write(path.join("meter.toml"), scene.replace(eye, meter)).unwrap();
+    done(path, "render meter.toml -o meter.exr --size 8x8 --spp 1 -q --denoise=off");
+    let said = run(path, "convert meter.exr -o map.png --heat-map luminance --unit lx");
+    assert!(String::from_utf8_lossy(&said.stderr).contains("pale yellow is 500 and more"), "{said:?}");
     done(path, "render lit.toml -i path -o bare.exr --size 8x8 --spp 1 -q --denoise=off");
     for (options, said) in [
         ("lit.exr -o x.png --heat-map luminance --unit lumen", "possible values: cd/m2, lx"),

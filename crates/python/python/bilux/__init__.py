@@ -38,11 +38,11 @@ from ._tables import (
     settings,
     tonemaps,
 )
-from ._types import AllHits, Hits, Mesh, NearestPoints, Object, Progress, Replay, Strategy, Transient
+from ._types import AllHits, Hits, Measured, Mesh, NearestPoints, Object, Progress, Replay, Strategy, Transient
 from ._view import View
 
 if TYPE_CHECKING:
-    from . import cluster
+    from . import cluster, daylight
 
 __all__ = [
     "Accel",
@@ -54,6 +54,7 @@ __all__ = [
     "Hits",
     "IntensityDistribution",
     "Interrupted",
+    "Measured",
     "Mesh",
     "NearestPoints",
     "Object",
@@ -78,6 +79,7 @@ __all__ = [
     "cameras",
     "cluster",
     "compare",
+    "daylight",
     "denoisers",
     "densities",
     "filters",
@@ -101,11 +103,11 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """`bilux.cluster`, which few need and which takes most of what importing the package would, when it is first used."""
-    if name == "cluster":
-        return import_module(".cluster", __name__)
+    """`bilux.cluster` and `bilux.daylight`, which few need, when they are first used."""
+    if name in ("cluster", "daylight"):
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), "cluster"})
+    return sorted({*globals(), "cluster", "daylight"})

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "licenses", "read_picture", "replay", "rows", "scan", "set_keyframes", "strategies", "transient"]
+__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "daylight_coefficients", "irradiance", "licenses", "patch_numbers", "perez_coefficients", "read_picture", "replay", "rows", "scan", "set_keyframes", "strategies", "transient"]
 
 __version__: str
 
@@ -45,6 +45,25 @@ def replay(
     int,
     int,
 ]: ...
+def irradiance(
+    scene: Scene,
+    points: ArrayLike,
+    normals: ArrayLike,
+    settings: dict[str, Any],
+    max_memory: int,
+    callback: Callable[[int, int, int, float], object] | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], int]: ...
+def daylight_coefficients(
+    scene: Scene,
+    points: ArrayLike,
+    normals: ArrayLike,
+    rows: Sequence[tuple[float, int]],
+    settings: dict[str, Any],
+    max_memory: int,
+    callback: Callable[[int, int, int, float], object] | None,
+) -> NDArray[np.float32]: ...
+def perez_coefficients(clearness: float, brightness: float, zenith: float) -> list[float]: ...
+def patch_numbers(rows: Sequence[tuple[float, int]], directions: ArrayLike) -> NDArray[np.int64]: ...
 def strategies(
     scene: Scene,
     settings: dict[str, Any],

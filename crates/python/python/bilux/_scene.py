@@ -13,13 +13,16 @@ from numpy.typing import ArrayLike
 from . import _bilux
 from ._bilux import Picture, Spec, Turntable
 from ._progress import following
-from ._types import Mesh, Object, Progress, Replay, Strategy, Transient
+from ._types import Measured, Mesh, Object, Progress, Replay, Strategy, Transient
 
 if TYPE_CHECKING:
     from ._view import View
     from .lidar import Beams, PointCloud
 
 Path = str | os.PathLike[str]
+
+LUMENS_PER_WATT = 683.0
+"""The luminous flux in lumen of 1 W whose red, green and blue are equal."""
 
 MAX_MEMORY = 8 << 30
 """The number of bytes that reading a file, and approximately rendering it, may take by default."""
@@ -495,6 +498,108 @@ class Scene(_bilux.Scene):
             found = _bilux.transient(self, given, most, (float(begin), float(bin_width), count), callback)
         return None if found is None else Transient(*found, begin + bin_width * np.arange(count + 1, dtype=np.float64))
 
+    def irradiance(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike = (0.0, 1.0, 0.0),
+        spp: int | None = None,
+        *,
+        noise: float | None = None,
+        time_limit: float | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        **settings: Any,
+    ) -> Measured:
+        """Measures the light that points receive, on the sides of their normals.
+
+        All light counts that path tracing finds: straight from lamps and sky, and after any number of reflections. A point that
+        lies on a surface measures what that surface receives.
+
+        Args:
+            points: (n, 3) positions in metres.
+            normals: (n, 3) directions, or one for all points; by default upwards.
+            spp: samples of each point; by default 1,024, or what `noise` and `time_limit` allow.
+            noise: stop when the noise is, on average, at most this fraction of the light, such as 0.02.
+            time_limit: finish within so many seconds.
+            progress: as for `render`.
+            **settings: as for `render`, such as `seed`, `threads`, `time`, `max_depth` and `max_memory`.
+
+        Returns:
+            irradiances in W/m², an array (n, 3) for red, green and blue, and their standard errors.
+
+        Raises:
+            ValueError: if the arrays do not fit, or hold what is not finite.
+            SceneError: if the scene has no light, or another integrator than "path" and "auto" is asked for.
+
+        Example:
+            >>> scene = bilux.Scene()
+            >>> floor = scene.add_mesh([[-1, 0, 1], [1, 0, 1], [0, 0, -1]], [[0, 1, 2]])
+            >>> sky = scene.add_light(bilux.lights.environment(radiance=1))
+            >>> values, errors = scene.irradiance([[0, 0, 0]], spp=64)
+            >>> values.shape, bool(abs(values[0, 0] - np.pi) < 0.1)
+            ((1, 3), True)
+        """
+        values, errors = self._measured(points, normals, spp, noise, time_limit, progress, settings)
+        return Measured(values[:, :3], errors[:, :3])
+
+    def illuminance(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike = (0.0, 1.0, 0.0),
+        spp: int | None = None,
+        *,
+        noise: float | None = None,
+        time_limit: float | None = None,
+        progress: bool | Callable[[Progress], object] = False,
+        **settings: Any,
+    ) -> Measured:
+        """Measures the illuminance of points, on the sides of their normals: as `irradiance`, in lux.
+
+        Returns:
+            illuminances in lx, an array (n,), and their standard errors. 683 lx are 1 W/m² of red, green and blue each.
+
+        Example:
+            >>> scene = bilux.Scene()
+            >>> floor = scene.add_mesh([[-1, 0, 1], [1, 0, 1], [0, 0, -1]], [[0, 1, 2]])
+            >>> lamp = scene.add_light(bilux.lights.point(position=(0, 2, 0), intensity="100 cd"))
+            >>> values, errors = scene.illuminance([[0, 0, 0]], spp=16)
+            >>> round(float(values[0]), 3)
+            25.0
+        """
+        values, errors = self._measured(points, normals, spp, noise, time_limit, progress, settings)
+        return Measured(values[:, 3] * LUMENS_PER_WATT, errors[:, 3] * LUMENS_PER_WATT)
+
+    def _measured(
+        self,
+        points: ArrayLike,
+        normals: ArrayLike,
+        spp: int | None,
+        noise: float | None,
+        time_limit: float | None,
+        progress: bool | Callable[[Progress], object],
+        settings: dict[str, Any],
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Irradiances and their errors, arrays (n, 4): red, green, blue and luminance."""
+        if (spp, noise, time_limit) == (None, None, None):
+            spp = 1024
+        if spp is None:
+            spp = 1 << 20
+        given, max_memory = self._measuring(settings | {"spp": spp, "noise": noise or 0, "time_limit": time_limit or 0})
+        points, normals = _sensors(points, normals)
+        with following(progress) as callback:
+            values, errors, _ = _bilux.irradiance(self, points, normals, given, max_memory, callback)
+        return values, errors
+
+    def _measuring(self, settings: dict[str, Any]) -> tuple[dict[str, Any], int]:
+        """The settings of a measurement, and the bytes that it may take."""
+        settings = {"integrator": "path"} | settings
+        most = settings.pop("max_memory", MAX_MEMORY)
+        fixed = {"size", "crop", "aov", "denoise", "filter", "exposure", "fast"} & settings.keys()
+        if fixed:
+            raise TypeError(f"{min(fixed)}: this is a setting of pictures, and nothing that points have")
+        plain = dict.fromkeys(("size", "camera", "time", "exposure"))
+        given = self._settings(**plain | settings) | {"texture_filter": "none"}
+        return given, _bytes(most)
+
     def _whole(self, settings: dict[str, Any]) -> tuple[dict[str, Any], int]:
         """The settings of a picture with all of its samples, and the bytes that it may take."""
         if settings.keys() & {"noise", "time_limit"}:
@@ -550,6 +655,16 @@ def _restored(kind: type[Scene], document: ArrayLike | bytes, blobs: dict[str, A
     scene: Scene = kind._decoded(document, blobs)
     scene._time = time
     return scene
+
+
+def _sensors(points: ArrayLike, normals: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Points and as many normals."""
+    points, normals = np.asarray(points), np.asarray(normals)
+    if points.shape == (3,):
+        points = points[None]
+    if normals.shape == (3,) and points.ndim == 2:
+        normals = np.tile(normals, (len(points), 1))
+    return points, normals
 
 
 def _size(size: tuple[int, int] | int | str | None) -> str | None:

@@ -108,6 +108,9 @@ class Makers(Table):
     """
 
     def __getattr__(self, kind: str) -> Callable[..., Spec]:
+        # What has a dash in its name has an underscore here.
+        if not kind.startswith("_") and kind.replace("_", "-") in self._entries:
+            kind = kind.replace("_", "-")
         if kind.startswith("_") or kind not in self._entries:
             known = "" if kind.startswith("_") else f": there are {', '.join(self)}"
             raise AttributeError(f"there is no '{kind}' in bilux.{self._name}{known}")

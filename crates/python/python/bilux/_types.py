@@ -75,6 +75,18 @@ class NearestPoints(NamedTuple):
     point: Floats
 
 
+class Measured(NamedTuple):
+    """What points receive, and how certain that is.
+
+    Attributes:
+        values: irradiances in W/m², (n, 3), or illuminances in lx, (n,).
+        errors: their standard errors, of the same shape; infinite after a single sample.
+    """
+
+    values: NDArray[np.float64]
+    errors: NDArray[np.float64]
+
+
 class Object(NamedTuple):
     """An object of a scene.
 

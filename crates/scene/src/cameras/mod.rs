@@ -2,6 +2,7 @@
 
 mod central;
 mod fisheye;
+mod irradiance;
 mod opencv;
 mod opencv_fisheye;
 mod orthographic;
@@ -11,8 +12,10 @@ mod pinhole;
 mod pixels;
 mod pose;
 mod radial;
+mod sensor_points;
 
 pub use pinhole::Pinhole;
+pub use sensor_points::{SensorPoint, SensorPoints};
 
 use crate::error::SceneError;
 use crate::parameters::{Parameters, Reader, Spec};
@@ -114,6 +117,11 @@ pub trait Camera: Send + Sync {
     fn pinhole(&self) -> Option<Pinhole> {
         None
     }
+    /// True for a meter instead of an eye: a pixel shows the light that arrives where its rays begin, on the side to which they go,
+    /// over π. That is the radiance of white matt paper there, which faces along the ray and shades nothing.
+    fn receives(&self) -> bool {
+        false
+    }
     /// What users should know about its picture: each is a sentence.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
@@ -140,6 +148,7 @@ pub struct CameraEntry {
 pub const CAMERAS: &[CameraEntry] = &[
     perspective::ENTRY,
     orthographic::ENTRY,
+    irradiance::ENTRY,
     fisheye::ENTRY,
     panorama::ENTRY,
     opencv::ENTRY,

@@ -2,7 +2,8 @@
 
 use super::perspective::{MIRRORED, vector};
 use super::{
-    Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, around, look, without_axes,
+    Camera, CameraConnection, CameraEntry, CameraKeys, CameraMatrices, CameraSample, around, look,
+    without_axes,
 };
 use crate::error::SceneError;
 use bilux_accel::Ray;
@@ -29,7 +30,26 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             MIRRORED,
         ],
     },
-    build: |keys, aspect| {
+    build: |keys, aspect| Ok(Arc::new(Orthographic::read(keys, aspect)?)),
+};
+
+pub(super) struct Orthographic {
+    keys: Vec<(f32, Key)>,
+    /// Width over height; negative when mirrored.
+    aspect: f32,
+    /// [`Camera::receives`].
+    receives: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Key {
+    position: Vec3,
+    axes: [Vec3; 3],
+    half_height: f32,
+}
+
+impl Orthographic {
+    pub(super) fn read(keys: CameraKeys, aspect: f32) -> Result<Orthographic, SceneError> {
         let mirrored = keys.first().is_some_and(|(_, reader)| reader.bool("mirrored"));
         let aspect = if mirrored { -aspect } else { aspect };
         let keys = keys
@@ -41,24 +61,14 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 Ok((*time, Key { position, axes, half_height: reader.number("height") * 0.5 }))
             })
             .collect::<Result<Vec<_>, SceneError>>()?;
-        Ok(Arc::new(Orthographic { keys, aspect }))
-    },
-};
+        Ok(Orthographic { keys, aspect, receives: false })
+    }
 
-struct Orthographic {
-    keys: Vec<(f32, Key)>,
-    /// Width over height; negative when mirrored.
-    aspect: f32,
-}
+    /// The same film as a meter of the light that arrives.
+    pub(super) fn receiving(self) -> Orthographic {
+        Orthographic { receives: true, ..self }
+    }
 
-#[derive(Clone, Copy)]
-struct Key {
-    position: Vec3,
-    axes: [Vec3; 3],
-    half_height: f32,
-}
-
-impl Orthographic {
     fn key_at(&self, time: f32) -> Key {
         let (low, high, t) = around(&self.keys, time);
         Key {
@@ -147,6 +157,10 @@ impl Camera for Orthographic {
 
     fn height_at(&self, _p: Vec3, time: f32) -> f32 {
         2.0 * self.key_at(time).half_height
+    }
+
+    fn receives(&self) -> bool {
+        self.receives
     }
 
     fn has_lens(&self) -> bool {

@@ -5,6 +5,7 @@
 //! π, so that a diffuse surface there looks the same in both; the parameter `classic` overrides it.
 
 mod ambient;
+mod cie_sky;
 mod cumulative;
 mod directional;
 mod distant;
@@ -17,9 +18,11 @@ mod light;
 mod light_triangle;
 mod luminaire;
 mod mesh_light;
+mod perez_sky;
 mod point;
 mod rect;
 mod sky;
+mod sky_dome;
 mod sphere;
 mod spot;
 mod sun;
@@ -31,6 +34,7 @@ pub use emission_sample::EmissionSample;
 pub use light::{ClassicLighting, Light, LightTracing, Receiver};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
 pub use mesh_light::{MeshLight, Picture, SurfaceEmission};
+pub use perez_sky::{perez_clearness, perez_coefficients};
 pub use sphere::SphereLight;
 
 use crate::error::SceneError;
@@ -93,6 +97,8 @@ pub const LIGHTS: &[LightEntry] = &[
     sphere::ENTRY,
     environment::ENTRY,
     sky::ENTRY,
+    cie_sky::ENTRY,
+    perez_sky::ENTRY,
     ambient::ENTRY,
 ];
 

@@ -41,7 +41,14 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 
 impl PixelIntegrator for PathTracing {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        self.trace(ray, task)
+        match task.context.camera.receives() {
+            true => self.receive(ray, task),
+            false => self.trace(ray, task),
+        }
+    }
+
+    fn receives(&self) -> bool {
+        true
     }
 
     fn reports_light(&self) -> bool {
@@ -49,7 +56,7 @@ impl PixelIntegrator for PathTracing {
     }
 
     fn queue<'a>(&self, context: &Context<'a>) -> Option<Box<dyn SampleQueue + 'a>> {
-        let has_queue = self.is_mis() && PathQueue::takes(context.scene);
+        let has_queue = self.is_mis() && PathQueue::takes(context.scene) && !context.camera.receives();
         has_queue.then(|| Box::new(PathQueue::new(*self)) as _)
     }
 }

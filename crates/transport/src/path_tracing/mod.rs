@@ -2,9 +2,10 @@
 //! [Kajiya 1986; Veach 1997, 9.2]
 
 mod light_connection;
+mod sheet;
 
 use crate::equiangular::{self, Approach, EquiangularSample};
-use crate::interaction::Interaction;
+use crate::interaction::{Interaction, NO_OBJECT};
 use crate::light_choice::LightChoice;
 use crate::media::{Arrival, Media, Travelled};
 use crate::segment::Segment;
@@ -60,7 +61,12 @@ pub(crate) struct Path {
 impl PathTracing {
     /// Follows one path to its end; returns the light that it finds.
     pub(crate) fn trace(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut path = Path::new(ray, Media::at_start(task.tracer, ray));
+        self.follow(Path::new(ray, Media::at_start(task.tracer, ray)), task)
+    }
+
+    /// Follows a path from where it is.
+    #[inline]
+    fn follow(&self, mut path: Path, task: &mut Task) -> Rgb {
         loop {
             let (ray, ahead) = path.walk.ahead(task.context.scene, task.sample, TransportMode::Radiance);
             let first = task.tracer.closest(&ray);
@@ -105,7 +111,7 @@ impl PathTracing {
     fn glow(&self, path: &mut Path, emitted: Rgb, task: &mut Task) {
         let light = task.sample.seen(emitted, path.walk.is_split);
         path.light += light;
-        task.sample.find(path.walk.depth + 1, None, light, Way::length);
+        task.sample.find(path.walk.depth + 1, None, path.walk.ray.direction, light, Way::length);
         task.sample.note_vertex(path.walk.depth, || {
             let at = Vec3::from(path.walk.ray.origin);
             (
@@ -210,7 +216,10 @@ impl PathTracing {
                 true => (VertexKind::Transmission, "transmitted"),
                 false => (VertexKind::Reflection, "scattered"),
             };
-            let what = format!("{how} by object {} at {p} towards {}", surface.object, sample.wi);
+            let what = match surface.object {
+                NO_OBJECT => format!("received at {p} from {}", sample.wi),
+                object => format!("{how} by object {object} at {p} towards {}", sample.wi),
+            };
             (PathVertex::new(kind, p), what)
         });
         true
@@ -227,7 +236,8 @@ impl PathTracing {
             };
             let seen = self.seen_of(task.context, path, (index, light), found);
             let light = path.walk.seen(task.sample) * seen;
-            task.sample.find(path.walk.depth + 1, Some(index), light, |_| f64::INFINITY);
+            let towards = path.walk.ray.direction;
+            task.sample.find(path.walk.depth + 1, Some(index), towards, light, |_| f64::INFINITY);
             sum += seen;
         }
         let light = path.walk.seen(task.sample) * sum;
@@ -276,7 +286,8 @@ impl PathTracing {
             _ => radiance,
         };
         let light = path.walk.seen(task.sample) * seen;
-        task.sample.find(path.walk.depth + 1, index, light, |way| way.length_to(surface.p));
+        let towards = path.walk.ray.direction;
+        task.sample.find(path.walk.depth + 1, index, towards, light, |way| way.length_to(surface.p));
         task.sample.note_vertex(path.walk.depth, || {
             let vertex = PathVertex { kind: VertexKind::Emitter, at: surface.p, light };
             (vertex, format!("hits a light at {}", surface.p))
@@ -318,7 +329,7 @@ impl PathTracing {
         let found = connection.trace(task.tracer);
         connection.note(task.sample, depth, seen * found);
         let Segment { ray, through, .. } = &connection.segment;
-        task.sample.find(depth + 2, Some(light), seen * found, |way| {
+        task.sample.find(depth + 2, Some(light), ray.direction, seen * found, |way| {
             way.length_by(from.at.p(), ray.direction.into(), through.distance)
         });
         found

@@ -24,6 +24,7 @@ mod path_tracing;
 mod points;
 mod queue;
 mod random_numbers;
+mod receiving;
 mod scattering;
 mod seen_media;
 mod sides;

@@ -201,7 +201,7 @@ fn material(text: &mut String, kind: &str, stage: &str, body: &str) {
 }
 
 fn light(text: &mut String, kind: &str, stage: &str, body: &str) {
-    let needs_dusk = !["environment", "sky", "ambient"].contains(&kind);
+    let needs_dusk = !["environment", "sky", "cie-sky", "perez-sky", "ambient"].contains(&kind);
     if needs_dusk {
         *text += "[[light]]\nkind = \"environment\"\nradiance = 0.03\n";
     }

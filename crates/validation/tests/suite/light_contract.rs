@@ -145,6 +145,7 @@ fn cases() -> Vec<LightCase> {
         .with("zenith", Rgb::new(0.2, 0.4, 1.0))
         .with("horizon", Rgb::WHITE)
         .with("ground", Rgb::new(0.2, 0.1, 0.0));
+    let clear = Spec::new("", "cie-sky").with("standard", 12).with("elevation", 25.0f32);
     let sphere = |position: Vec3, radius: f32| {
         let spec = Spec::new("", "sphere").with("radiance", RADIANCE);
         spec.with("position", position).with("radius", radius)
@@ -156,6 +157,12 @@ fn cases() -> Vec<LightCase> {
         with_light("sun", Spec::new("", "directional").with("diameter", 0.533f32)),
         with_light("wide sun", Spec::new("", "directional").with("diameter", 70.0f32)),
         with_light("low sun", Spec::new("", "sky").with("elevation", 3.0f32).with("sun_diameter", 10.0f32)),
+        with_light("clear sky with its sun", clear.with("sun", 9.0f32).with("sun_diameter", 4.0f32)),
+        with_light("turbid sky", Spec::new("", "cie-sky").with("standard", 15).with("zenith", 2.0f32)),
+        with_light(
+            "weather",
+            Spec::new("", "perez-sky").with("clearness", 3.0f32).with("brightness", 0.3f32),
+        ),
         with_light("backdrop", sky.with("backdrop", true)),
         with_light("spot without an edge", spot(20.0, 20.0)),
         with_light("spot of half the sphere", spot(90.0, 0.0)),

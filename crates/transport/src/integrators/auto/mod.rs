@@ -118,7 +118,7 @@ const TYPICAL_ITERATION: u32 = 16;
 impl PixelIntegrator for Auto {
     /// Without a plan: path tracing.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        PathTracing::new(self.merging.roulette_depth).trace(ray, task)
+        PathTracing::new(self.merging.roulette_depth).radiance(ray, task)
     }
 
     fn chooser(&self) -> Option<&dyn Chooser> {
@@ -128,6 +128,9 @@ impl PixelIntegrator for Auto {
 
 impl Chooser for Auto {
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Plan {
+        if camera.receives() {
+            return self.without_pilot();
+        }
         let settings = pilot::settings(film);
         let least = |round| if round == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|round| pilot::photon_settings(film, &settings[round], least(round)));
@@ -189,6 +192,18 @@ impl Chooser for Auto {
 }
 
 impl Auto {
+    /// Path tracing, which alone finds what a camera [receives](Camera::receives).
+    fn without_pilot(&self) -> Plan {
+        let Set { name, techniques, .. } = SETS[0];
+        let only = Candidate { name, techniques, error: 0.0, lost: 0.0, nanoseconds: 0.0 };
+        let integrator = Box::new(PathTracing::new(self.merging.roulette_depth));
+        Plan {
+            integrator,
+            choice: Choice { chosen: 0, candidates: vec![only] },
+            counters: Counters::default(),
+        }
+    }
+
     fn choose(&self, candidates: &[Candidate]) -> usize {
         let mut best = 0;
         for (i, set) in SETS.iter().enumerate().skip(1) {

@@ -1,0 +1,405 @@
+"""Light that points receive, skies, and daylight over a year: against closed forms, and against Radiance where it is installed."""
+
+import datetime
+import doctest
+import importlib.util
+import inspect
+import math
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import bilux
+from bilux import daylight
+
+HEADER = [
+    "LOCATION,London,-,GBR,made up,000000,51.15,-0.18,0.0,62.0",
+    "DESIGN CONDITIONS,0",
+    "TYPICAL/EXTREME PERIODS,0",
+    "GROUND TEMPERATURES,0",
+    "HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0",
+    "COMMENTS 1,",
+    "COMMENTS 2,",
+    "DATA PERIODS,1,1,Data,Sunday,1/1,12/31",
+]
+
+
+def records():
+    """A year of weather: overcast, hazy and clear days in turn."""
+    begin = datetime.datetime(2019, 1, 1)
+    lines = []
+    for hour in range(8760):
+        at = begin + datetime.timedelta(hours=hour)
+        up = max(0.0, math.sin(math.pi * (at.hour - 5) / 14)) * (0.55 - 0.35 * math.cos(2 * math.pi * hour / 8760))
+        direct = [0, 300, 800][at.day % 3] * (up > 0.1)
+        diffuse = [220, 180, 90][at.day % 3] * up
+        light = ["9999"] * 4 + [f"{direct:.0f}", f"{diffuse:.0f}"]
+        fields = [at.year, at.month, at.day, at.hour + 1, 60, "?9", 10.0, 6.0, 70, 101000, *light, 0, 0, 0, 0, 180, 3.0]
+        lines.append(",".join(map(str, fields)))
+    return lines
+
+
+RECORDS = records()
+
+
+def epw(folder, lines=None, header=None):
+    path = folder / "london.epw"
+    path.write_text("\n".join((header or HEADER) + (lines or RECORDS)) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("name", [name for name, thing in vars(daylight).items() if not name.startswith("_") and inspect.getmodule(thing) is daylight])
+def test_everything_is_documented_and_its_examples_run(name, folder):
+    epw(folder)
+    text = inspect.getdoc(getattr(daylight, name))
+    assert text
+    space = {"bilux": bilux, "np": np, "datetime": datetime}
+    test = doctest.DocTestParser().get_doctest(text, space, name, None, None)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    runner.run(test)
+    assert runner.failures == 0
+
+
+# What points receive
+
+
+def quad(scene, corner, u, v, material):
+    corner, u, v = map(np.asarray, (corner, u, v))
+    scene.add_mesh([corner, corner + u, corner + u + v, corner + v], [[0, 1, 2], [0, 2, 3]], material=material)
+
+
+def room(window=True):
+    """A room of 4 by 6 by 3 metres, with a window to the south (+z); nothing outside reflects."""
+    scene = bilux.Scene()
+    grey = lambda value: bilux.materials.diffuse(reflectance=value)  # noqa: E731
+    x, y, z = np.diag([4.0, 3.0, 6.0])
+    quad(scene, (0, 0, 0), z, x, grey(0.2))
+    quad(scene, (0, 3, 0), x, z, grey(0.7))
+    quad(scene, (0, 0, 0), x, y, grey(0.5))
+    quad(scene, (0, 0, 0), y, z, grey(0.5))
+    quad(scene, (4, 0, 0), z, y, grey(0.5))
+    if window:
+        for corner, u, v in [((0, 0, 6), (0, 3, 0), (0.5, 0, 0)), ((3.5, 0, 6), (0, 3, 0), (0.5, 0, 0)),
+                             ((0.5, 0, 6), (0, 1, 0), (3, 0, 0)), ((0.5, 2.5, 6), (0, 0.5, 0), (3, 0, 0))]:  # fmt: skip
+            quad(scene, corner, u, v, grey(0.5))
+    return scene
+
+
+POINTS = np.array([[2.0, 0.8, 5.0], [2.0, 0.8, 3.0], [1.0, 0.8, 1.0]])
+
+
+def test_lamps_of_all_kinds_have_their_lux():
+    scene = bilux.Scene()
+    quad(scene, (-3, 0, -3), (0, 0, 6), (6, 0, 0), bilux.materials.diffuse(reflectance=0))
+    scene.add_light(bilux.lights.point(position=(0, 2, 0), intensity="100 cd"))
+    points = [[0, 0, 0], [1, 0, 0], [0, 4, 0]]
+    values, errors = scene.illuminance(points, spp=16)
+    assert np.allclose(values, [25, 100 * 2 / 5**1.5, 0], rtol=1e-5) and errors.max() < 1e-3
+    watts, _ = scene.irradiance(points, spp=16)
+    assert np.allclose(watts * 683, values[:, None], rtol=1e-5)
+    # A lumen for a candela would be a factor of 4π, a missing cosine 12%.
+    scene.lights = [bilux.lights.point(position=(0, 2, 0), intensity="100 lm")]
+    lumens, _ = scene.illuminance(points, spp=16)
+    assert np.allclose(lumens * 4 * np.pi, values, rtol=1e-5)
+    facing, _ = scene.illuminance(points[1:2], [[-1, 2, 0]], spp=16)
+    assert facing[0] == pytest.approx(100 / 5 / (4 * np.pi), rel=1e-5)
+
+
+def test_errors_are_honest():
+    scene = room()
+    scene.add_light(bilux.lights.cie_sky(irradiance="10 klx"))
+    points = POINTS[:2]
+    truth, _ = scene.illuminance(points, spp=65536)
+    runs = [scene.illuminance(points, spp=1024, seed=seed) for seed in range(20)]
+    off = np.array([run.values - truth for run in runs]) / np.array([run.errors for run in runs])
+    assert 0.6 < np.sqrt((off**2).mean()) < 1.7
+
+
+def test_wrong_points_are_refused():
+    scene = room()
+    with pytest.raises(bilux.SceneError, match="no light of its own"):
+        scene.illuminance(POINTS)
+    scene.add_light(bilux.lights.point())
+    for points, normals, message in [
+        (np.zeros((0, 3)), (0, 1, 0), "there are none"),
+        (POINTS, [[0, 1, 0]] * 2, "2 rows for 3 points"),
+        (POINTS, (0, 0, 0), "must not be zero"),
+        (POINTS * np.nan, (0, 1, 0), "not finite"),
+        (POINTS[:, :2], (0, 1, 0), r"must be \(n, 3\)"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            scene.illuminance(points, normals)
+    with pytest.raises(bilux.Error, match="only path and auto"):
+        scene.illuminance(POINTS, integrator="bdpt")
+    with pytest.raises(TypeError, match="size: this is a setting of pictures"):
+        scene.illuminance(POINTS, size=64)
+
+
+def test_a_plan_shows_what_points_receive():
+    scene = room()
+    scene.add_light(bilux.lights.cie_sky(irradiance="10 klx", standard=5))
+    # Seen from above, the window (+z) at the bottom.
+    scene.add_camera(bilux.cameras.irradiance(position=(2, 0.8, 3), look_at=(2, 3, 3), height=6))
+    picture = scene.render(size=(8, 12), spp=256, integrator="path", denoise=False)
+    columns, rows = np.meshgrid((np.arange(8) + 0.5) / 2, (np.arange(12) + 0.5) / 2)
+    points = np.stack([columns, np.full_like(rows, 0.8), rows], axis=-1).reshape(-1, 3)
+    values, _ = scene.illuminance(points, spp=256)
+    found = picture.pixels.mean(axis=2) * np.pi * 683
+    assert found.sum() == pytest.approx(values.sum(), rel=0.05)
+    assert np.corrcoef(found.reshape(-1), values)[0, 1] > 0.98
+    mirrored = np.corrcoef(found[::-1].reshape(-1), values)[0, 1]
+    assert mirrored < 0.5
+    assert found[-2].mean() > 5 * found[0].mean()
+
+
+# The sky in patches
+
+
+@pytest.mark.parametrize("parts", [1, 2, 4])
+def test_patches_cover_the_sky_once(parts):
+    patches = daylight.SkyPatches(parts)
+    assert len(patches) == 2 + 144 * parts**2
+    assert patches.solid_angles.sum() == pytest.approx(4 * np.pi)
+    assert patches.level.sum() == pytest.approx(np.pi)
+    assert np.array_equal(patches.numbers(patches.directions), np.arange(len(patches)))
+    # The middle of a patch sees its cosine; one row off would be noticed.
+    middles = patches.directions[1:, 1] * patches.solid_angles[1:]
+    assert np.allclose(middles[: -parts * 6], patches.level[1 : -parts * 6], rtol=0.01)
+    random = np.random.default_rng(1).normal(size=(200_000, 3))
+    counts = np.bincount(patches.numbers(random), minlength=len(patches)) / len(random)
+    assert np.abs(counts - patches.solid_angles / (4 * np.pi)).max() < 0.005
+
+
+@pytest.mark.parametrize("type", [1, 5, 12])
+def test_coefficients_times_a_sky_is_its_light(type):
+    """The light of a room from a sky, measured directly, and by its patches."""
+    scene, patches = room(), daylight.SkyPatches(2)
+    table = daylight.coefficients(scene, POINTS, patches=patches, spp=8192)
+    sky = bilux.lights.cie_sky(standard=type, elevation=40, azimuth=135, irradiance="10 klx", ground=0.2)
+    scene.add_light(sky)
+    values, errors = scene.illuminance(POINTS, spp=8192)
+    luminances = np.zeros(len(patches))
+    a, b, c, d, e = {1: (4, -0.7, 0, -1, 0), 5: (0, -1, 0, -1, 0), 12: (-1, -0.32, 10, -3, 0.45)}[type]
+    up, sun = patches.directions[1:, 1], np.array([math.sin(math.radians(135)), 0, -math.cos(math.radians(135))])
+    sun = sun * math.cos(math.radians(40)) + [0, math.sin(math.radians(40)), 0]
+    angle = np.arccos(np.clip(patches.directions[1:] @ sun, -1, 1))
+    gradation = 1 + a * np.exp(b / np.maximum(up, 0.01))
+    luminances[1:] = gradation * (1 + c * (np.exp(d * angle) - np.exp(d * np.pi / 2)) + e * np.cos(angle) ** 2)
+    luminances *= 10_000 / (luminances @ patches.level)
+    luminances[0] = 0.2 * 10_000 / np.pi
+    found = table @ luminances
+    assert np.all(np.abs(found - values) < 0.03 * values + 5 * errors), (found, values)
+    if type == 12:
+        # An azimuth turned round, and numbers off by one row, would be noticed.
+        turned = np.append(luminances[0], luminances[1:][patches.numbers(patches.directions[1:] * [-1, 1, -1]) - 1])
+        assert np.abs(table @ turned / values - 1).max() > 0.1
+        assert np.abs(table @ np.roll(luminances, 1) / values - 1).max() > 0.03
+
+
+# The sun, and the weather
+
+
+def test_the_sun_stands_where_almanacs_say():
+    # The example of [Reda 2004]: zenith angle 50.11162°, azimuth 194.34024°.
+    at = datetime.datetime(2003, 10, 17, 12, 30, 30, tzinfo=datetime.timezone(datetime.timedelta(hours=-7)))
+    elevation, azimuth = daylight.sun_position(at, 39.742476, -105.1786)
+    assert elevation == pytest.approx(90 - 50.11162, abs=0.02) and azimuth == pytest.approx(194.34024, abs=0.02)
+    # South of the equator the sun stands in the north at noon.
+    noon = datetime.datetime(2021, 12, 21, 2, tzinfo=datetime.timezone.utc)
+    elevation, azimuth = daylight.sun_position(noon, -33.9, 151.2)
+    assert 79 < elevation < 80 and min(azimuth, 360 - azimuth) < 15
+    with pytest.raises(ValueError, match="no time zone"):
+        daylight.sun_position(datetime.datetime(2021, 1, 1), 0, 0)
+
+
+def test_weather_is_read(tmp_path):
+    weather = daylight.read_epw(epw(tmp_path))
+    assert (weather.latitude, weather.longitude, weather.time_zone) == (51.15, -0.18, 0)
+    assert weather.hour[:2].tolist() == [0.5, 1.5] and weather.month[-1] == 12
+    fields = RECORDS[12].split(",")
+    assert weather.direct_normal[12] == float(fields[14]) and weather.diffuse_horizontal[12] == float(fields[15])
+    assert weather.elevation.max() == pytest.approx(90 - 51.15 + 23.44, abs=0.6)
+    assert abs(weather.azimuth[12] - 184) < 6
+    assert weather.occupied().sum() == 3650
+
+
+def changed(line, column, value):
+    lines = list(RECORDS)
+    fields = lines[line].split(",")
+    fields[column] = value
+    lines[line] = ",".join(fields)
+    return lines
+
+
+def test_broken_weather_is_refused_by_line(tmp_path):
+    for lines, header, message in [
+        (RECORDS[:-1], None, "8759 lines of data"),
+        (RECORDS[:100] + RECORDS[101:] + RECORDS[:1], None, "line 109: its hour is 6, after 4"),
+        (changed(20, 14, "9999"), None, "line 29: the direct normal irradiance.*stands for missing"),
+        (changed(21, 15, "-3"), None, "line 30: the diffuse horizontal irradiance.* is -3"),
+        (changed(21, 15, "2500"), None, "another unit"),
+        (changed(22, 15, ""), None, "line 31: .*entry 16.*'' is no number"),
+        (changed(23, 3, "25"), None, "line 32: the hour .* is 25, but must be from 1 to 24"),
+        ([*RECORDS[:-1], "2019,12,31,24"], None, "line 8768: .*ends before it"),
+        (None, ["Location London", *HEADER[1:]], "line 1: weather files"),
+        (None, [HEADER[0].replace("51.15", "north"), *HEADER[1:]], "line 1: the latitude .*'north' is no number"),
+        (None, [*HEADER[:7], "PERIODS,1,1"], "line 8: .*must be DATA PERIODS"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            daylight.read_epw(epw(tmp_path, lines, header))
+    with pytest.raises(FileNotFoundError):
+        daylight.read_epw(tmp_path / "nowhere.epw")
+    with pytest.raises(TypeError, match="no file"):
+        daylight.read_epw(7)
+
+
+def test_the_sky_gives_the_light_of_the_weather(tmp_path):
+    weather, patches = daylight.read_epw(epw(tmp_path)), daylight.SkyPatches()
+    sky, sun = (daylight.sky_matrix(weather, patches, sky=of_sky, sun=not of_sky) for of_sky in (True, False))
+    direct, diffuse, _, _ = daylight._illuminances(weather)
+    is_day = weather.elevation > 0
+    assert np.allclose(patches.level @ sky, np.where(is_day, diffuse, 0), rtol=1e-4, atol=1)
+    assert np.allclose(patches.solid_angles[1:] @ sun[1:], np.where(is_day, direct, 0), rtol=1e-4, atol=1)
+    assert np.isfinite(sky).all() and sky.min() >= 0 and 50_000 < direct.max() < 120_000
+    # The light of one hour, and the same hour as a scene's light.
+    hour = int(np.flatnonzero((weather.day == 2) & (weather.month == 6) & (weather.hour == 12.5))[0])
+    scene = room()
+    table = daylight.coefficients(scene, POINTS, patches=daylight.SkyPatches(4), spp=4096)
+    # The sun is a disc in one and as large as a patch in the other, so it is left out.
+    by_patches = table @ daylight.sky_matrix(weather, daylight.SkyPatches(4), sun=False)[:, hour]
+    scene.add_light(daylight.sky_light(weather, hour).with_(direct=0))
+    values, errors = scene.illuminance(POINTS, spp=16384)
+    assert np.all(np.abs(by_patches - values) < 0.03 * values + 5 * errors), (by_patches, values)
+
+
+def test_the_figures_of_a_year():
+    illuminance = np.array([[0, 50, 299, 300, 3001, 900], [400, 400, 400, 400, 50, 50]], float)
+    occupied = np.array([False, True, True, True, True, True])
+    assert daylight.daylight_autonomy(illuminance, occupied=occupied).tolist() == [0.6, 0.6]
+    assert daylight.spatial_daylight_autonomy(illuminance) == 1.0
+    assert daylight.spatial_daylight_autonomy(illuminance, share=0.55) == 0.5
+    useful = daylight.useful_daylight_illuminance(illuminance, occupied=occupied)
+    assert np.allclose(useful, [[0.2, 0.6, 0.2], [0.4, 0.6, 0]])
+    assert daylight.annual_sun_exposure(illuminance, 300, 2) == 1.0
+    assert daylight.annual_sun_exposure(illuminance, 300, 3) == 0.5
+    with pytest.raises(ValueError, match="must be"):
+        daylight.daylight_autonomy(illuminance, occupied=occupied[1:])
+
+
+# Glare
+
+
+def glare_picture(radius=0.05):
+    """A bright disc above the line of sight in an even room, by a fisheye lens."""
+    camera = bilux.cameras.fisheye(position=(0, 0, 0), look_at=(0, 0, -1), fov=180)
+    size = 200
+    y, x = np.mgrid[0:size, 0:size]
+    rays = camera.rays(np.stack([x, y], -1).reshape(-1, 2), size=(size, size))[1]
+    towards = np.array([0.2, 0.35, -1]) / np.linalg.norm([0.2, 0.35, -1])
+    near = np.arccos(np.clip(np.nan_to_num(rays) @ towards, -1, 1)) < radius
+    light = np.where(np.isfinite(rays[:, 0]), np.where(near, 20_000.0, 150.0), 0.0)
+    return camera, light.reshape(size, size), towards
+
+
+def test_glare_is_that_of_the_formula():
+    camera, light, towards = glare_picture()
+    solid = 2 * np.pi * (1 - math.cos(0.05))
+    eye = 150 * np.pi + (20_000 - 150) * solid * -towards[2]
+    [index] = daylight.position_index(towards[None], (0, 0, -1))
+    expected = 5.87e-5 * eye + 9.18e-2 * math.log10(1 + 20_000**2 * solid / (eye**1.87 * index**2)) + 0.16
+    assert daylight.glare_probability(light, camera) == pytest.approx(expected, abs=0.004)
+    # At the line of sight the index is 1; behind, nothing glares.
+    ahead, behind = daylight.position_index([[0, 0, -1], [0, 0, 1]], (0, 0, -1))
+    assert ahead == pytest.approx(1) and behind == np.inf
+    # 20° above it, straight up: tau = 0.
+    up = daylight.position_index([[0, math.sin(math.radians(20)), -math.cos(math.radians(20))]], (0, 0, -1))
+    assert up[0] == pytest.approx(math.exp((35.2 - 1.22) * 0.02 + 21 * 0.004), rel=1e-6)
+
+
+# Radiance
+
+
+def radiance():
+    """Runs the programs of Radiance, as the package pyradiance brings them; skips where it is not installed."""
+    found = importlib.util.find_spec("pyradiance")
+    if found is None:
+        pytest.skip("pyradiance is not installed, so Radiance is no witness here")
+    package = pathlib.Path(found.origin).parent
+    library = os.pathsep.join([".", *(str(package / name) for name in ("lib", "cal"))])
+
+    def run(words, given=b"", folder=None):
+        program, *rest = map(str, words)
+        environment = os.environ | {"RAYPATH": library, "PATH": f"{package / 'bin'}{os.pathsep}{os.environ['PATH']}"}
+        done = subprocess.run(
+            [package / "bin" / program, *rest], input=given, capture_output=True, cwd=folder, env=environment, check=False
+        )
+        assert done.returncode == 0, done.stderr.decode()
+        return done.stdout
+
+    return run
+
+
+def as_radiance(scene):
+    """The objects of a scene in Radiance's coordinates: z up, y to the north."""
+    lines = []
+    for index, thing in enumerate(scene.objects):
+        value = thing.material.parameters["reflectance"]
+        red, green, blue = np.broadcast_to(value, 3)
+        lines.append(f"void plastic m{index} 0 0 5 {red} {green} {blue} 0 0")
+        mesh = scene.mesh(index)
+        for number, triangle in enumerate(mesh.triangles):
+            corners = " ".join(f"{x} {-z} {y}" for x, y, z in mesh.vertices[triangle].tolist())
+            lines.append(f"m{index} polygon p{index}.{number} 0 0 9 {corners}")
+    return "\n".join(lines) + "\n"
+
+
+def by_rtrace(run, folder, description, points, options):
+    (folder / "scene.rad").write_text(description)
+    (folder / "scene.oct").write_bytes(run(["oconv", "scene.rad"], folder=folder))
+    rays = "".join(f"{x} {-z} {y} 0 0 1\n" for x, y, z in points).encode()
+    text = run(["rtrace", "-h", "-I", *options, "scene.oct"], rays, folder).decode()
+    return np.array([line.split() for line in text.splitlines()], float) @ [0.265, 0.670, 0.065]
+
+
+def test_radiance_finds_the_same_light_in_a_room(tmp_path):
+    run, scene = radiance(), room()
+    sky = "void glow even 0 0 4 1 1 1 0\neven source sky 0 0 4 0 0 1 180\n"
+    options = "-ab 12 -ad 8192 -lw 1e-7 -aa 0 -lr -14".split()
+    points = np.array([[2.0, 0.8, 5.0], [2.0, 0.8, 3.0], [1.0, 0.8, 2.5]])
+    theirs = np.mean([by_rtrace(run, tmp_path, as_radiance(scene) + sky, points, options) for _ in range(3)], axis=0)
+    scene.add_light(bilux.lights.cie_sky(standard=5, zenith=1, ground=0))
+    ours, errors = scene.irradiance(points, spp=65536)
+    assert np.abs(ours[:, 1] / theirs - 1).max() < 0.02, (ours, errors, theirs)
+
+
+def test_radiance_has_the_same_skies(tmp_path):
+    run = radiance()
+    weather = daylight.read_epw(epw(tmp_path))
+    hours = [hour for hour in (1932, 3564, 3588, 3612, 5000) if weather.elevation[hour] > 5]
+    assert len(hours) >= 3
+    _, _, clearness, brightness = daylight._illuminances(weather)
+    for hour in hours:
+        turned = weather.azimuth[hour] - 180
+        words = ["gendaylit", "-ang", weather.elevation[hour], turned, "-P", clearness[hour], brightness[hour], "-g", 0.2]
+        text = run(words).decode()
+        perez = np.array(text.split("brightfunc")[1].split()[5:], float)
+        ours = bilux._bilux.perez_coefficients(clearness[hour], brightness[hour], np.radians(90 - weather.elevation[hour]))
+        assert np.allclose(perez[3:8], ours, rtol=1e-3, atol=2e-3), (perez, ours)
+
+
+def test_evalglare_finds_the_same_glare(tmp_path):
+    run = radiance()
+    camera, light, _ = glare_picture()
+    height, width = light.shape
+    # As pixels with a common exponent; 179 lm/W is how Radiance converts.
+    values = np.repeat(light[..., None] / 179, 3, axis=-1)
+    exponent = np.floor(np.log2(np.maximum(values[..., :1], 1e-30))) + 1
+    pixels = np.concatenate([np.clip(values * 256 / 2.0**exponent, 0, 255), exponent + 128], axis=-1)
+    pixels[light <= 0] = 0
+    head = f"#?RADIANCE\nVIEW= -vta -vh 180 -vv 180\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
+    (tmp_path / "glare.hdr").write_bytes(head.encode() + pixels.astype(np.uint8).tobytes())
+    found = float(run(["evalglare", "glare.hdr"], folder=tmp_path).decode().split(":")[1].split()[0])
+    assert daylight.glare_probability(light, camera) == pytest.approx(found, abs=0.005)
