@@ -3,6 +3,7 @@
 use crate::Error;
 use bilux_formats::{FormatError, ReadOptions};
 use bilux_pictures::Limits;
+use bilux_scene::cameras::CameraSpec;
 pub use bilux_scene::presets::{
     Ground, PRESETS, PresetEntry, Studio, add_fog, add_missing, apply, frame, set_upright, shadow_catcher,
 };
@@ -83,6 +84,30 @@ pub fn surround(scene: &mut SceneBuilder, around: &Path, options: &ReadOptions) 
 fn replace_surroundings(scene: &mut SceneBuilder, light: Spec) {
     scene.lights.retain(|old| !matches!(&*old.kind, "environment" | "sky") || old.is_backdrop());
     scene.lights.push(light);
+}
+
+/// Replaces the cameras of a scene by those of a file ([`bilux_formats::read_cameras`]). If it does not say where they are, they
+/// stand where the scene's first camera does, or that of the studio.
+///
+/// # Errors
+/// If the file cannot be read, or has no cameras.
+pub fn take_cameras(scene: &mut SceneBuilder, file: &Path, options: &ReadOptions) -> Result<(), Error> {
+    let read = bilux_formats::read_cameras(file, options)?;
+    let at = Span { file: file.display().to_string().into(), line: 0, column: 0 };
+    scene.warnings.extend(read.warnings.into_iter().map(|message| Warning { message, at: at.clone() }));
+    let mut cameras: Vec<_> = read.cameras.into_iter().map(CameraSpec::new).collect();
+    if !read.are_placed {
+        let standing = completed(scene, &Studio::default());
+        let first = standing.cameras.first().map(|camera| &camera.spec.parameters);
+        for key in ["position", "look_at", "up"] {
+            let Some((value, at)) = first.and_then(|first| first.find(key)) else { continue };
+            cameras
+                .iter_mut()
+                .for_each(|camera| camera.spec.parameters.set_at(key, value.clone(), at.clone()));
+        }
+    }
+    scene.cameras = cameras;
+    Ok(())
 }
 
 /// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.

@@ -3,6 +3,7 @@
 
 use crate::arguments::Common;
 use crate::sandbox::{Enforcement, restrict};
+use crate::studio::StudioArguments;
 use crate::{memory, output, signals};
 use anyhow::bail;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,18 @@ impl SandboxPaths {
             (false, Err(_)) => {}
         }
         self
+    }
+
+    /// Allows reading the files that these options name.
+    pub fn reading_options(mut self, studio: &StudioArguments) -> SandboxPaths {
+        for file in studio.picture_around().into_iter().chain(studio.picture_behind()) {
+            self = self.reading(file);
+        }
+        // COLMAP has its cameras beside its images.
+        match &studio.intrinsics {
+            Some(file) => self.reading_scene(file),
+            None => self,
+        }
     }
 
     /// Allows writing files into this file's folder.

@@ -26,6 +26,10 @@ pub struct StudioArguments {
     /// Magnify the picture by this factor [default: 1]
     #[arg(long, value_name = "FACTOR", allow_hyphen_values = true, value_parser = parse_zoom, help_heading = help::STUDIO)]
     pub zoom: Option<f32>,
+    /// Take pictures with calibrated cameras in place of the scene's: a file of OpenCV (YAML or JSON, also of ROS or Kalibr), COLMAP's
+    /// images.txt or cameras.txt (or .bin), or transforms.json; --camera says which one
+    #[arg(long, value_name = "FILE", help_heading = help::STUDIO)]
+    pub intrinsics: Option<PathBuf>,
     /// Light the scene with a longitude-latitude environment map (.hdr, .exr or any other picture), with a daylight sky,
     /// or with the studio in place of its own lights; none turns the studio's lights off for a glTF file with lights of
     /// its own
@@ -73,6 +77,9 @@ impl StudioArguments {
             }
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
+        if let Some(file) = &self.intrinsics {
+            bilux::presets::take_cameras(scene, file, options).context("--intrinsics")?;
+        }
         let options = &ReadOptions { picture_layer: self.layer.clone(), ..options.clone() };
         surround(self.env.as_deref(), scene, options)?;
         if let Some(picture) = self.picture_behind() {
@@ -118,10 +125,14 @@ impl StudioArguments {
 
     /// Checks, before any work, that the pictures that options name can be opened.
     pub fn check_files(&self) -> anyhow::Result<()> {
-        for (flag, path) in [("--env", self.picture_around()), ("--background", self.picture_behind())] {
+        for (flag, path, what) in [
+            ("--env", self.picture_around(), "picture"),
+            ("--background", self.picture_behind(), "picture"),
+            ("--intrinsics", self.intrinsics.as_deref(), "file"),
+        ] {
             if let Some(path) = path {
                 if path.is_dir() {
-                    bail!("{flag}: {}: this is a folder: name a picture in it", path.display());
+                    bail!("{flag}: {}: this is a folder: name a {what} in it", path.display());
                 }
                 std::fs::File::open(path)
                     .with_context(|| format!("{flag}: {}: cannot open it", path.display()))?;

@@ -19,6 +19,9 @@ pub(crate) fn not_perspective(spec: &Spec, format: &str, writing: &mut Writing) 
         ("shift_y", 0.0),
         ("pixel_aspect", 1.0),
         ("skew", 0.0),
+        ("blades", 0.0),
+        ("focus_tilt_x", 0.0),
+        ("focus_tilt_y", 0.0),
     ];
     for (key, default) in plain {
         if spec.kind == "perspective" && spec.number(key).is_some_and(|value| value != default) {

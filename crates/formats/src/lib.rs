@@ -9,6 +9,7 @@ mod asc;
 mod bake;
 mod blocks;
 mod budget;
+mod calibrations;
 mod camera_loss;
 mod cloud;
 mod colours;
@@ -43,6 +44,7 @@ mod vdb;
 mod writing;
 mod xyz;
 
+pub use calibrations::{CalibratedCameras, read_cameras};
 pub use error::FormatError;
 pub use files::{check_not_read, read, read_bytes, write};
 pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path};

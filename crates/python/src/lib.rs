@@ -69,7 +69,7 @@ mod _bilux {
     #[pymodule_export]
     use crate::progressive::Progressive;
     #[pymodule_export]
-    use crate::reading::{compare, read_picture};
+    use crate::reading::{compare, read_cameras, read_picture};
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]

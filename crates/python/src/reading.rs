@@ -1,13 +1,17 @@
-//! Pictures from files, and how much pictures differ.
+//! Pictures and calibrated cameras from files, and how much pictures differ.
 
 use crate::ending::without_gil;
-use crate::errors::{of_picture, warn_of_picture};
+use crate::errors::{exception, of_picture, warn, warn_of_picture};
 use crate::memory;
 use crate::picture::Picture;
 use crate::source::Source;
+use crate::values::Spec;
 use bilux::Display;
+use bilux::formats::ReadOptions;
+use bilux::scene::{SceneBuilder, Span, Warning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 /// Reads a picture file.
 ///
@@ -49,6 +53,35 @@ pub(crate) fn read_picture(
     let picture = picture.map(bilux::pictures::Picture::into_linear).map_err(of_picture)?;
     warn_of_picture(py, &source.name(), &picture.warnings)?;
     Picture::of(py, &picture, Display::default(), None)
+}
+
+/// Reads calibrated cameras.
+///
+/// Args:
+///     path: the file: OpenCV's YAML or JSON, also as ROS and Kalibr write it; COLMAP's images.txt or images.bin with the cameras
+///         beside it, or these alone; or transforms.json as programs for radiance fields write it.
+///
+/// Returns:
+///     the cameras, `bilux.cameras.opencv`, `opencv_fisheye` or `perspective`, with the names that they or their pictures have in the
+///     file. They stand where the file says; where it does not, set `position`, `look_at` and `up`. What the file does not say is a
+///     `SceneWarning`.
+///
+/// Raises:
+///     FileNotFoundError: if there is no such file.
+///     FormatError: if it is in no such format, broken, or has a lens that is not known.
+///
+/// Example:
+///     >>> scene.cameras = bilux.read_cameras("sparse/0/images.txt")  # doctest: +SKIP
+#[pyfunction]
+pub(crate) fn read_cameras(py: Python<'_>, path: PathBuf) -> PyResult<Vec<Spec>> {
+    let options = ReadOptions::default();
+    let options = ReadOptions { max_memory: memory::within_limits(options.max_memory), ..options };
+    let read = without_gil(py, || bilux::formats::read_cameras(&path, &options)).map_err(exception)?;
+    let at = Span { file: path.display().to_string().into(), line: 0, column: 0 };
+    let warnings = read.warnings.into_iter().map(|message| Warning { message, at: at.clone() });
+    warn(py, &warnings.collect::<Vec<_>>())?;
+    let scene = SceneBuilder::default();
+    read.cameras.iter().map(|camera| Spec::of(py, "cameras", camera, &scene)).collect()
 }
 
 /// Measures how much a picture differs from a reference.

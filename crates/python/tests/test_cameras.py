@@ -168,3 +168,42 @@ def test_pixels_beyond_a_fold_are_black_if_that_is_wanted():
     with pytest.warns(bilux.SceneWarning, match="folds over"):
         pixels = scene.render(size=(64, 48), spp=4, integrator="path", tonemap="none", denoise=False).pixels
     assert (pixels[0, 0] == 0).all() and np.allclose(pixels[24, 32], 1)
+
+
+@pytest.mark.parametrize("extension", ["yml", "json"])
+def test_what_opencv_writes_is_read(tmp_path, extension):
+    cv2 = pytest.importorskip("cv2", reason="needs OpenCV: pip install opencv-python-headless")
+    path = str(tmp_path / f"camera.{extension}")
+    file = cv2.FileStorage(path, cv2.FILE_STORAGE_WRITE)
+    file.write("image_width", SIZE[0])
+    file.write("image_height", SIZE[1])
+    file.write("camera_matrix", K)
+    file.write("distortion_coefficients", np.array(LENSES["prism"])[:, None])
+    file.release()
+    [camera] = bilux.read_cameras(path)
+    expected = bilux.cameras.opencv(K, distortion=LENSES["prism"], size=SIZE)
+    # It does not say where it is: it looks from (0, 0, 5) at the origin.
+    points = np.random.default_rng(3).uniform(-1, 1, size=(50, 3))
+    assert np.allclose(camera.project(points + [0, 0, 2]), expected.project(points * [1, -1, -1] + [0, 0, 3]), atol=1e-6)
+    scene = bilux.generate("cornell")
+    scene.cameras = [camera]
+    picture = scene.render(spp=1)
+    assert (picture.width, picture.height) == SIZE
+
+
+def test_files_without_cameras_are_errors(tmp_path):
+    (tmp_path / "camera.yml").write_text("a: 1\n")
+    with pytest.raises(bilux.FormatError, match="no camera matrix"):
+        bilux.read_cameras(tmp_path / "camera.yml")
+    with pytest.raises(FileNotFoundError):
+        bilux.read_cameras(tmp_path / "missing.yml")
+
+
+def test_a_pair_of_eyes_has_the_disparity_of_its_depth():
+    eyes = {side: bilux.cameras.perspective(fov=50, stereo=side, eye_distance=0.2) for side in ("left", "right")}
+    points = np.random.default_rng(4).uniform(-1, 1, size=(40, 3))
+    seen = {side: eye.project(points, size=(600, 400)) for side, eye in eyes.items()}
+    focal = 200 / np.tan(np.radians(25))
+    disparity = focal * 0.2 / (5 - points[:, 2])
+    assert np.allclose((seen["left"] - seen["right"])[:, 0], disparity, atol=1e-4)
+    assert np.allclose((seen["left"] - seen["right"])[:, 1], 0, atol=1e-4)

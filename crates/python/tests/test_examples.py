@@ -37,6 +37,53 @@ def test_labelled_pictures(tmp_path):
     assert 0.05 < picture.mean() < 0.8
 
 
+def run_script(name, *words):
+    """Runs an example as a script."""
+    command = [sys.executable, EXAMPLES / name, *map(str, words)]
+    subprocess.run(command, check=True, timeout=300)
+
+
+def test_stereo_rig(tmp_path):
+    run_script("stereo_rig.py", tmp_path, "--size", 160, 120, "--spp", 16)
+    depth, disparity = np.load(tmp_path / "depth.npy"), np.load(tmp_path / "disparity.npy")
+    assert depth.shape == (120, 160) and np.isfinite(depth).mean() > 0.95
+    # Focal length times base over depth.
+    focal = 80 / np.tan(np.radians(35))
+    assert np.nanmax(np.abs(disparity - focal * 0.04 / depth)) < 1e-3
+    # What the left camera sees is where its disparity says in the picture of the right one.
+    left, right = (bilux.read_picture(tmp_path / f"{name}.png").pixels.mean(axis=2) for name in ("left", "right"))
+    rows, columns = np.mgrid[0:120, 0:160]
+
+    def apart(disparity):
+        there = np.clip(np.rint(columns - np.nan_to_num(disparity)), 0, 159).astype(int)
+        return np.median(np.abs(left - right[rows, there])[:, 40:])
+
+    assert apart(disparity) < 0.7 * apart(-disparity) and apart(disparity) < 0.8 * apart(0 * disparity)
+    # The pair in one picture is the same two.
+    pair = bilux.read_picture(tmp_path / "pair.png").pixels.mean(axis=2)
+    assert pair.shape == (120, 320) and abs(np.median(pair) - np.median(left)) < 0.1
+    cameras = bilux.read_cameras(tmp_path / "calibration.yml")
+    assert [camera.name for camera in cameras] == ["1", "2"] and np.isclose(cameras[0].parameters["fx"], focal)
+    for name in ("left", "right", "pair", "disparity"):
+        assert bilux.read_picture(tmp_path / f"{name}.png").to_uint8().std() > 8, f"{name} shows nothing"
+
+
+def test_room_360(tmp_path):
+    run_script("room_360.py", tmp_path, "--width", 128, "--spp", 2)
+    room = bilux.read_picture(tmp_path / "room.png").pixels
+    both = bilux.read_picture(tmp_path / "room-3d.png").pixels
+    assert room.shape == (64, 128, 3) and both.shape == (128, 128, 3)
+    # Each eye sees about what one in the middle sees.
+    for eye in (both[:64], both[64:]):
+        assert np.abs(eye - room).mean() < 0.3 * room.mean()
+    # The panorama closes: its left edge continues at the right one.
+    assert np.abs(room[:, 0] - room[:, -1]).mean() < 0.3 * room.mean()
+    # Its middle is that of the front face.
+    front = bilux.read_picture(tmp_path / "front.png").pixels
+    assert front.shape == (32, 32, 3)
+    assert np.abs(front[14:18, 14:18].mean() - room[30:34, 62:66].mean()) < 0.15
+
+
 CELLS = [path for path in sorted(EXAMPLES.glob("*.py")) if path.read_text("utf-8").startswith("# %%")]
 
 

@@ -47,6 +47,24 @@ fn some(camera: &dyn Camera, stream: u64, time: f32) -> impl Iterator<Item = (Ca
         .filter(|(_, ray, _)| !ray.is_nowhere())
 }
 
+/// Connects a point through the lens of a sample, as the eye that sees the sample's point of the film.
+fn connect(camera: &dyn Camera, point: Vec3, sample: &CameraSample) -> Option<CameraConnection> {
+    camera.connect(point, camera.lens_of(sample.film, sample.lens), sample.time)
+}
+
+/// Two rays of one eye, beside each other.
+fn beside_each_other(camera: &dyn Camera, time: f32) -> [Ray; 2] {
+    let film = |x: f32| Vec2::new(x, 0.25);
+    [0.2, 0.3].map(|x| camera.ray(&CameraSample { film: film(x), lens: Vec2::ZERO, time }))
+}
+
+/// The middle of the circle on which an eye turns, if it does.
+fn middle_of_turning_eye(camera: &dyn Camera, time: f32) -> Option<Vec3> {
+    let [a, b] = beside_each_other(camera, time);
+    let middle = || camera.matrices(time).to_camera.inverse().transform_point3(Vec3::ZERO);
+    (a.origin != b.origin && a.direction != b.direction).then(middle)
+}
+
 fn at(ray: &Ray, t: f32) -> Vec3 {
     Vec3::from(ray.at(t))
 }
@@ -55,7 +73,7 @@ fn at(ray: &Ray, t: f32) -> Vec3 {
 pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (sample, ray, t) in some(camera, 0, time) {
         let (point, origin) = (at(&ray, t), Vec3::from(ray.origin));
-        let seen = camera.connect(point, sample.lens, time).ok_or(format!("{point} is not seen"))?;
+        let seen = connect(camera, point, &sample).ok_or(format!("{point} is not seen"))?;
         // The point is rounded in every coordinate, and so is everything on the way back.
         let size = point.abs().max_element() + origin.abs().max_element();
         let aside = 8.0 * f32::EPSILON * size;
@@ -74,6 +92,7 @@ pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
 /// What compositors are told agrees with the rays through the middle of the lens.
 pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> {
     let matrices = camera.matrices(time);
+    let turning = middle_of_turning_eye(camera, time);
     for (sample, _, t) in some(camera, 30, time) {
         let ray = camera.ray(&CameraSample { lens: Vec2::ZERO, ..sample });
         let point = at(&ray, t);
@@ -81,13 +100,13 @@ pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> 
             let on_film = to_film * point.extend(1.0);
             Vec2::new(on_film.x, on_film.y) / on_film.w
         });
-        let seen = camera.project(point, time).ok_or(format!("{point} is not seen"))?;
+        let seen = camera.project_beside(point, time, sample.film).ok_or(format!("{point} is not seen"))?;
         // Without the lens, rays of a small film go through few digits.
         let allowed = 1e-4 * edge(camera, time);
         if seen.distance(sample.film) > allowed || by_matrix.distance(sample.film) > allowed {
             return Err(format!("{sample:?} at {t} is seen at {seen}, by the matrix at {by_matrix}"));
         }
-        let depth = (point - at(&ray, 0.0)).dot(camera.forward(time));
+        let depth = (point - turning.unwrap_or(at(&ray, 0.0))).dot(camera.forward(time));
         let in_camera = (matrices.to_camera * point.extend(1.0)).z;
         if (in_camera - depth).abs() > 1e-4 * (1.0 + depth.abs()) {
             return Err(format!("{point} lies {in_camera} m ahead, not {depth}"));
@@ -96,8 +115,8 @@ pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> 
     Ok(())
 }
 
-/// All importance that a film of area 1 has is on its rays: over all points of a sphere, or of a plane where rays are parallel,
-/// the density is 1, or as much of it as the film sees anything.
+/// All importance that a film of area 1 has is on its rays: over all points of a sphere around them, or of a plane where they are
+/// parallel, the density is 1, or as much of it as the film sees anything.
 pub fn importance_is_one(camera: &dyn Camera, time: f32) -> Result<(), String> {
     const DIRECTIONS: u32 = 400_000;
     const SIDE: u32 = 256;
@@ -105,20 +124,25 @@ pub fn importance_is_one(camera: &dyn Camera, time: f32) -> Result<(), String> {
     let sample = |film: Vec2| CameraSample { film, lens: Vec2::ZERO, time };
     let sees = (0..SIDE * SIDE).filter(|i| !camera.ray(&sample(film(*i))).is_nowhere()).count();
     let expected = sees as f64 / f64::from(SIDE * SIDE);
-    let [left, right] = [0.4, 0.6].map(|x| camera.ray(&sample(Vec2::new(x, 0.5))));
+    let [left, right] = beside_each_other(camera, time);
     let eye = Vec3::from(left.origin);
-    let sum: f64 = if left.origin == right.origin {
+    let is_parallel = left.direction == right.direction;
+    let sum: f64 = if !is_parallel {
+        let (middle, radius) = middle_of_turning_eye(camera, time).map_or((eye, 1.0), |middle| (middle, 3.0));
         // Directions on a spiral, which is even over the sphere.
         let golden = std::f32::consts::TAU * 0.618_034;
         let on_sphere = |i: u32| {
             let z = 1.0 - (2 * i + 1) as f32 / DIRECTIONS as f32;
             let (sin, cos) = bilux_math::transcendental::sin_cos(golden * i as f32 % std::f32::consts::TAU);
-            eye + Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z
+            Vec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + Vec3::Z * z
         };
-        let of = |i: u32| camera.connect(on_sphere(i), Vec2::ZERO, time);
-        let on_film = (0..DIRECTIONS).filter_map(of).filter(CameraConnection::is_on_film);
-        on_film.map(|seen| f64::from(seen.density)).sum::<f64>() * 4.0 * std::f64::consts::PI
-            / f64::from(DIRECTIONS)
+        let of = |i: u32| {
+            let out = on_sphere(i);
+            let seen = camera.connect(middle + out * radius, Vec2::ZERO, time)?;
+            let on_area = -seen.wi.dot(out) * radius * radius;
+            seen.is_on_film().then(|| f64::from(seen.density * on_area))
+        };
+        (0..DIRECTIONS).filter_map(of).sum::<f64>() * 4.0 * std::f64::consts::PI / f64::from(DIRECTIONS)
     } else {
         let forward = camera.forward(time);
         let u = (Vec3::from(right.origin) - eye).normalize();
@@ -133,7 +157,7 @@ pub fn importance_is_one(camera: &dyn Camera, time: f32) -> Result<(), String> {
             / f64::from(SIDE * SIDE)
     };
     // What the spiral or the grid may miss at the edge of the film.
-    let error = if left.origin == right.origin { 0.01 } else { 0.05 };
+    let error = if is_parallel { 0.05 } else { 0.01 };
     match (sum - expected).abs() <= error {
         true => Ok(()),
         false => {
@@ -146,6 +170,11 @@ pub fn importance_is_one(camera: &dyn Camera, time: f32) -> Result<(), String> {
 /// rounds.
 pub fn pixels_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (sample, ray, t) in some(camera, 70, time) {
+        // Of two eyes, the left one answers.
+        let [mine, left] = [sample.film, Vec2::ZERO].map(|film| camera.lens_of(film, Vec2::ZERO));
+        if mine != left {
+            continue;
+        }
         let film = sample.film.as_dvec2();
         let [origin, direction] = camera.ray_f64(film, time).ok_or(format!("{film} has no ray"))?;
         let seen =
@@ -204,8 +233,10 @@ pub fn density_is_that_of_rays(camera: &dyn Camera, time: f32) -> Result<(), Str
             continue;
         };
         let area = along_x.cross(along_y).length();
-        let seen = camera.connect(at(&ray, t), sample.lens, time).ok_or(format!("{point} is not seen"))?;
-        let ratio = f64::from(seen.density) * area;
+        let seen = connect(camera, at(&ray, t), &sample).ok_or(format!("{point} is not seen"))?;
+        // Of a pair, it is that of one eye, which has half of the film.
+        let is_pair = camera.lens_of(sample.film, Vec2::ZERO) != Vec2::ZERO;
+        let ratio = f64::from(seen.density) * area * if is_pair { 0.5 } else { 1.0 };
         if (ratio - 1.0).abs() > 2e-3 {
             return Err(format!("{sample:?} at {t}: density {} times area {area} is {ratio}", seen.density));
         }
@@ -219,7 +250,7 @@ pub fn density_is_that_of_rays(camera: &dyn Camera, time: f32) -> Result<(), Str
 /// `density` of a ray agrees with `connect` for its points.
 pub fn rays_know_their_density(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (sample, ray, t) in some(camera, 20, time) {
-        let seen = camera.connect(at(&ray, t), sample.lens, time).ok_or("a point is not seen")?;
+        let seen = connect(camera, at(&ray, t), &sample).ok_or("a point is not seen")?;
         let said = camera.density(&ray, t);
         if (said - seen.density).abs() > 1e-4 * said {
             return Err(format!("{sample:?} at {t}: the ray says {said}, its point {}", seen.density));
@@ -285,8 +316,16 @@ pub fn only_what_is_ahead_is_seen(camera: &dyn Camera, time: f32) -> Result<(), 
                 return Err(format!("{behind} behind is seen at {}, which looks elsewhere", seen.film));
             }
         }
-        // Where the film closes on itself, the same is seen beyond the nearer edge.
-        let far = if camera.repeats(inside.film) == [None; 3] { 1.0 } else { 0.5 };
+        // Where the film closes on itself, the same is seen beyond the nearer edge; that of one of two eyes is half as wide.
+        let closes = |x: f32| camera.repeats(Vec2::new(x, inside.film.y)) != [None; 3];
+        let is_pair = camera.lens_of(inside.film, Vec2::ZERO) != Vec2::ZERO;
+        let far = if !closes(0.1) && !closes(0.4) {
+            1.0
+        } else if is_pair {
+            0.25
+        } else {
+            0.5
+        };
         let shift = [Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y][i % 4] * far;
         let ray = camera.ray(&CameraSample { film: inside.film + shift, ..inside });
         if ray.is_nowhere() {
@@ -294,15 +333,16 @@ pub fn only_what_is_ahead_is_seen(camera: &dyn Camera, time: f32) -> Result<(), 
         }
         let beside = at(&ray, t);
         let place = inside.film + shift;
-        let Some(seen) = camera.connect(beside, inside.lens, time) else {
+        let Some(seen) = connect(camera, beside, &CameraSample { film: place, ..inside }) else {
             return Err(format!("{beside}, at {place} beside the film, is not found"));
         };
         let is_near_edge = (inside.film - inside.film.round()).abs().min_element() < 1e-3;
         let said = camera.density(&ray, t);
         let again = camera.repeats(seen.film);
         let is_place = again.into_iter().flatten().chain([seen.film]).any(|film| film.distance(place) < 1e-3);
+        let is_off = [place.x, place.y].iter().any(|x| !(0.0..1.0).contains(x));
         let is_there = is_place && (said - seen.density).abs() < 1e-3 * said;
-        if !is_near_edge && (seen.is_on_film() && again == [None; 3] || !is_there) {
+        if !is_near_edge && (is_off && seen.is_on_film() && again == [None; 3] || !is_there) {
             return Err(format!(
                 "{beside}, at {place} beside the film, whose ray says {said}, is found as {seen:?}"
             ));

@@ -13,11 +13,8 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     let user = settings_from::explain(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
-    let mut confines = SandboxPaths::default().reading_scene(&arguments.scene);
-    for file in arguments.studio.picture_around().into_iter().chain(arguments.studio.picture_behind()) {
-        confines = confines.reading(file);
-    }
-    confines.enter(common)?;
+    let confines = SandboxPaths::default().reading_scene(&arguments.scene);
+    confines.reading_options(&arguments.studio).enter(common)?;
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
     let mut scene = load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;

@@ -143,6 +143,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         layer,
         background,
         change,
+        intrinsics,
         // These are settings, which are there already.
         orbit: _,
         eye: _,
@@ -156,6 +157,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
     } = &a.studio;
     let options = [
         ("--preset", said(preset.as_ref())),
+        ("--intrinsics", file(intrinsics)),
         ("--env", file(env)),
         ("--layer", said(layer.as_ref())),
         ("--background", said(background.as_ref())),

@@ -112,9 +112,7 @@ pub fn confines(targets: &[Target], arguments: &Render) -> SandboxPaths {
             confines = confines.reading_scene(scene);
         }
     }
-    for file in studio.picture_around().into_iter().chain(studio.picture_behind()) {
-        confines = confines.reading(file);
-    }
+    confines = confines.reading_options(studio);
     if let Some(output) = arguments.output.as_deref().filter(|output| !is_stdout(output)) {
         confines = confines.writing(output);
     }

@@ -109,11 +109,8 @@ fn open_again(arguments: &Serve, read: &ReadOptions, opening: &Opening) -> anyho
 
 /// Under `--sandbox`: allows reading the scene, its folder and the files that options name. Nothing is written.
 fn confine(arguments: &Serve, common: &Common) -> anyhow::Result<()> {
-    let mut confines = SandboxPaths::default().reading_scene(&arguments.scene);
-    for file in arguments.studio.picture_around().into_iter().chain(arguments.studio.picture_behind()) {
-        confines = confines.reading(file);
-    }
-    confines.enter(common)
+    let confines = SandboxPaths::default().reading_scene(&arguments.scene);
+    confines.reading_options(&arguments.studio).enter(common)
 }
 
 /// The words of the command line that renders the scene as it is opened here, without settings.
@@ -128,7 +125,8 @@ fn command(arguments: &Serve) -> Vec<String> {
     for change in &studio.change {
         say("--change", Some(change.clone()));
     }
-    let StudioArguments { env, preset, layer, .. } = studio;
+    let StudioArguments { env, preset, layer, intrinsics, .. } = studio;
+    say("--intrinsics", intrinsics.as_ref().map(|path| path.display().to_string()));
     say("--env", env.as_ref().map(|path| path.display().to_string()));
     say("--layer", layer.clone());
     say("--background", studio.picture_behind().map(|path| path.display().to_string()));

@@ -20,7 +20,7 @@ pub(super) fn finish(
     mut loader: Loader,
 ) -> Result<SceneBuilder, FormatError> {
     let settings = document.options.settings(&mut loader.oddities)?;
-    let camera = camera(&document.options, &settings, &mut loader.oddities)?;
+    let camera = camera(&document.options, &settings, &mut loader)?;
     let mut surfaces = Surfaces::new(document, settings.gain, loader);
     let mut lights = Vec::new();
     for (entity, to_world) in &document.lights {

@@ -11,6 +11,7 @@ mod finish;
 mod grid_media;
 mod gzip;
 mod includes;
+mod lens_system;
 mod lexer;
 mod light_maker;
 mod lights;

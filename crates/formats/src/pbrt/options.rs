@@ -36,6 +36,12 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The film's diagonal in millimetres.
+    pub(super) fn diagonal(&self) -> f64 {
+        let given = self.film.as_ref().and_then(|film| film.parameters.finite("diagonal", 35.0).ok());
+        f64::from(given.unwrap_or(35.0)).max(1e-3)
+    }
+
     /// Records an option; accelerators are ignored, since they do not change the image.
     pub(super) fn record(&mut self, what: &str, entity: Entity, matrices: Matrices) {
         match what {

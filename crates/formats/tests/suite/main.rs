@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 mod asc;
+mod calibrations;
 mod clouds;
 mod colours;
 #[path = "../../../accel/tests/suite/support/effort.rs"]

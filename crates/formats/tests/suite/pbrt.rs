@@ -4,7 +4,8 @@ use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, read};
 use bilux_math::transcendental::{atan, sin_cos, tan};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{SceneBuilder, Spec, Value};
+
+use bilux_scene::{CameraSample, SceneBuilder, Spec, Value};
 use std::io::Write;
 use std::path::Path;
 
@@ -90,6 +91,93 @@ fn pictures_are_not_mirrored() {
     let built = scene.build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
     let seen = built.cameras()[0].1.connect(Vec3::new(0.5, 0.25, 2.0), bilux_math::Vec2::ZERO, 0.0).unwrap();
     assert!((seen.film.x - 0.75).abs() < 1e-5 && (seen.film.y - 0.375).abs() < 1e-5, "{seen:?}");
+}
+
+/// pbrt's definition, in its own camera: from the right (+x) over ahead (+z) to the left, and from above to below.
+#[test]
+fn spherical_cameras_see_everything_as_in_pbrt() {
+    for (turned, mirrors) in [("", false), ("LookAt 1 2 3  4 1 0  0.1 1 0", false), ("Scale -1 1 1", true)] {
+        let text = format!(
+            "{turned}\nCamera \"spherical\" \"string mapping\" [\"equirectangular\"]\nWorldBegin\n{TRIANGLE}"
+        );
+        let scene = scene(&text);
+        assert_eq!(warnings(&scene), "");
+        let camera = scene.build(&Default::default(), [0.0, 1.0], 2.0).unwrap().cameras()[0].1.clone();
+        let to_camera = camera.matrices(0.0).to_camera;
+        for (u, v) in [(0.1f32, 0.3f32), (0.25, 0.5), (0.6, 0.7), (0.9, 0.45)] {
+            let sample =
+                CameraSample { film: bilux_math::Vec2::new(u, v), lens: bilux_math::Vec2::ZERO, time: 0.0 };
+            let ray = camera.ray(&sample);
+            let (theta, phi) = (std::f32::consts::PI * v, 2.0 * std::f32::consts::PI * u);
+            let ([sin, cos], [up, along]) =
+                ([sin_cos(phi).0, sin_cos(phi).1], [sin_cos(theta).1, sin_cos(theta).0]);
+            let own = Vec3::new(along * cos, up, along * sin);
+            let expected = match turned {
+                "" => own,
+                "Scale -1 1 1" => own * Vec3::new(-1.0, 1.0, 1.0),
+                _ => {
+                    // LookAt: z ahead, x = up × z in pbrt's left-handed space.
+                    let ahead = Vec3::new(3.0, -1.0, -3.0).normalize();
+                    let right = Vec3::new(0.1, 1.0, 0.0).normalize().cross(ahead).normalize();
+                    right * own.x + ahead.cross(right) * own.y + ahead * own.z
+                }
+            };
+            let direction = Vec3::from(ray.direction);
+            assert!(direction.distance(expected) < 1e-5, "{turned} {u} {v}: {direction} not {expected}");
+        }
+        assert!(to_camera.is_finite() && (mirrors || turned != "Scale -1 1 1"));
+    }
+    let scene = scene(&format!("Camera \"spherical\"\nWorldBegin\n{TRIANGLE}"));
+    assert!(warnings(&scene).contains("'equalarea' is not supported"), "{}", warnings(&scene));
+}
+
+#[test]
+fn screen_windows_are_shifted_and_stretched() {
+    let text = "Camera \"perspective\" \"float fov\" [90] \"float screenwindow\" [-0.5 1.5 -2 0.5]";
+    let text = format!(
+        "Film \"rgb\" \"integer xresolution\" [100] \"integer yresolution\" [100]\n{text}\nWorldBegin\n{TRIANGLE}"
+    );
+    let scene = scene(&text);
+    assert_eq!(warnings(&scene), "");
+    let camera = scene.build(&Default::default(), [0.0, 1.0], 1.0).unwrap().cameras()[0].1.clone();
+    for (x, y) in [(0.0f32, 0.0f32), (1.0, -1.5), (-0.4, 0.3)] {
+        let seen = camera.project(Vec3::new(x, y, 1.0), 0.0).unwrap();
+        let expected = bilux_math::Vec2::new((x + 0.5) / 2.0, (0.5 - y) / 2.5);
+        assert!(seen.distance(expected) < 1e-5, "{x} {y}: {seen} not {expected}");
+    }
+}
+
+#[test]
+fn realistic_cameras_are_thin_lenses() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.pbrt");
+    // A thin lens of 50 mm.
+    std::fs::write(
+        folder.path().join("lens.dat"),
+        "# radius, thickness, index, width\n50 0 1.5 20\n-50 0 1 20\n0 50 0 10\n",
+    )
+    .unwrap();
+    let text = format!(
+        "Film \"rgb\" \"integer xresolution\" [100] \"integer yresolution\" [100]\nCamera \"realistic\" \"string lensfile\" \"lens.dat\" \"float aperturediameter\" [8] \"float focusdistance\" [2]\nWorldBegin\n{TRIANGLE}"
+    );
+    std::fs::write(&file, &text).unwrap();
+    let scene = bilux_formats::read(&file, &Default::default()).unwrap();
+    assert!(warnings(&scene).contains("thin lens of 50.0 mm"), "{}", warnings(&scene));
+    let camera = &scene.cameras[0].spec;
+    // The film is farther away than the focal length: 1/50 = 1/2000 + 1/v.
+    let v = 1.0 / (1.0 / 50.0 - 1.0 / 2000.0);
+    let fov = 2.0 * atan(0.5 * 35.0 / 2f32.sqrt() / v).to_degrees();
+    assert!((number(camera, "fov") - fov).abs() < 1e-3);
+    assert!(
+        (number(camera, "aperture") - 0.004).abs() < 1e-6 && (number(camera, "focus") - 2.0).abs() < 1e-6
+    );
+    for (lens, expected) in
+        [("50 0 1.5", "four numbers for each surface"), ("-50 0 1.5 20", "forms no picture")]
+    {
+        std::fs::write(folder.path().join("lens.dat"), lens).unwrap();
+        let error = bilux_formats::read(&file, &Default::default()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
 }
 
 #[test]

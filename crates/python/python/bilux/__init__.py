@@ -14,7 +14,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from . import lidar, trimesh
-from ._bilux import Accel, Grid, IntensityDistribution, Picture, Spec, Texture, __version__, compare, licenses, read_picture
+from ._bilux import (
+    Accel,
+    Grid,
+    IntensityDistribution,
+    Picture,
+    Spec,
+    Texture,
+    __version__,
+    compare,
+    licenses,
+    read_cameras,
+    read_picture,
+)
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
 from ._scene import Scene, generate, load
 from ._tables import (
@@ -94,6 +106,7 @@ __all__ = [
     "materials",
     "metrics",
     "picture_formats",
+    "read_cameras",
     "read_picture",
     "sensor",
     "settings",

@@ -8,7 +8,7 @@ from typing_extensions import Self, disjoint_base
 
 from ._types import AllHits, Hits, NearestPoints
 
-__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "daylight_coefficients", "irradiance", "licenses", "patch_numbers", "perez_coefficients", "read_picture", "replay", "rows", "scan", "set_keyframes", "strategies", "transient"]
+__all__ = ["Accel", "Encoded", "Gathering", "Grid", "IntensityDistribution", "PartRenderer", "Picture", "PlacedMesh", "Progressive", "Scene", "Spec", "Texture", "Turntable", "__version__", "compare", "daylight_coefficients", "irradiance", "licenses", "patch_numbers", "perez_coefficients", "read_cameras", "read_picture", "replay", "rows", "scan", "set_keyframes", "strategies", "transient"]
 
 __version__: str
 
@@ -77,6 +77,7 @@ def transient(
     bins: tuple[float, float, int],
     callback: Callable[[int, int, int, float], object] | None,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None: ...
+def read_cameras(path: str | os.PathLike[str]) -> list[Spec]: ...
 def read_picture(file: _File, *, format: str | None = None) -> Picture: ...
 def compare(picture: Picture | ArrayLike, reference: Picture | ArrayLike) -> dict[str, float]: ...
 

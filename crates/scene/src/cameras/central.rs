@@ -1,4 +1,4 @@
-//! A camera all of whose rays start at one point, and a map between their directions and its film: what cameras of that kind
+//! A camera all of whose rays start at one point, or on the circle of an eye that looks around, and a map between their directions and its film: what cameras of that kind
 //! share.
 
 use super::pose::{Pose, Poses};
@@ -38,6 +38,9 @@ pub(super) trait Projection: Send + Sync + 'static {
 pub(super) struct Central<P> {
     poses: Poses,
     projection: P,
+    /// From the middle to the eye, in metres to the right of the direction in which it looks: it turns with the head
+    /// [Ishiguro 1992].
+    aside: f64,
     /// The same camera as a pinhole, if it stands still and straight lines stay straight.
     pinhole: Option<Pinhole>,
 }
@@ -46,6 +49,7 @@ pub(super) struct Central<P> {
 pub(super) fn build<P: Projection>(
     keys: CameraKeys,
     aspect: f32,
+    aside: f64,
     read: impl Fn(&Reader, f64) -> Result<P, SceneError>,
 ) -> Result<Arc<dyn Camera>, SceneError> {
     let poses = Poses::read(keys)?;
@@ -58,7 +62,7 @@ pub(super) fn build<P: Projection>(
     }
     let projection = read(reader, f64::from(aspect))?;
     let pinhole = poses.still().zip(projection.matrix()).map(|(pose, matrix)| pinhole(pose, matrix));
-    Ok(Arc::new(Central { poses, projection, pinhole }))
+    Ok(Arc::new(Central { poses, projection, aside, pinhole }))
 }
 
 /// The pinhole of a matrix from directions to the film.
@@ -78,12 +82,35 @@ impl<P: Projection> Central<P> {
     /// Where a point is seen from a pose: on the film, the density there, and its distance and direction in the world.
     fn seen(&self, pose: &Pose, p: DVec3) -> Option<(DVec2, f64, f64, DVec3)> {
         let away = p - pose.position;
-        let distance = away.length();
+        let towards = self.towards(pose.to_camera(away))?;
+        let distance = towards.length();
         if !(distance > 0.0 && distance.is_finite()) {
             return None;
         }
-        let (film, density) = self.projection.seen(pose.to_camera(away))?;
+        let (film, density) = self.projection.seen(towards)?;
+        let away = if self.aside == 0.0 { away } else { pose.to_world(towards) };
+        // Next to an eye that turns, neighbouring rays are as far apart as next to one that does not: turning moves it along
+        // its rays.
         film.is_finite().then_some((film, density / (distance * distance), distance, away / distance))
+    }
+
+    /// From the eye that sees it to a point of the camera's space.
+    fn towards(&self, p: DVec3) -> Option<DVec3> {
+        if self.aside == 0.0 {
+            return Some(p);
+        }
+        // The right angle between what is aside and what is ahead.
+        let level = DVec2::new(p.x, p.z);
+        let ahead = (level.length_squared() - self.aside * self.aside).sqrt();
+        let to = (level * ahead - DVec2::new(level.y, -level.x) * self.aside) / level.length_squared();
+        (ahead > 0.0).then(|| DVec3::new(to.x * ahead, p.y, to.y * ahead))
+    }
+
+    /// Where the eye is that looks in a direction of the camera's space.
+    fn eye(&self, pose: &Pose, towards: DVec3) -> DVec3 {
+        let level = DVec2::new(towards.x, towards.z).try_normalize();
+        let Some(level) = level.filter(|_| self.aside != 0.0) else { return pose.position };
+        pose.position + pose.to_world(DVec3::new(level.y, 0.0, -level.x) * self.aside)
     }
 }
 
@@ -94,7 +121,8 @@ impl<P: Projection> Camera for Central<P> {
             None => {
                 let pose = self.poses.at(sample.time);
                 let direction = self.projection.direction(sample.film.as_dvec2());
-                (pose.position.as_vec3(), direction.map_or(Vec3::ZERO, |d| pose.to_world(d).as_vec3()))
+                let eye = direction.map_or(pose.position, |direction| self.eye(&pose, direction));
+                (eye.as_vec3(), direction.map_or(Vec3::ZERO, |d| pose.to_world(d).as_vec3()))
             }
         };
         Ray { time: sample.time, ..Ray::new(position.to_array(), direction.to_array()) }
@@ -102,9 +130,10 @@ impl<P: Projection> Camera for Central<P> {
 
     fn connect(&self, from: Vec3, _lens: Vec2, time: f32) -> Option<CameraConnection> {
         let pose = self.poses.at(time);
-        let (film, density, _, direction) = self.seen(&pose, from.as_dvec3())?;
+        let (film, density, distance, direction) = self.seen(&pose, from.as_dvec3())?;
+        let eye = if self.aside == 0.0 { pose.position } else { from.as_dvec3() - direction * distance };
         let (film, density, wi) = (film.as_vec2(), density as f32, -direction.as_vec3());
-        CameraConnection { film, p: pose.position.as_vec3(), wi, density }.if_finite()
+        CameraConnection { film, p: eye.as_vec3(), wi, density }.if_finite()
     }
 
     fn repeats(&self, film: Vec2) -> [Option<Vec2>; 3] {
@@ -127,7 +156,8 @@ impl<P: Projection> Camera for Central<P> {
 
     fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]> {
         let pose = self.poses.at(time);
-        Some([pose.position, pose.to_world(self.projection.direction(film)?)])
+        let direction = self.projection.direction(film)?;
+        Some([self.eye(&pose, direction), pose.to_world(direction)])
     }
 
     fn matrices(&self, time: f32) -> CameraMatrices {

@@ -42,7 +42,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             MIRRORED,
         ],
     },
-    build: |keys, aspect| central::build(keys, aspect, read),
+    build: |keys, aspect| central::build(keys, aspect, 0.0, read),
 };
 
 fn read(reader: &Reader, aspect: f64) -> Result<Radial<Fisheye>, SceneError> {

@@ -3,6 +3,7 @@
 mod central;
 mod fisheye;
 mod irradiance;
+mod lens;
 mod opencv;
 mod opencv_fisheye;
 mod orthographic;
@@ -13,6 +14,7 @@ mod pixels;
 mod pose;
 mod radial;
 mod sensor_points;
+mod stereo;
 
 pub use pinhole::Pinhole;
 pub use sensor_points::{SensorPoint, SensorPoints};
@@ -47,7 +49,8 @@ pub struct CameraConnection {
     /// Unit direction from the point of the scene to there.
     pub wi: Vec3,
     /// Density of camera rays at the point of the scene, over area perpendicular to `wi`, 1/m², for film points uniform
-    /// over the unit square and this point on the lens. It is the camera's importance, for a film of area 1.
+    /// over the unit square and this point on the lens; of two eyes, over the part of this one. It is the camera's importance, for
+    /// a film of area 1.
     pub density: f32,
 }
 
@@ -97,11 +100,20 @@ pub trait Camera: Send + Sync {
     fn repeats(&self, _film: Vec2) -> [Option<Vec2>; 3] {
         [None; 3]
     }
+    /// The point on the lens with which [`Camera::connect`] finds the ray through this point of the film and this point on the lens:
+    /// another one only if the camera has two eyes, which are parts of one lens.
+    fn lens_of(&self, _film: Vec2, lens: Vec2) -> Vec2 {
+        lens
+    }
     /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;
     /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
-    /// the film. `None` where no ray sees it, as behind the camera.
+    /// the film. `None` where no ray sees it, as behind the camera. Of two eyes, it is the left one that sees it.
     fn project(&self, p: Vec3, time: f32) -> Option<Vec2>;
+    /// The same for the eye that sees another point of the film.
+    fn project_beside(&self, p: Vec3, time: f32, _film: Vec2) -> Option<Vec2> {
+        self.project(p, time)
+    }
     /// The same in double precision, for those who measure in pictures.
     fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2>;
     /// The ray through a point of the film and the middle of the lens in double precision: where it starts, and its unit

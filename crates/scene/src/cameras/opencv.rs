@@ -18,7 +18,9 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
         source: "OpenCV",
         parameters: &PARAMETERS,
     },
-    build: |keys, aspect| central::build(keys, aspect, |reader, aspect| Ok(OpenCv::read(reader, aspect))),
+    build: |keys, aspect| {
+        central::build(keys, aspect, 0.0, |reader, aspect| Ok(OpenCv::read(reader, aspect)))
+    },
 };
 
 const PARAMETERS: [Parameter; 23] = {

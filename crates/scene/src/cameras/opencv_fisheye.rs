@@ -15,7 +15,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
         source: "Kannala 2006",
         parameters: &PARAMETERS,
     },
-    build: |keys, aspect| central::build(keys, aspect, |reader, aspect| Ok(read(reader, aspect))),
+    build: |keys, aspect| central::build(keys, aspect, 0.0, |reader, aspect| Ok(read(reader, aspect))),
 };
 
 const PARAMETERS: [Parameter; 15] = {

@@ -3,6 +3,7 @@
 use super::CameraEntry;
 use super::central::{self, Projection};
 use super::perspective::{MIRRORED, vector};
+use super::stereo;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice};
@@ -28,10 +29,16 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             ),
             degrees("fov_x", "horizontal field of view; not for cubes", 360.0, "360"),
             degrees("fov", "vertical field of view, below 180 if cylindrical; not for cubes", 180.0, "180"),
+            stereo::STEREO,
+            stereo::EYE_DISTANCE,
             MIRRORED,
         ],
     },
-    build: |keys, aspect| central::build(keys, aspect, |reader, _| Panorama::read(reader)),
+    build: |keys, aspect| {
+        stereo::build(keys, aspect, |keys, aspect, aside| {
+            central::build(keys, aspect, aside, |reader, _| Panorama::read(reader))
+        })
+    },
 };
 
 const fn degrees(name: &'static str, summary: &'static str, max: f64, default: &'static str) -> Parameter {

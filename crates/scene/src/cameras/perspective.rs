@@ -1,8 +1,11 @@
 //! `perspective`: a pinhole, or a thin lens if an aperture is given.
 
+use super::lens::{self, ThinLens};
 use super::pose::look_f64;
+use super::stereo;
 use super::{
-    Camera, CameraConnection, CameraEntry, CameraMatrices, CameraSample, Pinhole, around, look, without_axes,
+    Camera, CameraConnection, CameraEntry, CameraKeys, CameraMatrices, CameraSample, Pinhole, around, look,
+    without_axes,
 };
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -36,20 +39,12 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 kind: ParameterKind::Number { min: 0.0, max: 1000.0 },
                 default: "0",
             },
-            Parameter {
-                name: "aperture",
-                summary: "radius of the aperture; 0 for a pinhole",
-                unit: "m",
-                kind: ParameterKind::Number { min: 0.0, max: 1e6 },
-                default: "0",
-            },
-            Parameter {
-                name: "focus",
-                summary: "focus distance; 0 for the distance of look_at",
-                unit: "m",
-                kind: ParameterKind::Number { min: 0.0, max: 1e9 },
-                default: "0",
-            },
+            lens::APERTURE,
+            lens::FOCUS,
+            lens::BLADES,
+            lens::BLADES_ROTATION,
+            lens::FOCUS_TILT_X,
+            lens::FOCUS_TILT_Y,
             fraction("principal_x", "where the axis meets the picture, from its left edge, in widths", "0.5"),
             fraction(
                 "principal_y",
@@ -76,25 +71,37 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 kind: ParameterKind::Number { min: -100.0, max: 100.0 },
                 default: "0",
             },
+            stereo::STEREO,
+            stereo::EYE_DISTANCE,
+            Parameter {
+                name: "convergence",
+                summary: "distance at which both eyes of stereo see a point at the same place; 0 for parallel axes",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e9 },
+                default: "0",
+            },
             MIRRORED,
         ],
     },
-    build: |keys, aspect| {
-        let pixel_aspect = keys.first().map_or(1.0, |(_, reader)| reader.number("pixel_aspect"));
-        let aspect = aspect * pixel_aspect;
-        let keys = keys
-            .iter()
-            .map(|(time, reader)| Ok((*time, Key::read(reader, aspect)?)))
-            .collect::<Result<Vec<_>, SceneError>>()?;
-        let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
-        let aspect = if mirrored { -aspect } else { aspect };
-        let mut camera = Perspective { keys, aspect, static_key: None };
-        if camera.keys.len() == 1 {
-            camera.static_key = Some(camera.key_at(0.0));
-        }
-        Ok(Arc::new(camera))
-    },
+    build: |keys, aspect| stereo::build(keys, aspect, build),
 };
+
+/// Makes the camera of one eye, so many metres to the right in the picture.
+fn build(keys: CameraKeys, aspect: f32, aside: f64) -> Result<Arc<dyn Camera>, SceneError> {
+    let pixel_aspect = keys.first().map_or(1.0, |(_, reader)| reader.number("pixel_aspect"));
+    let aspect = aspect * pixel_aspect;
+    let keys = keys
+        .iter()
+        .map(|(time, reader)| Ok((*time, Key::read(reader, aspect, aside as f32)?)))
+        .collect::<Result<Vec<_>, SceneError>>()?;
+    let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
+    let aspect = if mirrored { -aspect } else { aspect };
+    let mut camera = Perspective { keys, aspect, static_key: None };
+    if camera.keys.len() == 1 {
+        camera.static_key = Some(camera.key_at(0.0));
+    }
+    Ok(Arc::new(camera))
+}
 
 pub(super) const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
@@ -128,8 +135,9 @@ struct Key {
     up: Vec3,
     /// Half the height of the film at distance 1.
     tan_half_fov: f32,
-    aperture: f32,
-    focus: f32,
+    lens: ThinLens,
+    /// From the middle between two eyes to this one, to the right of the camera.
+    aside: f32,
     /// From the axis to the middle of the film: in half its width to the right, in half its height upwards.
     offset: Vec2,
     /// By how much x grows with y, downwards, on the film at distance 1.
@@ -138,18 +146,25 @@ struct Key {
 }
 
 impl Key {
-    fn read(reader: &Reader, aspect: f32) -> Result<Key, SceneError> {
+    fn read(reader: &Reader, aspect: f32, aside: f32) -> Result<Key, SceneError> {
         let wider = (reader.number("frame") / aspect).max(1.0);
+        let [position, look_at, up] = ["position", "look_at", "up"].map(|key| reader.vector(key));
+        let (mirrored, convergence) = (reader.bool("mirrored"), reader.number("convergence"));
+        let tan_half_fov = tan(reader.number("fov").to_radians() * 0.5) * wider;
+        let mut offset = offset(reader, aspect);
+        if convergence > 0.0 {
+            offset.x -= aside / (convergence * tan_half_fov * aspect);
+        }
         let key = Key {
-            position: reader.vector("position"),
-            look_at: reader.vector("look_at"),
-            up: reader.vector("up"),
-            tan_half_fov: tan(reader.number("fov").to_radians() * 0.5) * wider,
-            aperture: reader.number("aperture"),
-            focus: reader.number("focus"),
-            offset: offset(reader, aspect),
+            position,
+            look_at,
+            up,
+            tan_half_fov,
+            lens: ThinLens::read(reader, position.distance(look_at))?,
+            aside: if mirrored { -aside } else { aside },
+            offset,
             skew: reader.number("skew"),
-            mirrored: reader.bool("mirrored"),
+            mirrored,
         };
         look(key.position, key.look_at, key.up).map(|_| key).ok_or_else(|| without_axes(reader))
     }
@@ -161,8 +176,8 @@ impl Key {
             look_at: self.look_at.lerp(other.look_at, t),
             up: self.up.lerp(other.up, t),
             tan_half_fov: mix(self.tan_half_fov, other.tan_half_fov),
-            aperture: mix(self.aperture, other.aperture),
-            focus: mix(self.focus, other.focus),
+            lens: self.lens.lerp(&other.lens, t),
+            aside: mix(self.aside, other.aside),
             offset: self.offset.lerp(other.offset, t),
             skew: mix(self.skew, other.skew),
             mirrored: self.mirrored,
@@ -185,11 +200,15 @@ impl Perspective {
             return static_key;
         }
         let (low, high, t) = around(&self.keys, time);
-        let key = if t == 0.0 { *low } else { low.lerp(high, t) };
+        let mut key = if t == 0.0 { *low } else { low.lerp(high, t) };
         // Between two valid keyframes the view can become degenerate; the first keyframe is valid.
         let axes = look(key.position, key.look_at, key.up)
             .or_else(|| look(low.position, low.look_at, low.up))
             .unwrap_or([Vec3::X, Vec3::Y, -Vec3::Z]);
+        if key.aside != 0.0 {
+            [key.position, key.look_at] = [key.position, key.look_at].map(|p| p + axes[0] * key.aside);
+        }
+        key.lens = key.lens.focused((key.look_at - key.position).length());
         (key, axes)
     }
 
@@ -234,17 +253,12 @@ impl Key {
         DVec2::new(f64::from(aspect), 1.0) * f64::from(self.tan_half_fov)
     }
 
-    /// Distance of the focal plane, along the axis.
-    fn focus(&self) -> f32 {
-        if self.focus > 0.0 { self.focus } else { (self.look_at - self.position).length() }
-    }
-
     /// Density of rays over area perpendicular to them, at a distance and a cosine to the axis. The film's points are
-    /// uniform on the plane at distance 1, whatever the point on the lens; `1 / cos³` converts their density to solid
-    /// angle, there as on the focal plane.
-    fn density(&self, aspect: f32, cos: f32, distance2: f32) -> f32 {
+    /// uniform on the plane at distance 1, stretched by the point on the lens; `1 / cos³` converts their density to solid
+    /// angle, there as on the plane of focus.
+    fn density(&self, aspect: f32, cos: f32, distance2: f32, stretch: f32) -> f32 {
         let film_area = 4.0 * self.tan_half_fov * self.tan_half_fov * aspect.abs();
-        1.0 / (film_area * cos * cos * cos * distance2)
+        1.0 / (film_area * cos * cos * cos * distance2 * stretch)
     }
 }
 
@@ -252,39 +266,44 @@ impl Camera for Perspective {
     fn ray(&self, sample: &CameraSample) -> Ray {
         let (key, axes) = self.key_at(sample.time);
         let pinhole = self.pinhole_at(&key, axes);
-        let (origin, direction) = if sample.lens == Vec2::ZERO || key.aperture == 0.0 {
+        let (origin, direction) = if sample.lens == Vec2::ZERO || key.lens.aperture == 0.0 {
             (key.position, pinhole.direction(sample.film))
         } else {
-            let [right, up, _] = axes;
-            let lens = (right * sample.lens.x + up * sample.lens.y) * key.aperture;
-            (key.position + lens, (pinhole.through(sample.film) * key.focus() - lens).normalize())
+            let ([right, up, _], point) = (axes, key.lens.point(sample.lens));
+            let lens = (right * point.x + up * point.y) * key.lens.aperture;
+            let through = pinhole.through(sample.film);
+            let depth = key.lens.depth(Vec2::new(through.dot(right), through.dot(up)));
+            (key.position + lens, (through * key.lens.focus - lens * depth).normalize())
         };
         Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.to_array()) }
     }
 
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection> {
         let (key, [right, up, forward]) = self.key_at(time);
-        let lens = lens * key.aperture;
+        let lens = key.lens.point(lens) * key.lens.aperture;
         let p = key.position + right * lens.x + up * lens.y;
         let away = from - p;
         let depth = away.dot(forward);
         if depth.is_nan() || depth <= 0.0 {
             return None;
         }
-        // The film point at distance 1, seen from the centre of the lens, of the ray's point on the focal plane.
-        let aside = if lens == Vec2::ZERO { lens } else { lens / key.focus() };
-        let seen = Vec2::new(away.dot(right), away.dot(up)) / depth + aside;
-        let film = self.film_of(&key, seen);
+        let film = self.film_of(&key, key.lens.seen(lens, Vec2::new(away.dot(right), away.dot(up)) / depth));
         let distance2 = away.length_squared();
         let distance = distance2.sqrt();
-        let density = key.density(self.aspect, depth / distance, distance2);
+        let density = key.density(self.aspect, depth / distance, distance2, key.lens.stretch(lens));
         CameraConnection { film, p, wi: -away / distance, density }.if_finite()
     }
 
     fn density(&self, ray: &Ray, t: f32) -> f32 {
-        let (key, [_, _, forward]) = self.key_at(ray.time);
+        let (key, [right, up, forward]) = self.key_at(ray.time);
         let cos = Vec3::from(ray.direction).dot(forward);
-        if cos > 0.0 { key.density(self.aspect, cos, t * t) } else { 0.0 }
+        let stretch = if key.lens.is_tilted() {
+            let point = Vec3::from(ray.origin) - key.position;
+            key.lens.stretch(Vec2::new(point.dot(right), point.dot(up)))
+        } else {
+            1.0
+        };
+        if cos > 0.0 { key.density(self.aspect, cos, t * t, stretch) } else { 0.0 }
     }
 
     fn project(&self, p: Vec3, time: f32) -> Option<Vec2> {
@@ -347,12 +366,12 @@ impl Camera for Perspective {
     }
 
     fn pinhole(&self) -> Option<Pinhole> {
-        let (key, axes) = self.static_key.as_ref().filter(|(key, _)| key.aperture == 0.0)?;
+        let (key, axes) = self.static_key.as_ref().filter(|(key, _)| key.lens.aperture == 0.0)?;
         Some(self.pinhole_at(key, *axes))
     }
 
     fn has_lens(&self) -> bool {
-        self.keys.iter().any(|(_, key)| key.aperture != 0.0)
+        self.keys.iter().any(|(_, key)| key.lens.aperture != 0.0)
     }
 
     fn forward(&self, time: f32) -> Vec3 {

@@ -371,6 +371,28 @@ fn lenses_and_cameras_without_perspective() {
 }
 
 #[test]
+fn tilted_lenses_with_blades_and_pairs_of_eyes() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let mut builder = without_mirrors(panel);
+    let seen = |kind: &str| {
+        let spec = Spec::new("eye", kind);
+        spec.with("position", Vec3::new(0.0, 2.0, 5.0)).with("look_at", Vec3::new(0.0, 0.5, 0.0))
+    };
+    let lens = seen("perspective").with("fov", 40.0f32).with("aperture", 0.4f32).with("blades", 5);
+    let tilted = lens.with("focus_tilt_x", 30.0f32).with("focus_tilt_y", 50.0f32);
+    let pair =
+        tilted.clone().with("stereo", "side-by-side").with("eye_distance", 1.0f32).with("aperture", 0.2f32);
+    let around =
+        Spec::new("eye", "panorama").with("position", Vec3::new(0.0, 1.2, 0.8)).with("stereo", "over-under");
+    for (name, spec) in
+        [("tilted", tilted), ("pair", pair), ("turning eyes", around.with("eye_distance", 0.6f32))]
+    {
+        builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];
+        assert_like_path(name, &built(&builder), &["light", "bdpt"]);
+    }
+}
+
+#[test]
 fn every_filter_spreads_splats_as_it_spreads_samples() {
     // A bright edge, blurred by the filter.
     let mut builder = SceneBuilder::default();

@@ -41,6 +41,16 @@ fn fisheye(spec: Spec) -> Spec {
     with_all(spec, &lens)
 }
 
+fn tilted(spec: Spec) -> Spec {
+    spec.with("focus_tilt_x", 30.0f32).with("focus_tilt_y", -20.0f32)
+}
+
+fn pair(kind: &str, stereo: &str) -> Spec {
+    let spec = spec(kind).with("stereo", stereo).with("eye_distance", 0.2f32);
+    // Straight up, f32 points of the world do not tell where on its circle an eye sees them.
+    if kind == "perspective" { spec.with("convergence", 3.0f32) } else { spec.with("fov", 165.0f32) }
+}
+
 fn still(name: &str, spec: Spec, aspect: f32) -> (String, Arc<dyn Camera>, f32) {
     (name.to_owned(), build(&CameraSpec { spec, keyframes: Vec::new() }, aspect).unwrap(), 0.0)
 }
@@ -108,6 +118,34 @@ fn cameras() -> Vec<(String, Arc<dyn Camera>, f32)> {
         still("stereographic", spec("fisheye").with("mapping", "stereographic").with("fov", 240.0f32), 1.5),
         still("orthographic fisheye", spec("fisheye").with("mapping", "orthographic"), 0.7),
         still("full-frame fisheye", spec("fisheye").with("fit", "diagonal").with("mirrored", true), 1.5),
+        still("five blades", lens.clone().with("blades", 5).with("blades_rotation", 10.0f32), 1.5),
+        still("tilted", tilted(lens.clone()), 1.5),
+        still("tilted blades, mirrored", tilted(lens.clone()).with("blades", 3).with("mirrored", true), 0.8),
+        still("a floor in focus", lens.clone().with("focus_tilt_y", 80.0f32), 1.5),
+        still("left eye", pair("perspective", "left"), 1.5),
+        still("right eye, mirrored", pair("perspective", "right").with("mirrored", true), 1.5),
+        still("side by side", pair("perspective", "side-by-side"), 2.4),
+        still("over and under", pair("perspective", "over-under").with("convergence", 0.0f32), 0.8),
+        still(
+            "side by side with lenses",
+            tilted(pair("perspective", "side-by-side").with("aperture", 0.1f32)),
+            3.0,
+        ),
+        still("turning left eye", pair("panorama", "left"), 2.0),
+        still(
+            "turning right eye on a cylinder",
+            pair("panorama", "right").with("mapping", "cylindrical"),
+            3.0,
+        ),
+        still("turning eyes on a cube", pair("panorama", "over-under").with("mapping", "cube"), 3.0),
+        still("turning eyes", pair("panorama", "over-under"), 1.0),
+        still(
+            "turning eyes side by side, mirrored",
+            pair("panorama", "side-by-side").with("mirrored", true),
+            4.0,
+        ),
+        moving("moving pair", pair("perspective", "over-under"), &there[..1], 0.6),
+        moving("moving turning eyes", pair("panorama", "over-under"), &there[..1], 0.6),
         moving("moving lens", lens, &there, 0.4),
         moving("moving plan", spec("orthographic"), &wider, 0.7),
     ]);
@@ -156,6 +194,14 @@ impl Camera for BuggyCamera {
         self.camera.ray_f64(film, time)
     }
 
+    fn lens_of(&self, film: Vec2, lens: Vec2) -> Vec2 {
+        self.camera.lens_of(film, lens)
+    }
+
+    fn project_beside(&self, p: Vec3, time: f32, film: Vec2) -> Option<Vec2> {
+        (self.defect)(&*self.camera, p, self.camera.lens_of(film, Vec2::ZERO), time).map(|seen| seen.film)
+    }
+
     fn repeats(&self, film: Vec2) -> [Option<Vec2>; 3] {
         self.camera.repeats(film)
     }
@@ -182,6 +228,34 @@ const PLANTED: &[(&str, &str, &str, Defect)] = &[
     ("a lens not looked at", "lens", "points on a ray project to its film position", |c, from, _, time| {
         c.connect(from, Vec2::ZERO, time)
     }),
+    ("round blades", "five blades", "points on a ray project to its film position", |c, from, lens, time| {
+        c.connect(from, lens * 0.9, time)
+    }),
+    (
+        "the other eye",
+        "side by side",
+        "points on a ray project to its film position",
+        |c, from, lens, time| c.connect(from, -lens, time),
+    ),
+    (
+        "the density of a plane of focus that is upright",
+        "tilted",
+        "the density matches that of neighbouring rays",
+        |c, from, lens, time| {
+            let density = c.connect(from, Vec2::ZERO, time)?.density;
+            Some(CameraConnection { density, ..c.connect(from, lens, time)? })
+        },
+    ),
+    (
+        "an eye that does not turn",
+        "turning left eye",
+        "points on a ray project to its film position",
+        |c, from, lens, time| {
+            let eye = Vec3::from(c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time }).origin);
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { p: eye, ..seen })
+        },
+    ),
     ("a film upside down", "plan", "points on a ray project to its film position", |c, from, lens, time| {
         let seen = c.connect(from, lens, time)?;
         Some(CameraConnection { film: Vec2::new(seen.film.x, (1.0 - seen.film.y).min(0.999)), ..seen })
