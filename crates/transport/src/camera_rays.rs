@@ -1,6 +1,7 @@
 //! From the index of a sample to its camera ray, and to its random numbers.
 
 use crate::emission::{Emission, Guide};
+use crate::exposure::Exposure;
 use crate::failures::SamplePlace;
 use crate::interval::replicate;
 use crate::light_choice::LightChoice;
@@ -52,6 +53,7 @@ impl<'a> CameraRays<'a> {
             scene,
             camera,
             reach: settings.reach(),
+            exposure: Exposure::new(scene, settings),
             lights: LightChoice::new(scene),
             emission: Emission::new(scene, None),
             photons: None,
@@ -90,10 +92,15 @@ impl<'a> CameraRays<'a> {
     /// The ray of a pixel's [labels](crate::labels): through the centre of the pixel and of the lens, when the shutter opens.
     pub(crate) fn of_labels(&self, x: u32, y: u32) -> Ray {
         let place = Vec2::splat(self.settings.pixel_anchor.offset());
-        let [opens, _] = self.context.scene.shutter();
-        let sample =
-            CameraSample { film: on_film(self.settings, x, y, place), lens: Vec2::ZERO, time: opens };
-        self.context.scene.for_labels(self.context.camera.ray(&sample))
+        let film = on_film(self.settings, x, y, place);
+        let time = self.time_of_labels(film);
+        self.context.scene.for_labels(self.context.camera.ray(&CameraSample { film, lens: Vec2::ZERO, time }))
+    }
+
+    /// When a point of the film begins to be exposed.
+    pub(crate) fn time_of_labels(&self, film: Vec2) -> f32 {
+        let [opens, _] = self.context.exposure.of_first_row();
+        opens + self.context.exposure.delay(film)
     }
 
     /// The time of a sample, and the state for its light subpath alone: streams of random numbers do not depend on what was
@@ -167,7 +174,7 @@ impl<'a> CameraRays<'a> {
             }
             extent => warp::sample_disc(sampler.next_2d()) * extent,
         };
-        let [opens, closes] = self.context.scene.shutter();
+        let [opens, closes] = self.context.exposure.of_first_row();
         let middle = opens + (closes - opens) * 0.5;
         let time = match spread.shutter {
             0.0 => middle,
@@ -175,7 +182,8 @@ impl<'a> CameraRays<'a> {
             extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
         };
         let film = on_film(settings, x, y, offset + Vec2::splat(anchor));
-        CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
+        let time = time.clamp(opens.min(closes), opens.max(closes)) + self.context.exposure.delay(film);
+        CameraSample { film, lens, time }
     }
 }
 

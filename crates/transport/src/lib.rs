@@ -19,6 +19,7 @@ pub mod daylight;
 pub mod emission;
 mod equiangular;
 mod error;
+mod exposure;
 mod failures;
 pub mod features;
 pub mod film;

@@ -43,6 +43,9 @@ pub struct RenderSettings {
     pub interval: bool,
     /// Estimate the variance of each pixel ([`crate::Rendered::batch_means`]), which denoisers need.
     pub batch_means: bool,
+    /// How much later the last row of pixels is exposed than the first, in seconds. The shutter of the scene is open while any row is
+    /// exposed, and longer than that.
+    pub readout: f32,
     /// Keep the ids of objects and materials ([`crate::Features::object`]), which only compositors need.
     pub ids: bool,
 }
@@ -103,6 +106,7 @@ impl RenderSettings {
             interval: false,
             batch_means: false,
             ids: false,
+            readout: 0.0,
         }
     }
 

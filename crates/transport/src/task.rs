@@ -1,6 +1,7 @@
 //! What an integrator works with: what all samples of a render share, and what belongs to one of them.
 
 use crate::emission::Emission;
+use crate::exposure::Exposure;
 use crate::light_choice::LightChoice;
 use crate::photons::Photons;
 use crate::sampler::PixelSampler;
@@ -17,6 +18,8 @@ pub struct Context<'a> {
     pub camera: &'a dyn Camera,
     /// Where light subpaths are connected with the camera.
     pub(crate) reach: Reach,
+    /// When.
+    pub(crate) exposure: Exposure,
     /// Chooses lights by what they bring.
     pub lights: LightChoice,
     /// Starts light subpaths.

@@ -15,7 +15,7 @@ pub(crate) const VISITS: &str = "visits";
 /// The settings that the page offers, in groups.
 const GROUPS: &[(&str, &[&str])] = &[
     ("Camera and studio", &["camera", "ground", "background"]),
-    ("Time", &["time", "shutter"]),
+    ("Time", &["time", "shutter", "readout"]),
     ("Display", &["exposure", "auto_exposure", "tonemap", "denoise"]),
     ("Light", &["integrator", "max_depth", "spp", "seed"]),
     ("Speed", &["accel"]),

@@ -77,6 +77,9 @@ pub(crate) fn of_settings(settings: &Settings, render: &RenderSettings) -> Ident
     add("camera", settings.camera.clone());
     add("time", settings.time.to_string());
     add("shutter", settings.shutter.to_string());
+    if settings.readout != 0.0 {
+        add("readout", settings.readout.to_string());
+    }
     add("filter", settings.filter.clone());
     add("pixel anchor", if settings.corner_anchor { "corner" } else { "centre" }.to_owned());
     add("culling", format!("{:?}", settings.accel.query.culling));

@@ -168,6 +168,7 @@ fn render_settings(settings: &Settings, request: &JobRequest) -> Result<RenderSe
         interval: request.layers.contains(&Aov::Interval),
         batch_means: guides || request.layers.contains(&Aov::Variance),
         ids: request.layers.contains(&Aov::Ids),
+        readout: settings.readout,
     })
 }
 

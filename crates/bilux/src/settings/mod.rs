@@ -21,6 +21,7 @@ use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Spa
 use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 pub(crate) use shutter::shutter_of;
+use size::calibrated_size;
 pub use size::{parse_size, size_error};
 use std::time::Duration;
 pub use studio::parse_orbit;
@@ -104,6 +105,7 @@ pub const RENDER: Entry = Entry {
         ),
         number("time", "the time that the picture shows", "s", -1e9, 1e9, "0"),
         number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0"),
+        number("readout", "how much later a rolling shutter exposes the last row", "s", 0.0, 1e9, "0"),
         number("fps", "frames per second, for --frames", "1/s", 1e-6, 1e6, "24"),
         text("filter", "the pixel reconstruction filter", "box"),
         choice(
@@ -233,6 +235,8 @@ pub struct Settings {
     pub time: f32,
     /// How long the shutter is open, in seconds.
     pub shutter: f32,
+    /// How much later the last row of pixels is exposed than the first, in seconds.
+    pub readout: f32,
     /// Frames per second.
     pub fps: f32,
     /// The name of the pixel reconstruction filter.
@@ -259,17 +263,6 @@ pub struct Settings {
     pub linear_transfer: bool,
     /// What files and users said, from which all of this follows.
     pub given: Parameters,
-}
-
-/// The size of the pictures that the chosen camera was calibrated with.
-fn calibrated_size(scene: &SceneBuilder, settings: &Parameters) -> Option<[u32; 2]> {
-    let wanted = match settings.find("camera") {
-        Some((Value::Text(name), _)) => name.clone(),
-        Some((Value::Integer(number), _)) => number.to_string(),
-        _ => "0".to_owned(),
-    };
-    let by_name = scene.cameras.iter().find(|camera| camera.spec.name == wanted);
-    by_name.or_else(|| scene.cameras.get(wanted.parse::<usize>().ok()?))?.calibrated_size()
 }
 
 impl Settings {
@@ -345,6 +338,7 @@ impl Settings {
             studio: Studio { cut_out: background.is_cut_out(), ..studio(&reader)? },
             time: reader.number("time"),
             shutter: reader.number("shutter"),
+            readout: reader.number("readout"),
             fps: reader.number("fps"),
             filter: reader.text("filter"),
             filters_textures: reader.text("texture_filter") == "footprint",

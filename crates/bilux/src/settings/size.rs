@@ -1,6 +1,18 @@
 //! The size of a picture, as users write it: `640x480`.
 
+use bilux_scene::{Parameters, SceneBuilder, Value};
 use bilux_transport::film::MAX_SIDE;
+
+/// The size of the pictures that the chosen camera was calibrated with.
+pub(super) fn calibrated_size(scene: &SceneBuilder, settings: &Parameters) -> Option<[u32; 2]> {
+    let wanted = match settings.find("camera") {
+        Some((Value::Text(name), _)) => name.clone(),
+        Some((Value::Integer(number), _)) => number.to_string(),
+        _ => "0".to_owned(),
+    };
+    let by_name = scene.cameras.iter().find(|camera| camera.spec.name == wanted);
+    by_name.or_else(|| scene.cameras.get(wanted.parse::<usize>().ok()?))?.calibrated_size()
+}
 
 /// Explains why [`parse_size`] rejects a text, and what to write instead.
 pub fn size_error(text: &str) -> String {

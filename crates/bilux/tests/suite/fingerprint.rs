@@ -174,6 +174,7 @@ const SETTINGS: &[(&str, &str, Effect)] = &[
     ("focal", "80", Changes),
     ("time", "0.5", Changes),
     ("shutter", "0.5", Changes),
+    ("readout", "0.5", Changes),
     ("fps", "12", Keeps),
     ("filter", "tent", Changes),
     ("texture_filter", "none", Changes),

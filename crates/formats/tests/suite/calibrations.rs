@@ -273,3 +273,40 @@ fn what_is_wrong_is_named() {
     assert!(other.unwrap_err().to_string().contains("has the camera 3, which is not in the file"));
     assert!(read_cameras(Path::new("/nowhere/cameras.txt"), &ReadOptions::default()).is_err());
 }
+
+/// Files with bytes that are changed, missing or doubled are read or refused.
+#[test]
+fn broken_files_do_no_harm() {
+    let transforms = r#"{"w": 640, "h": 480, "fl_x": 500, "frames": [{"file_path": "a.png",
+        "transform_matrix": [[0, 0, -1, 1], [0, 1, 0, 2], [1, 0, 0, 3], [0, 0, 0, 1]]}]}"#;
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = 1u64;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for (name, text) in [("a.yml", OPENCV), ("cameras.txt", CAMERAS), ("transforms.json", transforms)] {
+        for _ in 0..700 {
+            let mut bytes = text.as_bytes().to_vec();
+            for _ in 0..1 + next(4) {
+                let at = next(bytes.len().max(1));
+                if bytes.is_empty() {
+                    break;
+                }
+                match next(4) {
+                    0 => bytes[at] = next(256) as u8,
+                    1 => drop(bytes.remove(at)),
+                    2 => bytes.insert(at, b"-[]{}:,&*!%\n \"'0e.9"[next(19)]),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            let path = folder.path().join(name);
+            std::fs::write(&path, &bytes).unwrap();
+            if let Ok(found) = read_cameras(&path, &ReadOptions::default()) {
+                for camera in found.cameras {
+                    drop(build(&CameraSpec::new(camera), 1.3));
+                }
+            }
+        }
+    }
+}

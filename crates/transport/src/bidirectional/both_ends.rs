@@ -50,7 +50,8 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     /// The weights of the first vertex of a camera subpath, which is on this ray.
     fn see_first(&self, ray: &Ray, z: &mut Vertex<N>, task: &Task) {
         if z.depth == 0 {
-            let density = task.context.camera.density(ray, z.at.t());
+            let density =
+                task.context.camera.density(ray, z.at.t()) * task.context.exposure.density(ray.time);
             z.partial = Partial::of_camera(density * z.arriving, &self.techniques, z.partial.merged);
         }
     }

@@ -78,9 +78,11 @@ pub(crate) fn to_camera<const N: usize>(
     let u_lens = task.sample.sampler.next_2d();
     let lens = if task.context.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.context.camera.connect(y.at.p(), lens, y.at.time())?;
-    if !task.context.reach.contains(seen.film) {
+    let exposure = task.context.exposure;
+    if !task.context.reach.contains(seen.film) || !exposure.exposes(seen.film, y.at.time()) {
         return None;
     }
+    let density = seen.density * exposure.density(y.at.time());
     let scattered = y.at.eval(y.wo, seen.wi, TransportMode::Importance);
     let hides = |surface| task.context.scene.camera_sees_through(surface, seen.wi);
     if scattered.is_black() || y.at.surface().is_some_and(hides) {
@@ -88,10 +90,10 @@ pub(crate) fn to_camera<const N: usize>(
     }
     let media = y.media_towards(task.context.scene, seen.wi);
     let ray = task.context.scene.to_camera(y.at.spawn_to(seen.p));
-    let arriving = seen.density * y.at.cos(seen.wi).unwrap_or(1.0);
+    let arriving = density * y.at.cos(seen.wi).unwrap_or(1.0);
     let back = y.at.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance);
     let others = y.partial.others(arriving, back, y.at.sine(y.wo, seen.wi, techniques));
-    let light = task.sample.seen(y.beta * scattered * seen.density, y.is_split());
+    let light = task.sample.seen(y.beta * scattered * density, y.is_split());
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: 1 },
         found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },

@@ -25,6 +25,7 @@ mod points;
 mod queue;
 mod random_numbers;
 mod receiving;
+mod rolling;
 mod scattering;
 mod seen_media;
 mod sides;

@@ -1,0 +1,66 @@
+//! Rolling shutters: rows that are exposed one after the other.
+
+use crate::common::statistics::{UNLIKELY, agreement};
+use crate::common::{along, diffuse, integrator, moving, put, quad, shoot};
+use bilux_math::Vec3;
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{AccelChoice, Scene, SceneBuilder, Spec};
+use bilux_transport::RenderSettings;
+
+/// A scene whose shutter is open from 0 until this time.
+fn open(builder: &SceneBuilder, until: f32) -> Scene {
+    builder.build(&AccelChoice::default(), [0.0, until], 1.0).unwrap()
+}
+
+/// A bright half plane moves to the right by 2 m in a second, seen by parallel rays on a film of 4 m: its edge leans.
+#[test]
+fn an_edge_that_moves_leans() {
+    let mut builder = SceneBuilder::default();
+    let bright = diffuse(0.0f32).with("emission", 1.0f32).with("emission_sides", "both");
+    put(&mut builder, "half", quad(Vec3::new(-20.0, -4.0, 0.0), Vec3::X * 19.0, Vec3::Y * 8.0), bright);
+    builder.objects[0].motion = along(Vec3::ZERO, Vec3::X * 2.0);
+    let camera = Spec::new("", "orthographic").with("height", 4.0f32).with("position", Vec3::Z * 5.0);
+    builder.cameras = vec![CameraSpec::new(camera.with("look_at", Vec3::ZERO))];
+    let settings = RenderSettings { readout: 0.8, ..RenderSettings::new(64, 16, 64) };
+    let scene = builder.build(&AccelChoice::default(), [0.0, 0.9], 4.0).unwrap();
+    for name in ["path", "bdpt"] {
+        let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
+        for row in 0..16 {
+            // The middle of a tenth of a second's exposure; the film is 16 m wide.
+            let time = 0.05 + 0.8 * (row as f32 + 0.5) / 16.0;
+            let edge = (8.0 - 1.0 + 2.0 * time) / 16.0 * 64.0;
+            let bright: f32 = (0..64).map(|x| pixels[row * 64 + x].g).sum();
+            assert!((bright - edge).abs() < 0.15, "{name}: row {row}: {bright} not {edge}");
+        }
+    }
+}
+
+/// The means of quarters of the film, of pictures with other seeds.
+fn quarters(scene: &Scene, name: &str, first_seed: u64, readout: f32) -> Vec<Vec<f64>> {
+    let mut quarters = vec![Vec::new(); 8];
+    for seed in first_seed..first_seed + 12 {
+        let settings = RenderSettings { seed, readout, max_depth: 4, ..RenderSettings::new(16, 16, 64) };
+        let pixels = shoot(scene, &*integrator(name), &settings).film.to_rgb();
+        let mut sums = [0.0; 8];
+        pixels.iter().enumerate().for_each(|(i, pixel)| sums[i / 64 * 2 + i % 16 / 8] += f64::from(pixel.g));
+        quarters.iter_mut().zip(sums).for_each(|(quarter, sum)| quarter.push(sum));
+    }
+    quarters
+}
+
+/// With exposures of rows that are longer and shorter than it takes to read them all.
+#[test]
+fn both_ends_see_rows_when_they_are_exposed() {
+    let builder = moving();
+    for readout in [0.3, 0.9] {
+        let scene = open(&builder, 1.0);
+        let path = quarters(&scene, "path", 0, readout);
+        for (i, name) in ["light", "bdpt", "vcm"].into_iter().enumerate() {
+            let p = agreement(&path, &quarters(&scene, name, 100 * (i as u64 + 1), readout));
+            assert!(p > UNLIKELY, "{name}, {readout} s: p = {p}");
+        }
+        // And it matters: what is exposed all at once looks different.
+        let p = agreement(&path, &quarters(&scene, "path", 900, 0.0));
+        assert!(p < UNLIKELY, "{readout} s: p = {p}");
+    }
+}
