@@ -1,14 +1,15 @@
-//! Layers for compositors that are made once the picture is there: what is visible where, and the light in parts.
+//! Layers for compositors that are made once the picture is there: which objects cover what, and the light in parts.
 
 use crate::job::Subject;
+use crate::labels;
 use crate::{Error, Job, Outcome};
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_pictures::cryptomatte::Cryptomatte;
 use bilux_scene::{Scene, SceneBuilder};
 use bilux_transport::aovs::Aov;
-use bilux_transport::visible::{Moment, Ranks, Wanted};
-use bilux_transport::{Film, LightDivision, Progress, RenderSettings, Stop, Visible, light_parts};
+use bilux_transport::mattes::mattes;
+use bilux_transport::{Film, LightDivision, Progress, RenderSettings, Stop, light_parts};
 use std::collections::{BTreeMap, HashMap};
 
 /// The maximum number of groups of lights: each is a picture of its own.
@@ -77,8 +78,8 @@ impl ExtraLayers {
             };
             layers.push_channel("samples.count", (0..window.pixels()).map(count).collect())?;
         }
-        if wanted.iter().any(|aov| aov.is_visible())
-            && !push_visible(job, &mut layers, &settings, wanted, progress)?
+        if wanted.iter().any(|aov| aov.is_matte())
+            && !push_mattes(job, &mut layers, &settings, wanted, progress)?
         {
             return Ok(None);
         }
@@ -134,35 +135,23 @@ fn push_work(
 }
 
 /// False if it was interrupted.
-fn push_visible(
+fn push_mattes(
     job: &Job,
     layers: &mut Picture,
     settings: &RenderSettings,
     wanted: &[Aov],
     progress: &dyn Progress,
 ) -> Result<bool, Error> {
-    let mut mattes: Vec<(Cryptomatte, Vec<u32>)> = Vec::new();
+    let (mut named, mut of_objects): (Vec<Cryptomatte>, Vec<Vec<u32>>) = Default::default();
     for aov in wanted.iter().filter(|aov| aov.is_matte()) {
         let mut matte = Cryptomatte::new(aov.layer().unwrap_or_default());
-        let ids = job.subject.names(*aov).iter().map(|name| matte.add(name)).collect();
-        mattes.push((matte, ids));
+        of_objects.push(job.subject.names(*aov).iter().map(|name| matte.add(name)).collect());
+        named.push(matte);
     }
-    let next = job.subject.next_pose.as_deref().unwrap_or(&job.subject);
-    let time = job.settings.time + 1.0 / job.settings.fps;
-    let moment = Moment { scene: &next.scene, camera: &*next.camera, time };
-    let what = Wanted {
-        position: wanted.contains(&Aov::Position),
-        uv: wanted.contains(&Aov::Uv),
-        motion: wanted.contains(&Aov::Motion).then_some(moment),
-        ids: mattes.iter().map(|(_, ids)| ids.clone()).collect(),
-    };
     let (scene, camera, integrator) = (job.scene(), job.camera(), job.renders());
-    let samples = settings.spp;
-    let seen = bilux_transport::visible(scene, camera, integrator, settings, &what, samples, progress)?;
-    let Some(seen) = seen else { return Ok(false) };
-    push_points(layers, &seen)?;
-    for ((matte, _), pixels) in mattes.iter().zip(&seen.mattes) {
-        let pixels: &[Ranks] = pixels;
+    let planes = mattes(scene, camera, integrator, settings, &of_objects, settings.spp, progress)?;
+    let Some(planes) = planes else { return Ok(false) };
+    for (matte, pixels) in named.iter().zip(&planes) {
         matte.push(layers, pixels)?;
     }
     Ok(true)
@@ -215,7 +204,7 @@ fn push_light(
 
 impl Subject {
     /// What each object and each sphere of the scene is called in a matte.
-    fn names(&self, aov: Aov) -> Vec<String> {
+    pub(crate) fn names(&self, aov: Aov) -> Vec<String> {
         let geometry = self.scene.geometry();
         let count = geometry.objects().len() + geometry.spheres().len();
         let objects = (0..count as u32).map(|object| match self.source.objects.get(object as usize) {
@@ -230,13 +219,9 @@ impl Subject {
                 (0..count as u32).map(|i| self.material_name(geometry.material_of(i))).collect()
             }
             Aov::CryptoInstance => {
-                let mut seen: HashMap<String, usize> = HashMap::new();
-                let numbered = |name: String| {
-                    let number = seen.entry(name.clone()).or_default();
-                    *number += 1;
-                    format!("{name}#{number}")
-                };
-                objects.map(numbered).collect()
+                let objects: Vec<String> = objects.collect();
+                let numbers = labels::numbers(&objects);
+                objects.iter().zip(numbers).map(|(name, number)| format!("{name}#{number}")).collect()
             }
             _ => objects.collect(),
         }
@@ -256,24 +241,6 @@ fn object_name(scene: &SceneBuilder, object: usize) -> String {
     let names = [&given.name, &given.mesh.name];
     let name = names.into_iter().find(|name| !name.is_empty()).cloned();
     name.unwrap_or_else(|| format!("object {object}"))
-}
-
-fn push_points(layers: &mut Picture, seen: &Visible) -> Result<(), Error> {
-    for (axis, name) in ["position.X", "position.Y", "position.Z"].into_iter().enumerate() {
-        push_some(layers, name, seen.position.iter().map(|p| p[axis]).collect())?;
-    }
-    for (axis, name) in ["uv.U", "uv.V"].into_iter().enumerate() {
-        push_some(layers, name, seen.uv.iter().map(|uv| uv[axis]).collect())?;
-    }
-    for (axis, name) in ["motion.X", "motion.Y"].into_iter().enumerate() {
-        push_some(layers, name, seen.motion.iter().map(|motion| motion[axis]).collect())?;
-    }
-    Ok(())
-}
-
-/// Adds a plane that was asked for.
-fn push_some(layers: &mut Picture, name: &str, samples: Vec<f32>) -> Result<(), Error> {
-    if samples.is_empty() { Ok(()) } else { Ok(layers.push_channel(name, samples)?) }
 }
 
 /// The groups of a scene's lights.

@@ -1,6 +1,6 @@
 //! What is derived from a render besides its light: layers, and the denoised picture.
 
-use crate::{Error, Outcome};
+use crate::{Error, Outcome, labels};
 use bilux_math::Rgb;
 use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, repainted};
 use bilux_pictures::{Picture, PictureError};
@@ -25,12 +25,15 @@ impl Outcome {
     /// # Errors
     /// If memory is short, or the picture already has such layers.
     pub fn push_layers(&self, picture: &mut Picture, wanted: &[Aov]) -> Result<(), Error> {
-        if let Some(features) = &self.features {
+        if let Some(features) = &self.surfaces.features {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
             features.push_layers(picture, wants)?;
             if let Some(coverage) = self.model_coverage.as_ref().filter(|_| wanted.contains(&Aov::Guides)) {
                 picture.push_channel("guides.A", coverage.clone())?;
             }
+        }
+        if let Some(own) = &self.surfaces.labels {
+            labels::push(own, wanted, picture)?;
         }
         if let Some(batches) = self.rendered.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance))
         {
@@ -72,7 +75,7 @@ impl Source for Outcome {
         if light_paths.as_ref().is_some_and(|variance| !variance.is_empty()) {
             layers.push(Layer { colour: light(Film::splatted), variance: light_paths });
         }
-        let features = self.features.as_ref();
+        let features = self.surfaces.features.as_ref();
         let coverage = self.model_coverage.as_ref().or(self.coverage.as_ref());
         let (albedo, normal) =
             features.map(|features| features.guides(coverage.is_some(), pixels.clone())).unzip();

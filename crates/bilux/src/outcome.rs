@@ -4,13 +4,22 @@ use crate::Error;
 use bilux_pictures::Picture;
 use bilux_transport::{Features, Reached, Rendered};
 
+/// What is known of the visible surfaces, as far as it was asked for ([`layers`](crate::JobRequest::layers)).
+#[derive(Clone, Default)]
+pub struct Surfaces {
+    /// Means over samples.
+    pub features: Option<Features>,
+    /// Labels: channels of a picture of the film's window, and the names of their numbers as its metadata.
+    pub labels: Option<Picture>,
+}
+
 /// What was rendered, with whatever else the picture needs.
 #[derive(Clone)]
 pub struct Outcome {
     /// What was rendered: the film, the work that it took, how far it got.
     pub rendered: Rendered,
-    /// Features of the visible surfaces, if they were asked for ([`layers`](crate::JobRequest::layers)).
-    pub features: Option<Features>,
+    /// What is known of the visible surfaces.
+    pub surfaces: Surfaces,
     /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,
     /// The fraction of each pixel that shows the model, if alpha has the shadow on an invisible ground besides.

@@ -79,8 +79,8 @@ pub fn gathering(job: &Job, division: Division) -> Result<Gathering, Error> {
 /// # Errors
 /// If memory is short.
 pub fn gathered(job: &Job, gathering: Gathering, progress: &dyn Progress) -> Result<Outcome, Error> {
-    let features = job.features_within(job.render.stop.time_limit, progress)?;
-    job.completed(gathering.finish()?, features)
+    let surfaces = job.surfaces_within(job.render.stop.time_limit, progress)?;
+    job.completed(gathering.finish()?, surfaces)
 }
 
 /// The integrator that renders, once one that chooses has chosen.

@@ -279,6 +279,9 @@ pub struct Render {
     /// OUT.lengths.exr, and what is outside of them the layer rest (path and bdpt)
     #[arg(long, value_name = "BEGIN,WIDTH,N", value_parser = parse_lengths, help_heading = help::OUTPUT)]
     pub lengths: Option<LengthBins>,
+    /// Write all labels of the pixels' centres as such layers: distances, normals, ids, categories, motion and more
+    #[arg(long, help_heading = help::OUTPUT)]
+    pub labels: bool,
     /// Print one line of JSON per picture to standard output
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,

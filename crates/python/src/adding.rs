@@ -3,6 +3,7 @@
 use crate::arrays;
 use crate::texture::Texture;
 use crate::values::{Resolve, Spec};
+use bilux::math::{Rgb, Vec3};
 use bilux::scene::{Mesh, Object, SceneBuilder};
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -49,8 +50,7 @@ pub(crate) fn of_table<'s>(spec: &'s Bound<'_, Spec>, table: &str) -> PyResult<&
 pub(crate) fn mesh(
     vertices: &Bound<'_, PyAny>,
     triangles: &Bound<'_, PyAny>,
-    normals: Option<&Bound<'_, PyAny>>,
-    uvs: Option<&Bound<'_, PyAny>>,
+    [normals, uvs, colors]: [Option<&Bound<'_, PyAny>>; 3],
     name: &str,
 ) -> PyResult<Mesh> {
     let positions = arrays::vectors("vertices", vertices)?;
@@ -62,7 +62,8 @@ pub(crate) fn mesh(
     }
     let normals = normals.map_or(Ok(Vec::new()), |normals| arrays::vectors("normals", normals))?;
     let uvs = uvs.map_or(Ok(Vec::new()), |uvs| arrays::pairs("uvs", uvs))?;
-    for (argument, count) in [("normals", normals.len()), ("uvs", uvs.len())] {
+    let colors = colors.map_or(Ok(Vec::new()), |colors| arrays::vectors("colors", colors))?;
+    for (argument, count) in [("normals", normals.len()), ("uvs", uvs.len()), ("colors", colors.len())] {
         if count != 0 && count != positions.len() {
             return Err(PyValueError::new_err(format!(
                 "{argument}: there are {count} rows for {} vertices: give one for each vertex",
@@ -70,7 +71,16 @@ pub(crate) fn mesh(
             )));
         }
     }
-    Ok(Mesh { name: name.to_owned(), positions, normals, uvs, triangles, ..Mesh::default() })
+    if let Some(row) =
+        colors.iter().position(|colour| !(colour.cmpge(Vec3::ZERO).all() && colour.cmple(Vec3::ONE).all()))
+    {
+        return Err(PyValueError::new_err(format!(
+            "colors: row {row} is {:?}, but colours are from 0 to 1",
+            colors[row].to_array()
+        )));
+    }
+    let vertex_kd = colors.iter().map(|colour| Rgb::new(colour.x, colour.y, colour.z)).collect();
+    Ok(Mesh { name: name.to_owned(), positions, normals, uvs, vertex_kd, triangles, ..Mesh::default() })
 }
 
 /// Specs of a table, for the scene.

@@ -1,9 +1,10 @@
 //! What happens behind a picture: one sample, event by event, and what each strategy finds.
 
+use crate::building::build;
 use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{build, interrupted};
+use crate::render::interrupted;
 use crate::scene::Scene;
 use crate::strategies::check_strategies;
 use crate::values;

@@ -6,6 +6,7 @@
 mod accel;
 mod adding;
 mod arrays;
+mod building;
 mod cameras;
 mod distribution;
 mod encoded;
@@ -21,19 +22,23 @@ mod layer_names;
 mod lidar;
 mod loading;
 mod memory;
+mod objects;
 mod output;
 mod parts;
 mod pickling;
 mod picture;
 mod placed_mesh;
+mod poses;
 mod progressive;
 mod rays;
 mod reading;
 mod render;
+mod request;
 mod scene;
 mod sensor;
 mod sensors;
 mod shown;
+mod silhouettes;
 mod source;
 mod spec;
 mod strategies;
@@ -61,6 +66,8 @@ mod _bilux {
     #[pymodule_export]
     use crate::lidar::scan;
     #[pymodule_export]
+    use crate::objects::{labels_of, merge, mesh_of, pose, set_category, set_name, set_visibility};
+    #[pymodule_export]
     use crate::parts::{Gathering, PartRenderer};
     #[pymodule_export]
     use crate::picture::Picture;
@@ -74,6 +81,8 @@ mod _bilux {
     use crate::scene::Scene;
     #[pymodule_export]
     use crate::sensors::{daylight_coefficients, irradiance, patch_numbers};
+    #[pymodule_export]
+    use crate::silhouettes::silhouettes;
     #[pymodule_export]
     use crate::spec::rows;
     #[pymodule_export]

@@ -4,10 +4,9 @@ use crate::encoded::Bytes;
 use crate::ending::without_gil;
 use crate::errors::{Error, exception};
 use crate::picture::Picture;
-use crate::render::{
-    BuildWork, Prepared, Request, check_outputs, interrupted, prepared, to_python, with_layers,
-    with_next_pose,
-};
+use crate::poses::with_other_poses;
+use crate::render::{BuildWork, Prepared, check_outputs, interrupted, prepared, to_python, with_layers};
+use crate::request::Request;
 use crate::scene::Scene;
 use crate::watch::{Stopped, follow};
 use bilux::transport::aovs::Aov;
@@ -126,7 +125,7 @@ impl Gathering {
             check_outputs(&job, &request)?;
             // What denoises it is looked for now, so that it is missed before anything is rendered.
             job.denoiser()?;
-            with_next_pose(job, &builder, &own.built, &request)
+            with_other_poses(job, &builder, &own.built, &request)
         });
         let job = checked.map_err(exception)?;
         let Request { aovs, begun, .. } = request;

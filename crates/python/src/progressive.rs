@@ -1,9 +1,10 @@
 //! Ever better pictures of one scene.
 
+use crate::building::build;
 use crate::ending::without_gil;
 use crate::errors::{Error, exception, warn};
 use crate::picture::Picture;
-use crate::render::{build, interrupted};
+use crate::render::interrupted;
 use crate::watch::{Stopped, follow};
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::{Budget, Built, Display, Outcome};

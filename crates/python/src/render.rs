@@ -1,79 +1,23 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
-use crate::errors::{Error, exception, of_scene, warn};
-use crate::loading::Origin;
-use crate::memory;
+use crate::building::build_of;
+use crate::errors::{Error, exception, warn};
 use crate::picture::Picture;
+use crate::poses::with_other_poses;
+use crate::request::Request;
 use crate::strategies::{check_strategies, push_strategies};
-use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::budget::{let_limits_decide, with_default_budget, with_fast_budget};
 use bilux::pictures::denoise::preload;
-use bilux::scene::{Object, Parameters, SceneBuilder, SceneError, Span, Warning};
+use bilux::scene::{SceneBuilder, Span, Warning};
+use bilux::transport::Progress;
 use bilux::transport::aovs::{AOVS, Aov, AovEntry};
-use bilux::transport::{Progress, Window};
 use bilux::wording::in_python;
-use bilux::{Built, Denoised, Display, ExtraLayers, Job, JobRequest, Outcome, Series, Settings};
+use bilux::{Built, Display, ExtraLayers, Job, Outcome, Settings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::Instant;
-
-/// What a call asks for.
-#[derive(Clone)]
-pub(crate) struct Request {
-    /// Settings that take precedence over those of the scene.
-    pub(crate) user: Parameters,
-    /// The layers.
-    pub(crate) aovs: Vec<Aov>,
-    /// The window, if not all of the picture.
-    pub(crate) crop: Option<[u32; 4]>,
-    /// Whether to render the cleanest picture that about a second allows.
-    pub(crate) fast: bool,
-    /// The maximum number of bytes of memory.
-    pub(crate) max_memory: u64,
-    /// The time in seconds for which the scene's file was read.
-    pub(crate) loaded_at: f32,
-    /// When the call began.
-    pub(crate) begun: Instant,
-    /// What the picture has in common with others.
-    pub(crate) series: Series,
-    /// Where the scene came from, for the layer of motion of meshes that move by themselves.
-    pub(crate) origin: Option<Origin>,
-}
-
-impl Request {
-    /// A picture with settings, layers of these names and, in the end, `fast`, `max_memory` and `loaded_at`.
-    ///
-    /// # Errors
-    /// If a setting or a layer makes no sense.
-    pub(crate) fn new(
-        settings: &Bound<'_, PyDict>,
-        layers: &[String],
-        fast: bool,
-        max_memory: u64,
-        loaded_at: f32,
-    ) -> PyResult<Request> {
-        let (begun, series) = (Instant::now(), Series::default());
-        let user = values::keywords(settings)?;
-        let aovs = aovs(layers).map_err(of_scene)?;
-        let max_memory = memory::within_limits(max_memory);
-        Ok(Request { user, aovs, crop: None, fast, max_memory, loaded_at, begun, series, origin: None })
-    }
-
-    /// What is asked of the job, with the limits that apply.
-    fn of_job(&self, user: &Parameters, settings: &Settings) -> Result<JobRequest, bilux::Error> {
-        let asked = JobRequest::from(user)
-            .in_series(self.series.clone())
-            .max_memory(self.max_memory)
-            .begun_at(self.begun)
-            .layers(&self.aovs);
-        Ok(match self.crop {
-            Some(crop) => asked.crop(window(settings, crop)?).denoised(Denoised::IfAsked),
-            None => asked.denoised(Denoised::ForDisplay),
-        })
-    }
-}
 
 /// A picture that was rendered, before it becomes Python's.
 pub(crate) struct Rendered {
@@ -87,20 +31,6 @@ pub(crate) struct Rendered {
     integrator: &'static str,
     denoiser: Option<String>,
     build: BuildWork,
-}
-
-/// The AOVs of these names.
-///
-/// # Errors
-/// If there is no such AOV.
-fn aovs(names: &[String]) -> Result<Vec<Aov>, SceneError> {
-    let find = |name: &String| {
-        let found = AOVS.iter().find(|row| row.entry.name == name || row.aov.layer() == Some(name));
-        found.map(|row| row.aov).ok_or_else(|| {
-            SceneError::unknown("layer", name, AOVS.iter().map(|row| row.entry.name), &Span::default())
-        })
-    };
-    names.iter().map(find).collect()
 }
 
 /// Renders a picture. Runs without the GIL, except for `callback`.
@@ -167,41 +97,9 @@ fn rendered(
         return Ok(None);
     }
     check_outputs(&job, &request)?;
-    let job = with_next_pose(job, scene, built, &request)?;
+    let job = with_other_poses(job, scene, built, &request)?;
     let outcome = job.render(watch)?;
     Ok(Some(with_layers(&job, outcome, &request.aovs, build, watch)?))
-}
-
-/// The job with the next pose of meshes that move by themselves, if the layer of motion is wanted.
-pub(crate) fn with_next_pose(
-    job: Job,
-    scene: &SceneBuilder,
-    built: &Mutex<Built>,
-    request: &Request,
-) -> Result<Job, bilux::Error> {
-    if !scene.inventory.moves() || !request.aovs.contains(&Aov::Motion) {
-        return Ok(job);
-    }
-    let (time, series) = (job.settings().time + 1.0 / job.settings().fps, request.series.clone());
-    let later = request.origin.as_ref().map(|origin| origin.read_at(time)).transpose()?;
-    let same_shape = |(now, later): (&Object, &Object)| now.mesh.triangles == later.mesh.triangles;
-    let later = later.filter(|later| {
-        later.objects.len() == scene.objects.len() && scene.objects.iter().zip(&later.objects).all(same_shape)
-    });
-    let Some(later) = later else {
-        return Err(bilux::Error::Settings(
-            "aov: the motion of meshes that move by themselves takes the file again, at the next frame: render the \
-             scene as bilux.load returned it, without other objects, and not from a pickle"
-                .to_owned(),
-        ));
-    };
-    let mut next = scene.clone();
-    for (object, later) in next.objects.iter_mut().zip(later.objects) {
-        object.mesh = later.mesh;
-    }
-    let request = JobRequest::from(&request.user).max_memory(request.max_memory);
-    let (next, _) = build_of(&next, built, request.in_series(series))?;
-    Ok(job.moving_to(&next))
 }
 
 /// A job, and what it took to build it.
@@ -320,42 +218,6 @@ fn push_made_later(
     let names: Vec<&str> = missing.iter().map(|row| row.entry.name).collect();
     let message = format!("the render was stopped, so these layers are missing: {}", names.join(", "));
     Ok((!names.is_empty()).then(|| Warning { message, at: Span::default() }))
-}
-
-/// The job, with what earlier renders of the scene have built, and the number of trees that were missing.
-pub(crate) fn build(
-    scene: &SceneBuilder,
-    built: &Mutex<Built>,
-    user: &Parameters,
-    max_memory: u64,
-) -> Result<(Job, u64), bilux::Error> {
-    build_of(scene, built, JobRequest::from(user).max_memory(memory::within_limits(max_memory)))
-}
-
-/// As [`build`], with more that is asked for.
-fn build_of(
-    scene: &SceneBuilder,
-    built: &Mutex<Built>,
-    asked: JobRequest,
-) -> Result<(Job, u64), bilux::Error> {
-    let mut built = built.lock().unwrap_or_else(PoisonError::into_inner);
-    let before = built.tree_work().trees;
-    let job = Job::with_built(scene, asked, &mut built)?;
-    Ok((job, built.tree_work().trees - before))
-}
-
-/// The window of the picture that `crop` asks for.
-fn window(settings: &Settings, [x, y, width, height]: [u32; 4]) -> Result<Window, bilux::Error> {
-    let fits =
-        |at: u32, side: u32, most: u32| side > 0 && at.checked_add(side).is_some_and(|end| end <= most);
-    if fits(x, width, settings.width) && fits(y, height, settings.height) {
-        return Ok(Window { x, y, width, height });
-    }
-    Err(bilux::Error::Settings(format!(
-        "crop: the window {x}, {y}, {width}, {height} (x, y, width, height) must contain pixels and lie within the \
-         picture, which is {}x{}",
-        settings.width, settings.height
-    )))
 }
 
 /// What the picture's `info` says.

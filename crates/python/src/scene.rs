@@ -9,7 +9,8 @@ use crate::loading::{Origin, glass_named, loaded};
 use crate::memory::within_limits;
 use crate::picture::Picture;
 use crate::progressive::Progressive;
-use crate::render::{Request, render};
+use crate::render::render;
+use crate::request::Request;
 use crate::source::Source;
 use crate::surroundings::surround;
 use crate::values::{self, Resolve, Spec, Unresolved};
@@ -98,7 +99,7 @@ impl Scene {
         with_builder(class, without_gil(class.py(), || bilux::generate(&spec)).map_err(exception)?)
     }
 
-    #[pyo3(signature = (vertices, triangles, normals, uvs, material, transforms, name))]
+    #[pyo3(signature = (vertices, triangles, normals, uvs, colors, material, transforms, name))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of Scene.add_mesh")]
     fn _add(
         &self,
@@ -107,11 +108,12 @@ impl Scene {
         triangles: &Bound<'_, PyAny>,
         normals: Option<&Bound<'_, PyAny>>,
         uvs: Option<&Bound<'_, PyAny>>,
+        colors: Option<&Bound<'_, PyAny>>,
         material: Option<&Bound<'_, Spec>>,
         transforms: Option<&Bound<'_, PyAny>>,
         name: &str,
     ) -> PyResult<(usize, usize)> {
-        let mesh = mesh(vertices, triangles, normals, uvs, name)?;
+        let mesh = mesh(vertices, triangles, [normals, uvs, colors], name)?;
         let several = transforms.is_some();
         let transforms = match transforms {
             Some(transforms) => arrays::transforms("transforms", transforms)?,
@@ -154,24 +156,6 @@ impl Scene {
         let (vertices, triangles) = (object.mesh.positions.len(), object.mesh.triangles.len());
         let name = if object.name.is_empty() { &object.mesh.name } else { &object.name };
         Ok((name.clone(), material, matrix, vertices, triangles))
-    }
-
-    fn _mesh<'py>(&self, py: Python<'py>, index: usize) -> PyResult<[Option<Bound<'py, PyAny>>; 4]> {
-        let mesh = object(&self.builder(py), index)?.mesh.clone();
-        let floats = |flat: Vec<f32>, width: usize| match flat.is_empty() {
-            true => Ok(None),
-            false => PyArray1::from_vec(py, flat).call_method1("reshape", ((-1, width as i64),)).map(Some),
-        };
-        let flat = |of: &[bilux::math::Vec3]| of.iter().flat_map(|v| v.to_array()).collect::<Vec<f32>>();
-        let triangles = mesh.triangles.iter().flatten().map(|&i| i64::from(i)).collect();
-        let triangles = PyArray1::from_vec(py, triangles).call_method1("reshape", ((-1, 3),))?;
-        let uvs = mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect();
-        Ok([
-            floats(flat(&mesh.positions), 3)?,
-            Some(triangles),
-            floats(flat(&mesh.normals), 3)?,
-            floats(uvs, 2)?,
-        ])
     }
 
     fn _set_transform(&self, py: Python<'_>, index: usize, transform: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -303,7 +287,7 @@ impl Scene {
         Ok(lost.map_err(exception)?.iter().map(ToString::to_string).collect())
     }
 
-    #[pyo3(signature = (settings, aov, crop, fast, max_memory, loaded_at, callback))]
+    #[pyo3(signature = (settings, aov, crop, others, fast, max_memory, loaded_at, callback))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of Scene.render")]
     fn _render(
         &self,
@@ -311,6 +295,7 @@ impl Scene {
         settings: &Bound<'_, PyDict>,
         aov: Vec<String>,
         crop: Option<[u32; 4]>,
+        others: [Option<Bound<'_, Scene>>; 2],
         fast: bool,
         max_memory: u64,
         loaded_at: f32,
@@ -320,7 +305,8 @@ impl Scene {
         // What others change from now on is not in this picture.
         let scene = self.builder(py).clone();
         let origin = self.origin(py).clone();
-        render(py, &scene, &self.built, Request { crop, origin, ..request }, callback)
+        let others = others.map(|other| Some(other?.get().builder(py).clone()));
+        render(py, &scene, &self.built, Request { crop, origin, others, ..request }, callback)
     }
 
     fn _progressive(

@@ -1,9 +1,10 @@
 //! The light that points receive, and how much of it comes from each patch of the sky, as arrays.
 
 use crate::arrays;
+use crate::building::build;
 use crate::errors::exception;
 use crate::output::Output;
-use crate::render::{build, interrupted};
+use crate::render::interrupted;
 use crate::scene::Scene;
 use crate::values;
 use crate::watch::{Stopped, Watch, follow};

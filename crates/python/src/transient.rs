@@ -1,8 +1,9 @@
 //! Pictures in intervals of the length of paths.
 
+use crate::building::build;
 use crate::ending::without_gil;
 use crate::errors::{Error, exception};
-use crate::render::{build, interrupted};
+use crate::render::interrupted;
 use crate::scene::Scene;
 use crate::values;
 use crate::watch::{Stopped, follow};

@@ -3,7 +3,8 @@
 use crate::ending::without_gil;
 use crate::errors::exception;
 use crate::picture::Picture;
-use crate::render::{Request, render};
+use crate::render::render;
+use crate::request::Request;
 use crate::scene::Scene;
 use bilux::scene::SceneBuilder;
 use bilux::{JobRequest, Series};

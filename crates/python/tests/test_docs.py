@@ -28,7 +28,8 @@ def documented():
                     yield f"{name}.{member}", getattr(thing, member)
     yield from ((f"lidar.{name}", getattr(bilux.lidar, name)) for name in bilux.lidar.__all__)
     yield "lidar.PointCloud.save", bilux.lidar.PointCloud.save
-    yield from ((f"trimesh.{name}", thing) for name, thing in vars(bilux.trimesh).items() if name == "RayMeshIntersector")
+    yield from ((f"trimesh.{name}", getattr(bilux.trimesh, name)) for name in ("RayMeshIntersector", "scene_of"))
+    yield from ((f"labels.{name}", getattr(bilux.labels, name)) for name in bilux.labels.__all__)
 
 
 EVERYTHING = dict(documented()) | {"bilux": bilux}
@@ -59,6 +60,7 @@ def test_everything_is_documented_and_its_examples_run(name, folder):
         "docs/tutorials/sensors.md",
         "docs/tutorials/lux.md",
         "docs/tutorials/daylight.md",
+        "docs/tutorials/training-data.md",
     ],
 )
 def test_every_example_of_the_pages_runs(page, folder, monkeypatch):

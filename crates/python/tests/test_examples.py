@@ -84,6 +84,22 @@ def test_room_360(tmp_path):
     assert np.abs(front[14:18, 14:18].mean() - room[30:34, 62:66].mean()) < 0.15
 
 
+def test_bop_dataset(tmp_path):
+    words = [tmp_path / "data", "--count", 2, "--spp", 4]
+    subprocess.run([sys.executable, EXAMPLES / "bop_dataset.py", *map(str, words)], check=True, timeout=120)
+    folder = tmp_path / "data/train_pbr/000000"
+    poses, info = (json.loads((folder / f"scene_{name}.json").read_text()) for name in ("gt", "gt_info"))
+    models = json.loads((tmp_path / "data/models/models_info.json").read_text())
+    for number in ("0", "1"):
+        assert len(poses[number]) == len(info[number]) >= 6
+        # All lie in the heap before the camera, in millimetres; some hide others.
+        assert all(300 < pose["cam_t_m2c"][2] < 1500 and str(pose["obj_id"]) in models for pose in poses[number])
+        assert min(one["visib_fract"] for one in info[number]) < 0.95 and max(one["visib_fract"] for one in info[number]) > 0.7
+        assert bilux.read_picture(folder / f"rgb/{int(number):06}.png").to_uint8()[..., :3].std() > 8
+    model = bilux.load(tmp_path / "data/models/obj_000001.ply")
+    assert np.ptp(np.array(model.bounds)[:, 1]) == pytest.approx(models["1"]["size_y"], rel=1e-5)
+
+
 CELLS = [path for path in sorted(EXAMPLES.glob("*.py")) if path.read_text("utf-8").startswith("# %%")]
 
 

@@ -119,3 +119,43 @@ def test_wrong_rays_are_refused_and_none_are_fine():
     assert own(box).intersects_location(empty, empty)[0].shape == (0, 3)
     assert own(box).contains_points(empty).shape == (0,)
     assert own(trimesh.Trimesh()).intersects_any([[0, 0, 0.0]], [[0, 0, 1.0]]).tolist() == [False]
+
+
+def test_scenes_are_taken_over_with_their_textures():
+    image = pytest.importorskip("PIL.Image")
+    corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+    pixels = np.zeros((2, 2, 3), np.uint8)
+    # The upper left of the picture is red, the lower right blue.
+    pixels[0, 0], pixels[1, 1] = (255, 0, 0), (0, 0, 255)
+    visual = trimesh.visual.TextureVisuals(
+        uv=[[0, 0], [1, 0], [1, 1], [0, 1]],
+        material=trimesh.visual.material.PBRMaterial(
+            baseColorTexture=image.fromarray(pixels), metallicFactor=0.0, roughnessFactor=1.0
+        ),
+    )
+    card = trimesh.Trimesh(corners, [[0, 1, 2], [0, 2, 3]], visual=visual, process=False, metadata={"category": "card"})
+    ball = trimesh.creation.icosphere(1)
+    ball.visual = trimesh.visual.ColorVisuals(ball, vertex_colors=np.full((len(ball.vertices), 4), (0, 255, 0, 255), np.uint8))
+    box = trimesh.creation.box()
+    box.visual = trimesh.visual.ColorVisuals(box, face_colors=np.tile([255, 255, 0, 255], (12, 1)).astype(np.uint8))
+    theirs = trimesh.Scene()
+    theirs.add_geometry(card, node_name="card")
+    theirs.add_geometry(ball, node_name="ball", transform=trimesh.transformations.translation_matrix([3, 0, 0]))
+    for number in range(2):
+        place = trimesh.transformations.translation_matrix([-3, 2 * number - 1, 0])
+        theirs.add_geometry(box, node_name=f"box {number}", geom_name="box", transform=place)
+    theirs.add_geometry(trimesh.load_path(np.array([[0, 0, 0], [1, 1, 1.0]])), node_name="path")
+    with pytest.warns(bilux.SceneWarning, match="is no mesh with triangles"):
+        scene = bilux.trimesh.scene_of(theirs)
+    names = [thing.name for thing in scene.objects]
+    assert sorted(names)[:2] == ["ball", "box 0"] and len(names) == 4
+    assert scene.objects[names.index("card")].category == "card"
+    np.testing.assert_allclose(scene.objects[names.index("ball")].transform[:3, 3], [3, 0, 0])
+    scene.add_camera(bilux.cameras.orthographic(position=(0, 0, 9), look_at=(0, 0, 0), height=8))
+    scene.add_light(bilux.lights.environment(radiance=1.0))
+    picture = scene.render(size=(64, 64), spp=4, integrator="path", aov=["albedo", "ids"])
+    at = lambda x, y: picture["albedo"][round(31.5 - 8 * y), round(31.5 + 8 * x)]  # noqa: E731
+    assert at(-0.8, 0.8).argmax() == 0 and at(0.8, -0.8).argmax() == 2
+    assert at(3, 0).argmax() == 1 and at(-3, 1)[2] < 0.1 < at(-3, 1)[1]
+    with pytest.raises(TypeError, match="neither a trimesh.Scene nor"):
+        bilux.trimesh.scene_of([1, 2])

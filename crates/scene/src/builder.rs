@@ -1,6 +1,7 @@
 //! A scene under construction: plain data, as files describe it.
 
 mod built_parts;
+mod merging;
 
 use crate::accel_choice::AccelChoice;
 use crate::axis::UpHint;
@@ -15,6 +16,7 @@ use crate::lights::{self, BuiltLight};
 use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec, Value};
+use crate::placed::Visibility;
 use crate::scene::{LightSurfaces, Scene, SceneLight, SceneParts};
 use crate::sides::Sides;
 use crate::spheres::PlacedSphere;
@@ -42,12 +44,24 @@ pub struct Object {
     ///
     /// Otherwise, and for objects that do not move, triangles go into one tree of the whole scene.
     pub instanced: bool,
+    /// What kind of thing it is, for labels, such as "chair"; empty for none.
+    pub category: String,
+    /// Which rays see it.
+    pub visibility: Visibility,
 }
 
 impl Object {
     /// A mesh in its original position, with the material of this index.
     pub fn new(name: &str, mesh: Arc<Mesh>, material: usize) -> Object {
-        Object { name: name.to_owned(), mesh, material, motion: Motion::REST, instanced: false }
+        Object {
+            name: name.to_owned(),
+            mesh,
+            material,
+            motion: Motion::REST,
+            instanced: false,
+            category: String::new(),
+            visibility: Visibility::Full,
+        }
     }
 
     /// The same object, transformed.
@@ -131,7 +145,8 @@ impl SceneBuilder {
     /// The bounding box of all objects at a time in seconds, without lights.
     pub fn bounds(&self, time: f32) -> bilux_math::Aabb {
         let moved = |o: &Object| o.motion.at(time).bounds(&o.mesh.bounds());
-        self.objects.iter().map(moved).fold(bilux_math::Aabb::EMPTY, bilux_math::Aabb::union)
+        let shown = self.objects.iter().filter(|object| object.visibility != Visibility::Hidden);
+        shown.map(moved).fold(bilux_math::Aabb::EMPTY, bilux_math::Aabb::union)
     }
 
     /// Checks everything and builds the trees. `shutter` is the exposure interval in seconds; `aspect` is the film's
@@ -186,12 +201,15 @@ impl SceneBuilder {
             .collect::<Result<Vec<_>, SceneError>>()?;
         let filtered_of = |material| footprint::filtered(material, &self.materials, &self.textures);
         let filtered: Vec<Vec<Arc<Texture>>> = self.materials.iter().map(filtered_of).collect();
+        let nothing = Arc::new(Mesh::default());
         let place = |object: &Object, mesh: Arc<Mesh>| Placed {
-            mesh,
+            mesh: if object.visibility == Visibility::Hidden { nothing.clone() } else { mesh },
+            visibility: object.visibility,
             material: object.material as u32,
             motion: object.motion.clone(),
             instanced: object.instanced,
-            gives_light: !materials[object.material].emission().is_black(),
+            gives_light: object.visibility != Visibility::Hidden
+                && !materials[object.material].emission().is_black(),
             has_tangents: materials[object.material].needs_tangents(),
             is_filtered: filtered.get(object.material).is_some_and(|textures| !textures.is_empty()),
         };

@@ -61,6 +61,7 @@ pub use media::{FreePath, Medium, PHASES, Phase};
 pub use mesh::Mesh;
 pub use orientation::{Orientation, OrientationSource};
 pub use parameters::{Parameters, Reader, Spec, Value};
+pub use placed::Visibility;
 pub use scene::{Enclosure, Scene, Shading, Tracer};
 pub use span::Span;
 pub use strokes::StrokeWidths;

@@ -12,23 +12,39 @@ pub enum Aov {
     Interval,
     /// [`crate::Features::albedo`].
     Albedo,
-    /// [`crate::Features::normal`].
+    /// Shading normals in world space.
     Normal,
-    /// [`crate::Features::depth`].
+    /// The same in the space of the camera.
+    CameraNormal,
+    /// Distances along rays.
     Depth,
-    /// [`crate::Features::object`] and [`crate::Features::material`].
+    /// Distances along the camera's axis.
+    ZDepth,
+    /// Numbers of objects and materials.
     Ids,
+    /// Numbers among objects of the same name.
+    Instance,
+    /// Numbers of categories.
+    Category,
     /// [`crate::Features::push_guides`].
     Guides,
     /// [`crate::push_variance`].
     Variance,
-    /// [`crate::Visible::position`].
+    /// Points in world space.
     Position,
-    /// [`crate::Visible::uv`].
+    /// Texture coordinates.
     Uv,
-    /// [`crate::Visible::motion`].
+    /// Triangles of meshes.
+    Primitive,
+    /// Barycentric coordinates in these.
+    Barycentric,
+    /// Forward optical flow.
     Motion,
-    /// [`crate::Visible::mattes`] of objects.
+    /// Backward optical flow.
+    BackwardMotion,
+    /// Whether points are hidden at the other end of either.
+    Occluded,
+    /// [`crate::mattes()`] of objects.
     CryptoObject,
     /// The same of materials.
     CryptoMaterial,
@@ -54,16 +70,24 @@ pub enum Aov {
 
 impl Aov {
     /// The AOVs that are layers of the picture.
-    pub const ALL_LAYERS: [Aov; 20] = [
+    pub const ALL_LAYERS: [Aov; 28] = [
         Aov::Albedo,
         Aov::Normal,
+        Aov::CameraNormal,
         Aov::Depth,
+        Aov::ZDepth,
         Aov::Ids,
+        Aov::Instance,
+        Aov::Category,
         Aov::Guides,
         Aov::Variance,
         Aov::Position,
         Aov::Uv,
+        Aov::Primitive,
+        Aov::Barycentric,
         Aov::Motion,
+        Aov::BackwardMotion,
+        Aov::Occluded,
         Aov::CryptoObject,
         Aov::CryptoMaterial,
         Aov::CryptoInstance,
@@ -83,13 +107,21 @@ impl Aov {
             Aov::Strategies | Aov::Interval => None,
             Aov::Albedo => Some("albedo"),
             Aov::Normal => Some("normal"),
+            Aov::CameraNormal => Some("camera_normal"),
             Aov::Depth => Some("depth"),
+            Aov::ZDepth => Some("z_depth"),
             Aov::Ids => Some("id"),
+            Aov::Instance => Some("instance"),
+            Aov::Category => Some("category"),
             Aov::Guides => Some("guides"),
             Aov::Variance => Some("variance"),
             Aov::Position => Some("position"),
             Aov::Uv => Some("uv"),
+            Aov::Primitive => Some("primitive"),
+            Aov::Barycentric => Some("barycentric"),
             Aov::Motion => Some("motion"),
+            Aov::BackwardMotion => Some("backward_motion"),
+            Aov::Occluded => Some("occluded"),
             Aov::CryptoObject => Some("CryptoObject"),
             Aov::CryptoMaterial => Some("CryptoMaterial"),
             Aov::CryptoInstance => Some("CryptoInstance"),
@@ -104,14 +136,37 @@ impl Aov {
         }
     }
 
-    /// True for properties of surfaces, whatever their lighting, as [`crate::Features`] has them.
+    /// True for what [`crate::Features`] has: means over samples.
     pub fn is_feature(self) -> bool {
-        matches!(self, Aov::Albedo | Aov::Normal | Aov::Depth | Aov::Ids)
+        matches!(self, Aov::Albedo | Aov::Guides)
     }
 
-    /// True for what [`crate::Visible`] has.
-    pub fn is_visible(self) -> bool {
-        matches!(self, Aov::Position | Aov::Uv | Aov::Motion) || self.is_matte()
+    /// True for [labels](crate::labels): each is of the one surface that the ray through a pixel's centre meets.
+    pub fn is_label(self) -> bool {
+        self.is_flow()
+            || matches!(self, Aov::Normal | Aov::CameraNormal | Aov::Depth | Aov::ZDepth | Aov::Position)
+            || matches!(self, Aov::Ids | Aov::Instance | Aov::Category)
+            || matches!(self, Aov::Uv | Aov::Primitive | Aov::Barycentric)
+    }
+
+    /// True for labels that another moment is needed for.
+    pub fn is_flow(self) -> bool {
+        self.needs_next() || self.needs_previous()
+    }
+
+    /// True for labels of where points are in the next frame.
+    pub fn needs_next(self) -> bool {
+        matches!(self, Aov::Motion | Aov::Occluded)
+    }
+
+    /// True for labels of where points were in the previous frame.
+    pub fn needs_previous(self) -> bool {
+        matches!(self, Aov::BackwardMotion | Aov::Occluded)
+    }
+
+    /// All labels, in the order of the table.
+    pub fn labels() -> impl Iterator<Item = &'static AovEntry> {
+        AOVS.iter().filter(|row| row.aov.is_label())
     }
 
     /// True for Cryptomatte.
@@ -121,7 +176,7 @@ impl Aov {
 
     /// True for layers that are made once the picture is there.
     pub fn is_extra(self) -> bool {
-        self.is_visible() || self.is_light() || self.is_work() || self == Aov::Samples
+        self.is_matte() || self.is_light() || self.is_work() || self == Aov::Samples
     }
 
     /// True for parts of the picture's light, for which its samples are taken once more.
@@ -191,15 +246,37 @@ pub const AOVS: &[AovEntry] = &[
         "shading normals in world space, on the visible side, at the pixels' centres: normal.X, .Y, .Z",
     ),
     layer(
+        Aov::CameraNormal,
+        "camera_normal",
+        "the same normals in the camera's space (x to the right, y upwards, z towards the camera): camera_normal.X, .Y, .Z",
+    ),
+    layer(
         Aov::Depth,
         "depth",
         "distance from the camera along the rays through the pixels' centres, in metres, infinite for the background: \
          depth.Z",
     ),
     layer(
+        Aov::ZDepth,
+        "z_depth",
+        "z-depth: distance of the same points along the camera's axis, in metres, infinite for the background: z_depth.Z",
+    ),
+    layer(
         Aov::Ids,
         "ids",
         "object and material indices at the pixels' centres: id.object, id.material, counted from 1; 0 for none",
+    ),
+    layer(
+        Aov::Instance,
+        "instance",
+        "numbers of instances at the pixels' centres, among the objects of the same name, counted from 1; 0 for none: \
+         instance.id",
+    ),
+    layer(
+        Aov::Category,
+        "category",
+        "categories of objects at the pixels' centres, by their place in the sorted list of the scene's categories (metadata \
+         bilux.category.1, …); 0 for none: category.id",
     ),
     layer(
         Aov::Guides,
@@ -220,9 +297,33 @@ pub const AOVS: &[AovEntry] = &[
     ),
     layer(Aov::Uv, "uv", "texture coordinates at the pixels' centres: uv.U, uv.V"),
     layer(
+        Aov::Primitive,
+        "primitive",
+        "triangles at the pixels' centres, by their place in the mesh, counted from 1; 0 for none, and for points, lines and \
+         spheres: primitive.id",
+    ),
+    layer(
+        Aov::Barycentric,
+        "barycentric",
+        "barycentric weights of these triangles' second and third vertices: barycentric.U, .V",
+    ),
+    layer(
         Aov::Motion,
         "motion",
-        "motion vectors of the pixels' centres to the next frame, in pixels, to the right and upwards: motion.X, .Y",
+        "motion vectors of the pixels' centres to the next frame (forward optical flow), in pixels, to the right and upwards: \
+         motion.X, .Y",
+    ),
+    layer(
+        Aov::BackwardMotion,
+        "backward_motion",
+        "motion vectors of the pixels' centres to the previous frame (backward optical flow), in pixels, to the right and \
+         upwards: backward_motion.X, .Y",
+    ),
+    layer(
+        Aov::Occluded,
+        "occluded",
+        "1 where the point at the pixel's centre is hidden, or outside of the picture, in the next frame (occluded.next) and \
+         in the previous one (occluded.previous); 0 where it is visible there",
     ),
     matte(Aov::CryptoObject, "crypto_object", "Cryptomatte of objects by name: CryptoObject00.red, …"),
     matte(

@@ -89,20 +89,6 @@ impl<'a> CameraRays<'a> {
         (scene.from_camera(camera.ray(&camera_sample)), state)
     }
 
-    /// The ray of a pixel's [labels](crate::labels): through the centre of the pixel and of the lens, when the shutter opens.
-    pub(crate) fn of_labels(&self, x: u32, y: u32) -> Ray {
-        let place = Vec2::splat(self.settings.pixel_anchor.offset());
-        let film = on_film(self.settings, x, y, place);
-        let time = self.time_of_labels(film);
-        self.context.scene.for_labels(self.context.camera.ray(&CameraSample { film, lens: Vec2::ZERO, time }))
-    }
-
-    /// When a point of the film begins to be exposed.
-    pub(crate) fn time_of_labels(&self, film: Vec2) -> f32 {
-        let [opens, _] = self.context.exposure.of_first_row();
-        opens + self.context.exposure.delay(film)
-    }
-
     /// The time of a sample, and the state for its light subpath alone: streams of random numbers do not depend on what was
     /// drawn before them.
     #[inline]

@@ -1,10 +1,10 @@
-//! What the camera sees of surfaces, whatever their lighting: albedo, normal, depth and ids, pixel by pixel. Denoisers
-//! use these features to distinguish edges and textures from noise, and compositors to select objects.
+//! What the camera sees of surfaces, whatever their lighting, on average over a pixel: albedo, normal and depth. Denoisers
+//! use these features to distinguish edges and textures from noise.
 //!
 //! They take a pass of their own over the film. Albedo, and the normals and depths that guide denoisers, are means over the
 //! camera rays of the picture's first samples. At smooth mirrors and glass a ray goes on, along the more likely of
 //! reflection and refraction, to the surface that is visible there, so that reflected and refracted images have their
-//! edges too; depth is that of the first surface. The other features are [labels](crate::labels), all of one surface. Each
+//! edges too; depth is that of the first surface. What is exact, and of one surface, are [labels](crate::labels). Each
 //! pixel is summed on its own, in the order of its samples: the bytes are the same for any number of threads, any crop
 //! and any range of samples.
 //!
@@ -16,7 +16,7 @@ use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
 use crate::failures::SamplePlace;
 use crate::film::zeroed;
-use crate::labels::{Labelled, labels, visible_normal};
+use crate::labels::visible_normal;
 use crate::media::Media;
 use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
@@ -44,16 +44,6 @@ pub struct Features {
     pub window: Window,
     /// The fraction of light that surfaces and media scatter, 0..=1; for lights, fire and the background their emission, at most 1.
     pub albedo: Vec<Rgb>,
-    /// The shading normal of the labelled surface in world space, on the visible side: of unit length, or zero where nothing is
-    /// visible.
-    pub normal: Vec<Vec3>,
-    /// Metres from the camera to the labelled surface along the ray through the pixel's centre; infinite where nothing is
-    /// visible.
-    pub depth: Vec<f32>,
-    /// One more than the index of the labelled object; 0 for none. Empty unless it was asked for ([`RenderSettings::ids`]).
-    pub object: Vec<u32>,
-    /// The same for its material.
-    pub material: Vec<u32>,
     /// The mean of the samples' shading normals: shorter than 1 where normals differ, and in fog, which has none.
     pub mean_normal: Vec<Vec3>,
     /// The mean depth of what the samples see, of surfaces and media; infinite where there is nothing.
@@ -75,30 +65,6 @@ struct Sums {
     seen: f32,
     covered: f32,
     haze: f32,
-    label: Label,
-}
-
-/// What is kept of a pixel's label.
-#[derive(Clone, Copy)]
-struct Label {
-    normal: Vec3,
-    depth: f32,
-    object: u32,
-    material: u32,
-}
-
-impl Default for Label {
-    fn default() -> Label {
-        Label { normal: Vec3::ZERO, depth: f32::INFINITY, object: 0, material: 0 }
-    }
-}
-
-impl Label {
-    fn of(scene: &Scene, labelled: &Labelled) -> Label {
-        let Surface { t, object, .. } = labelled.surface;
-        let material = scene.geometry().material_of(object) + 1;
-        Label { normal: labelled.normal(), depth: t, object: object + 1, material }
-    }
 }
 
 /// Evaluates the first [`FEATURE_SAMPLES`] samples of each pixel, and no more than fit into `time` if that is given.
@@ -139,7 +105,7 @@ pub fn features(
         }
     }
     let has_haze = scene.scatters() || scene.has_interfaces();
-    Features::of(window, tiles, done, settings.ids, has_haze).map(Some)
+    Features::of(window, tiles, done, has_haze).map(Some)
 }
 
 /// The fraction of each pixel that is covered, 0..=1, in rows of the film's window, the top row first: the mean over its first
@@ -183,16 +149,9 @@ pub fn coverage(
     Ok(coverage)
 }
 
-/// Adds one sample to each pixel of a tile; with the first, its labels.
+/// Adds one sample to each pixel of a tile.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.context.scene, false);
-    if sample == 0 {
-        let labels = labels(eye, tile, &mut tracer);
-        for (sum, labelled) in sums.iter_mut().zip(labels) {
-            sum.label =
-                labelled.map_or_else(Label::default, |labelled| Label::of(eye.context.scene, &labelled));
-        }
-    }
     let places = (0..sums.len()).map(|i| tile.position(i));
     let rays: Vec<Ray> = places.map(|(x, y)| eye.sample(SamplePlace { x, y, sample }).0).collect();
     let mut hits = vec![None; rays.len()];
@@ -276,18 +235,12 @@ impl Features {
         window: Window,
         tiles: Vec<(Window, Vec<Sums>)>,
         samples: u32,
-        ids: bool,
         has_haze: bool,
     ) -> Result<Features, RenderError> {
         let (pixels, share) = (window.pixels(), 1.0 / samples as f32);
-        let with_id = if ids { pixels } else { 0 };
         let mut all = Features {
             window,
             albedo: zeroed(pixels)?,
-            normal: zeroed(pixels)?,
-            depth: zeroed(pixels)?,
-            object: zeroed(with_id)?,
-            material: zeroed(with_id)?,
             mean_normal: zeroed(pixels)?,
             mean_depth: zeroed(pixels)?,
             haze: zeroed(if has_haze { pixels } else { 0 })?,
@@ -300,37 +253,21 @@ impl Features {
                 (all.albedo[at], all.mean_normal[at]) = (sum.albedo * share, sum.normal * share);
                 all.mean_depth[at] = if sum.seen > 0.0 { sum.depth / sum.seen } else { f32::INFINITY };
                 all.coverage[at] = sum.covered * share;
-                (all.normal[at], all.depth[at]) = (sum.label.normal, sum.label.depth);
                 if has_haze {
                     all.haze[at] = (sum.haze * share).min(1.0);
-                }
-                if ids {
-                    (all.object[at], all.material[at]) = (sum.label.object, sum.label.material);
                 }
             }
         }
         Ok(all)
     }
 
-    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth`, `id` and `guides` to a picture of the window.
+    /// Adds the wanted ones of the layers `albedo` and `guides` to a picture of the window.
     ///
     /// # Errors
     /// When the picture has a different size, or already has such layers.
     pub fn push_layers(&self, picture: &mut Picture, wanted: impl Fn(&str) -> bool) -> Result<(), FilmError> {
         if wanted("albedo") {
             picture.push_rgb("albedo", &self.albedo)?;
-        }
-        if wanted("normal") {
-            for (axis, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
-                picture.push_channel(name, self.normal.iter().map(|n| n[axis]).collect())?;
-            }
-        }
-        if wanted("depth") {
-            picture.push_channel("depth.Z", self.depth.clone())?;
-        }
-        if wanted("id") && !self.object.is_empty() {
-            picture.push_integer_plane("id.object", self.object.clone())?;
-            picture.push_integer_plane("id.material", self.material.clone())?;
         }
         if wanted("guides") {
             self.push_guides(picture)?;

@@ -8,8 +8,6 @@ use std::collections::BTreeMap;
 
 /// How much of a pixel is not background.
 const COVERAGE: &str = "A";
-/// Layers of integers.
-const IDS: &str = "id.";
 /// The number of samples of each pixel, which are added.
 const SAMPLES: &str = "samples.count";
 /// The variance of a pixel's mean, which falls as samples are merged.
@@ -61,7 +59,7 @@ impl MergedLayers {
                 kept[at] = kept[at] * old * old + sample * new * new;
             }
         }
-        for plane in part.integer_planes().iter().filter(|plane| plane.name.starts_with(IDS)) {
+        for plane in part.integer_planes().iter().filter(|plane| is_even(&plane.name)) {
             let kept = self.integers.entry(plane.name.clone()).or_insert_with(|| vec![0; size]);
             plane.samples.iter().enumerate().for_each(|(i, &id)| kept[whole(i)] = id);
         }
@@ -113,7 +111,7 @@ fn is_even(name: &str) -> bool {
         // As in "depth.Z", "group_lamp.R" and "CryptoObject00.red".
         rest.is_some_and(|rest| rest.starts_with(|c: char| c == '.' || c == '_' || c.is_ascii_digit()))
     };
-    let is_even = |aov: &&Aov| !matches!(aov, Aov::Ids | Aov::Samples | Aov::Variance);
+    let is_even = |aov: &&Aov| !matches!(aov, Aov::Samples | Aov::Variance);
     name == COVERAGE || Aov::ALL_LAYERS.iter().filter(is_even).any(is_of)
 }
 

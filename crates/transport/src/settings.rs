@@ -46,8 +46,6 @@ pub struct RenderSettings {
     /// How much later the last row of pixels is exposed than the first, in seconds. The shutter of the scene is open while any row is
     /// exposed, and longer than that.
     pub readout: f32,
-    /// Keep the ids of objects and materials ([`crate::Features::object`]), which only compositors need.
-    pub ids: bool,
 }
 
 /// The point that represents a pixel.
@@ -105,7 +103,6 @@ impl RenderSettings {
             stop: Stop::default(),
             interval: false,
             batch_means: false,
-            ids: false,
             readout: 0.0,
         }
     }

@@ -100,7 +100,10 @@ pub fn matrices_see_alike(camera: &dyn Camera, time: f32) -> Result<(), String> 
             let on_film = to_film * point.extend(1.0);
             Vec2::new(on_film.x, on_film.y) / on_film.w
         });
-        let seen = camera.project_beside(point, time, sample.film).ok_or(format!("{point} is not seen"))?;
+        let seen = camera
+            .project_beside(point.as_dvec3(), time, sample.film.as_dvec2())
+            .ok_or(format!("{point} is not seen"))?
+            .as_vec2();
         // Without the lens, rays of a small film go through few digits.
         let allowed = 1e-4 * edge(camera, time);
         if seen.distance(sample.film) > allowed || by_matrix.distance(sample.film) > allowed {

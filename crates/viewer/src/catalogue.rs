@@ -5,12 +5,15 @@ use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use bilux::pictures::TONEMAPS;
 use bilux::scene::{CAMERAS, LIGHTS, MATERIALS};
 use bilux::settings::RENDER;
-use bilux::transport::aovs::AOVS;
+use bilux::transport::aovs::{AOVS, Aov};
 use bilux::transport::integrators::INTEGRATORS;
 use serde_json::{Value, json};
 
 /// The name of the heat map of the accelerator.
 pub(crate) const VISITS: &str = "visits";
+
+/// The layers that can be shown in the place of the picture.
+pub(crate) const LAYERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids];
 
 /// The settings that the page offers, in groups.
 const GROUPS: &[(&str, &[&str])] = &[
@@ -47,7 +50,7 @@ pub(crate) fn catalogue() -> Value {
 /// What can be shown in the place of the picture.
 fn layers() -> Vec<Value> {
     let features =
-        AOVS.iter().filter(|row| row.aov.is_feature()).map(|row| (row.entry.name, row.entry.summary));
+        AOVS.iter().filter(|row| LAYERS.contains(&row.aov)).map(|row| (row.entry.name, row.entry.summary));
     let visits = "what the accelerator does for the ray of each pixel: nodes that it visits and triangles that it tests, \
                   from none (black) to 65,536 (pale yellow), on a logarithmic scale";
     let all = features.chain([(VISITS, visits)]);

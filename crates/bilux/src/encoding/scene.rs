@@ -5,9 +5,13 @@ use super::error::EncodingError;
 use super::values::check_references;
 use bilux_math::Motion;
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{Animation, Axis, Inventory, Mesh, Object, SceneBuilder, StrokeWidths, UpHint, Warning};
+use bilux_scene::{
+    Animation, Axis, Inventory, Mesh, Object, SceneBuilder, StrokeWidths, UpHint, Visibility, Warning,
+};
 use std::collections::BTreeSet;
 use std::sync::Arc;
+
+words! { Visibility [Visibility::Full, Visibility::NoCamera, Visibility::Hidden] }
 
 words! { Axis [Axis::X, Axis::Y, Axis::Z, Axis::NegX, Axis::NegY, Axis::NegZ] }
 
@@ -43,13 +47,19 @@ impl Coded for Object {
         self.motion.write(to);
         if !to.only_what_is_seen {
             self.instanced.write(to);
+            self.category.write(to);
+        }
+        // What identifies a picture stays what it was before there were others.
+        if !to.only_what_is_seen || self.visibility != Visibility::Full {
+            self.visibility.write(to);
         }
     }
     fn read(from: &mut Decoder) -> Result<Self, EncodingError> {
         let name = String::read(from)?;
         let (mesh, material) = (Arc::<Mesh>::read(from)?, usize::read(from)?);
         let motion = Motion::read(from)?;
-        Ok(Object { name, mesh, material, motion, instanced: Coded::read(from)? })
+        let (instanced, category) = (Coded::read(from)?, Coded::read(from)?);
+        Ok(Object { name, mesh, material, motion, instanced, category, visibility: Coded::read(from)? })
     }
 }
 

@@ -9,7 +9,8 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::texture::{Channel, Filter, Image, Texels, UvTransform, Wrap};
 use bilux_scene::{
-    Animation, Axis, Mesh, Object, Parameters, Span, StrokeWidths, Texture, UpHint, Value, Warning,
+    Animation, Axis, Mesh, Object, Parameters, Span, StrokeWidths, Texture, UpHint, Value, Visibility,
+    Warning,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -90,6 +91,8 @@ fn rich() -> SceneBuilder {
     let moving = Motion::from_keys(vec![key(0.0, 0.1), key(2.0, 1.7)]).unwrap();
     scene.objects.push(Object {
         instanced: true,
+        category: "chair".to_owned(),
+        visibility: Visibility::NoCamera,
         motion: moving.clone(),
         ..Object::new("b", mesh.clone(), mixed)
     });

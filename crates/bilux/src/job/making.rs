@@ -63,7 +63,16 @@ impl Job {
             auto_curve,
         };
         let (scene, source) = (Arc::new(built), Arc::new(source));
-        let subject = Subject { scene, camera, integrator, source, accel, catcher, next_pose: None };
+        let subject = Subject {
+            scene,
+            camera,
+            integrator,
+            source,
+            accel,
+            catcher,
+            next_pose: None,
+            previous_pose: None,
+        };
         let render = render_settings(&settings, &request)?;
         if render.interval && !subject.integrator.is_random() {
             return Err(RenderError::IntervalOfPattern.into());
@@ -167,7 +176,6 @@ fn render_settings(settings: &Settings, request: &JobRequest) -> Result<RenderSe
         stop: settings.stop,
         interval: request.layers.contains(&Aov::Interval),
         batch_means: guides || request.layers.contains(&Aov::Variance),
-        ids: request.layers.contains(&Aov::Ids),
         readout: settings.readout,
     })
 }

@@ -87,6 +87,13 @@ impl Job {
         Job { subject: Subject { next_pose, ..self.subject.clone() }, ..self.clone() }
     }
 
+    /// The same for the previous frame, for the layer of backward motion.
+    #[must_use]
+    pub fn moving_from(&self, previous: &Job) -> Job {
+        let previous_pose = Some(Arc::new(previous.subject.clone()));
+        Job { subject: Subject { previous_pose, ..self.subject.clone() }, ..self.clone() }
+    }
+
     /// The series of this picture and of those that are to be lit as it is.
     pub fn series(&self) -> Series {
         Series { turn: self.settings.studio.turn, own_light: self.settings.own_light }

@@ -2,11 +2,12 @@
 
 use super::{Job, Subject, denoising};
 use crate::budget::time_for_rendering;
+use crate::outcome::Surfaces;
 use crate::{Error, Outcome};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{
-    Checkpoint, Estimate, Features, Observer, Progress, RenderError, RenderSettings, Rendered, Replay,
-    SamplePlace, Silent, Stop, Strategies, Unobserved, Window, coverage, shadow_alpha,
+    Checkpoint, Estimate, Observer, Progress, RenderError, RenderSettings, Rendered, Replay, SamplePlace,
+    Silent, Stop, Strategies, Unobserved, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -38,25 +39,27 @@ impl Job {
         let mut render = self.render.clone();
         let aside = aside + self.time_aside(now)?;
         let end = render.stop.time_limit.map(|limit| now + time_for_rendering(limit, aside));
-        let features = self.features_within(end.map(|end| end - now), progress)?;
+        let surfaces = self.surfaces_within(end.map(|end| end - now), progress)?;
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
         let rendered =
             bilux_transport::render_from(from, scene, camera, self.renders(), &render, progress, observer)?;
-        self.completed(rendered, features)
+        self.completed(rendered, surfaces)
     }
 
-    /// The features of surfaces, if they are wanted, in a part of the time that the picture may take.
-    pub(crate) fn features_within(
+    /// What is wanted to be known of surfaces; features take a part of the time that the picture may take.
+    pub(crate) fn surfaces_within(
         &self,
         time: Option<Duration>,
         progress: &dyn Progress,
-    ) -> Result<Option<Features>, Error> {
+    ) -> Result<Surfaces, Error> {
+        let labels = self.labels(progress)?;
         if !self.keeps_features() {
-            return Ok(None);
+            return Ok(Surfaces { features: None, labels });
         }
         let (scene, camera, integrator) = (self.scene(), self.camera(), self.integrator());
         let part = time.map(|time| time / FEATURES_PART);
-        Ok(bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?)
+        let features = bilux_transport::features(scene, camera, integrator, &self.render, part, progress)?;
+        Ok(Surfaces { features, labels })
     }
 
     /// Takes this many other samples of one pixel, at least two, and returns the mean of each colour channel with its 95%
@@ -91,8 +94,8 @@ impl Job {
     ) -> Result<Option<()>, Error> {
         let mut render = RenderSettings { samples, ..self.render.clone() };
         (render.stop, render.batch_means) = (Stop::default(), false);
-        let (scene, camera, integrator) = (self.scene(), self.camera(), self.integrator());
-        let rendered = bilux_transport::render(scene, camera, self.renders(), &render, progress)?;
+        let rendered =
+            bilux_transport::render(self.scene(), self.camera(), self.renders(), &render, progress)?;
         if rendered.cancelled {
             return Ok(None);
         }
@@ -101,18 +104,15 @@ impl Job {
             before.rendered.counters += rendered.counters;
             return Ok(Some(()));
         }
-        let mut features = None;
-        if self.keeps_features() {
-            features = bilux_transport::features(scene, camera, integrator, &render, None, progress)?;
-            if features.is_none() {
-                return Ok(None);
-            }
+        let surfaces = self.surfaces_within(None, progress)?;
+        if progress.is_cancelled() {
+            return Ok(None);
         }
         let [coverage, model_coverage] = self.coverage(&render, self.render.spp)?;
         let choice = self.chosen().map(|plan| plan.choice.clone());
         let rendered = Rendered { choice, interval: None, ..rendered };
         let linear_transfer = self.settings.linear_transfer;
-        *so_far = Some(Outcome { rendered, features, coverage, model_coverage, linear_transfer });
+        *so_far = Some(Outcome { rendered, surfaces, coverage, model_coverage, linear_transfer });
         Ok(Some(()))
     }
 
@@ -152,11 +152,7 @@ impl Job {
     }
 
     /// Adds to what was rendered whatever else the picture needs.
-    pub(crate) fn completed(
-        &self,
-        mut rendered: Rendered,
-        features: Option<Features>,
-    ) -> Result<Outcome, Error> {
+    pub(crate) fn completed(&self, mut rendered: Rendered, surfaces: Surfaces) -> Result<Outcome, Error> {
         let render = &self.render;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
         let [coverage, model_coverage] = self.coverage(render, samples)?;
@@ -169,7 +165,7 @@ impl Job {
         let chosen = || self.chosen().map(|plan| plan.choice.clone());
         rendered.choice = rendered.choice.or_else(chosen);
         let linear_transfer = self.settings.linear_transfer;
-        Ok(Outcome { rendered, features, coverage, model_coverage, linear_transfer })
+        Ok(Outcome { rendered, surfaces, coverage, model_coverage, linear_transfer })
     }
 
     /// The alpha of each pixel after so many samples; `None` for a picture without an alpha channel. If a shadow is part of it,
@@ -202,7 +198,7 @@ impl Job {
 
     /// Whether albedo and the like are wanted.
     fn keeps_features(&self) -> bool {
-        let is_kept = |aov: &Aov| aov.is_feature() || *aov == Aov::Guides;
-        self.request.layers.iter().any(is_kept) || self.request.denoiser_name(&self.settings).is_some()
+        self.request.layers.iter().copied().any(Aov::is_feature)
+            || self.request.denoiser_name(&self.settings).is_some()
     }
 }

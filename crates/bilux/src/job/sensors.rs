@@ -54,6 +54,6 @@ impl Job {
         let [width, height] = points.size();
         let settings =
             RenderSettings { width, height, crop: None, filter: Filter::default(), ..self.render.clone() };
-        Ok(RenderSettings { batch_means: false, ids: false, ..settings })
+        Ok(RenderSettings { batch_means: false, ..settings })
     }
 }

@@ -20,11 +20,13 @@ pub(crate) struct Subject {
     pub(crate) catcher: Option<ShadowCatcher>,
     /// The next frame, if its meshes have another pose.
     pub(crate) next_pose: Option<Arc<Subject>>,
+    /// The previous one, likewise.
+    pub(crate) previous_pose: Option<Arc<Subject>>,
 }
 
 impl Subject {
     /// The same at the time that the settings show. Static objects are not rebuilt.
-    pub(super) fn at_time_of(&self, settings: &Settings) -> Subject {
+    pub(crate) fn at_time_of(&self, settings: &Settings) -> Subject {
         let scene = self.scene.at(&self.accel, shutter_of(settings));
         Subject { scene: Arc::new(scene), ..self.clone() }
     }

@@ -75,7 +75,8 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         }
     }
     for object in objects {
-        let Object { mesh, name: _, material: _, motion: _, instanced: _ } = object;
+        let Object { mesh, name: _, material: _, motion: _, instanced: _, category: _, visibility: _ } =
+            object;
         let Mesh {
             positions,
             normals,

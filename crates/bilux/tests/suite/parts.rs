@@ -75,7 +75,10 @@ fn assert_same(settings: &Parameters, what: &str, numbers: &[u32]) {
             other.rendered.batch_means == local.rendered.batch_means,
             "{what}: the batches of {workers} workers differ"
         );
-        assert!(other.features == local.features, "{what}: the features of {workers} workers differ");
+        assert!(
+            other.surfaces.features == local.surfaces.features,
+            "{what}: the features of {workers} workers differ"
+        );
         assert_eq!(other.picture().unwrap(), local.picture().unwrap(), "{what}, {workers} workers");
     }
 }

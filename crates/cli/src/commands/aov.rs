@@ -44,8 +44,9 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
             "--lengths writes a file next to the picture, so the picture needs a file name: -o picture.png"
         );
     }
-    if !arguments.aov.is_empty() && is_stdout(arguments.output_or_stdout()) {
-        bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
+    let flag = if arguments.aov.is_empty() { "--labels" } else { "--aov" };
+    if (arguments.labels || !arguments.aov.is_empty()) && is_stdout(arguments.output_or_stdout()) {
+        bail!("{flag} writes files next to the picture, so the picture needs a file name: -o picture.png");
     }
     Ok(())
 }
@@ -57,7 +58,8 @@ pub fn layers(arguments: &Render) -> Vec<Aov> {
 
 /// True if this output was asked for.
 pub fn wants(arguments: &Render, aov: Aov) -> bool {
-    arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
+    arguments.labels && aov.is_label()
+        || arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
 }
 
 /// What a render keeps for its outputs while it takes samples.

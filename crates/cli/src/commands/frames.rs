@@ -171,6 +171,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         ("--samples", said(a.samples.map(|(first, end)| format!("{first}..{end}")))),
         ("--crop", said(a.crop.map(|crop| crop.map(|side| side.to_string()).join(",")))),
         ("--aov", a.aov.join(",")),
+        ("--labels", a.labels.to_string()),
         ("--bits", a.bits.clone()),
         ("--quality", said(a.quality)),
     ];

@@ -184,8 +184,8 @@ impl Input<'_> {
         Ok(if arguments.stats.is_some() { request.counting_work() } else { request })
     }
 
-    /// The job with the next pose of a scene whose meshes move, if the layer of motion is wanted.
-    pub fn with_next_pose(
+    /// The job with the next and the previous pose of a scene whose meshes move, as far as layers of motion need them.
+    pub fn with_other_poses(
         &self,
         job: Job,
         scene: &SceneBuilder,
@@ -193,12 +193,19 @@ impl Input<'_> {
         series: &Series,
         output: &Path,
     ) -> anyhow::Result<Job> {
-        if !scene.inventory.moves() || !aov::wants(self.arguments, Aov::Motion) {
+        let wanted = aov::layers(self.arguments);
+        let needs = |is_needed: fn(Aov) -> bool| wanted.iter().copied().any(is_needed);
+        if !scene.inventory.moves() {
             return Ok(job);
         }
-        let mut next = self.read(job.settings().time + 1.0 / job.settings().fps, false)?;
-        next.movement = scene.movement.clone();
-        Ok(job.moving_to(&self.job(&next, user, series, output)?))
+        let (time, frame) = (job.settings().time, 1.0 / job.settings().fps);
+        let pose = |time: f32| {
+            let mut posed = self.read(time, false)?;
+            posed.movement = scene.movement.clone();
+            self.job(&posed, user, series, output)
+        };
+        let job = if needs(Aov::needs_next) { job.moving_to(&pose(time + frame)?) } else { job };
+        Ok(if needs(Aov::needs_previous) { job.moving_from(&pose(time - frame)?) } else { job })
     }
 }
 

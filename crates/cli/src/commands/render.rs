@@ -203,7 +203,7 @@ fn render_scene(
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user, series, output)?;
     }
-    let job = input.with_next_pose(job, scene, &user, series, output)?;
+    let job = input.with_other_poses(job, scene, &user, series, output)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
     // That the studio lights a model without light is part of the line about its picture.
@@ -238,7 +238,7 @@ fn render_scene(
             &job
         };
         let shown = posed.at_time(time).begun_at(input.begun.get());
-        let shown = input.with_next_pose(shown, scene, &user, &series, output)?;
+        let shown = input.with_other_poses(shown, scene, &user, &series, output)?;
         let status = finish(input, &shown, &numbered, build_seconds)?;
         if status != DONE {
             finished.stop();

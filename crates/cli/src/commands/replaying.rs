@@ -53,7 +53,7 @@ pub fn run(input: &Input, job: &Job, path: &Path) -> anyhow::Result<u8> {
 pub fn check(arguments: &crate::arguments::Render) -> anyhow::Result<()> {
     if arguments.replay.is_some() && !aov::layers(arguments).is_empty() {
         anyhow::bail!(
-            "--replay draws a path and writes no layers: leave out --aov, or render without --replay"
+            "--replay draws a path and writes no layers: leave out --aov and --labels, or render without --replay"
         );
     }
     Ok(())

@@ -56,7 +56,7 @@ fn assert_same_in_parts(path: &Path, render: &str) {
         let other = merged.channel(&channel.name).unwrap_or_else(|| panic!("{} is lost", channel.name));
         assert!(bits(&channel.samples) == bits(other), "{}", channel.name);
     }
-    assert_eq!(whole.integer_planes().len(), 2);
+    assert_eq!(whole.integer_planes().len(), 5);
     for plane in whole.integer_planes() {
         assert_eq!(merged.integer_plane(&plane.name), Some(&plane.samples[..]), "{}", plane.name);
     }

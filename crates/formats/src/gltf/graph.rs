@@ -3,7 +3,7 @@
 use super::animation::Pose;
 use super::data::DataReader;
 use super::document::Document;
-use super::extras::SURROUNDINGS;
+use super::extras::{CATEGORY, SURROUNDINGS};
 use super::json::JsonNode;
 use super::place;
 use crate::FormatError;
@@ -20,6 +20,8 @@ pub(super) struct Placed<'d> {
     pub(super) world: DMat4,
     /// Whether its mesh and its lights are shown; cameras always are. [KHR_node_visibility]
     pub(super) is_visible: bool,
+    /// What kind of thing it is, by its own `extras` or else those of its parents; empty for none.
+    pub(super) category: &'d str,
 }
 
 /// The nodes of the scene that is shown.
@@ -48,10 +50,10 @@ impl<'d> Graph<'d> {
         let scene = shown_scene(document, data.oddities)?;
         let roots = scene.map_or(Ok(Vec::new()), |scene| scene.list("nodes"))?;
         let at_origin = DMat4::from_translation(-origin);
-        let mut waiting: Vec<(JsonNode<'d>, DMat4, bool)> =
-            roots.into_iter().rev().map(|node| (node, at_origin, true)).collect();
+        let mut waiting: Vec<(JsonNode<'d>, DMat4, bool, &'d str)> =
+            roots.into_iter().rev().map(|node| (node, at_origin, true, "")).collect();
         let (mut nodes, mut order) = (Vec::new(), vec![None; count]);
-        while let Some((index, parent, is_parent_visible)) = waiting.pop() {
+        while let Some((index, parent, is_parent_visible, inherited)) = waiting.pop() {
             let node = document.named("nodes", index)?;
             let number = index.as_count()?;
             if order[number].replace(nodes.len()).is_some() {
@@ -63,9 +65,10 @@ impl<'d> Graph<'d> {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
             let is_visible = is_parent_visible && is_visible(node, number, pose, data.oddities)?;
-            nodes.push(Placed { node, index: number, world, is_visible });
+            let category = category(node).unwrap_or(inherited);
+            nodes.push(Placed { node, index: number, world, is_visible, category });
             let children = node.list("children")?;
-            waiting.extend(children.into_iter().rev().map(|child| (child, world, is_visible)));
+            waiting.extend(children.into_iter().rev().map(|child| (child, world, is_visible, category)));
         }
         let has_surroundings =
             scene.is_some_and(|scene| scene.get("extras").is_some_and(|own| own.get(SURROUNDINGS).is_some()));
@@ -76,6 +79,11 @@ impl<'d> Graph<'d> {
     pub(super) fn world_of(&self, node: usize) -> Option<DMat4> {
         self.order[node].map(|order| self.nodes[order].world)
     }
+}
+
+/// What kind of thing a node or a mesh is, if its `extras` say it. Extras are anybody's own, so what is no text is no mistake.
+pub(super) fn category<'d>(holder: JsonNode<'d>) -> Option<&'d str> {
+    holder.get("extras")?.get(CATEGORY)?.as_text().ok()
 }
 
 /// Whether a node is visible if its parents are.

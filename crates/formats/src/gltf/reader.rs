@@ -2,7 +2,7 @@
 
 use super::data::DataReader;
 use super::document::Document;
-use super::graph::Placed;
+use super::graph::{Placed, category};
 use super::instances::Instances;
 use super::json::JsonNode;
 use super::meshes::Meshes;
@@ -121,7 +121,13 @@ fn place<'d>(
     let (node, document) = (placed.node, posed.document);
     if let Some(index) = node.get("mesh").filter(|_| placed.is_visible) {
         let parts = meshes.parts(index, placed, posed, reading, sink)?;
+        let first = sink.scene.objects.len();
         place_mesh(placed, &parts, document, reading, sink)?;
+        let own = category(document.named("meshes", index)?);
+        let category = if placed.category.is_empty() { own.unwrap_or_default() } else { placed.category };
+        let bytes = category.len() * (sink.scene.objects.len() - first);
+        reading.budget.take_bytes(bytes as u64, document.file())?;
+        sink.scene.objects[first..].iter_mut().for_each(|object| category.clone_into(&mut object.category));
     }
     if let Some(index) = node.get("camera") {
         let camera = document.named("cameras", index)?;

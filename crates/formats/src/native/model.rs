@@ -12,14 +12,24 @@ use crate::formats::{format_named, unknown};
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_math::{DMat4, Motion, Transform};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
+use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value, Visibility};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys of every model except those that place it; exactly one of the first three is its source.
-pub(super) const KEYS: [&str; 8] =
-    ["file", "shape", "generate", "name", "material", "materials", "instance", "with"];
+pub(super) const KEYS: [&str; 10] = [
+    "file",
+    "shape",
+    "generate",
+    "name",
+    "material",
+    "materials",
+    "instance",
+    "category",
+    "visibility",
+    "with",
+];
 
 impl Native<'_, '_> {
     pub(super) fn model(&mut self, table: &Table, part: &Part) -> Result<(), FormatError> {
@@ -47,7 +57,8 @@ impl Native<'_, '_> {
     ) -> Result<(), FormatError> {
         let motion = motion(table)?;
         let instanced = table.switch("instance")?;
-        let name = table.text("name")?;
+        let (name, category) = (table.text("name")?, table.text("category")?);
+        let visibility = visibility(table)?;
         let given = table.find("material").map(|item| self.material_named(item)).transpose()?;
         let renamed = self.renamed_materials(table, model)?;
         // The index of the model's first material in this scene, once one of its materials is needed.
@@ -57,6 +68,10 @@ impl Native<'_, '_> {
             let mut placed = Object { motion: object.motion.then(&motion), ..object.clone() };
             self.reading.budget.take_bytes(placed.motion.heap_bytes() as u64, &table.at.file)?;
             placed.instanced |= instanced;
+            placed.visibility = visibility.unwrap_or(placed.visibility);
+            if let Some(category) = category {
+                placed.category = category.to_owned();
+            }
             placed.material = match (renamed.get(object.material).copied().flatten(), given) {
                 (Some(index), _) | (None, Some(index)) => index,
                 (None, None) if model.materials.is_empty() => self.default_material(),
@@ -223,6 +238,15 @@ impl Native<'_, '_> {
         }
         Ok(())
     }
+}
+
+/// Which rays see a model, if the table says it.
+fn visibility(table: &Table) -> Result<Option<Visibility>, FormatError> {
+    let Some(item) = table.find("visibility") else { return Ok(None) };
+    let word = item.text("visibility")?;
+    let names = Visibility::ALL.map(Visibility::name);
+    let found = Visibility::named(word);
+    found.map(Some).ok_or_else(|| SceneError::unknown("visibility", word, names, &item.at).into())
 }
 
 fn is_texture(value: &Value) -> bool {

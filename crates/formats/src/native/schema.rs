@@ -8,7 +8,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::change::Part;
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::media::DENSITIES;
-use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES};
+use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES, Visibility};
 use serde_json::{Map, Value, json};
 
 /// The JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
@@ -224,6 +224,14 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
         ("material", described("string", "the name of the material for the whole model")),
         ("materials", renamed),
         ("instance", described("boolean", "keep one copy of each mesh, however many instances there are")),
+        ("category", described("string", "what kind of thing it is, for labels, such as chair")),
+        (
+            "visibility",
+            json!({
+                "enum": Visibility::ALL.map(Visibility::name),
+                "description": "which rays see it: all, all but those of the camera, or none",
+            }),
+        ),
         ("with", words),
     ]
 }

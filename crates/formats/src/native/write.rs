@@ -12,7 +12,7 @@ use crate::writing::{UnusedNames, Writing};
 use bilux_math::{Motion, MotionKey};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::{ComputedDensity, Grid};
-use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value};
+use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value, Visibility};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -145,6 +145,12 @@ fn write_model(
     }
     if object.instanced {
         out.push_str("instance = true\n");
+    }
+    if !object.category.is_empty() {
+        out.push_str(&format!("category = {}\n", quoted(&object.category)));
+    }
+    if object.visibility != Visibility::Full {
+        out.push_str(&format!("visibility = {}\n", quoted(object.visibility.name())));
     }
     write_motion(outer, out);
     Ok(())

@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from . import lidar, trimesh
+from ._amodal import Amodal
 from ._bilux import (
     Accel,
     Grid,
@@ -54,11 +55,12 @@ from ._types import AllHits, Hits, Measured, Mesh, NearestPoints, Object, Progre
 from ._view import View
 
 if TYPE_CHECKING:
-    from . import cluster, daylight
+    from . import cluster, daylight, labels
 
 __all__ = [
     "Accel",
     "AllHits",
+    "Amodal",
     "Entry",
     "Error",
     "FormatError",
@@ -99,6 +101,7 @@ __all__ = [
     "generate",
     "generators",
     "integrators",
+    "labels",
     "licenses",
     "lidar",
     "lights",
@@ -116,11 +119,11 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """`bilux.cluster` and `bilux.daylight`, which few need, when they are first used."""
-    if name in ("cluster", "daylight"):
+    """`bilux.cluster`, `bilux.daylight` and `bilux.labels`, which not all need, when they are first used."""
+    if name in ("cluster", "daylight", "labels"):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), "cluster", "daylight"})
+    return sorted({*globals(), "cluster", "daylight", "labels"})

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _bilux
+from ._amodal import Amodal, amodal_of
 from ._bilux import Picture, Spec, Turntable
 from ._progress import following
 from ._types import Measured, Mesh, Object, Progress, Replay, Strategy, Transient
@@ -23,6 +24,12 @@ Path = str | os.PathLike[str]
 
 LUMENS_PER_WATT = 683.0
 """The luminous flux in lumen of 1 W whose red, green and blue are equal."""
+
+LABELS = (
+    "depth", "z_depth", "normal", "camera_normal", "ids", "instance", "category", "position", "uv", "primitive", "barycentric",
+    "motion", "backward_motion", "occluded",
+)  # fmt: skip
+"""The layers of `render(labels=True)`."""
 
 MAX_MEMORY = 8 << 30
 """The number of bytes that reading a file, and approximately rendering it, may take by default."""
@@ -52,9 +59,11 @@ class Scene(_bilux.Scene):
         *,
         normals: ArrayLike | None = None,
         uvs: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
         material: Spec | None = None,
         transform: ArrayLike | None = None,
         name: str = "",
+        category: str = "",
     ) -> int:
         """Adds an object.
 
@@ -63,9 +72,12 @@ class Scene(_bilux.Scene):
             triangles: (m, 3) rows of vertices, counter-clockwise seen from outside.
             normals: (n, 3) shading normals; without them, the triangles are flat.
             uvs: (n, 2) texture coordinates, v upwards.
-            material: one of `bilux.materials`; by default grey and diffuse.
+            colors: (n, 3) colours from 0 to 1, proportional to light; or uint8 as screens show them (sRGB), with or without
+                alpha, which is left out. They multiply the colour of the material.
+            material: one of `bilux.materials`; by default grey and diffuse, or white with `colors`.
             transform: a (4, 4) matrix from the mesh to the scene, whose last column is the translation.
             name: a name for messages and written files.
+            category: what kind of thing it is, for labels, such as "chair".
 
         Returns:
             the object's number, for `set_transform` and the like.
@@ -75,11 +87,14 @@ class Scene(_bilux.Scene):
             TypeError: if an array holds no numbers.
         """
         _check_spec("material", material, optional=True)
-        first, count = self._add(vertices, triangles, normals, uvs, material, transform, name)
+        material, colors = _colored(material, colors)
+        first, count = self._add(vertices, triangles, normals, uvs, colors, material, transform, name)
         if count != 1:
             for index in reversed(range(first, first + count)):
                 self._remove(index)
             raise ValueError("transform: this is one object, with one (4, 4) matrix; add_instances takes several")
+        if category:
+            self.set_category(first, category)
         return first
 
     def add_instances(
@@ -90,13 +105,15 @@ class Scene(_bilux.Scene):
         *,
         normals: ArrayLike | None = None,
         uvs: ArrayLike | None = None,
+        colors: ArrayLike | None = None,
         material: Spec | None = None,
         name: str = "",
+        category: str = "",
     ) -> range:
         """Adds the same mesh several times, which takes hardly more memory than once.
 
         Args:
-            vertices, triangles, normals, uvs, material, name: as for `add_mesh`.
+            vertices, triangles, normals, uvs, colors, material, name, category: as for `add_mesh`.
             transforms: (k, 4, 4) matrices, one for each instance.
 
         Returns:
@@ -109,8 +126,67 @@ class Scene(_bilux.Scene):
             range(0, 5)
         """
         _check_spec("material", material, optional=True)
-        first, count = self._add(vertices, triangles, normals, uvs, material, transforms, name)
+        material, colors = _colored(material, colors)
+        first, count = self._add(vertices, triangles, normals, uvs, colors, material, transforms, name)
+        for number in range(first, first + count if category else first):
+            self.set_category(number, category)
         return range(first, first + count)
+
+    def merge(
+        self, other: Scene, *, transform: ArrayLike | None = None, lights: bool = False, cameras: bool = False
+    ) -> range:
+        """Adds the objects of another scene, with their materials, textures and motion. Meshes are shared, not copied.
+
+        Args:
+            other: the scene, which stays as it is.
+            transform: a (4, 4) matrix that moves all of its objects.
+            lights: whether its lights are added too, where they are.
+            cameras: whether its cameras are.
+
+        Returns:
+            the numbers of the new objects.
+
+        Raises:
+            ValueError: if the transform is no (4, 4) matrix with an inverse.
+
+        Example:
+            >>> room, ball = bilux.generate("cornell"), bilux.Scene()
+            >>> number = ball.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], category="sail")
+            >>> added = room.merge(ball)
+            >>> len(added), room.objects[added[0]].category
+            (1, 'sail')
+        """
+        return _range(*_bilux.merge(self, other, transform, lights, cameras))
+
+    def pose(self, clip: str | int | None = None, time: float = 0.0) -> None:
+        """Poses the objects of a file as one of its animations has them: skins, morphs and places.
+
+        What this scene adds to the file comes after the file's own objects, and stays. To pose a model among others, pose it
+        on its own, then `merge` it into their scene.
+
+        Args:
+            clip: the animation, by its name or number; by default the one that plays.
+            time: seconds from its beginning.
+
+        Raises:
+            ValueError: if the scene is no file with an animation, or objects of the file were removed.
+            SceneError: if there is no such animation.
+
+        Example:
+            >>> walker, places = bilux.Scene(), np.tile(np.eye(4), (2, 1, 1))
+            >>> places[1, 0, 3] = 2
+            >>> number = walker.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+            >>> walker.set_keyframes(number, [0, 1], places)
+            >>> lost = walker.save("walker.glb")
+            >>> crowd, walker = bilux.Scene(), bilux.load("walker.glb")
+            >>> for time in (0.25, 0.75):
+            ...     walker.pose(time=time)
+            ...     added = crowd.merge(walker)
+            >>> [float(thing.transform[0, 3]) for thing in crowd.objects]
+            [0.5, 1.5]
+        """
+        _bilux.pose(self, None if clip is None else str(clip), float(time))
+        self._time = float(time)
 
     def add_light(self, light: Spec) -> int:
         """Adds one of `bilux.lights`, and returns its number in `lights`."""
@@ -125,11 +201,37 @@ class Scene(_bilux.Scene):
     @property
     def objects(self) -> list[Object]:
         """What is known of each object, by its number."""
-        return [Object(*self._object(index)) for index in range(len(self))]
+        return [Object(*self._object(index), *_bilux.labels_of(self, index)) for index in range(len(self))]
+
+    @property
+    def categories(self) -> list[str]:
+        """The categories of its objects, sorted; the layer "category" counts them from 1."""
+        found = (_bilux.labels_of(self, index)[0] for index in range(len(self)))
+        return sorted({category for category in found if category}, key=str.encode)
 
     def mesh(self, object: int) -> Mesh:
         """Copies of the arrays of an object's mesh, in the mesh's own coordinates."""
-        return Mesh(*self._mesh(self._number(object)))
+        return Mesh(*_bilux.mesh_of(self, self._number(object)))
+
+    def set_category(self, object: int, category: str) -> None:
+        """Says what kind of thing an object is, for labels, such as "chair"; "" for nothing."""
+        _bilux.set_category(self, self._number(object), category)
+
+    def set_visibility(self, object: int, visibility: Literal["full", "no-camera", "hidden"]) -> None:
+        """Says which rays see an object.
+
+        Args:
+            object: its number.
+            visibility: "full" for all of them; "no-camera" for all but those of the camera, so that it is not in the picture
+                but its shadow is, and mirrors show it; "hidden" for none, as if it were not there.
+
+        Example:
+            >>> scene = bilux.generate("cornell")
+            >>> scene.set_visibility(5, "no-camera")
+            >>> scene.objects[5].visibility
+            'no-camera'
+        """
+        _bilux.set_visibility(self, self._number(object), visibility)
 
     def set_transform(self, object: int, transform: ArrayLike) -> None:
         """Places an object anew: a (4, 4) matrix from its mesh to the scene."""
@@ -186,6 +288,9 @@ class Scene(_bilux.Scene):
         noise: float | None = None,
         time_limit: float | None = None,
         aov: Sequence[str] = (),
+        labels: bool = False,
+        next: Scene | None = None,
+        previous: Scene | None = None,
         denoise: bool | str | None = None,
         seed: int | None = None,
         threads: int | None = None,
@@ -214,7 +319,12 @@ class Scene(_bilux.Scene):
                 picture is done at 2% noise or after 5 seconds.
             aov: layers to give as well (`bilux.aovs`), such as "albedo", "normal", "depth", "ids", "position",
                 "crypto_object" or "direct": `picture["depth"]`. "groups" gives a layer for each light group, and
-                "strategies" one for each strategy of "bdpt" and "vcm".
+                "strategies" one for each strategy of "bdpt" and "vcm"; "labels" stands for all labels.
+            labels: whether to give all labels: layers that are exact, from one ray through each pixel's centre, whatever the
+                seed: "depth", "z_depth", "normal", "camera_normal", "ids", "instance", "category", "position", "uv",
+                "primitive", "barycentric", "motion", "backward_motion" and "occluded".
+            next, previous: the scene in the next frame and in the previous one, for the layers of motion, if more moves there
+                than keyframes and the animation of the file say: a copy of this one, with other transforms, poses or cameras.
             denoise: True or a name (`bilux.denoisers`), or False; by default only if noise or time ends the picture.
                 The noisy picture is then its layer "noisy".
             seed: of the random numbers.
@@ -250,9 +360,40 @@ class Scene(_bilux.Scene):
         )  # fmt: skip
         if fast and (spp, noise, time_limit) != (None, None, None):
             raise TypeError("fast: this sets its own limits: leave it out, or spp, noise and time_limit")
-        layers = _layers(aov)
+        layers = _layers(aov, labels)
+        others = (next, previous)
         with following(progress) as callback:
-            return self._render(given, layers, _window(crop), fast, _bytes(max_memory), self._time, callback)
+            return self._render(given, layers, _window(crop), others, fast, _bytes(max_memory), self._time, callback)
+
+    def amodal(
+        self, objects: Sequence[int | Sequence[int]] | None = None, *, margin: int = 0, **settings: Any
+    ) -> list[Amodal]:
+        """Finds what the camera would see of each object if nothing hid it, and how much of that it does see.
+
+        The rays are those of labels: one through each pixel's centre. Runs of pixels are kept, not pictures, so that memory
+        grows with the outlines.
+
+        Args:
+            objects: the objects, by default all; a list of several in the place of a number makes one of them.
+            margin: pixels on each side of the picture that are looked at as well, for objects that it cuts off.
+            **settings: `size`, `camera`, `time` and others, as for `render`.
+
+        Returns:
+            one `Amodal` for each.
+
+        Raises:
+            IndexError: if there is no such object.
+            SceneError: if an object is in two groups, or the size makes no sense.
+
+        Example:
+            >>> [one] = bilux.generate("cornell").amodal([5], size=(64, 64))
+            >>> one.mask.shape, 0 < one.visible_fraction <= 1
+            ((64, 64), True)
+        """
+        numbers = range(len(self)) if objects is None else objects
+        groups = [[self._number(one) for one in _several(group)] for group in numbers]
+        given, most = self._whole(settings)
+        return amodal_of(groups, operator.index(margin), *_bilux.silhouettes(self, groups, operator.index(margin), given, most))
 
     def progressive(
         self,
@@ -721,11 +862,32 @@ def _denoise(denoise: bool | str | None) -> str | None:
     return denoise
 
 
-def _layers(aov: Sequence[str] | str | None) -> list[str]:
+def _layers(aov: Sequence[str] | str | None, labels: bool = False) -> list[str]:
     """The names of layers."""
-    if isinstance(aov, str):
-        return [aov]
-    return [] if aov is None else list(aov)
+    named = [aov] if isinstance(aov, str) else list(aov or ())
+    labels = labels or "labels" in named
+    named = [name for name in named if name != "labels"]
+    return named + [name for name in LABELS if labels and name not in named]
+
+
+def _colored(material: Spec | None, colors: ArrayLike | None) -> tuple[Spec | None, ArrayLike | None]:
+    """The material, and colours proportional to light."""
+    if colors is None:
+        return material, None
+    array = np.asarray(colors)
+    if array.dtype == np.uint8:
+        shown = array[..., :3] / 255.0
+        array = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+    return Spec("materials", "diffuse", {"reflectance": 1.0}) if material is None else material, array
+
+
+def _several(group: int | Sequence[int]) -> Sequence[int]:
+    """The objects of a group."""
+    return list(group) if np.iterable(group) else [operator.index(group)]
+
+
+def _range(first: int, count: int) -> range:
+    return range(first, first + count)
 
 
 def load(

@@ -96,6 +96,8 @@ class Object(NamedTuple):
         transform: (4, 4) matrix from its mesh to the scene; for objects that move, at time 0.
         vertices: number of vertices of its mesh.
         triangles: number of triangles of its mesh.
+        category: what kind of thing it is; "" for nothing.
+        visibility: which rays see it (`Scene.set_visibility`).
     """
 
     name: str
@@ -103,6 +105,8 @@ class Object(NamedTuple):
     transform: NDArray[np.float64]
     vertices: int
     triangles: int
+    category: str
+    visibility: str
 
 
 class Mesh(NamedTuple):
@@ -113,12 +117,14 @@ class Mesh(NamedTuple):
         triangles: (m, 3) rows of vertices.
         normals: (n, 3) shading normals, if it has any.
         uvs: (n, 2) texture coordinates, v upwards, if it has any.
+        colors: (n, 3) colours, proportional to light, if it has any.
     """
 
     vertices: Floats
     triangles: Integers
     normals: Floats | None
     uvs: Floats | None
+    colors: Floats | None
 
 
 class Progress(NamedTuple):

@@ -104,7 +104,7 @@ class Worker:
         """Renders a whole picture."""
         scene = self._scene(work.scene)
         return scene._render(
-            self._settings(work), aov, None, work.fast, work.max_memory, work.scene.time, None
+            self._settings(work), aov, None, (None, None), work.fast, work.max_memory, work.scene.time, None
         )
 
     def _settings(self, work: Work) -> dict[str, Any]:

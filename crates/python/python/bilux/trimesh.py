@@ -1,4 +1,4 @@
-"""Ray queries for trimesh: `RayMeshIntersector` does what those of `trimesh.ray` do.
+"""For trimesh: `RayMeshIntersector` queries rays as `trimesh.ray` does, and `scene_of` takes over scenes.
 
 Example:
     >>> import trimesh
@@ -11,12 +11,18 @@ Example:
 from __future__ import annotations
 
 import copy
-from typing import Any
+import warnings
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._bilux import PlacedMesh
+from . import _bilux
+from ._bilux import PlacedMesh, Spec
+from ._errors import SceneWarning
+
+if TYPE_CHECKING:
+    from ._scene import Scene
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -126,3 +132,153 @@ def _matching(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArra
             f"Ray origin and direction don't match! {origins.shape} and {directions.shape}: give one for each"
         )
     return origins, directions
+
+
+def scene_of(source: Any) -> Scene:
+    """A scene of a `trimesh.Scene` or a `trimesh.Trimesh`, with its materials and textures.
+
+    Each node with a mesh becomes an object of the node's name, placed as the scene's graph has it; nodes of the same mesh share
+    it. Colours of vertices and faces, the materials of `trimesh.visual` and their pictures are taken over; cameras and lights
+    are not. Where the metadata of a node or of its mesh has a "category", this is the object's.
+
+    Args:
+        source: the scene, or a mesh.
+
+    Raises:
+        TypeError: if it is neither.
+
+    Warns:
+        SceneWarning: if it has what is no mesh, such as paths and points, which are left out.
+
+    Example:
+        >>> import trimesh
+        >>> ball = trimesh.creation.icosphere()
+        >>> scene = bilux.trimesh.scene_of(trimesh.Scene({"ball": ball}))
+        >>> scene.objects[0].name
+        'ball'
+    """
+    from ._scene import Scene
+
+    made = Scene()
+    if hasattr(source, "vertices") and hasattr(source, "faces"):
+        _add(made, source, [np.eye(4)], [str(source.metadata.get("name", ""))], [_category(source.metadata)])
+        return made
+    if not hasattr(source, "graph") or not hasattr(source, "geometry"):
+        raise TypeError(f"source: {type(source).__name__} is neither a trimesh.Scene nor a trimesh.Trimesh")
+    nodes: dict[str, list[str]] = {}
+    for node in source.graph.nodes_geometry:
+        nodes.setdefault(source.graph[node][1], []).append(node)
+    left_out = []
+    for name, places in nodes.items():
+        mesh = source.geometry[name]
+        if not hasattr(mesh, "faces") or len(mesh.faces) == 0:
+            left_out.append(name)
+            continue
+        own = _category(mesh.metadata)
+        categories = [_category(_metadata(source.graph, node)) or own for node in places]
+        _add(made, mesh, [source.graph[node][0] for node in places], [str(node) for node in places], categories)
+    if left_out:
+        named = ", ".join(map(repr, left_out))
+        warnings.warn(f"source: {named} is no mesh with triangles, and was left out", SceneWarning, stacklevel=2)
+    return made
+
+
+def _add(scene: Scene, mesh: Any, places: list[Any], names: list[str], categories: list[str]) -> None:
+    """Adds the instances of a mesh."""
+    vertices, triangles, visual = np.asarray(mesh.vertices), np.asarray(mesh.faces), mesh.visual
+    normals = mesh.vertex_normals if "vertex_normals" in mesh._cache or len(vertices) < 3 * len(triangles) else None
+    material, colors, uvs = None, None, None
+    if getattr(visual, "uv", None) is not None and len(visual.uv) == len(vertices):
+        uvs = np.asarray(visual.uv)
+    if visual.kind == "texture":
+        material = _material(visual.material, uvs is not None)
+    elif visual.kind == "vertex":
+        colors = np.asarray(visual.vertex_colors)
+    elif visual.kind == "face":
+        # Each face gets vertices of its own.
+        colors = np.repeat(np.asarray(visual.face_colors), 3, axis=0)
+        normals = None if normals is None else np.asarray(normals)[triangles.ravel()]
+        vertices, triangles = vertices[triangles.ravel()], np.arange(triangles.size).reshape(-1, 3)
+    stacked = np.stack([np.asarray(place, np.float64) for place in places])
+    added = scene.add_instances(vertices, triangles, stacked, normals=normals, uvs=uvs, colors=colors, material=material)
+    for number, name, category in zip(added, names, categories, strict=True):
+        _bilux.set_name(scene, number, name)
+        if category:
+            scene.set_category(number, category)
+
+
+def _material(given: Any, has_uvs: bool) -> Spec:
+    """What is closest to a material of trimesh."""
+    known: dict[str, Any] = {"base_color": _colour(_first(given, "baseColorFactor", "diffuse"))}
+    known["base_metalness"] = _first(given, "metallicFactor")
+    roughness = _first(given, "roughnessFactor")
+    if roughness is None and _first(given, "glossiness") is not None:
+        # The exponent of Phong's highlight, by the width of its lobe.
+        roughness = (2 / (float(given.glossiness) + 2)) ** 0.25
+    known["specular_roughness"] = roughness
+    known["emission"] = _colour(_first(given, "emissiveFactor"))
+    if has_uvs:
+        picture = _pixels(_first(given, "baseColorTexture", "image"))
+        if picture is not None:
+            known["base_color"] = _bilux.Texture(_tinted(picture[..., :3], known["base_color"]))
+            if picture.shape[2] == 4 and str(getattr(given, "alphaMode", None)) in ("MASK", "BLEND"):
+                known["opacity"] = _bilux.Texture(picture[..., 3] / 255.0, data=True)
+        both = _pixels(_first(given, "metallicRoughnessTexture"))
+        if both is not None and both.shape[2] >= 3:
+            metal, rough = known["base_metalness"], known["specular_roughness"]
+            known["specular_roughness"] = _bilux.Texture(both[..., 1] / 255.0 * (1 if rough is None else rough), data=True)
+            known["base_metalness"] = _bilux.Texture(both[..., 2] / 255.0 * (1 if metal is None else metal), data=True)
+        for name, parameter, data in (("normalTexture", "normal", True), ("emissiveTexture", "emission", False)):
+            picture = _pixels(_first(given, name))
+            if picture is not None:
+                known[parameter] = _bilux.Texture(np.ascontiguousarray(picture[..., :3]), data=data)
+    parameters = {key: value for key, value in known.items() if value is not None}
+    return Spec("materials", "principled", parameters, str(_first(given, "name") or ""))
+
+
+def _tinted(picture: NDArray[Any], factor: tuple[float, float, float] | None) -> NDArray[Any]:
+    """A picture of bytes, times a colour."""
+    if factor is None or factor == (1.0, 1.0, 1.0):
+        return np.ascontiguousarray(picture)
+    shown = picture / 255.0
+    linear = np.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4)
+    tinted: NDArray[Any] = (linear * factor).astype(np.float32)
+    return tinted
+
+
+def _first(holder: Any, *names: str) -> Any:
+    """The first attribute that there is."""
+    return next((found for name in names if (found := getattr(holder, name, None)) is not None), None)
+
+
+def _colour(value: Any) -> tuple[float, float, float] | None:
+    """Three numbers proportional to light, of bytes as screens show them or of floats that are."""
+    if value is None:
+        return None
+    array = np.asarray(value)
+    numbers = array.ravel()[:3].astype(np.float64)
+    if array.dtype == np.uint8:
+        numbers = numbers / 255.0
+    red, green, blue = numbers.tolist()
+    return red, green, blue
+
+
+def _pixels(picture: Any) -> NDArray[Any] | None:
+    """The bytes of a picture of PIL: (height, width, channels)."""
+    if picture is None:
+        return None
+    array = np.asarray(picture if picture.mode in ("RGB", "RGBA") else picture.convert("RGB"))
+    return array if array.dtype == np.uint8 and array.ndim == 3 else None
+
+
+def _metadata(graph: Any, node: str) -> dict[str, Any]:
+    """What a graph knows of a node besides its place."""
+    attributes = graph.transforms.node_data.get(node, {})
+    found = attributes.get("metadata") or attributes.get("extras") or {}
+    return dict(found)
+
+
+def _category(metadata: Any) -> str:
+    """The category that metadata name."""
+    found = metadata.get("category", "") if isinstance(metadata, dict) else ""
+    return found if isinstance(found, str) else ""

@@ -110,12 +110,12 @@ pub trait Camera: Send + Sync {
     /// The point of the film at which a point of the scene is seen through the middle of the lens, also where that is off
     /// the film. `None` where no ray sees it, as behind the camera. Of two eyes, it is the left one that sees it.
     fn project(&self, p: Vec3, time: f32) -> Option<Vec2>;
-    /// The same for the eye that sees another point of the film.
-    fn project_beside(&self, p: Vec3, time: f32, _film: Vec2) -> Option<Vec2> {
-        self.project(p, time)
-    }
     /// The same in double precision, for those who measure in pictures.
     fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2>;
+    /// The same for the eye that sees another point of the film.
+    fn project_beside(&self, p: DVec3, time: f32, _film: DVec2) -> Option<DVec2> {
+        self.project_f64(p, time)
+    }
     /// The ray through a point of the film and the middle of the lens in double precision: where it starts, and its unit
     /// direction. `None` where the film sees nothing.
     fn ray_f64(&self, film: DVec2, time: f32) -> Option<[DVec3; 2]>;

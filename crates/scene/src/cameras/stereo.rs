@@ -151,9 +151,9 @@ impl Camera for Pair {
         self.whole(LEFT, self.eyes[LEFT].project(p, time)?)
     }
 
-    fn project_beside(&self, p: Vec3, time: f32, film: Vec2) -> Option<Vec2> {
-        let (eye, own) = self.part(film);
-        self.whole(eye, self.eyes[eye].project_beside(p, time, own)?)
+    fn project_beside(&self, p: DVec3, time: f32, film: DVec2) -> Option<DVec2> {
+        let (eye, own) = self.layout.part(film);
+        self.layout.whole(eye, self.eyes[eye].project_beside(p, time, own)?)
     }
 
     fn project_f64(&self, p: DVec3, time: f32) -> Option<DVec2> {
@@ -210,9 +210,8 @@ mod tests {
             assert!((disparity.x + focal * 0.1 / p.z).abs() < 1e-6 && disparity.y.abs() < 1e-9);
             // And in the pair, where each has half of the width.
             let pair = eye("perspective", "side-by-side", 2.0);
-            let [a, b] =
-                [0.2, 0.7].map(|x| pair.project_beside(p.as_vec3(), 0.0, Vec2::new(x, 0.5)).unwrap());
-            assert!((f64::from(a.x + 0.5 - b.x) * 2.0 - disparity.x).abs() < 1e-5);
+            let [a, b] = [0.2, 0.7].map(|x| pair.project_beside(p, 0.0, DVec2::new(x, 0.5)).unwrap());
+            assert!(((a.x + 0.5 - b.x) * 2.0 - disparity.x).abs() < 1e-9);
         }
     }
 

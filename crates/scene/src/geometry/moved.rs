@@ -2,31 +2,51 @@
 
 use super::Geometry;
 use bilux_accel::Hit;
-use bilux_math::Vec3;
+use bilux_math::{DMat4, DVec3, Vec3};
 
 impl Geometry {
-    /// The point of a hit at a time in seconds, and the same point of `next` at another time. `next` is this geometry, or
-    /// one of the same meshes in another pose: points of triangles keep their place in the mesh; others stay at `p`.
-    pub fn moved(&self, hit: &Hit, p: Vec3, next: &Geometry, [from, to]: [f32; 2]) -> [Vec3; 2] {
-        if !self.is_triangle(hit.primitive()) {
-            return [p; 2];
-        }
+    /// The object of a hit and the triangle of its mesh; `None` for points, lines and spheres.
+    pub fn triangle_of(&self, hit: &Hit) -> Option<[u32; 2]> {
         let (object, triangle) = self.locate(hit.primitive());
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let at = |geometry: &Geometry, time| geometry.point_of(object, triangle, weights, time);
+        self.is_triangle(hit.primitive()).then_some([object, triangle])
+    }
+
+    /// Where the point `p` of a surface that was hit is at a time in seconds, and where it is at another one, among the same
+    /// objects with meshes that may be in another pose. In double precision, for those who measure how far it moves.
+    pub fn moved(&self, hit: &Hit, p: Vec3, next: &Geometry, [from, to]: [f32; 2]) -> [DVec3; 2] {
+        let still = [p.as_dvec3(); 2];
+        let Some([object, triangle]) = self.triangle_of(hit) else {
+            // Points and lines move with their object; spheres are lights, which do not.
+            let (object, _) = self.locate(hit.primitive());
+            let places = self.matrix_of(object, from).zip(next.matrix_of(object, to));
+            return match places {
+                Some((from, to)) if from != to => {
+                    [still[0], to.transform_point3(from.inverse().transform_point3(still[0]))]
+                }
+                _ => still,
+            };
+        };
+        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
+        let at = |geometry: &Geometry, time| geometry.point_of([object, triangle], [1.0 - u - v, u, v], time);
         match (at(self, from), at(next, to)) {
             // Both are computed alike, so that what does not move gives the same point to the bit.
             (Some(from), Some(to)) => [from, to],
-            _ => [p; 2],
+            _ => still,
         }
     }
 
     /// The point of a triangle of a mesh with these barycentric weights.
-    fn point_of(&self, object: u32, triangle: u32, weights: [f32; 3], time: f32) -> Option<Vec3> {
+    fn point_of(&self, [object, triangle]: [u32; 2], weights: [f64; 3], time: f32) -> Option<DVec3> {
         let placed = self.objects.get(object as usize)?;
         let corners = placed.mesh.triangles.get(triangle as usize)?;
-        let [a, b, c] = corners.map(|i| placed.mesh.positions.get(i as usize).copied());
+        let [a, b, c] = corners.map(|i| placed.mesh.positions.get(i as usize).map(|p| p.as_dvec3()));
         let point = a? * weights[0] + b? * weights[1] + c? * weights[2];
-        Some(self.place(object, time).0.point(point))
+        Some(self.matrix_of(object, time)?.transform_point3(point))
+    }
+
+    /// The transform of an object to the world.
+    fn matrix_of(&self, object: u32, time: f32) -> Option<DMat4> {
+        self.objects.get(object as usize)?;
+        Some(self.place(object, time).0.matrix().as_dmat4())
     }
 }

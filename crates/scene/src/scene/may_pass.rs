@@ -3,6 +3,7 @@
 use crate::geometry::Geometry;
 use crate::materials::Material;
 use crate::mesh::Mesh;
+use crate::placed::{Placed, Visibility};
 use crate::sides::Sides;
 use std::sync::Arc;
 
@@ -13,6 +14,8 @@ pub(super) struct MayPass {
     pub(super) has_holes: bool,
     /// The camera sees through its back.
     pub(super) is_one_sided: bool,
+    /// The camera sees through all of it.
+    pub(super) hides_from_camera: bool,
 }
 
 impl MayPass {
@@ -20,15 +23,17 @@ impl MayPass {
     pub(super) fn of_all(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Vec<MayPass> {
         let count = geometry.objects().len() + geometry.spheres().len();
         let material = |object: u32| &*materials[geometry.material_of(object) as usize];
-        let mesh = |object: u32| geometry.objects().get(object as usize).map(|placed| &*placed.mesh);
-        (0..count as u32).map(|object| MayPass::of(material(object), mesh(object))).collect()
+        let placed = |object: u32| geometry.objects().get(object as usize);
+        (0..count as u32).map(|object| MayPass::of(material(object), placed(object))).collect()
     }
 
-    fn of(material: &dyn Material, mesh: Option<&Mesh>) -> MayPass {
+    fn of(material: &dyn Material, placed: Option<&Placed>) -> MayPass {
+        let has_opacities = |mesh: &Mesh| !mesh.vertex_opacity.is_empty();
         MayPass {
             has_holes: material.opacity().is_some()
-                || mesh.is_some_and(|mesh| !mesh.vertex_opacity.is_empty()),
+                || placed.is_some_and(|placed| has_opacities(&placed.mesh)),
             is_one_sided: material.visible_sides() == Sides::Front,
+            hides_from_camera: placed.is_some_and(|placed| placed.visibility == Visibility::NoCamera),
         }
     }
 }

@@ -11,7 +11,6 @@ use crate::geometry::Geometry;
 use crate::lights::SphereLight;
 use crate::materials::Material;
 use crate::placed::Placed;
-use crate::sides::Sides;
 use crate::texture::Texture;
 use bilux_math::{Aabb, Rgb};
 use std::sync::Arc;
@@ -101,8 +100,8 @@ impl SceneParts {
         let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
         let has_nested = geometry.objects().iter().any(|o| materials[o.material as usize].nested().is_some());
-        let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let passes = MayPass::of_all(&geometry, &materials);
+        let hides_backs = passes.iter().any(|passes| passes.is_one_sided || passes.hides_from_camera);
         let has_holes = passes.iter().any(|passes| passes.has_holes);
         let disperses = materials.iter().any(|material| material.disperses());
         let media = || materials.iter().filter_map(|material| material.medium());

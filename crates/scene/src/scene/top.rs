@@ -66,8 +66,9 @@ fn has_same_sides(a: &SceneParts, b: &SceneParts) -> bool {
         return true;
     }
     let (ours, theirs) = (a.geometry.objects(), b.geometry.objects());
-    let sides =
-        |parts: &SceneParts| parts.passes.iter().map(|passes| passes.is_one_sided).collect::<Vec<_>>();
+    let sides = |parts: &SceneParts| {
+        parts.passes.iter().map(|passes| [passes.is_one_sided, passes.hides_from_camera]).collect::<Vec<_>>()
+    };
     ours.len() == theirs.len()
         && sides(a) == sides(b)
         && ours

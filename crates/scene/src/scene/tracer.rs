@@ -53,9 +53,10 @@ impl Scene {
     /// True when a camera in the direction `towards` from a surface sees through it.
     #[inline]
     pub fn camera_sees_through(&self, surface: &Surface, towards: Vec3) -> bool {
-        self.parts.hides_backs
-            && self.material(surface).visible_sides() == Sides::Front
-            && self.front(surface).dot(towards) <= 0.0
+        let is_back = || {
+            self.material(surface).visible_sides() == Sides::Front && self.front(surface).dot(towards) <= 0.0
+        };
+        self.parts.hides_backs && (self.parts.passes[surface.object as usize].hides_from_camera || is_back())
     }
 }
 
@@ -73,7 +74,10 @@ impl SceneParts {
     /// else, except for labels.
     fn stops(&self, ray: &Ray, hit: &Hit, sheets: Option<&Sheets>, end: Option<End>) -> bool {
         let object = self.geometry.object_of(hit);
-        let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
+        let MayPass { has_holes, is_one_sided, hides_from_camera } = self.passes[object as usize];
+        if hides_from_camera && ray.mask != u32::MAX {
+            return false;
+        }
         if is_one_sided && (ray.mask != u32::MAX || sheets.is_some()) {
             let outwards = || self.geometry.surface(ray, hit).n_geom;
             let front = self.geometry.front_of(object, hit.primitive(), ray.time).unwrap_or_else(outwards);
@@ -107,7 +111,10 @@ impl SceneParts {
     /// `n` is the normal at the ray's end, or zero.
     fn surely_stops(&self, ray: &Ray, blocker: Primitive, sheets: &Option<Sheets>, n: Vec3) -> bool {
         let object = self.geometry.object_of_primitive(blocker);
-        let MayPass { has_holes, is_one_sided } = self.passes[object as usize];
+        let MayPass { has_holes, is_one_sided, hides_from_camera } = self.passes[object as usize];
+        if hides_from_camera && ray.mask != u32::MAX {
+            return false;
+        }
         if has_holes || !is_one_sided || (ray.mask == u32::MAX && sheets.is_none()) {
             return !has_holes;
         }

@@ -133,6 +133,48 @@ typed! {
         /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
         group: &str,
     }
+    /// Standard general sky of the CIE, from overcast to clear, with the light that it is to give.
+    CieSky = "cie-sky" {
+        /// Its number: 1 overcast, 5 uniform, 7 partly cloudy, 12 clear, 13 clear and polluted, 15 turbid; default `1`.
+        standard: i32,
+        /// Elevation of the sun (degrees); default `40`.
+        elevation: f32,
+        /// Azimuth of the sun, from the north (-z) to the east (+x) (degrees); default `135`.
+        azimuth: f32,
+        /// Irradiance of level ground by the sky without the sun (W/m²); default `1`.
+        irradiance: bilux_math::Rgb,
+        /// Radiance of the zenith; if it is not 0, irradiance does not count (W/(m² sr)); default `0`.
+        zenith: bilux_math::Rgb,
+        /// Irradiance by the sun of a surface that faces it (W/m²); default `0`.
+        sun: bilux_math::Rgb,
+        /// Angular diameter of the sun (degrees); default `0.533`.
+        sun_diameter: f32,
+        /// Albedo of the ground; default `0.2`.
+        ground: bilux_math::Rgb,
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
+        group: &str,
+    }
+    /// Sky of any weather, from the light of the sun and that of the sky as they were measured.
+    PerezSky = "perez-sky" {
+        /// Elevation of the sun (degrees); default `40`.
+        elevation: f32,
+        /// Azimuth of the sun, from the north (-z) to the east (+x) (degrees); default `135`.
+        azimuth: f32,
+        /// Irradiance by the sun of a surface that faces it (direct normal) (W/m²); default `3`.
+        direct: bilux_math::Rgb,
+        /// Irradiance of level ground by the sky (diffuse horizontal) (W/m²); default `1`.
+        diffuse: bilux_math::Rgb,
+        /// Clearness ε of the sky, from 1; 0 finds it from direct and diffuse; default `0`.
+        clearness: f32,
+        /// Brightness Δ of the sky; 0 finds it from diffuse, in lux; default `0`.
+        brightness: f32,
+        /// Angular diameter of the sun (degrees); default `0.533`.
+        sun_diameter: f32,
+        /// Albedo of the ground; default `0.2`.
+        ground: bilux_math::Rgb,
+        /// The light group that it belongs to, for --aov groups; name stands for the light's own name; default `name`.
+        group: &str,
+    }
     /// The constant light Ia of Equation 1, in cast, whitted and cook only.
     Ambient = "ambient" {
         /// Light that reaches every point equally; default `0.3`.

@@ -1,5 +1,6 @@
 //! Features of surfaces for denoisers and compositors, where they are known without rendering.
 
+use crate::common::labelled::Labelled;
 use crate::common::{built, diffuse, floor, integrator, look, put, quad, still_life};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{SceneBuilder, Spec};
@@ -8,8 +9,7 @@ use bilux_transport::{Features, RenderSettings, Silent, Window, features};
 fn seen(builder: &SceneBuilder, settings: &RenderSettings) -> Features {
     let scene = built(builder);
     let camera = &*scene.cameras()[0].1;
-    let settings = RenderSettings { ids: true, ..settings.clone() };
-    features(&scene, camera, &*integrator("path"), &settings, None, &Silent).unwrap().unwrap()
+    features(&scene, camera, &*integrator("path"), settings, None, &Silent).unwrap().unwrap()
 }
 
 const RED: Rgb = Rgb { r: 0.7, g: 0.2, b: 0.1 };
@@ -31,11 +31,13 @@ fn features_of_a_floor_are_exact() {
     let found = seen(&from_above(), &RenderSettings::new(33, 33, 8));
     let middle = 33 * 16 + 16;
     assert!(found.albedo.iter().all(|&albedo| near(albedo, RED)));
-    assert!(found.normal.iter().all(|n| n.distance(Vec3::Y) < 1e-4));
-    assert!((found.depth[middle] - 2.0).abs() < 1e-3, "{}", found.depth[middle]);
-    // Depth is measured along the rays, not straight down.
-    assert!(found.depth[0] > 2.2);
-    assert!(found.object.iter().chain(&found.material).all(|&id| id == 1));
+    let labels = Labelled::of(&built(&from_above()), &RenderSettings::new(33, 33, 8));
+    assert!(labels.normal.iter().all(|n| n.distance(Vec3::Y) < 1e-4));
+    assert!((labels.depth[middle] - 2.0).abs() < 1e-3, "{}", labels.depth[middle]);
+    // Depth is measured along the rays, and z-depth straight down.
+    assert!(labels.depth[0] > 2.2 && labels.z_depth.iter().all(|z| (z - 2.0).abs() < 1e-3));
+    assert!(labels.camera_normal.iter().all(|n| n.distance(Vec3::Z) < 1e-3));
+    assert!(labels.object.iter().chain(&labels.material).all(|&id| id == 1));
 }
 
 /// The mirror is tilted by 45° and shows the ceiling; the sky is around it.
@@ -62,14 +64,15 @@ fn mirrors_show_what_is_seen_in_them() {
     assert!(near(found.albedo[middle], RED * 0.5), "{:?}", found.albedo[middle]);
     assert!(found.mean_normal[middle].distance(Vec3::NEG_Y) < 1e-4, "{}", found.mean_normal[middle]);
     // The labels are those of the mirror itself.
+    let labels = Labelled::of(&built(&builder), &RenderSettings::new(33, 33, 8));
     let normal = Vec3::new(0.0, 1.0, 1.0).normalize();
-    assert!(found.normal[middle].distance(normal) < 1e-4, "{}", found.normal[middle]);
-    assert!((found.depth[middle] - 8.0).abs() < 0.1, "{}", found.depth[middle]);
-    assert_eq!((found.object[middle], found.material[middle]), (1, 1));
+    assert!(labels.normal[middle].distance(normal) < 1e-4, "{}", labels.normal[middle]);
+    assert!((labels.depth[middle] - 8.0).abs() < 0.1, "{}", labels.depth[middle]);
+    assert_eq!((labels.object[middle], labels.material[middle]), (1, 1));
     // Sky: its emission, at most 1; no depth and no id.
     assert!(near(found.albedo[33 * 16], Rgb::new(0.25, 1.0, 0.5)));
-    assert_eq!((found.normal[33 * 16], found.object[33 * 16]), (Vec3::ZERO, 0));
-    assert_eq!(found.depth[33 * 16], f32::INFINITY);
+    assert_eq!((labels.normal[33 * 16], labels.object[33 * 16]), (Vec3::ZERO, 0));
+    assert_eq!((labels.depth[33 * 16], labels.z_depth[33 * 16]), (f32::INFINITY, f32::INFINITY));
 }
 
 /// A picture of one sample knows its edges as well as others do: denoisers rebuild them from the features.
@@ -92,8 +95,7 @@ fn features_do_not_depend_on_threads_crop_or_range() {
     for i in 0..crop.pixels() {
         let (x, y) = crop.position(i);
         let whole = (y * 40 + x) as usize;
-        assert_eq!((part.albedo[i], part.normal[i]), (all.albedo[whole], all.normal[whole]));
-        assert_eq!((part.depth[i], part.object[i]), (all.depth[whole], all.object[whole]));
+        assert_eq!((part.albedo[i], part.mean_normal[i]), (all.albedo[whole], all.mean_normal[whole]));
     }
 }
 

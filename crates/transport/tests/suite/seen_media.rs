@@ -1,5 +1,6 @@
 //! What guides, alpha and mattes know of fog, smoke and murky insides, against closed forms.
 
+use crate::common::labelled::Labelled;
 use crate::common::{built, diffuse, integrator, look, put, quad};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Transform, Vec3};
@@ -7,10 +8,9 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::cuboid;
 use bilux_scene::media::Grid;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
-use bilux_transport::visible::Wanted;
+use bilux_transport::mattes::{Ranks, mattes};
 use bilux_transport::{
-    Features, RenderSettings, ShadowCatcher, Silent, Visible, Window, coverage, features, shadow_alpha,
-    visible,
+    Features, RenderSettings, ShadowCatcher, Silent, Window, coverage, features, shadow_alpha,
 };
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn of_ones() -> Spec {
 }
 
 fn settings() -> RenderSettings {
-    RenderSettings { ids: true, ..RenderSettings::new(SIDE, SIDE, 8) }
+    RenderSettings::new(SIDE, SIDE, 8)
 }
 
 fn seen(scene: &Scene, settings: &RenderSettings) -> Features {
@@ -61,10 +61,10 @@ fn alpha(scene: &Scene, settings: &RenderSettings) -> Vec<f32> {
     coverage(scene, &*scene.cameras()[0].1, &*integrator("path"), settings, 8).unwrap()
 }
 
-fn mattes(scene: &Scene, settings: &RenderSettings) -> Visible {
-    let wanted = Wanted { ids: vec![vec![5, 9]], ..Wanted::default() };
+fn covers(scene: &Scene, settings: &RenderSettings) -> Vec<Ranks> {
     let camera = &*scene.cameras()[0].1;
-    visible(scene, camera, &*integrator("path"), settings, &wanted, 8, &Silent).unwrap().unwrap()
+    let ids = [vec![5, 9]];
+    mattes(scene, camera, &*integrator("path"), settings, &ids, 8, &Silent).unwrap().unwrap().remove(0)
 }
 
 fn near(a: Rgb, b: [f64; 3], within: f64) -> bool {
@@ -90,7 +90,7 @@ fn a_slab_counts_by_what_it_scatters_and_stops() {
     for (medium, within) in [(even(), 1e-5), (of_ones(), 2e-3)] {
         let scene = built(&slab(medium));
         let (found, alpha, mattes) =
-            (seen(&scene, &settings()), alpha(&scene, &settings()), mattes(&scene, &settings()));
+            (seen(&scene, &settings()), alpha(&scene, &settings()), covers(&scene, &settings()));
         let (card, sky) = (SIDE as usize * 8 + 3, SIDE as usize * 8 + 12);
         for (i, behind) in [(card, RED), (sky, SKY)] {
             let albedo = channels.map(|c| passed[c] * f64::from(behind[c]) + scattered[c]);
@@ -108,14 +108,13 @@ fn a_slab_counts_by_what_it_scatters_and_stops() {
         assert_eq!(alpha[card], 1.0);
         assert!((f64::from(alpha[sky]) - (1.0 - rest)).abs() < within, "{} {}", alpha[sky], 1.0 - rest);
         // The labels are those of the card; the mattes know both, and add up to alpha.
-        assert_eq!((found.object[card], found.object[sky]), (2, 0));
-        assert!((found.depth[card] - 7.0).abs() < 1e-4 && found.depth[sky].is_infinite());
-        let [(first, most), (second, least), ..] = mattes.mattes[0][card];
-        assert_eq!((first, second, mattes.mattes[0][sky][0].0), (5, 9, 5));
+        let labels = Labelled::of(&scene, &settings());
+        assert_eq!((labels.object[card], labels.object[sky]), (2, 0));
+        assert!((labels.depth[card] - 7.0).abs() < 1e-4 && labels.depth[sky].is_infinite());
+        let [(first, most), (second, least), ..] = mattes[card];
+        assert_eq!((first, second, mattes[sky][0].0), (5, 9, 5));
         assert!((f64::from(most) - (1.0 - rest)).abs() < within && (most + least - 1.0).abs() < 1e-5);
-        assert!(
-            (mattes.mattes[0][sky][0].1 - alpha[sky]).abs() < 1e-5 && mattes.mattes[0][sky][1] == (0, 0.0)
-        );
+        assert!((mattes[sky][0].1 - alpha[sky]).abs() < 1e-5 && mattes[sky][1] == (0, 0.0));
     }
 }
 
@@ -164,9 +163,9 @@ fn smoke_is_seen_alike_by_any_threads_and_in_any_crop() {
     let one = RenderSettings { threads: 1, ..base.clone() };
     let crop = Window { x: 5, y: 3, width: 7, height: 6 };
     let part = RenderSettings { crop: Some(crop), ..base.clone() };
-    let (all, alphas, shares) = (seen(&scene, &one), alpha(&scene, &one), mattes(&scene, &one));
-    assert!(seen(&scene, &base) == all && alpha(&scene, &base) == alphas && mattes(&scene, &base) == shares);
-    let (found, alpha, mattes) = (seen(&scene, &part), alpha(&scene, &part), mattes(&scene, &part));
+    let (all, alphas, shares) = (seen(&scene, &one), alpha(&scene, &one), covers(&scene, &one));
+    assert!(seen(&scene, &base) == all && alpha(&scene, &base) == alphas && covers(&scene, &base) == shares);
+    let (found, alpha, mattes) = (seen(&scene, &part), alpha(&scene, &part), covers(&scene, &part));
     assert_eq!(alpha.len(), crop.pixels());
     for (i, alpha) in alpha.into_iter().enumerate() {
         let (x, y) = crop.position(i);
@@ -175,7 +174,7 @@ fn smoke_is_seen_alike_by_any_threads_and_in_any_crop() {
             (found.albedo[i], found.mean_depth[i], alpha),
             (all.albedo[whole], all.mean_depth[whole], alphas[whole])
         );
-        assert_eq!(mattes.mattes[0][i], shares.mattes[0][whole]);
+        assert_eq!(mattes[i], shares[whole]);
     }
 }
 

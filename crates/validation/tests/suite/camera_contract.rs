@@ -198,8 +198,9 @@ impl Camera for BuggyCamera {
         self.camera.lens_of(film, lens)
     }
 
-    fn project_beside(&self, p: Vec3, time: f32, film: Vec2) -> Option<Vec2> {
-        (self.defect)(&*self.camera, p, self.camera.lens_of(film, Vec2::ZERO), time).map(|seen| seen.film)
+    fn project_beside(&self, p: DVec3, time: f32, film: DVec2) -> Option<DVec2> {
+        let lens = self.camera.lens_of(film.as_vec2(), Vec2::ZERO);
+        (self.defect)(&*self.camera, p.as_vec3(), lens, time).map(|seen| seen.film.as_dvec2())
     }
 
     fn repeats(&self, film: Vec2) -> [Option<Vec2>; 3] {

@@ -1,14 +1,14 @@
 //! What is shown: the picture, denoised or not, or one of its layers as colours.
 
 use super::visits;
-use crate::catalogue::VISITS;
+use crate::catalogue::{LAYERS, VISITS};
 use bilux::math::Rgb;
 use bilux::math::hash::hash_words;
 use bilux::pictures::denoise::DenoiserChoice;
 use bilux::pictures::{ColourSpace, Picture, WriteOptions};
-use bilux::transport::Features;
+use bilux::transport::Window;
 use bilux::transport::aovs::{AOVS, Aov};
-use bilux::{Error, Job, Outcome};
+use bilux::{Error, Job, Outcome, Surfaces};
 
 /// The layers that denoisers look at.
 pub(super) const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
@@ -32,7 +32,7 @@ impl Shown {
             VISITS => return Some(Shown::Visits),
             _ => {}
         }
-        let row = AOVS.iter().find(|row| row.entry.name == name && row.aov.is_feature())?;
+        let row = AOVS.iter().find(|row| row.entry.name == name && LAYERS.contains(&row.aov))?;
         Some(Shown::Layer(row.aov))
     }
 
@@ -58,9 +58,11 @@ impl Shown {
         if self == Shown::Visits {
             return Ok((visits::picture(job)?, WriteOptions::default()));
         }
-        if let (Shown::Layer(aov), Some(features)) = (self, &outcome.features) {
-            let size = [features.window.width as usize, features.window.height as usize];
-            let mut picture = Picture::from_rgb(size[0], size[1], colours(aov, features))?;
+        if let Shown::Layer(aov) = self
+            && let Some(colours) = colours(aov, outcome)
+        {
+            let Window { width, height, .. } = outcome.rendered.film.window();
+            let mut picture = Picture::from_rgb(width as usize, height as usize, colours)?;
             // These are no light: they are shown as they are.
             if aov != Aov::Albedo {
                 picture.colour_space = ColourSpace::Srgb;
@@ -76,19 +78,26 @@ impl Shown {
     }
 }
 
-/// A layer as colours from 0 to 1.
-fn colours(aov: Aov, features: &Features) -> Vec<Rgb> {
+/// A layer as colours from 0 to 1; `None` if there is none, as after an interrupt.
+fn colours(aov: Aov, outcome: &Outcome) -> Option<Vec<Rgb>> {
+    let Surfaces { features, labels } = &outcome.surfaces;
+    let plane = |name: &str| labels.as_ref().and_then(|labels| labels.channel(name));
     match aov {
         Aov::Normal => {
-            features.normal.iter().map(|n| Rgb::new(n.x, n.y, n.z) * 0.5 + Rgb::grey(0.5)).collect()
+            let (x, y, z) = (plane("normal.X")?, plane("normal.Y")?, plane("normal.Z")?);
+            let normals = x.iter().zip(y).zip(z).map(|((x, y), z)| Rgb::new(*x, *y, *z));
+            Some(normals.map(|normal| normal * 0.5 + Rgb::grey(0.5)).collect())
         }
-        Aov::Depth => {
+        Aov::Depth => plane("depth.Z").map(|depth| {
             // The nearest surface is white, the background black.
-            let nearest = features.depth.iter().copied().fold(f32::INFINITY, f32::min);
-            features.depth.iter().map(|depth| Rgb::grey((nearest / depth).clamp(0.0, 1.0))).collect()
+            let nearest = depth.iter().copied().fold(f32::INFINITY, f32::min);
+            depth.iter().map(|depth| Rgb::grey((nearest / depth).clamp(0.0, 1.0))).collect()
+        }),
+        Aov::Ids => {
+            let ids = labels.as_ref().and_then(|labels| labels.integer_plane("id.object"));
+            ids.map(|ids| ids.iter().map(|&id| colour_of(id)).collect())
         }
-        Aov::Ids => features.object.iter().map(|&id| colour_of(id)).collect(),
-        _ => features.albedo.clone(),
+        _ => features.as_ref().map(|features| features.albedo.clone()),
     }
 }
 

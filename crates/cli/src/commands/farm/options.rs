@@ -69,6 +69,7 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
             "parts keep exact sums: run `bilux denoise` on the merged picture",
         ),
         ("--aov", !render.aov.is_empty() && !is_exr, "only an .exr holds layers: write --picture NAME.exr"),
+        ("--labels", render.labels && !is_exr, "only an .exr holds layers: write --picture NAME.exr"),
         (
             "--aov",
             render.aov.iter().any(|name| name == "interval" || name == "strategies"),

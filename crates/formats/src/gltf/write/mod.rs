@@ -9,11 +9,11 @@ mod material;
 mod nodes;
 mod pictures;
 
-use super::extras::SURROUNDINGS;
+use super::extras::{CATEGORY, SURROUNDINGS};
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::writing::Writing;
-use bilux_scene::{Mesh, Object, SceneBuilder};
+use bilux_scene::{Mesh, Object, SceneBuilder, Visibility};
 use buffer::Buffer;
 use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -90,6 +90,9 @@ impl Document<'_> {
         }
         let mesh = self.mesh(&object.mesh, object.material, writing)?;
         let name = name_of(object);
+        if object.visibility != Visibility::Full {
+            writing.warn("glTF files cannot store which rays see an object: written as seen by all");
+        }
         let mut child = None;
         // The node with the mesh, within one node for each further part of its motion.
         for motion in object.motion.parts() {
@@ -100,6 +103,9 @@ impl Document<'_> {
             };
             if child.is_none() && !name.is_empty() {
                 node.insert("name".into(), json!(name));
+            }
+            if child.is_none() && !object.category.is_empty() {
+                node.insert("extras".into(), json!({ CATEGORY: object.category }));
             }
             let (place, keys) = (motion.at(0.0), motion.keys());
             if keys.is_empty() && !place.is_identity() {

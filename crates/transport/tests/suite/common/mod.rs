@@ -3,6 +3,7 @@
 
 #[path = "../../../../accel/tests/suite/support/effort.rs"]
 mod effort;
+pub mod labelled;
 pub mod media;
 pub mod statistics;
 
