@@ -8,7 +8,7 @@ use bilux_scene::SceneBuilder;
 /// sample (threads, accelerator, number of samples, crop, display) are left out, and so are names.
 pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
     let s = settings;
-    let text = format!(
+    let mut text = format!(
         "{} {} {} {} {} {:08x} {:08x} {} {} {:?} {}",
         s.width,
         s.height,
@@ -22,6 +22,9 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         s.accel.query.culling,
         s.filters_textures && !scene.textures.is_empty(),
     );
+    if s.readout != 0.0 {
+        text += &format!(" {:08x}", s.readout.to_bits());
+    }
     let hash = hash_what_is_seen(scene, &[&settings.integrator_parameters], &text).to_string();
     hash[..32].to_owned()
 }

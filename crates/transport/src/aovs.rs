@@ -141,7 +141,7 @@ impl Aov {
         matches!(self, Aov::Albedo | Aov::Guides)
     }
 
-    /// True for [labels](crate::labels): each is of the one surface that the ray through a pixel's centre meets.
+    /// True for [labels](mod@crate::labels): each is of the one surface that the ray through a pixel's centre meets.
     pub fn is_label(self) -> bool {
         self.is_flow()
             || matches!(self, Aov::Normal | Aov::CameraNormal | Aov::Depth | Aov::ZDepth | Aov::Position)

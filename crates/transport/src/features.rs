@@ -4,7 +4,7 @@
 //! They take a pass of their own over the film. Albedo, and the normals and depths that guide denoisers, are means over the
 //! camera rays of the picture's first samples. At smooth mirrors and glass a ray goes on, along the more likely of
 //! reflection and refraction, to the surface that is visible there, so that reflected and refracted images have their
-//! edges too; depth is that of the first surface. What is exact, and of one surface, are [labels](crate::labels). Each
+//! edges too; depth is that of the first surface. What is exact, and of one surface, are [labels](mod@crate::labels). Each
 //! pixel is summed on its own, in the order of its samples: the bytes are the same for any number of threads, any crop
 //! and any range of samples.
 //!

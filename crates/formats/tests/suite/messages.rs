@@ -152,7 +152,9 @@ fn messages_about_broken_materials_are_plain() {
             }
         }
     }
-    assert_plain(messages);
+    // The folder has a name of random letters, which may look like words.
+    let folder = folder.path().display().to_string();
+    assert_plain(messages.iter().map(|message| message.replace(&folder, "folder")));
 }
 
 #[test]

@@ -675,7 +675,7 @@ class Scene(_bilux.Scene):
             >>> scene = bilux.Scene()
             >>> floor = scene.add_mesh([[-1, 0, 1], [1, 0, 1], [0, 0, -1]], [[0, 1, 2]])
             >>> sky = scene.add_light(bilux.lights.environment(radiance=1))
-            >>> values, errors = scene.irradiance([[0, 0, 0]], spp=64)
+            >>> values, errors = scene.irradiance([[0, 0, 0]], spp=1024)
             >>> values.shape, bool(abs(values[0, 0] - np.pi) < 0.1)
             ((1, 3), True)
         """

@@ -94,6 +94,18 @@ fn places(kind: &str) -> Vec<Place> {
             all
         }
         "environment" => small("environment", PI * f64::from(LIGHT), 1.0, spec().with("radiance", LIGHT)),
+        // They are as bright as they are asked to be.
+        "cie-sky" => [1, 5, 12]
+            .into_iter()
+            .flat_map(|standard| {
+                let spec = spec().with("standard", standard).with("irradiance", LIGHT);
+                small("cie-sky", f64::from(LIGHT), 1.0, spec)
+            })
+            .collect(),
+        "perez-sky" => {
+            let spec = spec().with("direct", 0.0f32).with("diffuse", LIGHT).with("clearness", 1.0f32);
+            small("perez-sky", f64::from(LIGHT), 1.0, spec.with("brightness", 0.2f32))
+        }
         // The map has no closed form: see `a_sky_is_found_by_both_strategies`.
         "sky" => Vec::new(),
         "point" | "spot" => at_distances(&|size, distance, at| {
