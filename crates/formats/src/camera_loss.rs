@@ -28,6 +28,11 @@ pub(crate) fn not_perspective(spec: &Spec, format: &str, writing: &mut Writing) 
             writing.warn(format!("{format} files cannot store '{key}' of a camera: left out"));
         }
     }
+    let eyes = spec.parameters.find("stereo").map(|(value, _)| value);
+    if spec.kind == "perspective" && eyes.is_some_and(|eyes| *eyes != "none".into()) {
+        writing
+            .warn(format!("{format} files cannot store pairs of eyes: the camera in the middle is written"));
+    }
 }
 
 /// The vertical field of view in degrees that is nearest to a camera's.
