@@ -6,6 +6,7 @@ use crate::sandbox::{Enforcement, restrict};
 use crate::studio::StudioArguments;
 use crate::{memory, output, signals};
 use anyhow::bail;
+use bilux::formats::archive_of;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
@@ -21,8 +22,9 @@ pub struct SandboxPaths {
 }
 
 impl SandboxPaths {
-    /// Allows reading a scene file and everything in its folder.
+    /// Allows reading a scene file and everything in its folder; of one in an archive, the archive.
     pub fn reading_scene(mut self, scene: &Path) -> SandboxPaths {
+        let scene = archive_of(scene).unwrap_or(scene);
         self.read.push(folder_of(scene).to_owned());
         self.reading(scene)
     }

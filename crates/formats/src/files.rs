@@ -4,6 +4,7 @@ use crate::bake::{warn_of_vertices, with_pictures, without_media};
 use crate::formats::{
     ReadFormat, SceneFormatEntry, extension, format_named, format_of_path, sniffed, unknown,
 };
+use crate::locating::Locator;
 use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
 use crate::text::{is_marked, plain, plain_size, whole_file};
@@ -27,9 +28,19 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
     let mut reading = Reading::new(options, path.parent());
     let row = extension(path).and_then(|e| format_named(&e));
     let name = path.display().to_string().into();
+    if let Some(archive) = archive_of(path) {
+        reading.locator = Locator::new(archive.parent(), options.allow_outside);
+        reading.mount(archive, &archive.display().to_string().into())?;
+    }
     reading.open.extend(std::fs::canonicalize(path));
     let scene = read_file(row, &mut reading, path, &name)?;
     reading.complete(scene)
+}
+
+/// The archive in which a path lies, as in `models.zip/parts/wheel.stl`.
+pub fn archive_of(path: &Path) -> Option<&Path> {
+    let around = path.ancestors().skip(1).find(|around| !around.as_os_str().is_empty() && around.exists());
+    around.filter(|around| around.is_file())
 }
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
@@ -88,6 +99,9 @@ fn read_file_once(
         let source = Source { bytes: &head, name, folder };
         return Ok((row, flow(row, reading, &source, &mut (&head[..]).chain(file))?));
     }
+    if let Some(row) = row.filter(|row| row.is_packed()) {
+        return Ok((row, read_archive(row, reading, path, name)?));
+    }
     let bytes = reading.load(path)?;
     let row = row.or_else(|| sniffed(&bytes));
     let row = row.ok_or_else(|| {
@@ -95,9 +109,32 @@ fn read_file_once(
             .or_else(|| picture_by_name(path))
             .unwrap_or_else(|| unknown(path, "read", SceneFormatEntry::reads))
     })?;
+    if row.is_packed() {
+        reading.release(bytes);
+        return Ok((row, read_archive(row, reading, path, name)?));
+    }
     let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
     reading.release(bytes);
     Ok((row, scene))
+}
+
+/// Reads an archive as the folder of its members.
+fn read_archive(
+    row: &SceneFormatEntry,
+    reading: &mut Reading,
+    path: &Path,
+    name: &Arc<str>,
+) -> Result<SceneBuilder, FormatError> {
+    let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
+    let (file, _) = reading.open_file(path)?;
+    let mut head = Vec::new();
+    file.take(BEGINNING).read_to_end(&mut head).map_err(failed)?;
+    if !head.is_empty() {
+        reading.mount(path, name)?;
+    }
+    let scene = read_source(row, reading, &Source { bytes: &head, name, folder: Some(path) });
+    reading.unmount(path);
+    scene
 }
 
 /// The length of a file's beginning that a streaming reader can inspect first.
@@ -125,7 +162,12 @@ pub fn read_bytes(
     let mut reading = Reading::new(options, base);
     reading.budget.take_bytes(bytes.len() as u64, name)?;
     let name = Arc::from(name);
-    let source = Source { bytes, name: &name, folder: base };
+    let mut source = Source { bytes, name: &name, folder: base };
+    if row.is_packed() && !bytes.is_empty() {
+        let root = Path::new(&*name);
+        reading.mount_bytes(root, bytes, &name)?;
+        source = Source { folder: Some(root), ..source };
+    }
     let scene = keeping_digits(&mut reading, |reading| Ok((row, read_source(row, reading, &source)?)))?;
     reading.complete(scene)
 }
@@ -205,7 +247,7 @@ fn flow(
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
     let read = match read {
-        ReadFormat::Binary(read) => read(reading, source),
+        ReadFormat::Binary(read) | ReadFormat::Packed(read) => read(reading, source),
         ReadFormat::Whole(read) => {
             reading.budget.take_bytes(plain_size(source.bytes), source.name)?;
             read(reading, &Source { bytes: &plain(source.bytes), ..*source })

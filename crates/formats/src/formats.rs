@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
-use crate::{FormatError, asc, gltf, grids, las, native, obj, off, pbrt, ply, stl, xyz};
+use crate::{FormatError, asc, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, xyz};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint};
@@ -22,6 +22,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     las::ENTRY,
     xyz::ENTRY,
     grids::ENTRY,
+    packed::ENTRY,
     native::ENTRY,
 ];
 
@@ -51,6 +52,8 @@ pub(crate) enum ReadFormat {
     Binary(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
     /// From a stream of text, as for `Whole`. The source holds only the beginning of the file; the stream repeats it.
     Flowing(fn(&mut Reading, &Source, &mut dyn Read) -> Result<SceneBuilder, FormatError>),
+    /// From an archive, whose members are the files of the source's folder. The source holds only its beginning.
+    Packed(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
 }
 /// Turns a scene into bytes.
 pub(crate) type WriteFormat = fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>;
@@ -59,6 +62,11 @@ impl SceneFormatEntry {
     /// True if files of this format can be read.
     pub fn reads(&self) -> bool {
         self.read.is_some()
+    }
+
+    /// True if its files are archives.
+    pub(crate) fn is_packed(&self) -> bool {
+        matches!(self.read, Some(ReadFormat::Packed(_)))
     }
 
     /// True if files of this format can be written.
@@ -89,7 +97,7 @@ const HEAD: usize = 1 << 16;
 pub(crate) fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {
     let head = plain(&bytes[..bytes.len().min(HEAD)]);
     let looks_like = |row: &&SceneFormatEntry| match row.read {
-        Some(ReadFormat::Binary(_)) => (row.sniff)(bytes),
+        Some(ReadFormat::Binary(_) | ReadFormat::Packed(_)) => (row.sniff)(bytes),
         // Most look at the end too, but the text of a marked file is made anew.
         _ if is_marked(bytes) => (row.sniff)(&head),
         _ => (row.sniff)(bytes),

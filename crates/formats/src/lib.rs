@@ -5,6 +5,7 @@
 //! [`FormatError`] that states the location and the remedy. It uses no more memory than
 //! [`ReadOptions::max_memory`], and opens no file outside the scene's folder unless allowed.
 
+mod archive;
 mod asc;
 mod bake;
 mod blocks;
@@ -24,12 +25,14 @@ mod indexed_faces;
 mod las;
 mod locating;
 mod luminaires;
+mod mounting;
 mod native;
 mod normals;
 mod obj;
 mod oddities;
 mod off;
 mod options;
+mod packed;
 mod pbrt;
 mod ply;
 mod polygon;
@@ -46,7 +49,7 @@ mod xyz;
 
 pub use calibrations::{CalibratedCameras, read_cameras};
 pub use error::FormatError;
-pub use files::{check_not_read, read, read_bytes, write};
+pub use files::{archive_of, check_not_read, read, read_bytes, write};
 pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path};
 pub use grids::{GridOfFile, read_grid, read_grids};
 pub use luminaires::read_distribution;

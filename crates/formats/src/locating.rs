@@ -2,6 +2,7 @@
 //! Nothing outside the scene's folder is opened, or listed.
 
 use crate::FormatError;
+use crate::archive::Archives;
 use bilux_scene::{SceneBuilder, Span, Warning};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -14,8 +15,8 @@ use std::path::{Component, Path, PathBuf};
 struct Names {
     /// The names in a folder, by their lower-case form; of several the first.
     listings: RefCell<HashMap<PathBuf, BTreeMap<String, OsString>>>,
-    /// Names in the scene, the files that were found for them, and where the scene refers to them.
-    renamed: RefCell<BTreeMap<String, (PathBuf, Span)>>,
+    /// Names in the scene, what is said of the files that were found for them, and where the scene refers to them.
+    renamed: RefCell<BTreeMap<String, (String, Span)>>,
 }
 
 /// The number of names in a folder that are compared: a listing takes memory.
@@ -23,12 +24,15 @@ const MAX_LISTED: usize = 100_000;
 
 impl Names {
     fn into_notes(self, scene: &mut SceneBuilder) {
-        for (name, (found, at)) in self.renamed.into_inner() {
-            let found = found.file_name().unwrap_or_default().to_string_lossy();
-            let message =
-                format!("'{name}' is called '{found}' on this disk, where upper and lower case matter");
-            scene.notes.push(Warning { message, at });
+        for (name, (what, at)) in self.renamed.into_inner() {
+            scene.notes.push(Warning { message: format!("'{name}' is {what}"), at });
         }
+    }
+
+    /// Notes what a file is called that was found under another name.
+    fn note(&self, name: &str, at: &Span, what: impl FnOnce() -> String) {
+        let mut renamed = self.renamed.borrow_mut();
+        renamed.entry(name.to_owned()).or_insert_with(|| (what(), at.clone()));
     }
 
     /// What a name in a folder is called there, if only upper and lower case differ.
@@ -53,6 +57,8 @@ pub(crate) struct Locator {
     allow_outside: bool,
     /// A second folder where the current format looks for files.
     pub(crate) working_folder: Option<PathBuf>,
+    /// The archives that are open, whose members are found as files are, and nothing else from inside of them.
+    pub(crate) archives: Archives,
     /// What was found under other names.
     names: Names,
 }
@@ -61,7 +67,13 @@ impl Locator {
     /// For what files in a folder refer to.
     pub(crate) fn new(folder: Option<&Path>, allow_outside: bool) -> Locator {
         let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
-        Locator { root, allow_outside, working_folder: None, names: Names::default() }
+        Locator {
+            root,
+            allow_outside,
+            working_folder: None,
+            archives: Archives::default(),
+            names: Names::default(),
+        }
     }
 
     /// Adds a note to the scene for each file that was found under a name in other letters.
@@ -112,6 +124,16 @@ impl Locator {
             || FormatError::MissingFile { name: name.to_owned(), folder: folder.to_owned(), at: at.clone() };
         // Files from other machines refer to folders there; the file itself often lies next to the scene.
         let portable = without_file_scheme(name).replace('\\', "/");
+        if self.archives.contain(folder) {
+            let (found, is_renamed) = self.archives.locate(folder, &portable, at)?.ok_or_else(missing)?;
+            if open.contains(&found) {
+                return Err(missing());
+            }
+            if is_renamed {
+                self.names.note(name, at, || format!("'{}' in the archive", found.display()));
+            }
+            return Ok(found);
+        }
         let beside = portable.rsplit('/').next().unwrap_or_default();
         if beside.is_empty() || name.contains('\0') {
             return Err(missing());
@@ -129,8 +151,10 @@ impl Locator {
             .or_else(|| {
                 let in_any_case = |name: &str| self.in_any_case(folder, name).filter(is_closed);
                 let found = in_any_case(&portable).or_else(|| in_any_case(beside))?;
-                let mut renamed = self.names.renamed.borrow_mut();
-                renamed.entry(name.to_owned()).or_insert((found.clone(), at.clone()));
+                self.names.note(name, at, || {
+                    let found = found.file_name().unwrap_or_default().to_string_lossy();
+                    format!("called '{found}' on this disk, where upper and lower case matter")
+                });
                 Some(found)
             })
             // This excludes pipes, which might never end.

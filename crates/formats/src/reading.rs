@@ -1,5 +1,6 @@
 //! The shared state of one read: the options, the memory used, and the files involved.
 
+use crate::archive::OpenMember;
 use crate::budget::Budget;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
@@ -282,11 +283,16 @@ impl<'o> Reading<'o> {
         Ok(text)
     }
 
-    /// Opens a file for reading; also returns the length that the system reports.
-    pub(crate) fn open_file(&mut self, path: &Path) -> Result<(fs::File, u64), FormatError> {
-        let opened = open(path)?;
+    /// Opens a file for reading, or a member of an archive; also returns the length that the system or the archive states.
+    pub(crate) fn open_file(&mut self, path: &Path) -> Result<OpenMember, FormatError> {
+        if let Some((archive, opened)) = self.locator.archives.open(path) {
+            self.files.extend(fs::canonicalize(archive));
+            let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
+            return opened.map_err(failed);
+        }
+        let (file, length) = open(path)?;
         self.files.extend(fs::canonicalize(path));
-        Ok(opened)
+        Ok((Box::new(file), length))
     }
 
     /// Releases the bytes of a loaded file.
@@ -333,7 +339,7 @@ impl<'o> Reading<'o> {
     }
 }
 
-fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
+pub(crate) fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
     let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
     let file = fs::File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;

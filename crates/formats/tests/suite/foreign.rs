@@ -20,8 +20,6 @@ const FILES: &[(&[u8], &str, bool)] = &[
     (b"; FBX 7.4.0 project file\n", "FBX", false),
     (b"#usda 1.0\n", "USD", false),
     (b"PXR-USDC\0\x08", "USD", false),
-    (b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x0a\0\0\0scene.usdc", "USDZ", false),
-    (b"PK\x03\x04\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x13\0\0\0[Content_Types].xml", "3MF", false),
     (b"BLENDER-v400", "Blender", false),
     (b"<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"a\">", "COLLADA", false),
     (b"ISO-10303-21;\nHEADER;", "STEP", false),
@@ -30,7 +28,6 @@ const FILES: &[(&[u8], &str, bool)] = &[
     (b"Ogawa\xff\0\x01", "Alembic", false),
     (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "Git LFS", false),
     (b"<!DOCTYPE html>\n<html><head>", "web page", false),
-    (b"PK\x03\x04\x14\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x05\0\0\0a.obj", "zip", false),
     (b"\x28\xb5\x2f\xfd\x04", "zstd", false),
 ];
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
+mod archives;
 mod asc;
 mod calibrations;
 mod clouds;

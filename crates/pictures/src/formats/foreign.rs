@@ -95,9 +95,7 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     other("a pointer of Git LFS", "fetch the file with `git lfs pull`", |b| {
         b.starts_with(b"version https://git-lfs.github.com/spec/")
     }),
-    other("a compressed archive (zip)", "unpack it, and name the file in it", |b| {
-        b.starts_with(b"PK\x03\x04")
-    }),
+    other("a zip archive", "give it a name that ends in .zip", |b| b.starts_with(b"PK\x03\x04")),
     other("a compressed archive (7z)", "unpack it, and name the file in it", |b| {
         b.starts_with(b"7z\xbc\xaf\x27\x1c")
     }),

@@ -1,0 +1,89 @@
+//! Archives with a model and its textures, as people upload them. See `docs/formats/archives.md`.
+
+use crate::FormatError;
+use crate::archive::{Archive, Member, is_archive};
+use crate::files::read_file;
+use crate::formats::{ReadFormat, SCENE_FORMATS, SceneFormatEntry, extension, format_named};
+use crate::reading::{Reading, Source};
+use crate::text::whole_file;
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, SceneBuilder, UpHint, Warning};
+use std::cmp::Reverse;
+use std::path::Path;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "archive",
+        summary: "zip and tar archives: a model and its textures, read in place",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["zip", "tar", "tgz", "zae"],
+    capabilities: &["what the model in it contains"],
+    sniff: is_archive,
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Packed(read)),
+    write: None,
+};
+
+/// The names of other formats in a message.
+const LISTED: usize = 8;
+
+/// A member that may be the scene, and how likely it is.
+struct Candidate<'a> {
+    row: &'static SceneFormatEntry,
+    member: &'a Member,
+    /// Less is likelier.
+    rank: (usize, usize, Reverse<u64>, &'a str),
+}
+
+fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let root = source.folder.unwrap_or(Path::new(""));
+    let Some(archive) = reading.locator.archives.at(root) else {
+        return Err(FormatError::malformed("this is no archive", whole_file(source.name)));
+    };
+    let found = candidates(archive);
+    let Some(best) = found.first() else { return Err(no_scene(archive, source)) };
+    let (row, path) = (best.row, root.join(&best.member.name));
+    let shown = best.member.name.clone();
+    let others: Vec<String> = found[1..].iter().take(LISTED).map(|other| other.member.name.clone()).collect();
+    let at = whole_file(source.name);
+    reading.enter(&path, &at)?;
+    let mut scene = read_file(Some(row), reading, &path, &path.display().to_string().into())?;
+    reading.leave();
+    if let Some(other) = others.first() {
+        let message = format!(
+            "this archive has several scenes; shown is '{shown}', not {}: name another one as in '{}/{other}'",
+            others.join(", "),
+            source.name
+        );
+        scene.warnings.push(Warning { message, at });
+    }
+    Ok(scene)
+}
+
+/// The members whose extension is that of a scene, the likeliest first: by format, by depth, by size.
+fn candidates(archive: &Archive) -> Vec<Candidate<'_>> {
+    let mut found: Vec<Candidate> = archive.members().iter().filter_map(candidate).collect();
+    found.sort_by(|a, b| a.rank.cmp(&b.rank));
+    found
+}
+
+fn candidate(member: &Member) -> Option<Candidate<'_>> {
+    let name = member.name.as_str();
+    let is_hidden = name.split('/').any(|part| part.starts_with('.') || part == "__MACOSX");
+    let extension = extension(Path::new(name)).filter(|_| !is_hidden)?.to_lowercase();
+    let row = format_named(&extension).filter(|row| row.reads() && row.extensions.contains(&&*extension))?;
+    let format = SCENE_FORMATS.iter().position(|other| other.entry.name == row.entry.name)?;
+    let depth = name.matches('/').count();
+    Some(Candidate { row, member, rank: (format, depth, Reverse(member.size), name) })
+}
+
+fn no_scene(archive: &Archive, source: &Source) -> FormatError {
+    let names: Vec<&str> = archive.members().iter().take(LISTED).map(|member| &*member.name).collect();
+    let message = match names.as_slice() {
+        [] => "this archive is empty".to_owned(),
+        names => format!("no file in this archive is a scene that can be read; it has {}", names.join(", ")),
+    };
+    FormatError::malformed(message, whole_file(source.name))
+}
