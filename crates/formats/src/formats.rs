@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
-use crate::{FormatError, asc, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, xyz};
+use crate::{FormatError, asc, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint};
@@ -22,6 +22,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     las::ENTRY,
     xyz::ENTRY,
     grids::ENTRY,
+    threemf::ENTRY,
     packed::ENTRY,
     native::ENTRY,
 ];

@@ -6,6 +6,7 @@
 //! [`ReadOptions::max_memory`], and opens no file outside the scene's folder unless allowed.
 
 mod archive;
+mod as_metal;
 mod asc;
 mod bake;
 mod blocks;
@@ -42,6 +43,7 @@ mod sink;
 mod stl;
 mod strokes;
 mod text;
+mod threemf;
 mod values;
 mod vdb;
 mod writing;

@@ -42,6 +42,7 @@ mod public_reports;
 mod round_trips;
 mod shared_files;
 mod stl;
+mod threemf;
 mod tolerance;
 mod wrong_files;
 

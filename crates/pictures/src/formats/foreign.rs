@@ -66,7 +66,9 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     scene("an FBX scene", |b| b.starts_with(b"Kaydara FBX Binary") || b.starts_with(b"; FBX ")),
     scene("a USD scene", |b| b.starts_with(b"#usda ") || b.starts_with(b"PXR-USDC")),
     scene("a USDZ scene", |b| is_zip_of(b, &[b".usdc", b".usda", b".usd"])),
-    scene("a 3MF model", |b| is_zip_of(b, &[b"[Content_Types].xml", b"3D/", b"_rels/"])),
+    other("a 3MF model", "give it a name that ends in .3mf", |b| {
+        is_zip_of(b, &[b"[Content_Types].xml", b"3D/", b"_rels/"])
+    }),
     scene("a Blender file", |b| b.starts_with(b"BLENDER")),
     scene("a COLLADA scene (DAE)", |b| has_root(b, b"<COLLADA")),
     scene("an X3D scene", |b| has_root(b, b"<X3D")),

@@ -1,0 +1,30 @@
+//! The mesh of an object, as the file has it.
+
+use super::beams::Lattice;
+use bilux_math::Vec3;
+
+/// A mesh as the file has it.
+#[derive(Default)]
+pub(super) struct MeshData {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The properties of each triangle; empty if none has its own.
+    pub(super) properties: Vec<TriangleProperties>,
+    /// What a slicer has painted on triangles, each with its index.
+    pub(super) paint: Vec<(u32, Box<str>)>,
+    pub(super) lattice: Option<Lattice>,
+}
+
+/// The properties of a triangle's corners; of a group [`NONE`], those of the object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TriangleProperties {
+    pub(super) group: u32,
+    pub(super) corners: [u32; 3],
+}
+
+/// No group.
+pub(super) const NONE: u32 = u32::MAX;
+
+impl TriangleProperties {
+    pub(super) const OF_OBJECT: TriangleProperties = TriangleProperties { group: NONE, corners: [0; 3] };
+}
