@@ -1,7 +1,8 @@
 //! The options for the choices that a scene file leaves open.
 
 use crate::help;
-use crate::values::{parse_radius, parse_time};
+use crate::values::{parse_radius, parse_scheme, parse_time};
+use bilux::formats::Scheme;
 use clap::{Args, ValueEnum};
 
 /// The choices that a scene file leaves open.
@@ -16,6 +17,9 @@ pub struct Choices {
     /// How to treat glass if the file does not say whether it is solid or thin-walled
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
+    /// Treat the polygons of an OBJ, PLY or OFF file as the cage of a subdivision surface: catmull-clark, loop or bilinear
+    #[arg(long, value_name = "SCHEME", value_parser = parse_scheme, help_heading = help::WHAT)]
+    pub subdivide: Option<Scheme>,
     /// Give the file's point lights this radius, in metres, which softens their shadows [default: 0]
     #[arg(long, value_name = "RADIUS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
         value_parser = parse_radius, help_heading = help::LIGHT)]

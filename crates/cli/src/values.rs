@@ -1,5 +1,6 @@
 //! Parsers for the values on the command line.
 
+use bilux::formats::Scheme;
 use bilux::transport::LengthBins;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -205,6 +206,12 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
 pub fn parse_radius(text: &str) -> Result<f32, String> {
     let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);
     radius.ok_or_else(|| "write a length in metres, such as 0.05".to_owned())
+}
+
+/// Parses the name of a scheme of subdivision.
+pub fn parse_scheme(text: &str) -> Result<Scheme, String> {
+    let names = Scheme::ALL.map(|(name, _)| name);
+    Scheme::named(text).ok_or_else(|| format!("write one of {}", names.join(", ")))
 }
 
 /// By how much a picture is brightened.

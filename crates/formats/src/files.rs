@@ -261,6 +261,7 @@ fn flow(
         ReadFormat::Flowing(read) => read(reading, source, from),
     };
     let mut scene = read.map_err(|error| explained(error, row, source))?;
+    reading.refine_cages(&mut scene, source.name);
     // A scene that is based on another one keeps what that file says.
     if scene.up == UpHint::default() {
         scene.up = row.up;

@@ -1,5 +1,6 @@
 //! Options for reading and writing scenes.
 
+use crate::subdivision::Scheme;
 use std::path::PathBuf;
 
 /// Limits and choices for reading a scene.
@@ -30,6 +31,9 @@ pub struct ReadOptions {
     pub animation: Option<String>,
     /// The material variant to show, by name or by number from 0; by default the materials of the meshes.
     pub variant: Option<String>,
+    /// If given, polygons of formats that do not say whether their surfaces are smooth (OBJ, PLY, OFF) are the cage of a
+    /// subdivision surface.
+    pub subdivide: Option<Scheme>,
     /// How to interpret transmissive materials without a thickness.
     pub glass: Glass,
     /// The radius of point lights in metres, if above 0.
@@ -53,6 +57,7 @@ impl Default for ReadOptions {
             whole_movement: false,
             animation: None,
             variant: None,
+            subdivide: None,
             glass: Glass::Auto,
             light_radius: 0.0,
             picture_layer: None,

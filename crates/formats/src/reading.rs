@@ -4,6 +4,7 @@ use crate::archive::OpenMember;
 use crate::budget::Budget;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
+use crate::subdivision::PendingCage;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
@@ -72,6 +73,8 @@ pub(crate) struct Reading<'o> {
     counted: HashSet<*const Mesh>,
     /// The chain of nested scenes, from the first one to the current one.
     pub(crate) open: Vec<PathBuf>,
+    /// Subdivision surfaces of the scene that is read now.
+    pub(crate) cages: Vec<PendingCage>,
     /// Every file that was opened, by its full name.
     pub(crate) files: BTreeSet<PathBuf>,
 }
@@ -105,6 +108,7 @@ impl<'o> Reading<'o> {
             models: HashMap::new(),
             counted: HashSet::new(),
             open: Vec::new(),
+            cages: Vec::new(),
             files: BTreeSet::new(),
         }
     }

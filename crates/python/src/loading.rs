@@ -3,7 +3,7 @@
 use crate::ending::without_gil;
 use crate::errors::{of_text, warn};
 use crate::source::{Source, bytes_at};
-use bilux::formats::{FormatError, Glass, ReadOptions};
+use bilux::formats::{FormatError, Glass, ReadOptions, Scheme};
 use bilux::scene::SceneBuilder;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -89,4 +89,11 @@ pub(crate) fn glass_named(name: &str) -> PyResult<Glass> {
             Err(PyValueError::new_err(message))
         }
     }
+}
+
+pub(crate) fn scheme_named(name: &str) -> PyResult<Scheme> {
+    Scheme::named(name).ok_or_else(|| {
+        let known = Scheme::ALL.map(|(name, _)| format!("'{name}'"));
+        PyValueError::new_err(format!("subdivide: there is no '{name}': write {}", known.join(", ")))
+    })
 }

@@ -5,7 +5,7 @@ use crate::arrays;
 use crate::encoded::{Encoded, decoded};
 use crate::ending::without_gil;
 use crate::errors::{exception, warn};
-use crate::loading::{Origin, glass_named, loaded};
+use crate::loading::{Origin, glass_named, loaded, scheme_named};
 use crate::memory::within_limits;
 use crate::picture::Picture;
 use crate::progressive::Progressive;
@@ -47,7 +47,7 @@ impl Scene {
     }
 
     #[classmethod]
-    #[pyo3(signature = (file, *, format, folder, time, animation, variant, glass, light_radius, max_memory, allow_outside, strict))]
+    #[pyo3(signature = (file, *, format, folder, time, animation, variant, subdivide, glass, light_radius, max_memory, allow_outside, strict))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of bilux.load")]
     fn _load<'py>(
         class: &Bound<'py, PyType>,
@@ -57,6 +57,7 @@ impl Scene {
         time: f32,
         animation: Option<String>,
         variant: Option<String>,
+        subdivide: Option<&str>,
         glass: &str,
         light_radius: f32,
         max_memory: u64,
@@ -72,6 +73,7 @@ impl Scene {
             time,
             animation,
             variant,
+            subdivide: subdivide.map(scheme_named).transpose()?,
             glass: glass_named(glass)?,
             light_radius,
             ..ReadOptions::default()

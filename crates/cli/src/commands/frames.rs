@@ -10,6 +10,7 @@ use crate::studio::StudioArguments;
 use anyhow::{Context, bail};
 use bilux::checkpoint::{CheckpointError, Identity, checkpoint_path};
 use bilux::encoding::ContentHash;
+use bilux::formats::Scheme;
 use bilux::pictures::formats::write_atomically;
 use bilux::scene::{Parameters, Value};
 use std::collections::BTreeSet;
@@ -165,6 +166,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         ("--turntable", said(a.turntable)),
         ("--animation", said(a.choices.animation.as_ref())),
         ("--variant", said(a.choices.variant.as_ref())),
+        ("--subdivide", said(a.choices.subdivide.map(Scheme::name))),
         ("--glass", glass.to_owned()),
         ("--light-radius", a.choices.light_radius.to_string()),
         ("--fast", a.fast.to_string()),

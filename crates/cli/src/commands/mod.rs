@@ -65,6 +65,7 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
         time,
         animation: choices.animation.clone(),
         variant: choices.variant.clone(),
+        subdivide: choices.subdivide,
         glass: match choices.glass {
             GlassArgument::Auto => Glass::Auto,
             GlassArgument::Thin => Glass::Thin,

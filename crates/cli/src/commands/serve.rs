@@ -131,7 +131,7 @@ fn command(arguments: &Serve) -> Vec<String> {
     say("--layer", layer.clone());
     say("--background", studio.picture_behind().map(|path| path.display().to_string()));
     say("--preset", preset.clone());
-    let Choices { animation, variant, glass, light_radius } = choices;
+    let Choices { animation, variant, glass, subdivide, light_radius } = choices;
     say("--animation", animation.clone());
     say("--variant", variant.clone());
     say(
@@ -142,6 +142,7 @@ fn command(arguments: &Serve) -> Vec<String> {
             GlassArgument::Solid => Some("solid".to_owned()),
         },
     );
+    say("--subdivide", subdivide.map(|scheme| scheme.name().to_owned()));
     say("--light-radius", (*light_radius > 0.0).then(|| light_radius.to_string()));
     words
 }

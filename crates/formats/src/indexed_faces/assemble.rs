@@ -1,5 +1,6 @@
 //! Assembles meshes from faces with separate lists of positions, uvs and normals.
 
+use super::cage::as_cage;
 use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
@@ -25,6 +26,11 @@ pub(crate) fn assemble(
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
     check_indices(&mut indexed, place, &mut sink.oddities)?;
+    if let Some(scheme) = reading.options.subdivide {
+        return as_cage(scheme, reading, source, place, indexed, sink, |run, indexed, sink| {
+            material_of(run, indexed, &mut materials, place, sink)
+        });
+    }
     add_normals(reading, source, &mut indexed)?;
     reading.budget.take_bytes((indexed.positions.len() * size_of::<Slot>()) as u64, source.name)?;
     // A polygon has two triangles fewer than it has corners.

@@ -1,6 +1,7 @@
 //! The data model that OBJ, PLY and OFF share, and its conversion to meshes.
 
 mod assemble;
+mod cage;
 mod corners;
 mod face_colours;
 mod faces;

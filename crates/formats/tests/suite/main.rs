@@ -42,7 +42,11 @@ mod public_reports;
 mod round_trips;
 mod shared_files;
 mod stl;
+<<<<<<< Updated upstream
 mod threemf;
+=======
+mod subdivision;
+>>>>>>> Stashed changes
 mod tolerance;
 mod wrong_files;
 

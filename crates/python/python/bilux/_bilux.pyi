@@ -355,6 +355,7 @@ class Scene:
         time: float,
         animation: str | None,
         variant: str | None,
+        subdivide: str | None,
         glass: str,
         light_radius: float,
         max_memory: int,

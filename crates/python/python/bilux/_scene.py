@@ -898,6 +898,7 @@ def load(
     time: float = 0.0,
     animation: str | None = None,
     variant: str | None = None,
+    subdivide: Literal["catmull-clark", "loop", "bilinear"] | None = None,
     glass: Literal["auto", "thin", "solid"] = "auto",
     light_radius: float = 0.0,
     max_memory: int = MAX_MEMORY,
@@ -914,6 +915,8 @@ def load(
         time: what moves is as at this time, in seconds.
         animation: the animation to play, by its name or number; by default the first.
         variant: the variant of materials to show, by its name or number.
+        subdivide: the scheme by which polygons of a file that states none (OBJ, PLY, OFF) are the cage of a subdivision
+            surface; by default they stay as they are.
         glass: how to read glass whose thickness the file does not give.
         light_radius: the radius of point lights in metres, which softens their shadows.
         max_memory: bytes that reading may take.
@@ -941,6 +944,7 @@ def load(
         time=time,
         animation=animation,
         variant=variant,
+        subdivide=subdivide,
         glass=glass,
         light_radius=light_radius,
         max_memory=_bytes(max_memory),

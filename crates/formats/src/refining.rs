@@ -1,0 +1,118 @@
+//! Refines subdivision surfaces as far as a picture of the scene needs.
+
+use crate::budget::Budget;
+use crate::reading::Reading;
+use crate::subdivision::{Cage, PendingCage};
+use crate::values::vector;
+use bilux_math::transcendental::tan;
+use bilux_math::{Aabb, Mat3, Vec3};
+use bilux_scene::{Mesh, Object, SceneBuilder, Warning};
+use std::sync::Arc;
+
+/// The finest that a picture is taken to be, in pixels of its height.
+const HEIGHT: f32 = 1024.0;
+/// The longest edge of a refined cage in such pixels: a surface as round as a ball of 80 pixels is met within a tenth of one.
+const EDGE: f32 = 8.0;
+/// Polygons of a refined cage.
+const MOST: usize = 1 << 21;
+/// Levels of any cage: an edge becomes 256.
+const LEVELS: u32 = 8;
+
+impl Reading<'_> {
+    /// Refines the cages that this scene has waited for.
+    pub(crate) fn refine_cages(&mut self, scene: &mut SceneBuilder, file: &Arc<str>) {
+        let cages = std::mem::take(&mut self.cages);
+        if cages.is_empty() {
+            return;
+        }
+        let views = Views::of(scene, &cages);
+        let wanted: Vec<u32> = cages.iter().map(|pending| views.levels(&scene.objects, pending)).collect();
+        let mut coarse = None;
+        for (pending, wanted) in cages.into_iter().zip(wanted) {
+            let PendingCage { mut cage, stand_ins, at } = pending;
+            let mut level = 0;
+            while level < wanted {
+                if !fits(&cage, &mut self.budget, file) {
+                    coarse.get_or_insert((at.clone(), level, wanted));
+                    break;
+                }
+                cage = cage.refined();
+                level += 1;
+            }
+            let meshes = cage.meshes(stand_ins.len());
+            for (stand_in, mesh) in stand_ins.iter().zip(meshes) {
+                let mesh = Arc::new(Mesh { name: stand_in.name.clone(), ..mesh });
+                for object in scene.objects.iter_mut().filter(|object| Arc::ptr_eq(&object.mesh, stand_in)) {
+                    object.mesh = mesh.clone();
+                }
+            }
+        }
+        scene.objects.retain(|object| !object.mesh.positions.is_empty());
+        if let Some((at, level, wanted)) = coarse {
+            let message = format!(
+                "a subdivision surface is refined {level} times, not {wanted}: there is no more memory for it"
+            );
+            scene.warnings.push(Warning { message, at });
+        }
+    }
+}
+
+/// True if the next level has room; its memory then counts.
+fn fits(cage: &Cage, budget: &mut Budget, file: &str) -> bool {
+    cage.faces() * 4 <= MOST && budget.take_bytes(cage.bytes_of_next(), file).is_ok()
+}
+
+/// From where a scene is seen.
+struct Views {
+    /// The places of cameras, and the height of a pixel at distance 1.
+    cameras: Vec<(Vec3, f32)>,
+    /// The size of a pixel if the whole scene fills a picture, for scenes without cameras.
+    of_whole: f32,
+}
+
+impl Views {
+    fn of(scene: &SceneBuilder, cages: &[PendingCage]) -> Views {
+        let perspective = scene.cameras.iter().filter(|camera| camera.spec.kind == "perspective");
+        let cameras = perspective.map(|camera| {
+            let fov = camera.spec.number("fov").unwrap_or(40.0).to_radians();
+            (
+                vector(&camera.spec, "position").unwrap_or(Vec3::new(0.0, 0.0, 5.0)),
+                2.0 * tan(0.5 * fov) / HEIGHT,
+            )
+        });
+        let of_cage = |pending: &PendingCage| {
+            let bounds = Aabb::of_points(pending.cage.positions());
+            pending
+                .objects(&scene.objects)
+                .map(|object| object.motion.at(0.0).bounds(&bounds))
+                .fold(Aabb::EMPTY, Aabb::union)
+        };
+        let whole = cages.iter().map(of_cage).fold(scene.bounds(0.0), Aabb::union);
+        Views { cameras: cameras.collect(), of_whole: whole.extent().length() / HEIGHT }
+    }
+
+    /// How many times a cage is refined until its edges are short in every view.
+    fn levels(&self, objects: &[Object], pending: &PendingCage) -> u32 {
+        let bounds = Aabb::of_points(pending.cage.positions());
+        let edge = pending.cage.longest_edge() as f32;
+        let in_pixels = pending.objects(objects).map(|object| {
+            let transform = object.motion.at(0.0);
+            let linear = Mat3::from_mat4(*transform.matrix());
+            let scale = [linear.x_axis, linear.y_axis, linear.z_axis]
+                .map(Vec3::length)
+                .into_iter()
+                .fold(0.0, f32::max);
+            edge * scale / self.pixel(&transform.bounds(&bounds))
+        });
+        let longest = in_pixels.fold(0.0, f32::max);
+        (1..LEVELS).find(|&level| longest <= EDGE * (1 << level) as f32).unwrap_or(LEVELS)
+    }
+
+    /// The size of a pixel at what is in this box.
+    fn pixel(&self, bounds: &Aabb) -> f32 {
+        let distance = |from: Vec3| from.distance(from.clamp(bounds.min, bounds.max));
+        let nearest = self.cameras.iter().map(|(from, size)| distance(*from) * size).reduce(f32::min);
+        // A camera within the box sees some of it from very near, but not all.
+        nearest.map_or(self.of_whole, |size| size.max(0.1 * self.of_whole))
+    }
+}

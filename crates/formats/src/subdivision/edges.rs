@@ -1,0 +1,63 @@
+//! The edges of polygons, and which corners they join.
+
+use std::collections::HashMap;
+
+/// The edges of a list of polygons, numbered as the polygons name them first.
+pub(super) struct Edges {
+    pub(super) all: Vec<Edge>,
+    /// For each corner, the edge from it to the next corner of its polygon.
+    pub(super) of_corner: Vec<u32>,
+    /// For each corner, the next one of its polygon.
+    pub(super) next: Vec<u32>,
+}
+
+/// An edge between two points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// Its points, as its first polygon runs through them.
+    pub(super) ends: [u32; 2],
+    /// The corners of the first two polygons that begin it.
+    pub(super) corners: [u32; 2],
+    /// The number of its polygons.
+    pub(super) polygons: u32,
+}
+
+impl Edge {
+    /// The name of an edge, whichever way it runs.
+    pub(super) fn key(a: u32, b: u32) -> [u32; 2] {
+        [a.min(b), a.max(b)]
+    }
+}
+
+impl Edges {
+    /// Of polygons with these corners, which are indices of points, and the end of each polygon.
+    pub(super) fn new(corners: &[u32], ends: &[u32]) -> Edges {
+        let mut numbers: HashMap<[u32; 2], u32> = HashMap::with_capacity(corners.len() / 2 + 1);
+        let mut edges = Edges {
+            all: Vec::new(),
+            of_corner: Vec::with_capacity(corners.len()),
+            next: Vec::with_capacity(corners.len()),
+        };
+        let mut start = 0;
+        for &end in ends {
+            for corner in start..end {
+                let next = if corner + 1 == end { start } else { corner + 1 };
+                let [from, to] = [corners[corner as usize], corners[next as usize]];
+                let number = *numbers.entry(Edge::key(from, to)).or_insert(edges.all.len() as u32);
+                match edges.all.get_mut(number as usize) {
+                    Some(edge) => {
+                        if edge.polygons == 1 {
+                            edge.corners[1] = corner;
+                        }
+                        edge.polygons += 1;
+                    }
+                    None => edges.all.push(Edge { ends: [from, to], corners: [corner; 2], polygons: 1 }),
+                }
+                edges.of_corner.push(number);
+                edges.next.push(next);
+            }
+            start = end;
+        }
+        edges
+    }
+}

@@ -1,0 +1,11 @@
+//! Subdivision surfaces: a cage of polygons, refined towards its smooth limit. [Catmull 1978, Loop 1987, DeRose 1998]
+
+mod cage;
+mod edges;
+mod meshes;
+mod pending;
+mod rules;
+
+pub(crate) use cage::Cage;
+pub(crate) use pending::PendingCage;
+pub use rules::Scheme;

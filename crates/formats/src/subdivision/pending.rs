@@ -1,0 +1,32 @@
+//! A cage that waits until the whole scene is known, so that it can be as fine as its pictures need.
+
+use super::cage::Cage;
+use bilux_scene::{Mesh, Object, Span};
+use std::sync::Arc;
+
+/// A cage, and the meshes that stand for it in objects until it is refined: one for each of its groups.
+pub(crate) struct PendingCage {
+    pub(crate) cage: Cage,
+    pub(crate) stand_ins: Vec<Arc<Mesh>>,
+    pub(crate) at: Span,
+}
+
+impl PendingCage {
+    /// A cage with a name for each group, for which objects have [`PendingCage::mesh`] for now.
+    pub(crate) fn new(cage: Cage, names: impl IntoIterator<Item = String>, at: Span) -> PendingCage {
+        let stand_in = |name| Arc::new(Mesh { name, ..Mesh::default() });
+        PendingCage { cage, stand_ins: names.into_iter().map(stand_in).collect(), at }
+    }
+
+    /// The mesh of a group.
+    pub(crate) fn mesh(&self, group: usize) -> &Arc<Mesh> {
+        &self.stand_ins[group]
+    }
+
+    /// The objects that wait for it.
+    pub(crate) fn objects<'s>(&'s self, objects: &'s [Object]) -> impl Iterator<Item = &'s Object> {
+        let waits =
+            |object: &&Object| self.stand_ins.iter().any(|stand_in| Arc::ptr_eq(stand_in, &object.mesh));
+        objects.iter().filter(waits)
+    }
+}

@@ -1,0 +1,85 @@
+//! Polygons as the cages of subdivision surfaces.
+
+use crate::warnings;
+use bilux_formats::{ReadOptions, Scheme, read_bytes};
+use bilux_scene::SceneBuilder;
+
+/// A cube with the side 2, of two materials, with texture coordinates.
+const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+                    vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\ng caps\nusemtl a\nf 4/1 3/2 2/3 1/4\nf 5/1 6/2 7/3 8/4\n\
+                    g sides\nusemtl b\nf 1/1 2/2 6/3 5/4\nf 3/1 4/2 8/3 7/4\nf 1/1 5/2 8/3 4/4\nf 2/1 3/2 7/3 6/4\n";
+
+fn read(text: &str, scheme: Option<Scheme>, max_memory: u64) -> SceneBuilder {
+    let options = ReadOptions { subdivide: scheme, max_memory, ..ReadOptions::default() };
+    read_bytes(text.as_bytes(), "obj", None, "cube.obj", &options).unwrap()
+}
+
+#[test]
+fn a_cube_becomes_round_with_its_objects_and_texture_coordinates() {
+    let flat = read(CUBE, None, 1 << 30);
+    let round = read(CUBE, Some(Scheme::CatmullClark), 1 << 30);
+    assert_eq!(flat.bounds(0.0).max.to_array(), [1.0; 3]);
+    // The middle of a side ends at (16 + 4 (4 · 3/4) + 4 · 5/9) / 36 of it, by the masks of [Halstead 1993].
+    let wanted = (16.0 + 12.0 + 20.0 / 9.0) / 36.0;
+    assert!((round.bounds(0.0).max - wanted).abs().max_element() < 1e-6, "{:?}", round.bounds(0.0));
+    let names =
+        |scene: &SceneBuilder| scene.objects.iter().map(|o| (o.name.clone(), o.material)).collect::<Vec<_>>();
+    assert_eq!(names(&round), names(&flat));
+    for object in &round.objects {
+        let mesh = &object.mesh;
+        assert!(mesh.triangles.len() > 1000 && mesh.uvs.len() == mesh.positions.len());
+        assert!(mesh.uvs.iter().all(|uv| uv.min_element() >= 0.0 && uv.max_element() <= 1.0));
+        let outward = mesh.positions.iter().zip(&mesh.normals).all(|(p, n)| p.normalize().dot(*n) > 0.9);
+        assert!(outward);
+    }
+    // Normals are smooth where the objects meet.
+    let normals = |object: usize| {
+        let mesh = &round.objects[object].mesh;
+        let pairs = mesh.positions.iter().zip(&mesh.normals);
+        pairs.map(|(p, n)| (p.to_array().map(f32::to_bits), *n)).collect::<std::collections::HashMap<_, _>>()
+    };
+    let (caps, sides) = (normals(0), normals(1));
+    let shared: Vec<_> = caps.iter().filter_map(|(p, n)| Some((n, sides.get(p)?))).collect();
+    assert!(shared.len() > 100 && shared.iter().all(|(a, b)| a.dot(**b) > 0.99999), "{}", shared.len());
+    round.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
+}
+
+#[test]
+fn triangles_are_rounded_by_loop_and_bilinear_keeps_the_shape() {
+    let round = read(CUBE, Some(Scheme::Loop), 1 << 30);
+    assert!(round.bounds(0.0).max.max_element() < 0.9);
+    let same = read(CUBE, Some(Scheme::Bilinear), 1 << 30);
+    assert_eq!(same.bounds(0.0).max.to_array(), [1.0; 3]);
+}
+
+#[test]
+fn a_cage_is_as_fine_as_it_is_large_in_the_picture_and_as_memory_allows() {
+    let count = |scene: &SceneBuilder| scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>();
+    let fine = read(CUBE, Some(Scheme::CatmullClark), 1 << 30);
+    let coarse = read(CUBE, Some(Scheme::CatmullClark), 1 << 20);
+    assert!(warnings(&coarse).contains("no more memory"), "{}", warnings(&coarse));
+    assert!(count(&coarse) < count(&fine) && count(&coarse) >= 48, "{}", count(&coarse));
+    // What is small in the picture needs less.
+    let with_far = read(
+        &format!("{CUBE}v 500 0 0\nv 500 1 0\nv 500 0 1\nf 9 10 11\n"),
+        Some(Scheme::CatmullClark),
+        1 << 30,
+    );
+    assert!(count(&with_far) < count(&fine) / 4, "{} {}", count(&with_far), count(&fine));
+}
+
+#[test]
+fn broken_cages_do_no_harm() {
+    for faces in
+        ["f 1 2 3\nf 1 2 3\nf 3 2 1\nf 1 3 5\n", "f 1 1 2\nf 1 2 2 3\n", "f 1 2 3 4 5 6 7 8\n", "f 1 2 nan\n"]
+    {
+        let text = CUBE.lines().take(8).map(|line| format!("{line}\n")).collect::<String>() + faces;
+        for (_, scheme) in Scheme::ALL {
+            let options =
+                ReadOptions { subdivide: Some(scheme), max_memory: 64 << 20, ..ReadOptions::default() };
+            if let Ok(scene) = read_bytes(text.as_bytes(), "obj", None, "x", &options) {
+                let _ = scene.build(&Default::default(), [0.0, 0.0], 1.0);
+            }
+        }
+    }
+}
