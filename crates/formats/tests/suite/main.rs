@@ -42,11 +42,8 @@ mod public_reports;
 mod round_trips;
 mod shared_files;
 mod stl;
-<<<<<<< Updated upstream
-mod threemf;
-=======
 mod subdivision;
->>>>>>> Stashed changes
+mod threemf;
 mod tolerance;
 mod wrong_files;
 
