@@ -69,7 +69,7 @@ fn keeping_digits(
 }
 
 /// The formats whose readers take positions relative to [`Reading::origin`].
-const KEEPING_DIGITS: [&str; 6] = ["obj", "ply", "stl", "off", "asc", "gltf"];
+const KEEPING_DIGITS: [&str; 7] = ["obj", "ply", "stl", "off", "asc", "gltf", "fbx"];
 
 /// The origin of a model so far from zero that f32 coordinates have lost digits that the file may hold.
 fn far_origin(row: &SceneFormatEntry, scene: &SceneBuilder) -> Option<DVec3> {

@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
-use crate::{FormatError, asc, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz};
+use crate::{FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint};
@@ -14,6 +14,7 @@ use std::path::Path;
 pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     asc::ENTRY,
     gltf::ENTRY,
+    fbx::ENTRY,
     pbrt::ENTRY,
     obj::ENTRY,
     ply::ENTRY,
@@ -112,7 +113,7 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 
 /// Extensions of scene formats that other programs read.
 const FOREIGN: &[&str] = &[
-    "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "fbx", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
+    "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
     "step", "stp", "usd", "usda", "usdc", "usdz", "vrm", "wrl", "x3d",
 ];
 
@@ -126,7 +127,8 @@ pub(crate) fn unknown(
     let asked = extension(path).unwrap_or_else(|| path.display().to_string());
     // The formats of other programs, pictures and names without an extension are not misspelt.
     let is_bare = wanted == "written" && path.extension().is_none();
-    let is_other = is_bare || FOREIGN.contains(&&*asked) || bilux_pictures::format_named(&asked).is_some();
+    let is_known = FOREIGN.contains(&&*asked) || format_named(&asked).is_some();
+    let is_other = is_bare || is_known || bilux_pictures::format_named(&asked).is_some();
     let nearest = nearest_name(&asked, &known).filter(|_| !is_other);
     FormatError::UnknownFormat { name: path.display().to_string(), wanted, nearest, known }
 }

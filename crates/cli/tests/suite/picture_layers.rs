@@ -129,13 +129,13 @@ fn pictures_that_are_not_read_are_named() {
     let path = folder.path();
     fs::write(path.join("a.gif"), b"GIF89a\x01\0\x01\0").unwrap();
     fs::write(path.join("b.heic"), b"\0\0\0\x18ftypheic\0\0\0\0").unwrap();
-    fs::write(path.join("c.fbx"), b"Kaydara FBX Binary  \0\x1a\0").unwrap();
+    fs::write(path.join("c.blend"), b"BLENDER-v400").unwrap();
     for (command, part) in [
         ("render a.gif -o out.png", "a.gif: this is a GIF picture, not a scene"),
         ("info b.heic", "b.heic: this is a HEIC picture"),
-        ("render c.fbx -o out.png", "c.fbx: this is an FBX scene"),
+        ("render c.blend -o out.png", "c.blend: this is a Blender file"),
         ("convert a.gif -o out.png", "a.gif: this is a GIF picture: convert it"),
-        ("convert c.fbx -o out.glb", "c.fbx: this is an FBX scene"),
+        ("convert c.blend -o out.glb", "c.blend: this is a Blender file"),
         ("denoise a.gif -o out.png", "a.gif: this is a GIF picture: convert it"),
         ("render a.obj --env a.gif -o out.png", "a.gif: this is a GIF picture: convert it"),
     ] {

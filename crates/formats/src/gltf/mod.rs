@@ -14,7 +14,6 @@ mod draft;
 mod extensions;
 mod extras;
 mod fitting;
-mod flat;
 mod glass;
 mod glossiness;
 mod graph;

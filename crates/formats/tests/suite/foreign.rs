@@ -16,8 +16,6 @@ const FILES: &[(&[u8], &str, bool)] = &[
     (b"qoif\0\0\0\x01", "QOI", true),
     (b"<?xml version=\"1.0\"?>\n<svg xmlns=\"a\">", "SVG", true),
     (b"%PDF-1.7\n", "PDF", true),
-    (b"Kaydara FBX Binary  \0\x1a\0", "FBX", false),
-    (b"; FBX 7.4.0 project file\n", "FBX", false),
     (b"#usda 1.0\n", "USD", false),
     (b"PXR-USDC\0\x08", "USD", false),
     (b"BLENDER-v400", "Blender", false),

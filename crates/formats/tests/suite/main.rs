@@ -9,6 +9,8 @@ mod clouds;
 mod colours;
 #[path = "../../../accel/tests/suite/support/effort.rs"]
 mod effort;
+mod fbx;
+mod fbx_truth;
 mod foreign;
 mod gltf;
 mod gltf_choices;

@@ -63,7 +63,9 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     other("a PLY model", "give it a name that ends in .ply", |b| {
         b.starts_with(b"ply\n") || b.starts_with(b"ply\r")
     }),
-    scene("an FBX scene", |b| b.starts_with(b"Kaydara FBX Binary") || b.starts_with(b"; FBX ")),
+    other("an FBX scene", "give it a name that ends in .fbx", |b| {
+        b.starts_with(b"Kaydara FBX Binary") || b.starts_with(b"; FBX ")
+    }),
     scene("a USD scene", |b| b.starts_with(b"#usda ") || b.starts_with(b"PXR-USDC")),
     scene("a USDZ scene", |b| is_zip_of(b, &[b".usdc", b".usda", b".usd"])),
     other("a 3MF model", "give it a name that ends in .3mf", |b| {

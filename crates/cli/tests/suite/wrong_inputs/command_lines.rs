@@ -52,7 +52,12 @@ pub(crate) const CASES: &[Case] = &[
     ),
     Case::command("a folder in place of a scene", 1, "render . -o out.png"),
     Case::file("a Blender file", 1, &[("a.blend", b"BLENDER-v300")], "render a.blend -o out.png"),
-    Case::file("an FBX file", 1, &[("a.fbx", b"Kaydara FBX Binary")], "render a.fbx -o out.png"),
+    Case::file(
+        "an FBX file that was cut off",
+        1,
+        &[("a.fbx", b"Kaydara FBX Binary")],
+        "render a.fbx -o out.png",
+    ),
     Case::file("a USD file", 1, &[("a.usd", b"PXR-USDC")], "info a.usd"),
     Case::file("a picture in place of a scene", 1, PPM, "render a.ppm -o out.png"),
     Case::command("a picture without -o", 2, "render triangle.obj out.png"),

@@ -5,7 +5,7 @@ use bilux_scene::Mesh;
 
 /// The number of dimensions that an affine map leaves: 3 for one that can be inverted, and 1 also for one that is not
 /// finite.
-pub(super) fn rank(map: &DMat4) -> usize {
+pub(crate) fn rank(map: &DMat4) -> usize {
     let axes = [map.x_axis, map.y_axis, map.z_axis].map(|axis| axis.truncate());
     let longest = axes.iter().map(|axis| axis.length()).fold(0.0, f64::max);
     if !(map.is_finite() && longest.is_finite()) {
@@ -26,7 +26,7 @@ pub(super) fn rank(map: &DMat4) -> usize {
 }
 
 /// A mesh in world space. Its faces, and with them its normals, are those of the plane that it lies in.
-pub(super) fn flattened(mesh: &Mesh, world: &DMat4) -> Mesh {
+pub(crate) fn flattened(mesh: &Mesh, world: &DMat4) -> Mesh {
     let place = |p: &bilux_math::Vec3| world.transform_point3(DVec3::from(*p)).as_vec3();
     let positions = mesh.positions.iter().map(place).collect();
     Mesh { positions, normals: Vec::new(), tangents: Vec::new(), ..mesh.clone() }

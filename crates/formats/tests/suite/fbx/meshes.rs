@@ -1,0 +1,122 @@
+//! Where meshes are, and what their corners have.
+
+use super::*;
+use bilux_math::Vec2;
+
+#[test]
+fn a_quad_is_two_triangles_with_its_attributes() {
+    let scene = read_all(&placed(vec![]));
+    let (object, mesh) = (&scene.objects[0], &scene.objects[0].mesh);
+    assert_eq!((object.name.as_str(), mesh.triangles.as_slice()), ("node", &[[0, 1, 2], [0, 2, 3]][..]));
+    assert_eq!(mesh.positions[2], Vec3::new(1.0, 2.0, 0.0));
+    assert_eq!((mesh.normals[0], mesh.uvs[2]), (Vec3::Z, Vec2::ONE));
+    assert_eq!(crate::warnings(&scene), "");
+}
+
+/// A metre is 39.37 inches, and what is up in the file is up in the scene.
+#[test]
+fn units_and_axes_are_those_of_the_settings() {
+    let mut settings = z_up();
+    settings.push(p("UnitScaleFactor", &[2.54]));
+    let nodes = file(
+        settings,
+        vec![quad(1), model(2, "", vec![p("Lcl Translation", &[39.370_08, 0.0, 78.740_16])])],
+        vec![link(1, 2, ""), link(2, 0, "")],
+    );
+    let scene = read_all(&nodes);
+    near(at(&scene.objects[0], [0.0; 3]), [1.0, 2.0, 0.0]);
+    near(at(&scene.objects[0], [0.0, 39.370_08, 0.0]), [1.0, 2.0, -1.0]);
+    // Centimetres if nothing is stated.
+    let nodes = file(vec![], vec![quad(1), model(2, "", vec![])], vec![link(1, 2, ""), link(2, 0, "")]);
+    near(at(&read_all(&nodes).objects[0], [100.0, 0.0, 0.0]), [1.0, 0.0, 0.0]);
+}
+
+/// By hand: about a pivot at x = 1, a quarter turn about z takes (2, 0, 0) to (1, 1, 0); a scale of 2 about x = 1 takes
+/// (2, 0, 0) to (3, 0, 0).
+#[test]
+fn rotations_and_scales_are_about_their_pivots() {
+    let place = |list: Vec<N>, point: [f32; 3]| at(&read_all(&placed(list)).objects[0], point);
+    let quarter = || p("Lcl Rotation", &[0.0, 0.0, 90.0]);
+    near(place(vec![quarter(), p("RotationPivot", &[1.0, 0.0, 0.0])], [2.0, 0.0, 0.0]), [1.0, 1.0, 0.0]);
+    let scaled = p("Lcl Scaling", &[2.0; 3]);
+    near(place(vec![scaled.clone(), p("ScalingPivot", &[1.0, 0.0, 0.0])], [2.0, 0.0, 0.0]), [3.0, 0.0, 0.0]);
+    near(place(vec![scaled.clone(), p("ScalingOffset", &[0.0, 0.0, 5.0])], [1.0, 0.0, 0.0]), [2.0, 0.0, 5.0]);
+    near(place(vec![quarter(), p("RotationOffset", &[0.0, 7.0, 0.0])], [1.0, 0.0, 0.0]), [0.0, 8.0, 0.0]);
+    // Before and after: x to y, then y to z.
+    let active = p("RotationActive", &[1.0]);
+    let before = vec![active.clone(), quarter(), p("PreRotation", &[90.0, 0.0, 0.0])];
+    near(place(before, [1.0, 0.0, 0.0]), [0.0, 0.0, 1.0]);
+    // The rotation after is inverted: x to -z by -90 degrees about y... its inverse takes x to z's negative.
+    let after = vec![active.clone(), quarter(), p("PostRotation", &[0.0, 0.0, 90.0])];
+    near(place(after, [1.0, 0.0, 0.0]), [1.0, 0.0, 0.0]);
+    // About x then z, or about z then x: the order is that of the name's letters.
+    let both = p("Lcl Rotation", &[90.0, 0.0, 90.0]);
+    near(place(vec![both.clone(), p("RotationOrder", &[0.0])], [1.0, 0.0, 0.0]), [0.0, 1.0, 0.0]);
+    near(place(vec![both, p("RotationOrder", &[5.0])], [1.0, 0.0, 0.0]), [0.0, 0.0, 1.0]);
+    near(place(vec![p("GeometricTranslation", &[0.0, 3.0, 0.0]), scaled], [1.0, 0.0, 0.0]), [2.0, 6.0, 0.0]);
+}
+
+/// A parent that is scaled by 2 along x and turned by 90 degrees; the child is turned by another 90 and scaled by 3 along x.
+#[test]
+fn children_inherit_scales_as_their_type_says() {
+    let child = |inherits: f64| {
+        let turned = || p("Lcl Rotation", &[0.0, 0.0, 90.0]);
+        let objects = vec![
+            quad(1),
+            model(2, "parent", vec![turned(), p("Lcl Scaling", &[2.0, 1.0, 1.0])]),
+            model(
+                3,
+                "child",
+                vec![turned(), p("Lcl Scaling", &[3.0, 1.0, 1.0]), p("InheritType", &[inherits])],
+            ),
+        ];
+        let links = vec![link(1, 3, ""), link(3, 2, ""), link(2, 0, "")];
+        let scene = read_all(&file(vec![p("UnitScaleFactor", &[100.0])], objects, links));
+        at(&scene.objects[0], [1.0, 1.0, 0.0])
+    };
+    // Turned (1, 1) scaled to (3, 1) is (-1, 3), scaled by 2 along x (-2, 3), turned (-3, -2).
+    near(child(1.0), [-3.0, -2.0, 0.0]);
+    // The scales first: (3 * 2, 1), and then half a turn.
+    near(child(0.0), [-6.0, -1.0, 0.0]);
+    near(child(2.0), [-3.0, -1.0, 0.0]);
+}
+
+#[test]
+fn two_nodes_share_a_mesh_and_hidden_ones_are_not_there() {
+    let objects = vec![
+        quad(1),
+        model(2, "a", vec![]),
+        model(3, "b", vec![]),
+        model(4, "c", vec![p("Visibility", &[0.0])]),
+    ];
+    let links = [2, 3, 4].into_iter().flat_map(|node| [link(1, node, ""), link(node, 0, "")]).collect();
+    let scene = read_all(&file(vec![], objects, links));
+    let names: Vec<&str> = scene.objects.iter().map(|object| object.name.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[1].mesh));
+}
+
+#[test]
+fn a_text_of_version_6_1_is_the_same_quad() {
+    let text = "; FBX 6.1.0 project file\nFBXHeaderExtension: {\n FBXVersion: 6100\n}\nObjects: {\n Model: \"Model::node\", \"Mesh\" {\n  \
+        Properties60: {\n   Property: \"Lcl Translation\", \"Lcl Translation\", \"A+\",100.0,0,0\n  }\n  Vertices: 0,0,0,1,0,0\n  ,1,2,0,0,2,0\n  \
+        PolygonVertexIndex: 0,1,2,-4\n  LayerElementUV: 0 {\n   MappingInformationType: \"ByPolygonVertex\"\n   \
+        ReferenceInformationType: \"IndexToDirect\"\n   UV: 0,0,1,0,1,1,0,1\n   UVIndex: 0,1,2,3\n  }\n }\n}\n\
+        Connections: {\n Connect: \"OO\", \"Model::node\", \"Model::Scene\"\n}\n";
+    let scene = scene_of(text.as_bytes()).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!(
+        (mesh.triangles.len(), mesh.positions[2], mesh.uvs[2]),
+        (2, Vec3::new(1.0, 2.0, 0.0), Vec2::ONE)
+    );
+    near(at(&scene.objects[0], [0.0; 3]), [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn arrays_may_be_of_any_type() {
+    let mut nodes = placed(vec![]);
+    let mesh = &mut nodes[2].children[0];
+    mesh.children[0].values = vec![V::Floats(vec![0., 0., 0., 1., 0., 0., 1., 2., 0., 0., 2., 0.])];
+    mesh.children[1].values = vec![V::Longs(vec![0, 1, 2, -4])];
+    assert_eq!(read_all(&nodes).objects[0].mesh, read_all(&placed(vec![])).objects[0].mesh);
+}

@@ -1,0 +1,307 @@
+//! FBX files of ufbx's test data, against the OBJ files beside them that other programs exported from the same scenes.
+//!
+//! The data are not ours. `BILUX_UFBX=FOLDER/data cargo test -p bilux-formats --test suite fbx_truth -- --nocapture` compares, and prints a
+//! table; without the variable there is nothing to do.
+
+use bilux_formats::{ReadOptions, read};
+use bilux_math::{DMat4, DVec3};
+use bilux_scene::SceneBuilder;
+use std::collections::{BTreeMap, HashMap};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// A corner of a face: position, normal and texture coordinates, as far as it has them.
+#[derive(Clone, Copy)]
+struct Corner {
+    p: DVec3,
+    n: Option<DVec3>,
+    uv: Option<[f64; 2]>,
+}
+
+/// What an OBJ file says.
+struct Truth {
+    corners: Vec<Corner>,
+    tolerance: f64,
+    ignores_normals: bool,
+    ignores_uvs: bool,
+    ignores_extra: bool,
+}
+
+fn truth(path: &Path) -> Truth {
+    let bytes = std::fs::read(path).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let (mut p, mut n, mut uv) = (Vec::new(), Vec::new(), Vec::new());
+    let mut truth = Truth {
+        corners: Vec::new(),
+        tolerance: 1e-3,
+        ignores_normals: false,
+        ignores_uvs: false,
+        ignores_extra: false,
+    };
+    let mut scale = 1.0;
+    for line in text.lines() {
+        let mut words = line.split_ascii_whitespace();
+        let key = words.next().unwrap_or_default();
+        let mut number = || words.next().and_then(|word| word.parse().ok()).unwrap_or(f64::NAN);
+        match key {
+            "v" => p.push(DVec3::new(number(), number(), number())),
+            "vn" => n.push(DVec3::new(number(), number(), number())),
+            "vt" => uv.push([number(), number()]),
+            "f" => {
+                for corner in words {
+                    let mut indices = corner.split('/').map(|index| index.parse::<i64>().ok());
+                    let mut index = |count: usize| {
+                        let index = indices.next().flatten()?;
+                        usize::try_from(if index < 0 { count as i64 + index } else { index - 1 }).ok()
+                    };
+                    let (at_p, at_uv, at_n) = (index(p.len()), index(uv.len()), index(n.len()));
+                    let of_n = at_n.and_then(|i| n.get(i).copied());
+                    truth.corners.push(Corner {
+                        p: p[at_p.unwrap()],
+                        n: of_n,
+                        uv: at_uv.and_then(|i| uv.get(i).copied()),
+                    });
+                }
+            }
+            "#" | "#ufbx:" => {
+                truth.ignores_normals |= line.contains("ufbx:bad_normals");
+                truth.ignores_uvs |= line.contains("ufbx:bad_uvs");
+                truth.ignores_extra |= line.contains("ufbx:ignore") || line.contains("ufbx:line_faces");
+                let value = |key: &str| line.split_once(key)?.1.trim().parse::<f64>().ok();
+                truth.tolerance = value("ufbx:tolerance=").unwrap_or(truth.tolerance);
+                scale = value("ufbx:position_scale=").unwrap_or(scale);
+            }
+            _ => {}
+        }
+    }
+    truth.tolerance /= scale;
+    truth
+}
+
+/// The first number of a property, by its bytes: in text, or in binary.
+fn property(bytes: &[u8], name: &str) -> Option<f64> {
+    let binary = bytes.starts_with(b"Kaydara");
+    let quoted = format!("\"{name}\"");
+    let needle = if binary { name.as_bytes() } else { quoted.as_bytes() };
+    let all =
+        bytes.windows(needle.len()).enumerate().filter(|(_, window)| *window == needle).map(|(at, _)| at);
+    // In a binary file the length of the name comes before it, which ends in a zero.
+    let whole = all.filter(|&at| !binary || bytes[at.saturating_sub(1)] == 0);
+    whole
+        .filter_map(|at| {
+            let rest = &bytes[at + needle.len()..];
+            if binary {
+                let mut rest = rest;
+                while rest.first()? == &b'S' {
+                    let length = u32::from_le_bytes(rest.get(1..5)?.try_into().ok()?) as usize;
+                    rest = rest.get(5 + length..)?;
+                }
+                match rest.first()? {
+                    b'I' => Some(f64::from(i32::from_le_bytes(rest.get(1..5)?.try_into().ok()?))),
+                    b'L' => Some(i64::from_le_bytes(rest.get(1..9)?.try_into().ok()?) as f64),
+                    b'D' => Some(f64::from_le_bytes(rest.get(1..9)?.try_into().ok()?)),
+                    _ => None,
+                }
+            } else {
+                let line = rest.split(|&byte| byte == b'\n').next()?;
+                let line = String::from_utf8_lossy(line);
+                line.rsplit(['"', ' ', ',']).map(str::trim).find(|word| !word.is_empty())?.parse().ok()
+            }
+        })
+        .next_back()
+}
+
+/// When the file's animation begins, in seconds.
+fn start(bytes: &[u8]) -> f64 {
+    const TICKS: f64 = 46_186_158_000.0;
+    let old = || {
+        let at = bytes.windows(10).position(|window| window == b"LocalTime:")?;
+        let line =
+            String::from_utf8_lossy(bytes[at + 10..].split(|&byte| byte == b',').next()?).trim().to_owned();
+        line.parse::<f64>().ok()
+    };
+    let old_binary = || {
+        let at = bytes.windows(10).position(|window| window == b"\tLocalTime")?;
+        Some(i64::from_le_bytes(bytes.get(at + 11..at + 19)?.try_into().ok()?) as f64)
+    };
+    property(bytes, "LocalStart").or_else(old).or_else(old_binary).unwrap_or(0.0) / TICKS
+}
+
+/// From the world of a scene back to the axes and the unit of its file.
+fn to_file(bytes: &[u8]) -> DMat4 {
+    let number = |name: &str, default: f64| property(bytes, name).unwrap_or(default);
+    let axis = |name: &str, default: usize| {
+        let index = number(name, default as f64) as usize;
+        DVec3::AXES[index.min(2)] * number(&format!("{name}Sign"), 1.0)
+    };
+    let axes = bilux_math::DMat3::from_cols(axis("CoordAxis", 0), axis("UpAxis", 1), axis("FrontAxis", 2));
+    DMat4::from_mat3(axes * (100.0 / number("UnitScaleFactor", 1.0)))
+}
+
+fn corners(scene: &SceneBuilder, to_file: &DMat4) -> Vec<Corner> {
+    let mut corners = Vec::new();
+    for object in &scene.objects {
+        let mesh = &object.mesh;
+        let transform = object.motion.at(0.0);
+        let matrix = *to_file * DMat4::from_translation(scene.origin) * transform.matrix().as_dmat4();
+        for &i in mesh.triangles.iter().flatten() {
+            let i = i as usize;
+            let n = mesh.normals.get(i).map(|n| {
+                let world = transform.normal(*n).as_dvec3();
+                to_file.transform_vector3(world).normalize_or_zero()
+            });
+            let uv = mesh.uvs.get(i).map(|uv| [f64::from(uv.x), f64::from(uv.y)]);
+            corners.push(Corner { p: matrix.transform_point3(mesh.positions[i].as_dvec3()), n, uv });
+        }
+    }
+    corners
+}
+
+/// Finds corners near a position.
+struct Grid<'c> {
+    cells: HashMap<[i64; 3], Vec<&'c Corner>>,
+    size: f64,
+}
+
+impl<'c> Grid<'c> {
+    fn new(corners: &'c [Corner], size: f64) -> Grid<'c> {
+        let mut grid = Grid { cells: HashMap::new(), size };
+        for corner in corners {
+            let cell = grid.cell(corner.p);
+            grid.cells.entry(cell).or_default().push(corner);
+        }
+        grid
+    }
+
+    fn cell(&self, p: DVec3) -> [i64; 3] {
+        p.to_array().map(|x| (x / self.size).floor() as i64)
+    }
+
+    fn near(&self, p: DVec3) -> impl Iterator<Item = &&'c Corner> {
+        let [x, y, z] = self.cell(p);
+        (0..27).flat_map(move |i| {
+            self.cells.get(&[x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1]).into_iter().flatten()
+        })
+    }
+}
+
+/// The number of corners with the same position, of those also with the same normal, and of those also with the same uv.
+fn found(of: &[Corner], among: &[Corner], truth: &Truth) -> [usize; 3] {
+    let grid = Grid::new(among, truth.tolerance.max(1e-9) * 2.0);
+    let mut found = [0; 3];
+    for corner in of {
+        let mut best = 0;
+        for other in grid.near(corner.p) {
+            if corner.p.distance(other.p) > truth.tolerance {
+                continue;
+            }
+            let same_n =
+                truth.ignores_normals || corner.n.zip(other.n).is_none_or(|(a, b)| a.distance(b) < 5e-3);
+            let same_uv = truth.ignores_uvs
+                || corner
+                    .uv
+                    .zip(other.uv)
+                    .is_none_or(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < 2e-3);
+            best = best.max(1 + usize::from(same_n) + usize::from(same_n && same_uv));
+        }
+        found.iter_mut().take(best).for_each(|count| *count += 1);
+    }
+    found
+}
+
+/// A file of truth: what it is of, and at which frame.
+fn subject(stem: &str, all: &BTreeMap<String, Vec<PathBuf>>) -> Option<(Vec<PathBuf>, Option<f64>)> {
+    if stem.contains("lefthanded") {
+        return None;
+    }
+    if let Some(files) = all.get(stem) {
+        return Some((files.clone(), None));
+    }
+    let (base, frame) = stem.rsplit_once('_')?;
+    let frame: f64 = frame.parse().ok()?;
+    let files = all.get(base).cloned()?;
+    Some((files, Some(frame)))
+}
+
+#[test]
+fn meshes_are_where_other_programs_put_them() {
+    let Some(folder) = std::env::var_os("BILUX_UFBX").map(PathBuf::from) else {
+        println!("skipped: BILUX_UFBX does not name the folder of ufbx's data");
+        return;
+    };
+    let only = std::env::var("BILUX_UFBX_ONLY").unwrap_or_default();
+    let mut all: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    let mut truths = Vec::new();
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
+        match path.extension().and_then(|e| e.to_str()) {
+            Some("fbx") => {
+                let parts: Vec<&str> = stem.split('_').collect();
+                let version = parts.iter().rposition(|part| part.len() == 4 && part.parse::<u32>().is_ok());
+                let Some(version) = version else { continue };
+                let mut base = parts[..version].join("_");
+                if parts.len() > version + 2 {
+                    base += &format!("_{}", parts[version + 2..].join("_"));
+                }
+                all.entry(base).or_default().push(path);
+            }
+            Some("obj") => truths.push((stem, path)),
+            _ => {}
+        }
+    }
+    truths.sort();
+    let (mut equal, mut different, mut refused, mut report) = (0, 0, 0, String::new());
+    let mut opened = 0;
+    for (stem, path) in &truths {
+        let Some((mut files, frame)) = subject(stem, &all).filter(|_| stem.contains(&only)) else { continue };
+        files.sort();
+        let truth = truth(path);
+        for file in files {
+            let bytes = std::fs::read(&file).unwrap();
+            let fps = if stem.starts_with("max") { 30.0 } else { 24.0 };
+            let time = frame.map_or(0.0, |frame| (frame / fps - start(&bytes)) as f32);
+            let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+            let options = ReadOptions { time, ..ReadOptions::default() };
+            let scene = match read(&file, &options) {
+                Ok(scene) => scene,
+                Err(error) => {
+                    refused += 1;
+                    let _ = writeln!(report, "refused    {stem}: {error}");
+                    continue;
+                }
+            };
+            opened += 1;
+            // In the axes and the unit of the file, or converted as its program did: to centimetres or metres with y up.
+            let units = [to_file(&bytes), DMat4::from_scale(DVec3::splat(100.0)), DMat4::IDENTITY];
+            let (mut in_ours, mut in_truth, mut ours) = ([0; 3], [0; 3], Vec::new());
+            let mut is_same = false;
+            for unit in units {
+                let here = corners(&scene, &unit);
+                let (there, back) =
+                    (found(&truth.corners, &here, &truth), found(&here, &truth.corners, &truth));
+                is_same = there.iter().all(|count| *count == truth.corners.len())
+                    && (truth.ignores_extra || back.iter().all(|count| *count == here.len()));
+                if is_same || in_ours <= there {
+                    (in_ours, in_truth, ours) = (there, back, here);
+                }
+                if is_same {
+                    break;
+                }
+            }
+            if is_same {
+                equal += 1;
+            } else {
+                different += 1;
+                let (of, ours) = (truth.corners.len(), ours.len());
+                let _ = writeln!(
+                    report,
+                    "different  {stem} {name}: {in_ours:?} of {of}; back {in_truth:?} of {ours}"
+                );
+            }
+        }
+    }
+    println!(
+        "{report}compared with an OBJ: opened {opened}, refused {refused}, equal {equal}, different {different}"
+    );
+}
