@@ -3,7 +3,9 @@
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
-use crate::{FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz};
+use crate::{
+    FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz,
+};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint};
