@@ -4,7 +4,7 @@ use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
 use crate::{
-    FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, xyz,
+    FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, usd, xyz,
 };
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
@@ -18,6 +18,8 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     gltf::ENTRY,
     fbx::ENTRY,
     pbrt::ENTRY,
+    usd::ENTRY,
+    usd::PACKAGE,
     obj::ENTRY,
     ply::ENTRY,
     stl::ENTRY,
@@ -116,7 +118,7 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 /// Extensions of scene formats that other programs read.
 const FOREIGN: &[&str] = &[
     "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
-    "step", "stp", "usd", "usda", "usdc", "usdz", "vrm", "wrl", "x3d",
+    "step", "stp", "vrm", "wrl", "x3d",
 ];
 
 pub(crate) fn unknown(

@@ -48,6 +48,7 @@ mod strokes;
 mod subdivision;
 mod text;
 mod threemf;
+mod usd;
 mod values;
 mod vdb;
 mod writing;

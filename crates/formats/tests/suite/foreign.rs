@@ -16,8 +16,6 @@ const FILES: &[(&[u8], &str, bool)] = &[
     (b"qoif\0\0\0\x01", "QOI", true),
     (b"<?xml version=\"1.0\"?>\n<svg xmlns=\"a\">", "SVG", true),
     (b"%PDF-1.7\n", "PDF", true),
-    (b"#usda 1.0\n", "USD", false),
-    (b"PXR-USDC\0\x08", "USD", false),
     (b"BLENDER-v400", "Blender", false),
     (b"<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"a\">", "COLLADA", false),
     (b"ISO-10303-21;\nHEADER;", "STEP", false),

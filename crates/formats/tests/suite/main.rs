@@ -47,6 +47,7 @@ mod stl;
 mod subdivision;
 mod threemf;
 mod tolerance;
+mod usd;
 mod wrong_files;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};

@@ -1,0 +1,140 @@
+//! A layer: the prims, properties and metadata of one file.
+
+use super::list_op::ListOp;
+use super::value::{Text, Unpack, Value};
+use bilux_scene::Span;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// Deeper nesting is refused, since each level uses some of the stack.
+pub(super) const MAX_DEPTH: usize = 128;
+
+/// Metadata by name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Fields(pub(super) Vec<(Text, Value)>);
+
+impl Fields {
+    pub(super) fn find(&self, key: &str) -> Option<&Value> {
+        self.0.iter().find(|(name, _)| &**name == key).map(|(_, value)| value)
+    }
+
+    pub(super) fn text(&self, key: &str) -> Option<&Text> {
+        self.find(key)?.text()
+    }
+
+    pub(super) fn number(&self, key: &str) -> Option<f64> {
+        self.find(key)?.number()
+    }
+}
+
+/// How a prim is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Specifier {
+    Def,
+    #[default]
+    Over,
+    Class,
+}
+
+/// What a layer says about a prim.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PrimSpec {
+    pub(super) name: Text,
+    pub(super) specifier: Specifier,
+    /// Empty if this layer does not say.
+    pub(super) type_name: Text,
+    pub(super) fields: Fields,
+    pub(super) properties: Vec<Property>,
+    /// Indices into [`Layer::prims`].
+    pub(super) children: Vec<u32>,
+    pub(super) variant_sets: Vec<VariantSet>,
+    /// Line and column, from 1; 0 in crate files.
+    pub(super) at: (u32, u32),
+}
+
+/// Alternatives for a prim.
+#[derive(Clone, Debug)]
+pub(super) struct VariantSet {
+    pub(super) name: Text,
+    /// What each says, as an index into [`Layer::prims`].
+    pub(super) variants: Vec<(Text, u32)>,
+}
+
+/// What a layer says about an attribute or a relationship.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Property {
+    pub(super) name: Text,
+    pub(super) value: Option<Value>,
+    /// [`Value::Samples`], or a packed one.
+    pub(super) samples: Option<Value>,
+    /// The targets of a relationship, or the connections of an attribute.
+    pub(super) targets: Option<ListOp<Text>>,
+    pub(super) fields: Fields,
+}
+
+/// A file.
+#[derive(Default)]
+pub(super) struct Layer {
+    /// For messages.
+    pub(super) name: Text,
+    /// Where relative names begin; `None` if the bytes came from no file.
+    pub(super) folder: Option<PathBuf>,
+    /// The first is the layer itself, whose fields are its metadata.
+    pub(super) prims: Vec<PrimSpec>,
+    /// By parent and name.
+    pub(super) by_name: HashMap<(u32, Text), u32>,
+    /// What packed values are read from.
+    pub(super) packed: Option<Box<dyn Unpack>>,
+}
+
+impl Layer {
+    pub(super) fn root(&self) -> &PrimSpec {
+        &self.prims[0]
+    }
+
+    /// Adds a prim; if its parent has one of this name, that one.
+    pub(super) fn child(&mut self, parent: u32, name: Text) -> u32 {
+        let next = self.prims.len() as u32;
+        let found = *self.by_name.entry((parent, name.clone())).or_insert(next);
+        if found == next {
+            self.prims.push(PrimSpec { name, ..PrimSpec::default() });
+            self.prims[parent as usize].children.push(next);
+        }
+        found
+    }
+
+    /// Adds what a variant says, or finds it.
+    pub(super) fn variant(&mut self, parent: u32, set: &Text, name: &Text) -> u32 {
+        let next = self.prims.len() as u32;
+        let sets = &mut self.prims[parent as usize].variant_sets;
+        let index = sets.iter().position(|known| known.name == *set).unwrap_or(sets.len());
+        if index == sets.len() {
+            sets.push(VariantSet { name: set.clone(), variants: Vec::new() });
+        }
+        let variants = &mut sets[index].variants;
+        if let Some((_, found)) = variants.iter().find(|(known, _)| known == name) {
+            return *found;
+        }
+        variants.push((name.clone(), next));
+        self.prims.push(PrimSpec { name: name.clone(), ..PrimSpec::default() });
+        next
+    }
+
+    /// Where a prim is.
+    pub(super) fn at(&self, prim: u32) -> Span {
+        let (line, column) = self.prims[prim as usize].at;
+        Span { file: self.name.clone(), line, column }
+    }
+
+    /// The time codes in a second.
+    pub(super) fn time_codes_per_second(&self) -> f64 {
+        let fields = &self.root().fields;
+        let stated = fields.number("timeCodesPerSecond").or_else(|| fields.number("framesPerSecond"));
+        stated.filter(|rate| rate.is_finite() && *rate > 0.0).unwrap_or(24.0)
+    }
+}
+
+/// Approximate memory of a spec, for the budget.
+pub(super) const PRIM_BYTES: u64 = (size_of::<PrimSpec>() + 2 * size_of::<((u32, Text), u32)>()) as u64;
+/// The same for a property.
+pub(super) const PROPERTY_BYTES: u64 = 2 * size_of::<Property>() as u64;

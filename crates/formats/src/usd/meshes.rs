@@ -1,0 +1,232 @@
+//! Meshes, and the parts of them that have materials of their own.
+
+use super::context::{Context, Worn};
+use super::polygons::{Polygons, Welder};
+use super::primvars::{Interpolation, Primvar};
+use super::stage::Stage;
+use super::subdivision::{Scheme, Subdivision};
+use super::value::{Array, Text};
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::normals::{BY_ANGLE, Faces};
+use bilux_math::Vec3;
+use bilux_scene::Mesh;
+use std::sync::Arc;
+
+/// A mesh with one material.
+#[derive(Clone)]
+pub(super) struct Part {
+    pub(super) mesh: Arc<Mesh>,
+    /// Index of a material of the scene.
+    pub(super) material: usize,
+}
+
+/// Faces that share a material.
+pub(super) struct Subset {
+    pub(super) faces: Vec<u32>,
+    pub(super) worn: Worn,
+}
+
+/// Vertices, faces and their attributes; `None` if there is nothing to draw.
+pub(super) fn polygons(
+    stage: &Stage,
+    prim: u32,
+    points: Vec<Vec3>,
+    scene: &mut Context,
+) -> Result<Option<Polygons>, FormatError> {
+    let budget = &mut scene.reading.budget;
+    let counts = stage.array(prim, "faceVertexCounts", budget)?;
+    let indices = stage.array(prim, "faceVertexIndices", budget)?;
+    let (Some(counts), Some(indices)) = (counts, indices) else { return Ok(None) };
+    let file = stage.layers[0].name.clone();
+    budget.take_bytes(8 * (counts.len() + indices.len()) as u64, &file)?;
+    let (mut corners, mut ends) = (Vec::with_capacity(indices.len()), Vec::with_capacity(counts.len()));
+    let mut is_hole = Vec::new();
+    let (mut next, mut is_whole) = (0, true);
+    for face in 0..counts.len() {
+        let count = counts.numbers.at(face).max(0.0) as usize;
+        let end = next + count;
+        if end > indices.len() {
+            is_whole = false;
+            break;
+        }
+        let vertex = |i: usize| indices.numbers.at(i);
+        let is_sound = (next..end).all(|i| (0.0..points.len() as f64).contains(&vertex(i)));
+        if !is_sound {
+            is_whole = false;
+            is_hole.resize(counts.len(), false);
+            is_hole[face] = true;
+        }
+        corners.extend((next..end).map(|i| if is_sound { vertex(i) as u32 } else { 0 }));
+        ends.push(corners.len() as u32);
+        next = end;
+    }
+    if !is_whole {
+        let what = "a mesh has faces with vertices that it does not have: these faces are left out";
+        scene.sink.oddities.note(what, || stage.at(prim));
+    }
+    holes(stage, prim, ends.len(), &mut is_hole, &mut scene.reading.budget)?;
+    let budget = &mut scene.reading.budget;
+    let is_left_handed = stage.text(prim, "orientation", budget)?.as_deref() == Some("leftHanded");
+    Ok((!points.is_empty() && !ends.is_empty()).then_some(Polygons {
+        points,
+        corners,
+        ends,
+        is_hole,
+        is_left_handed,
+        normals: None,
+        computed: None,
+        colours: None,
+        opacities: None,
+    }))
+}
+
+/// Marks faces that are holes.
+fn holes(
+    stage: &Stage,
+    prim: u32,
+    faces: usize,
+    is_hole: &mut Vec<bool>,
+    budget: &mut Budget,
+) -> Result<(), FormatError> {
+    let Some(list) = stage.array(prim, "holeIndices", budget)?.filter(|list| list.len() > 0) else {
+        return Ok(());
+    };
+    is_hole.resize(faces, false);
+    for i in 0..list.len() {
+        if let Some(hole) = is_hole.get_mut(list.numbers.at(i) as usize) {
+            *hole = true;
+        }
+    }
+    Ok(())
+}
+
+/// The normals of the file, or computed ones.
+pub(super) fn add_normals(
+    stage: &Stage,
+    prim: u32,
+    polygons: &mut Polygons,
+    subdivision: &Subdivision,
+    scene: &mut Context,
+) -> Result<(), FormatError> {
+    let budget = &mut scene.reading.budget;
+    let primvar = Primvar::read(stage, prim, "primvars:normals", Interpolation::Vertex, budget)?;
+    let normals = match primvar {
+        Some(found) => Some(found),
+        None => Primvar::read(stage, prim, "normals", Interpolation::Vertex, budget)?,
+    };
+    polygons.normals = normals.filter(|normals| normals.values.width == 3);
+    let angle = if subdivision.is_smooth() { 180.0 } else { scene.reading.crease_angle };
+    if polygons.normals.is_some() || angle <= 0.0 {
+        return Ok(());
+    }
+    let needed = 24 * polygons.corners.len() + 24 * (polygons.ends.len() + polygons.points.len());
+    budget.take_bytes(needed as u64, &stage.layers[0].name)?;
+    let faces = Faces {
+        positions: &polygons.points,
+        corners: polygons.corners.clone(),
+        ends: polygons.ends.clone(),
+        smoothing: vec![BY_ANGLE],
+    };
+    polygons.computed = faces.corner_normals(angle);
+    if polygons.is_left_handed
+        && let Some(found) = &mut polygons.computed
+    {
+        found.normals.iter_mut().for_each(|normal| *normal = -*normal);
+    }
+    Ok(())
+}
+
+/// What the subdivision of a mesh would change.
+pub(super) fn note_subdivision(stage: &Stage, prim: u32, subdivision: &Subdivision, scene: &mut Context) {
+    if subdivision.scheme == Scheme::None {
+        return;
+    }
+    let what = "subdivision surfaces are drawn as the polygons that control them";
+    scene.sink.oddities.remark(what, || stage.at(prim));
+    if subdivision.has_creases() {
+        scene.sink.oddities.not_shown("creases of subdivision surfaces", || stage.at(prim));
+    }
+}
+
+/// The meshes of a mesh: one for each subset, and one for all other faces.
+pub(super) fn parts(
+    stage: &Stage,
+    prim: u32,
+    polygons: &mut Polygons,
+    subsets: Vec<Subset>,
+    rest: &Worn,
+    scene: &mut Context,
+) -> Result<Vec<Part>, FormatError> {
+    let file = stage.layers[0].name.clone();
+    let corners = polygons.corners.len() as u64;
+    // Vertices with all their attributes, triangles, and what finds vertices again.
+    scene.reading.budget.take_bytes(corners * 64 + 8 * polygons.points.len() as u64, &file)?;
+    let mut welder = Welder::new(polygons.points.len());
+    let faces = polygons.ends.len();
+    let mut is_taken = vec![false; if subsets.is_empty() { 0 } else { faces }];
+    let mut all = Vec::new();
+    let mut add = |faces: &mut dyn Iterator<Item = usize>, worn: &Worn, scene: &mut Context| {
+        let uvs = uvs(stage, prim, worn, scene)?;
+        let (colours, opacities) = (polygons.colours.take(), polygons.opacities.take());
+        polygons.colours = colours.clone().filter(|_| worn.uses_colours);
+        polygons.opacities = opacities.clone().filter(|_| worn.uses_opacities);
+        let (mut mesh, is_fine) = polygons.part(faces, &uvs, &mut welder);
+        (polygons.colours, polygons.opacities) = (colours, opacities);
+        if !is_fine {
+            let what = "a face has so many corners that it was treated as convex";
+            scene.sink.oddities.note(what, || stage.at(prim));
+        }
+        if !mesh.triangles.is_empty() {
+            mesh.name = name_of(stage, prim).to_string();
+            scene.finish_mesh(&mut mesh, worn)?;
+            all.push(Part { mesh: Arc::new(mesh), material: worn.index });
+        }
+        Ok::<_, FormatError>(())
+    };
+    for subset in subsets {
+        let mut own = subset.faces.into_iter().map(|face| face as usize).filter(|face| {
+            // A face is drawn once.
+            *face < faces && !std::mem::replace(&mut is_taken[*face], true)
+        });
+        add(&mut own, &subset.worn, scene)?;
+    }
+    let mut others = (0..faces).filter(|face| !is_taken.get(*face).is_some_and(|taken| *taken));
+    add(&mut others, rest, scene)?;
+    Ok(all)
+}
+
+/// The last name of a prim's path.
+pub(super) fn name_of(stage: &Stage, prim: u32) -> &str {
+    stage.prim(prim).path.rsplit('/').next().unwrap_or_default()
+}
+
+/// The texture coordinates that a material asks for; the usual ones if it asks for none.
+fn uvs(
+    stage: &Stage,
+    prim: u32,
+    worn: &Worn,
+    scene: &mut Context,
+) -> Result<[Option<Primvar>; 2], FormatError> {
+    let mut found = [None, None];
+    for (set, name) in worn.uvs.iter().enumerate() {
+        let name = match (name, set) {
+            (Some(name), _) => name.clone(),
+            (None, 0) => Text::from("st"),
+            (None, _) => continue,
+        };
+        let budget = &mut scene.reading.budget;
+        let primvar = Primvar::read(stage, prim, &format!("primvars:{name}"), Interpolation::Vertex, budget)?;
+        found[set] = primvar.filter(|uv| uv.values.width >= 2);
+        if found[set].is_none() && worn.uvs[set].is_some() {
+            let what = "a material needs texture coordinates that its mesh does not have; they are set to 0";
+            scene.sink.oddities.note(what, || stage.at(prim));
+        }
+    }
+    Ok(found)
+}
+
+/// The vertices of a mesh.
+pub(super) fn points(array: &Array) -> Vec<Vec3> {
+    (0..array.len()).map(|i| Vec3::from(array.floats::<3>(i))).collect()
+}

@@ -1,0 +1,68 @@
+//! Universal Scene Description, as text, as crate files, and in packages. See `docs/formats/usd.md`.
+
+mod composition;
+mod context;
+mod instancer;
+mod layer;
+mod list_op;
+mod meshes;
+mod package;
+mod polygons;
+mod primvars;
+mod read;
+mod scene;
+mod shapes;
+mod stage;
+mod strokes;
+mod subdivision;
+mod transforms;
+mod usda;
+mod usdc;
+mod value;
+
+use crate::formats::{ReadFormat, SceneFormatEntry};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
+
+/// What both forms can hold.
+const CAPABILITIES: &[&str] = &[
+    "points and lines",
+    "triangles",
+    "normals",
+    "uv",
+    "vertex-kd",
+    "objects",
+    "instances",
+    "animation",
+    "variants",
+];
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usd",
+        summary: "OpenUSD: scenes of layers, references and variants, as text or as crate files",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usd", "usda", "usdc"],
+    capabilities: CAPABILITIES,
+    sniff: |bytes| bytes.starts_with(usdc::MAGIC) || usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)),
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Binary(read::read)),
+    write: None,
+};
+
+pub(crate) const PACKAGE: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usdz",
+        summary: "OpenUSD in one file with its textures, as phones and browsers show it",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usdz"],
+    capabilities: CAPABILITIES,
+    sniff: package::is_package,
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Packed(package::read)),
+    write: None,
+};

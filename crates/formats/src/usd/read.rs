@@ -1,0 +1,101 @@
+//! From bytes to a scene.
+
+use super::composition::{Layers, compose};
+use super::scene::Scene;
+use super::stage::Stage;
+use crate::FormatError;
+use crate::reading::{Reading, Source};
+use crate::sharing::share_trees;
+use crate::sink::Sink;
+use bilux_scene::error::nearest_name;
+use bilux_scene::{Animation, Axis, SceneBuilder, UpHint};
+
+/// The number of intervals into which the animation is divided to find where objects move.
+const MOMENTS: u32 = 8;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let mut layers = Layers::new(reading, source.bytes, source.name, source.folder)?;
+    let (prims, variants) = compose(&mut layers)?;
+    let mut sink = Sink::for_bare_files();
+    sink.oddities = std::mem::take(&mut layers.oddities);
+    let mut stage = Stage::new(layers.all, prims);
+    check_variant(reading, &variants, &stage)?;
+    let (moments, seconds) = times(&stage, reading.options.time);
+    stage.time = moments[0];
+    describe(&stage, &mut sink);
+    sink.scene.inventory.variants = variants;
+    let mut scene = Scene::new(reading, sink);
+    scene.add_all(&stage)?;
+    let mut sink = scene.context.sink;
+    share_trees(&mut sink.scene);
+    if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
+        sink.oddities.note("there is nothing to render in this file", || stage.layers[0].at(0));
+    }
+    if seconds > 0.0 {
+        let animation = Animation { name: String::new(), seconds, plays: true };
+        sink.scene.inventory.animations.push(animation);
+        if reading.options.whole_movement {
+            sink.scene.movement = Some(std::sync::Arc::new(movement(reading, stage, &moments[1..])?));
+        }
+    }
+    Ok(sink.finish())
+}
+
+/// All objects at several times.
+fn movement(reading: &mut Reading, mut stage: Stage, moments: &[f64]) -> Result<SceneBuilder, FormatError> {
+    let mut all = SceneBuilder::default();
+    for &time in moments {
+        stage.time = time;
+        let mut scene = Scene::new(reading, Sink::default());
+        scene.add_all(&stage)?;
+        all.objects.extend(scene.context.sink.scene.objects);
+    }
+    Ok(all)
+}
+
+/// The time code that is shown, those of the whole animation, and how long that is, in seconds.
+fn times(stage: &Stage, time: f32) -> (Vec<f64>, f32) {
+    let rate = stage.layers[0].time_codes_per_second();
+    let start = stage.root_number("startTimeCode");
+    let end = stage.root_number("endTimeCode");
+    let first = start.unwrap_or(0.0);
+    let moves = || (0..stage.prims.len() as u32).any(|prim| stage.varies(prim));
+    let seconds = match end {
+        Some(end) if end > first && moves() => ((end - first) / rate) as f32,
+        _ => 0.0,
+    };
+    let mut moments = vec![first + f64::from(time) * rate];
+    let moment = |i: u32| first + f64::from(seconds) * rate * f64::from(i) / f64::from(MOMENTS);
+    moments.extend((0..=MOMENTS).map(moment));
+    (moments, seconds)
+}
+
+/// Refuses a variant that no prim has.
+fn check_variant(reading: &Reading, known: &[String], stage: &Stage) -> Result<(), FormatError> {
+    let Some(asked) = reading.options.variant.as_deref() else { return Ok(()) };
+    let is_asked =
+        |name: &&String| *name == asked || name.split_once('=').is_some_and(|(_, variant)| variant == asked);
+    if known.iter().any(|name| is_asked(&name)) {
+        return Ok(());
+    }
+    let nearest =
+        nearest_name(asked, known).map_or_else(String::new, |name| format!(" (did you mean {name}?)"));
+    let all = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    let message = format!("there is no variant '{asked}' in this file{nearest}; there are: {all}");
+    Err(FormatError::malformed(message, stage.layers[0].at(0)))
+}
+
+/// Axes and units.
+fn describe(stage: &Stage, sink: &mut Sink) {
+    let fields = &stage.layers[0].root().fields;
+    let is_z = fields.text("upAxis").is_some_and(|axis| axis.eq_ignore_ascii_case("z"));
+    sink.scene.up = UpHint::Is(if is_z { Axis::Z } else { Axis::Y });
+    let unit = fields.number("metersPerUnit");
+    // Centimetres are what files without a unit are in.
+    sink.scene.unit = unit.unwrap_or(0.01);
+    if unit.is_some_and(|unit| !(1e-12..=1e12).contains(&unit)) {
+        sink.scene.unit = 0.0;
+        let what = "metersPerUnit is not the length of a unit that anybody has: it is ignored";
+        sink.oddities.note(what, || stage.layers[0].at(0));
+    }
+}

@@ -1,0 +1,290 @@
+//! Converts the prims of a stage to a scene.
+
+use super::context::{Context, Worn};
+use super::instancer::Copies;
+use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
+use super::primvars::{Interpolation, Primvar};
+use super::stage::Stage;
+use super::subdivision::Subdivision;
+use super::transforms;
+use super::value::Text;
+use super::{shapes, strokes};
+use crate::reading::{Reading, plain_material};
+use crate::sink::Sink;
+use crate::{FormatError, flat};
+use bilux_math::motion::Motion;
+use bilux_math::{DMat4, Rgb, Transform};
+use bilux_scene::{Mesh, Object};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What a prim has from those above it.
+#[derive(Clone, Debug)]
+struct State {
+    world: DMat4,
+    is_visible: bool,
+    purpose: Option<Text>,
+}
+
+/// What says all of a mesh: the same opinions make the same mesh.
+type Key = (Vec<[u64; 4]>, Worn, Vec<usize>);
+
+/// A scene while prims are added to it.
+pub(super) struct Scene<'r, 'o> {
+    pub(super) context: Context<'r, 'o>,
+    meshes: HashMap<Key, Arc<[Part]>>,
+    /// Of surfaces without a material, by their colours and opacities.
+    plain: HashMap<([u32; 3], u32, bool), usize>,
+    /// The prims above the current one.
+    lineage: Vec<u32>,
+}
+
+impl<'r, 'o> Scene<'r, 'o> {
+    pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
+        let (meshes, plain) = Default::default();
+        Scene { context: Context { reading, sink }, meshes, plain, lineage: Vec::new() }
+    }
+
+    /// Adds all prims, as they are at the time of the stage.
+    pub(super) fn add_all(&mut self, stage: &Stage) -> Result<(), FormatError> {
+        let state = State { world: DMat4::IDENTITY, is_visible: true, purpose: None };
+        self.children(stage, 0, &state)
+    }
+
+    fn children(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
+        self.lineage.push(prim);
+        for &child in &stage.prim(prim).children {
+            if stage.prim(child).is_defined {
+                self.prim(stage, child, state)?;
+            }
+        }
+        self.lineage.pop();
+        Ok(())
+    }
+
+    fn prim(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
+        let state = self.state(stage, prim, state)?;
+        let purpose = state.purpose.as_deref().unwrap_or("default");
+        let is_shown = state.is_visible && matches!(purpose, "default" | "render");
+        match &*stage.prim(prim).type_name {
+            "PointInstancer" => {
+                if is_shown {
+                    self.copies(stage, prim, &state)?;
+                }
+                // Prototypes below it are not drawn themselves.
+                return Ok(());
+            }
+            "Mesh" | "Sphere" | "Cube" | "Cone" | "Cylinder" | "Cylinder_1" | "Capsule" | "Capsule_1"
+            | "Plane" | "Points" | "BasisCurves" | "NurbsCurves"
+                if is_shown =>
+            {
+                let parts = self.parts(stage, prim)?;
+                self.place(stage, prim, &parts, &state.world)?;
+            }
+            "NurbsPatch" | "TetMesh" | "HermiteCurves" if is_shown => {
+                let what = format!("prims of type {}", stage.prim(prim).type_name);
+                self.context.sink.oddities.not_shown(&what, || stage.at(prim));
+            }
+            _ => {}
+        }
+        self.children(stage, prim, &state)
+    }
+
+    fn state(&mut self, stage: &Stage, prim: u32, above: &State) -> Result<State, FormatError> {
+        let budget = &mut self.context.reading.budget;
+        let local = transforms::local(stage, prim, budget)?;
+        let world = if local.is_reset { local.matrix } else { above.world * local.matrix };
+        let hides = stage.text(prim, "visibility", budget)?.as_deref() == Some("invisible");
+        let purpose = match &above.purpose {
+            // A purpose is that of all below.
+            Some(purpose) => Some(purpose.clone()),
+            None => stage.text(prim, "purpose", budget)?.filter(|purpose| &**purpose != "default"),
+        };
+        Ok(State { world, is_visible: above.is_visible && !hides, purpose })
+    }
+
+    /// The meshes of a prim, with their materials.
+    fn parts(&mut self, stage: &Stage, prim: u32) -> Result<Arc<[Part]>, FormatError> {
+        let rest = self.worn(stage, prim)?;
+        let is_mesh = &*stage.prim(prim).type_name == "Mesh";
+        let subsets = if is_mesh { self.subsets(stage, prim)? } else { Vec::new() };
+        let said = stage.prim(prim).opinions.iter().map(|o| {
+            [u64::from(o.layer), u64::from(o.prim), o.offset.offset.to_bits(), o.offset.scale.to_bits()]
+        });
+        let key = (said.collect(), rest.clone(), subsets.iter().map(|subset| subset.worn.index).collect());
+        if let Some(known) = self.meshes.get(&key) {
+            return Ok(known.clone());
+        }
+        let spent = self.context.reading.budget.spent();
+        let made: Arc<[Part]> = match is_mesh {
+            true => self.polygon_parts(stage, prim, subsets, &rest)?.into(),
+            false => self.other_part(stage, prim, &rest)?.into_iter().collect(),
+        };
+        // What was read for the meshes is no longer held; they are.
+        let now = self.context.reading.budget.spent();
+        self.context.reading.budget.release(now.saturating_sub(spent));
+        let bytes: u64 = made.iter().map(|part| part.mesh.size()).sum();
+        self.context.reading.budget.take_bytes(bytes, &stage.layers[0].name)?;
+        self.meshes.insert(key, made.clone());
+        Ok(made)
+    }
+
+    fn polygon_parts(
+        &mut self,
+        stage: &Stage,
+        prim: u32,
+        subsets: Vec<Subset>,
+        rest: &Worn,
+    ) -> Result<Vec<Part>, FormatError> {
+        let Some(array) = stage.array(prim, "points", &mut self.context.reading.budget)? else {
+            return Ok(Vec::new());
+        };
+        self.context.reading.budget.take_bytes(12 * array.len() as u64, &stage.layers[0].name)?;
+        let vertices = points(&array);
+        drop(array);
+        let Some(mut polygons) = polygons(stage, prim, vertices, &mut self.context)? else {
+            return Ok(Vec::new());
+        };
+        let subdivision = Subdivision::read(stage, prim, &mut self.context.reading.budget)?;
+        note_subdivision(stage, prim, &subdivision, &mut self.context);
+        add_normals(stage, prim, &mut polygons, &subdivision, &mut self.context)?;
+        let budget = &mut self.context.reading.budget;
+        let constant = Interpolation::Constant;
+        let varies = |primvar: &Primvar| primvar.interpolation != constant;
+        polygons.colours =
+            Primvar::read(stage, prim, "primvars:displayColor", constant, budget)?.filter(varies);
+        polygons.opacities =
+            Primvar::read(stage, prim, "primvars:displayOpacity", constant, budget)?.filter(varies);
+        parts(stage, prim, &mut polygons, subsets, rest, &mut self.context)
+    }
+
+    fn other_part(&mut self, stage: &Stage, prim: u32, worn: &Worn) -> Result<Option<Part>, FormatError> {
+        let mut mesh = match &*stage.prim(prim).type_name {
+            "Points" => strokes::points(stage, prim, worn, &mut self.context)?,
+            "BasisCurves" | "NurbsCurves" => strokes::curves(stage, prim, worn, &mut self.context)?,
+            _ => shapes::mesh(stage, prim, &mut self.context.reading.budget)?.unwrap_or_default(),
+        };
+        if mesh.is_empty() {
+            return Ok(None);
+        }
+        mesh.name = name_of(stage, prim).to_owned();
+        self.context.finish_mesh(&mut mesh, worn)?;
+        Ok(Some(Part { mesh: Arc::new(mesh), material: worn.index }))
+    }
+
+    /// Adds the parts of a prim.
+    fn place(&mut self, stage: &Stage, prim: u32, parts: &[Part], world: &DMat4) -> Result<(), FormatError> {
+        let name = name_of(stage, prim);
+        let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len();
+        self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
+        for part in parts {
+            let Some((mesh, motion)) = placed(&part.mesh, world) else {
+                let what = "a prim is scaled to a line or a point, or its place is not finite: left out";
+                self.context.sink.oddities.note(what, || stage.at(prim));
+                continue;
+            };
+            self.context.sink.scene.objects.push(Object { motion, ..Object::new(name, mesh, part.material) });
+        }
+        Ok(())
+    }
+
+    /// The copies of a `PointInstancer`.
+    fn copies(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
+        if self.lineage.contains(&prim) {
+            self.context
+                .sink
+                .oddities
+                .note("an instancer is its own prototype: left out there", || stage.at(prim));
+            return Ok(());
+        }
+        let Some(copies) = Copies::read(stage, prim, &mut self.context.reading.budget)? else {
+            return Ok(());
+        };
+        self.lineage.push(prim);
+        let mut made: HashMap<u32, Vec<Object>> = HashMap::new();
+        for &prototype in &copies.prototypes {
+            let objects = std::mem::take(&mut self.context.sink.scene.objects);
+            let state = State { world: DMat4::IDENTITY, purpose: None, ..*state };
+            if prototype != 0 {
+                self.prim(stage, prototype, &state)?;
+            }
+            let own = std::mem::replace(&mut self.context.sink.scene.objects, objects);
+            made.insert(prototype, own);
+        }
+        self.lineage.pop();
+        for i in 0..copies.len() {
+            let Some((prototype, place)) = copies.copy(i) else { continue };
+            let world = state.world * place;
+            for object in made.get(&prototype).into_iter().flatten() {
+                let whole = world * object.motion.at(0.0).matrix().as_dmat4();
+                let bytes = size_of::<[Object; 2]>() + object.name.len();
+                self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
+                if let Some((mesh, motion)) = placed(&object.mesh, &whole) {
+                    self.context.sink.scene.objects.push(Object { mesh, motion, ..object.clone() });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The faces of a mesh with materials of their own.
+    fn subsets(&mut self, _: &Stage, _: u32) -> Result<Vec<Subset>, FormatError> {
+        Ok(Vec::new())
+    }
+
+    /// What a surface wears: what it is bound to, or else its own colour.
+    fn worn(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
+        self.plain(stage, prim)
+    }
+
+    /// The material of a surface with nothing but a colour and an opacity.
+    fn plain(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
+        let budget = &mut self.context.reading.budget;
+        let lineage = std::iter::once(&prim).chain(self.lineage.iter().rev());
+        let constant = Interpolation::Constant;
+        let mut found = [None, None];
+        for (slot, name) in found.iter_mut().zip(["primvars:displayColor", "primvars:displayOpacity"]) {
+            for &at in lineage.clone() {
+                let primvar = Primvar::read(stage, at, name, constant, budget)?;
+                // Of those above it, only what is the same everywhere counts.
+                *slot = primvar.filter(|p| at == prim || p.interpolation == constant);
+                if slot.is_some() {
+                    break;
+                }
+            }
+        }
+        let varies =
+            |primvar: &Option<Primvar>| primvar.as_ref().is_some_and(|p| p.interpolation != constant);
+        let (uses_colours, uses_opacities) = (varies(&found[0]), varies(&found[1]));
+        let colour = match &found[0] {
+            Some(colour) if !uses_colours => Some(colour.values.floats::<3>(0)),
+            _ => None,
+        };
+        let opacity = match &found[1] {
+            Some(opacity) if !uses_opacities => opacity.values.floats::<1>(0)[0].clamp(0.0, 1.0),
+            _ => 1.0,
+        };
+        let key = (colour.unwrap_or([-1.0; 3]).map(f32::to_bits), opacity.to_bits(), uses_colours);
+        let scene = &mut self.context.sink.scene;
+        let index = *self.plain.entry(key).or_insert_with(|| {
+            let mut spec = plain_material(uses_colours, false);
+            if let Some(colour) = colour {
+                "displayColor".clone_into(&mut spec.name);
+                spec.parameters.set("kd", Rgb::from_array(colour).clamp(0.0, 1.0));
+            }
+            if opacity < 1.0 {
+                spec.parameters.set("opacity", opacity);
+            }
+            scene.add_material(spec)
+        });
+        Ok(Worn { index, uses_colours, uses_opacities, ..Worn::default() })
+    }
+}
+
+/// A mesh at a place: one that a scale of zero makes flat is a mesh of its own.
+fn placed(mesh: &Arc<Mesh>, world: &DMat4) -> Option<(Arc<Mesh>, Motion)> {
+    if let Some(transform) = Transform::from_matrix(*world) {
+        return Some((mesh.clone(), Motion::still(transform)));
+    }
+    (flat::rank(world) == 2).then(|| (Arc::new(flat::flattened(mesh, world)), Motion::REST))
+}

@@ -1,0 +1,193 @@
+//! The composed prims and their values at a time.
+
+use super::composition::{Opinion, Prim};
+use super::layer::{Layer, PrimSpec, Property};
+use super::list_op::ListOp;
+use super::value::{Array, Numbers, Text, Value};
+use crate::FormatError;
+use crate::budget::Budget;
+use bilux_scene::Span;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Everything that the layers say, composed.
+pub(super) struct Stage {
+    pub(super) layers: Vec<Layer>,
+    pub(super) prims: Vec<Prim>,
+    by_path: HashMap<Text, u32>,
+    /// The time code that is shown.
+    pub(super) time: f64,
+}
+
+impl Stage {
+    pub(super) fn new(layers: Vec<Layer>, prims: Vec<Prim>) -> Stage {
+        let by_path = prims.iter().enumerate().map(|(i, prim)| (prim.path.clone(), i as u32)).collect();
+        Stage { layers, prims, by_path, time: 0.0 }
+    }
+
+    pub(super) fn prim(&self, index: u32) -> &Prim {
+        &self.prims[index as usize]
+    }
+
+    /// The prim with a path.
+    pub(super) fn named(&self, path: &str) -> Option<u32> {
+        self.by_path.get(path).copied()
+    }
+
+    fn spec(&self, opinion: &Opinion) -> &PrimSpec {
+        &self.layers[opinion.layer as usize].prims[opinion.prim as usize]
+    }
+
+    /// Where a prim is, with its path.
+    pub(super) fn at(&self, prim: u32) -> Span {
+        let first = self.prim(prim).opinions.first();
+        first.map_or_else(|| self.layers[0].at(0), |o| self.layers[o.layer as usize].at(o.prim))
+    }
+
+    /// What all layers say about a property, the strongest first.
+    fn properties<'s>(
+        &'s self,
+        prim: u32,
+        name: &'s str,
+    ) -> impl DoubleEndedIterator<Item = (&'s Opinion, &'s Property)> {
+        self.prim(prim).opinions.iter().filter_map(move |opinion| {
+            let found = self.spec(opinion).properties.iter().find(|property| &*property.name == name)?;
+            Some((opinion, found))
+        })
+    }
+
+    /// The value of an attribute at the time of the stage.
+    pub(super) fn value(
+        &self,
+        prim: u32,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<Value>, FormatError> {
+        for (opinion, property) in self.properties(prim, name) {
+            let layer = opinion.layer;
+            if let Some(samples) = &property.samples {
+                let time = opinion.offset.inverse(self.time);
+                if let Some(value) = self.sampled(layer, samples, time, budget)? {
+                    return Ok((value != Value::Blocked).then_some(value));
+                }
+            }
+            if let Some(value) = &property.value {
+                let value = self.unpacked(layer, value, budget)?;
+                return Ok((value != Value::Blocked).then_some(value));
+            }
+        }
+        Ok(None)
+    }
+
+    pub(super) fn number(
+        &self,
+        prim: u32,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<f64>, FormatError> {
+        Ok(self.value(prim, name, budget)?.and_then(|value| value.number()).filter(|x| x.is_finite()))
+    }
+
+    pub(super) fn text(
+        &self,
+        prim: u32,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<Text>, FormatError> {
+        Ok(self.value(prim, name, budget)?.and_then(|value| value.text().cloned()))
+    }
+
+    pub(super) fn array(
+        &self,
+        prim: u32,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<Arc<Array>>, FormatError> {
+        Ok(self.value(prim, name, budget)?.and_then(|value| value.array()))
+    }
+
+    fn unpacked(&self, layer: u32, value: &Value, budget: &mut Budget) -> Result<Value, FormatError> {
+        match (value, &self.layers[layer as usize].packed) {
+            (Value::Packed(packed), Some(file)) => file.unpack(*packed, budget),
+            _ => Ok(value.clone()),
+        }
+    }
+
+    /// The value of samples at a time code: linear between two of them where it can be.
+    fn sampled(
+        &self,
+        layer: u32,
+        samples: &Value,
+        time: f64,
+        budget: &mut Budget,
+    ) -> Result<Option<Value>, FormatError> {
+        let Value::Samples(list) = self.unpacked(layer, samples, budget)? else { return Ok(None) };
+        let next = list.partition_point(|(at, _)| *at <= time);
+        let Some((first, before)) = list.get(next.saturating_sub(1)) else { return Ok(None) };
+        let before = self.unpacked(layer, before, budget)?;
+        let after = list.get(next).filter(|_| next > 0);
+        let Some((last, after)) = after.filter(|_| time > *first) else { return Ok(Some(before)) };
+        let after = self.unpacked(layer, after, budget)?;
+        let part = (time - first) / (last - first);
+        Ok(Some(between(&before, &after, part, budget, &self.layers[layer as usize].name)?.unwrap_or(before)))
+    }
+
+    /// The targets of a relationship, or the connections of an attribute, as paths on the stage.
+    pub(super) fn targets(&self, prim: u32, name: &str) -> Vec<Text> {
+        let mut list = Vec::new();
+        for (opinion, property) in self.properties(prim, name).rev() {
+            let Some(targets) = &property.targets else { continue };
+            let targets: ListOp<Text> = targets.map(|path| opinion.on_stage(path));
+            targets.apply(&mut list);
+        }
+        list
+    }
+
+    /// Metadata of a property.
+    pub(super) fn metadata(&self, prim: u32, property: &str, key: &str) -> Option<Value> {
+        self.properties(prim, property).find_map(|(_, property)| property.fields.find(key).cloned())
+    }
+
+    /// The end of the samples of the first layer's time, if something in the stage moves.
+    pub(super) fn root_number(&self, key: &str) -> Option<f64> {
+        self.layers[0].root().fields.number(key).filter(|x| x.is_finite())
+    }
+
+    /// True if an attribute of a prim has samples.
+    pub(super) fn varies(&self, prim: u32) -> bool {
+        let opinions = self.prim(prim).opinions.iter();
+        opinions.flat_map(|o| &self.spec(o).properties).any(|property| property.samples.is_some())
+    }
+}
+
+/// The value between two: `None` where the first one holds until the next.
+fn between(
+    a: &Value,
+    b: &Value,
+    part: f64,
+    budget: &mut Budget,
+    name: &str,
+) -> Result<Option<Value>, FormatError> {
+    let mix = |a: f64, b: f64| a + (b - a) * part;
+    Ok(match (a, b) {
+        (Value::Number(a), Value::Number(b)) => Some(Value::Number(mix(*a, *b))),
+        (Value::Tuple(a), Value::Tuple(b)) if a.len() == b.len() => {
+            Some(Value::Tuple(a.iter().zip(b).map(|(a, b)| mix(*a, *b)).collect()))
+        }
+        (Value::Array(a), Value::Array(b)) if a.numbers.len() == b.numbers.len() => {
+            budget.take_bytes(a.numbers.bytes(), name)?;
+            let numbers = match (&a.numbers, &b.numbers) {
+                (Numbers::Floats(a), Numbers::Floats(b)) => {
+                    let mix = |(a, b): (&f32, &f32)| a + (b - a) * part as f32;
+                    Numbers::Floats(a.iter().zip(b).map(mix).collect())
+                }
+                (Numbers::Doubles(a), Numbers::Doubles(b)) => {
+                    Numbers::Doubles(a.iter().zip(b).map(|(a, b)| mix(*a, *b)).collect())
+                }
+                _ => return Ok(None),
+            };
+            Some(Value::Array(Arc::new(Array { numbers, width: a.width })))
+        }
+        _ => None,
+    })
+}

@@ -1,0 +1,217 @@
+//! OpenUSD: text, crate files and packages, and how layers are composed.
+
+use crate::{read_text, refusal, warnings};
+use bilux_formats::{ReadOptions, read};
+use bilux_math::Vec3;
+use bilux_scene::{Axis, SceneBuilder, UpHint};
+use std::path::Path;
+
+/// A file of the fuzzers' corpus.
+fn seed(name: &str) -> Vec<u8> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/scene_usd").join(name);
+    std::fs::read(path).unwrap()
+}
+
+/// Reads the first of some files in a folder.
+fn read_files(files: &[(&str, &str)], options: &ReadOptions) -> SceneBuilder {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, format!("#usda 1.0\n{text}")).unwrap();
+    }
+    read(&folder.path().join(files[0].0), options).unwrap()
+}
+
+fn composed(files: &[(&str, &str)]) -> SceneBuilder {
+    read_files(files, &ReadOptions::default())
+}
+
+fn text(text: &str) -> SceneBuilder {
+    read_text("usda", format!("#usda 1.0\n{text}")).unwrap()
+}
+
+/// The x extent of each object, by name.
+fn widths(scene: &SceneBuilder) -> Vec<(&str, f32)> {
+    let width = |o: &bilux_scene::Object| o.motion.at(0.0).bounds(&o.mesh.bounds()).extent().x;
+    scene.objects.iter().map(|o| (o.name.as_str(), (width(o) * 1000.0).round() / 1000.0)).collect()
+}
+
+#[test]
+fn a_mesh_has_the_attributes_that_its_corners_have() {
+    let scene = text(
+        "(upAxis = \"Z\" metersPerUnit = 0.5)\ndef Mesh \"m\" {\n\
+         int[] faceVertexCounts = [3, 4, 3]\nint[] faceVertexIndices = [0, 1, 4, 0, 1, 2, 3, 1, 2, 4]\n\
+         point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0)]\n\
+         int[] holeIndices = [2]\nuniform token orientation = \"leftHanded\"\nuniform token subdivisionScheme = \"none\"\n\
+         texCoord2f[] primvars:st = [(0, 0), (0.5, 1)] (interpolation = \"faceVarying\")\n\
+         int[] primvars:st:indices = [0, 0, 1, 0, 0, 1, 1, 0, 0, 0]\n\
+         color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1)] (interpolation = \"uniform\") }",
+    );
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!((scene.up, scene.unit), (UpHint::Is(Axis::Z), 0.5));
+    assert_eq!(mesh.triangles.len(), 3, "without the hole");
+    // Clockwise in the file, so the front is below.
+    let [a, b, c] = mesh.triangles[1].map(|i| mesh.positions[i as usize]);
+    assert!((b - a).cross(c - a).z < 0.0);
+    // Vertices 0 and 1 have another colour on the other face.
+    assert_eq!((mesh.positions.len(), mesh.vertex_kd[0].to_array()), (7, [1.0, 0.0, 0.0]));
+    assert!(
+        mesh.uvs.iter().all(|uv| *uv == bilux_math::Vec2::ZERO || *uv == bilux_math::Vec2::new(0.5, 1.0))
+    );
+    assert_eq!(warnings(&scene), "");
+}
+
+/// A variant, an inherited class and a reference say different things; the order of strength is local, inherited, variant,
+/// referenced. [OpenUSD]
+#[test]
+fn stronger_opinions_win() {
+    let whole = "class \"c\" { double a:inherit = 1\n def Cube \"x\" { double size = 3 } }\n\
+                 def Xform \"p\" (inherits = </c> references = @r.usda@</q> variants = { string v = \"one\" } \
+                 prepend variantSets = \"v\") {\n over \"w\" { double size = 7 }\n variantSet \"v\" = { \"one\" { over \"x\" { \
+                 double size = 4 }\n over \"y\" { double size = 5 } }\n \"two\" { over \"y\" { double size = 6 } } } }";
+    let other = "def \"q\" { def Cube \"x\" { double size = 9 }\n def Cube \"y\" { double size = 9 }\n \
+                 def Cube \"w\" { double size = 9 }\n def Cube \"z\" { double size = 9 } }";
+    let files = [("a.usda", whole), ("r.usda", other)];
+    let sizes = |variant: Option<&str>| {
+        let options = ReadOptions { variant: variant.map(str::to_owned), ..ReadOptions::default() };
+        let scene = read_files(&files, &options);
+        assert_eq!(scene.inventory.variants, ["v=one", "v=two"]);
+        let mut all: Vec<_> = widths(&scene).into_iter().map(|(name, w)| (name.to_owned(), w)).collect();
+        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.into_iter().map(|(_, width)| width).collect::<Vec<_>>()
+    };
+    assert_eq!(sizes(None), [7.0, 3.0, 5.0, 9.0], "w, x, y, z");
+    assert_eq!(sizes(Some("v=two")), [7.0, 3.0, 6.0, 9.0]);
+    assert_eq!(sizes(Some("two")), [7.0, 3.0, 6.0, 9.0]);
+}
+
+#[test]
+fn sublayers_and_references_shift_and_stretch_time() {
+    let ball = "def Sphere \"s\" { double radius.timeSamples = { 0: 0, 100: 100 } }";
+    let radius = |files: &[(&str, &str)]| widths(&composed(files))[0].1 / 2.0;
+    assert_eq!(radius(&[("a.usda", &format!("(startTimeCode = 10)\n{ball}"))]), 10.0);
+    // 10 = 2 t + 4
+    let top = "(startTimeCode = 10 subLayers = [@b.usda@ (offset = 4; scale = 2)])";
+    assert_eq!(radius(&[("a.usda", top), ("b.usda", ball)]), 3.0);
+    let top = "(startTimeCode = 10)\ndef \"r\" (references = @b.usda@</s> (offset = 4; scale = 2)) {}";
+    assert_eq!(radius(&[("a.usda", top), ("b.usda", ball)]), 3.0);
+    // 24 time codes in a second here, 48 there.
+    let fast = format!("(timeCodesPerSecond = 48)\n{ball}");
+    let top = "(startTimeCode = 10)\ndef \"r\" (payload = @b.usda@</s>) {}";
+    assert_eq!(radius(&[("a.usda", top), ("b.usda", &fast)]), 20.0);
+}
+
+#[test]
+fn classes_of_a_referenced_file_can_be_overridden_where_it_is_used() {
+    let asset = "(defaultPrim = \"m\")\nclass \"_c\" { }\ndef Xform \"m\" (inherits = </_c>) { def Cube \"b\" { double size = 1 } }";
+    let top = "class \"_c\" { over \"b\" { double size = 5 } }\ndef \"one\" (references = @b.usda@) {}";
+    assert_eq!(widths(&composed(&[("a.usda", top), ("b.usda", asset)])), [("b", 5.0)]);
+}
+
+#[test]
+fn instances_ignore_what_is_said_below_them() {
+    let top = "def \"i\" (instanceable = true references = </p>) { over \"b\" { double size = 5 } }\n\
+               class \"p\" { def Cube \"b\" { double size = 2 } }";
+    assert_eq!(widths(&text(top)), [("b", 2.0)]);
+    assert_eq!(widths(&text(&top.replace("instanceable = true", ""))), [("b", 5.0)]);
+}
+
+#[test]
+fn copies_share_their_mesh_and_are_where_the_instancer_says() {
+    let scene = text(
+        "def PointInstancer \"i\" { int[] protoIndices = [0, 0, 0]\n point3f[] positions = [(1, 0, 0), (2, 0, 0), (3, 0, 0)]\n \
+         quath[] orientations = [(1, 0, 0, 0), (0.7071, 0, 0, 0.7071), (1, 0, 0, 0)]\n int64[] invisibleIds = [2]\n \
+         rel prototypes = </i/p>\n def Cylinder \"p\" { uniform token axis = \"X\" double height = 4 double radius = 0.5 } }",
+    );
+    assert_eq!(widths(&scene), [("p", 4.0), ("p", 1.0)], "the second is turned by 90 degrees about z");
+    assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[1].mesh));
+    let middle = |i: usize| scene.objects[i].motion.at(0.0).point(Vec3::ZERO);
+    assert_eq!([middle(0).x, middle(1).x], [1.0, 2.0]);
+}
+
+#[test]
+fn prims_that_are_hidden_or_not_for_renders_are_not_shown() {
+    let scene = text(
+        "def Xform \"a\" { token visibility = \"invisible\"\n def Cube \"b\" {} }\ndef Cube \"c\" { uniform token purpose = \"proxy\" }\n\
+         def Xform \"d\" { uniform token purpose = \"render\"\n def Cube \"e\" {} }\nover \"f\" { def Cube \"g\" {} }\n\
+         def Cube \"h\" (active = false) {}",
+    );
+    assert_eq!(widths(&scene), [("e", 2.0)]);
+}
+
+/// Written by OpenUSD 26.11: compressed arrays, samples, an internal reference and a variant.
+#[test]
+fn crate_files_are_read() {
+    let scene = read_text("usdc", seed("crate.usdc")).unwrap();
+    let mesh = &scene.objects.iter().find(|o| o.name == "disc").unwrap().mesh;
+    assert_eq!((mesh.triangles.len(), mesh.vertex_opacity[0]), (20, 0.25));
+    assert!((mesh.positions[0] - Vec3::X).length() < 1e-6);
+    let mut all = widths(&scene);
+    all.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
+    assert_eq!(all, [("ball", 0.5), ("disc", 2.0), ("disc", 4.0)]);
+    assert_eq!(
+        scene.objects.iter().map(|o| o.motion.at(0.0).point(Vec3::ZERO)).find(|p| p.x == 1.5).unwrap(),
+        Vec3::new(1.5, 2.0, 3.0)
+    );
+    assert_eq!(warnings(&scene), "");
+}
+
+#[test]
+fn what_cannot_be_read_is_refused_with_a_reason() {
+    let cases = [
+        (
+            "usda",
+            b"#usda 1.0\ndef Mesh \"m\" {\n  int[] a = [1, 2".to_vec(),
+            "scene.usda:3:18: a number is missing here: the file was cut off",
+        ),
+        (
+            "usda",
+            b"#usda 1.0\ndef Mesh \"m\" { point3f[] p = [(1, 2)] }".to_vec(),
+            "2 numbers, which is not a multiple of 3",
+        ),
+        ("usda", seed("broken_deep.usda"), "nested more than 128 levels deep"),
+        ("usdc", seed("broken_crate_cut.usdc"), "an offset leads out of it"),
+        ("usdc", seed("broken_crate_section.usdc"), "its section TOKENS goes on beyond its end"),
+        ("usdc", seed("broken_crate_tokens.usdc"), "more items than its compressed bytes can hold"),
+        ("usdc", seed("broken_crate_paths.usdc"), "more paths than it has bytes for"),
+        (
+            "usdc",
+            b"PXR-USDC\x00\x63\x00\x00\x00\x00\x00\x00\0\0\0\0\0\0\0\0".to_vec(),
+            "version 0.99.0, but only 0.4 to",
+        ),
+    ];
+    for (format, bytes, part) in cases {
+        let message = refusal(format, bytes);
+        assert!(message.contains(part), "{message}");
+    }
+    let options = ReadOptions { variant: Some("v=three".to_owned()), ..ReadOptions::default() };
+    let scene = bilux_formats::read_bytes(&seed("crate.usdc"), "usdc", None, "a.usdc", &options);
+    assert!(
+        scene
+            .unwrap_err()
+            .to_string()
+            .contains("there is no variant 'v=three' in this file; there are: v=one")
+    );
+}
+
+#[test]
+fn circles_and_missing_layers_are_warned_of() {
+    let scene = composed(&[("circle.usda", &String::from_utf8(seed("circle.usda")).unwrap()[10..])]);
+    let told = warnings(&scene);
+    for part in
+        ["among its own sublayers", "no file 'missing.usda'", "composed with itself", "no file 'gone.usd'"]
+    {
+        assert!(told.contains(part), "{told}");
+    }
+    let outside = composed(&[
+        ("in/a.usda", "def \"a\" (references = @../b.usda@</x>) {}"),
+        ("b.usda", "def Cube \"x\" {}"),
+    ]);
+    assert!(warnings(&outside).contains("lies outside the scene's folder"), "{}", warnings(&outside));
+    // Two references of two references of …: 2⁴⁰ places.
+    let doubled: String = (0..40).map(|i| format!("def \"p{i}\" (references = [</p{0}/x>, </p{0}>]) {{ def \"x\" (references = </p{0}>) {{}} }}\n", i + 1)).collect();
+    let begin = std::time::Instant::now();
+    _ = read_text("usda", format!("#usda 1.0\n{doubled}"));
+    assert!(begin.elapsed().as_secs() < 20);
+}
