@@ -5,6 +5,7 @@
 //! [`FormatError`] that states the location and the remedy. It uses no more memory than
 //! [`ReadOptions::max_memory`], and opens no file outside the scene's folder unless allowed.
 
+mod affine;
 mod archive;
 mod as_metal;
 mod asc;
@@ -13,16 +14,19 @@ mod blocks;
 mod budget;
 mod calibrations;
 mod camera_loss;
+mod choice;
 mod cloud;
 mod colours;
 mod error;
 mod fbx;
 mod files;
+mod fitting;
 mod flat;
 mod float;
 mod formats;
 mod gltf;
 mod grids;
+mod heights;
 mod images;
 mod indexed_faces;
 mod las;

@@ -23,6 +23,8 @@ pub(super) struct Placed {
 /// All nodes, parents first.
 pub(super) struct Graph {
     pub(super) nodes: Vec<Placed>,
+    /// From the axes and the unit of the file to world space.
+    pub(super) to_world: DMat4,
     /// The place of each model in `nodes`.
     order: HashMap<Index, usize>,
 }
@@ -37,7 +39,7 @@ impl Graph {
     ) -> Result<Graph, FormatError> {
         let document = posed.document;
         let to_world = DMat4::from_translation(-origin) * document.settings.to_world;
-        let mut graph = Graph { nodes: Vec::new(), order: HashMap::new() };
+        let mut graph = Graph { nodes: Vec::new(), to_world, order: HashMap::new() };
         let root = (Inherited::root(), true);
         let mut waiting: Vec<(Index, Inherited, bool)> =
             roots(document).into_iter().rev().map(|model| (model, root.0, root.1)).collect();
@@ -84,6 +86,11 @@ impl Graph {
             oddities.note(what, || document.tree.whole());
         }
         Ok(graph)
+    }
+
+    /// The transform of a model to world space, if it is in the scene.
+    pub(super) fn world_of(&self, model: Index) -> Option<DMat4> {
+        self.order.get(&model).map(|&order| self.nodes[order].world)
     }
 }
 

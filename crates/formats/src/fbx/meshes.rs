@@ -1,99 +1,148 @@
-//! The meshes of nodes. One that several nodes share is made once.
+//! The meshes of nodes. One that several nodes share is made once, unless bones move it.
 
+use super::deform::Deformers;
 use super::document::{Document, Index, display_name};
-use super::geometry::{Geometry, Part, Workshop, parts};
+use super::geometry::{Geometry, Part, Workshop, layers_named, parts};
 use super::graph::{Graph, Placed};
+use super::materials::{Materials, Worn};
 use super::posed::Posed;
-use super::tree::Value;
+use super::tree::{Node, Value};
 use crate::FormatError;
 use crate::flat;
-use crate::oddities::Oddities;
-use crate::reading::{Reading, default_material};
+use crate::reading::Reading;
 use crate::sink::Sink;
-use bilux_math::Transform;
 use bilux_math::motion::Motion;
+use bilux_math::{DMat4, Transform};
 use bilux_scene::Object;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// The meshes that have been read.
-#[derive(Default)]
-pub(super) struct Meshes {
+/// The meshes that have been read, and the materials that they are of.
+pub(super) struct Meshes<'d> {
+    /// Those that do not deform.
     parts: HashMap<Index, Arc<Vec<Part>>>,
+    materials: Materials<'d>,
+    /// The sets of texture coordinates that textures name.
+    named_sets: HashSet<&'d [u8]>,
 }
 
-impl Meshes {
+impl<'d> Meshes<'d> {
+    pub(super) fn new(document: &Document<'d>) -> Meshes<'d> {
+        let textures = document.indices().filter(|&index| document.class(index) == b"Texture");
+        let named_sets = textures.filter_map(|texture| document.properties(texture).text("UVSet")).collect();
+        Meshes { parts: HashMap::new(), materials: Materials::default(), named_sets }
+    }
+
     /// Adds the meshes of a node to the scene.
     pub(super) fn place(
         &mut self,
         placed: &Placed,
-        posed: &Posed,
-        _graph: &Graph,
+        posed: &Posed<'d>,
+        graph: &Graph,
         reading: &mut Reading,
         sink: &mut Sink,
     ) -> Result<(), FormatError> {
         let document = posed.document;
         for geometry in geometries(document, placed.model) {
-            let parts = self.parts(geometry, posed, reading, sink)?;
-            let world = placed.world * placed.geometric;
-            let name = display_name(document.object(placed.model).name);
-            if sink.scene.materials.is_empty() {
-                sink.scene.add_material(default_material());
-            }
-            let motion = Transform::from_matrix(world).map(Motion::still);
-            let each = size_of::<[Object; 2]>() + name.len() + motion.as_ref().map_or(0, Motion::heap_bytes);
-            reading.budget.take_bytes((each * parts.len()) as u64, document.file())?;
-            for part in parts.iter() {
-                let material = 0;
-                let object = match &motion {
-                    Some(motion) => {
-                        Object { motion: motion.clone(), ..Object::new(&name, part.mesh.clone(), material) }
+            let deformers = Deformers::of(geometry, posed);
+            // What bones move is in world space, wherever its node is.
+            let world = if deformers.has_skin() { DMat4::IDENTITY } else { placed.world * placed.geometric };
+            let parts = match self.parts.get(&geometry).filter(|_| deformers.is_empty()) {
+                Some(parts) => parts.clone(),
+                None => {
+                    let made = self.make(geometry, &deformers, placed, posed, graph, reading, sink)?;
+                    let made = Arc::new(made);
+                    if deformers.is_empty() {
+                        self.parts.insert(geometry, made.clone());
                     }
-                    None if flat::rank(&world) == 2 => {
-                        reading.budget.take_bytes(part.mesh.size(), document.file())?;
-                        Object::new(&name, Arc::new(flat::flattened(&part.mesh, &world)), material)
-                    }
-                    None => {
-                        note_vanished(document, placed.model, &mut sink.oddities);
-                        continue;
-                    }
-                };
-                sink.scene.objects.push(object);
-            }
+                    made
+                }
+            };
+            self.place_parts(&parts, &world, geometry, placed, posed, reading, sink)?;
         }
         Ok(())
     }
 
-    /// The parts of a mesh.
-    fn parts(
+    /// Adds the parts of a mesh to the scene.
+    #[expect(clippy::too_many_arguments, reason = "a mesh, where it is, and all that a read needs")]
+    fn place_parts(
         &mut self,
-        index: Index,
-        posed: &Posed,
+        parts: &[Part],
+        world: &DMat4,
+        geometry: Index,
+        placed: &Placed,
+        posed: &Posed<'d>,
         reading: &mut Reading,
         sink: &mut Sink,
-    ) -> Result<Arc<Vec<Part>>, FormatError> {
-        if let Some(parts) = self.parts.get(&index) {
-            return Ok(parts.clone());
+    ) -> Result<(), FormatError> {
+        let document = posed.document;
+        let node = document.object(placed.model).node;
+        let name = display_name(document.object(placed.model).name);
+        let motion = Transform::from_matrix(*world).map(Motion::still);
+        let each = size_of::<[Object; 2]>() + name.len() + motion.as_ref().map_or(0, Motion::heap_bytes);
+        reading.budget.take_bytes((each * parts.len()) as u64, document.file())?;
+        let choice = self.choice(geometry, placed.model, document);
+        for part in parts {
+            let worn = choice.worn(part.material);
+            let material = self.materials.index(worn, posed, reading, sink)?;
+            let mesh = match &motion {
+                Some(_) => part.mesh.clone(),
+                None if flat::rank(world) == 2 => {
+                    reading.budget.take_bytes(part.mesh.size(), document.file())?;
+                    Arc::new(flat::flattened(&part.mesh, world))
+                }
+                None => {
+                    sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                    continue;
+                }
+            };
+            let object = Object::new(&name, mesh, material);
+            let motion = motion.clone().unwrap_or(Motion::REST);
+            sink.scene.objects.push(Object { motion, ..object });
         }
+        Ok(())
+    }
+
+    /// What the materials of a mesh are chosen from.
+    fn choice(&self, geometry: Index, model: Index, document: &Document<'d>) -> Choice<'d> {
+        let second_set = second_set(document.object(geometry).node).and_then(|(_, name)| name);
+        Choice {
+            materials: document.sources_of_class(model, "Material").collect(),
+            textures: document.sources_of_class(model, "Texture").collect(),
+            second_set: second_set.filter(|name| self.named_sets.contains(name)),
+        }
+    }
+
+    /// Makes the parts of a mesh.
+    #[expect(clippy::too_many_arguments, reason = "a mesh, what deforms it, and all that a read needs")]
+    fn make(
+        &self,
+        index: Index,
+        deformers: &Deformers,
+        placed: &Placed,
+        posed: &Posed,
+        graph: &Graph,
+        reading: &mut Reading,
+        sink: &mut Sink,
+    ) -> Result<Vec<Part>, FormatError> {
         let document = posed.document;
         let object = document.object(index);
         let spent = reading.budget.spent();
         let crease_angle = reading.crease_angle;
         let mut workshop =
             Workshop { budget: &mut reading.budget, oddities: &mut sink.oddities, crease_angle };
-        let name = display_name(object.name);
-        let parts = match Geometry::read(object.node, name, false, &mut workshop)? {
+        let has_second = second_set(object.node).and_then(|(_, name)| name);
+        let has_second = has_second.is_some_and(|name| self.named_sets.contains(name));
+        let made = match Geometry::read(object.node, display_name(object.name), has_second, &mut workshop)? {
             Some(mut geometry) => {
+                deformers.apply(&mut geometry, placed, posed, graph, &mut workshop)?;
                 geometry.add_normals(&mut workshop, document.file())?;
                 parts(geometry, &mut workshop, document.file())?
             }
             None => {
-                let kind = if object.kind.is_empty() {
-                    "a geometry without polygons".into()
-                } else {
-                    display_name(object.kind)
-                };
-                workshop.oddities.not_shown(&kind, || object.node.at());
+                let kind =
+                    if object.kind.is_empty() { &b"a geometry without polygons"[..] } else { object.kind };
+                workshop.oddities.not_shown(&display_name(kind), || object.node.at());
                 Vec::new()
             }
         };
@@ -101,12 +150,31 @@ impl Meshes {
             workshop.oddities.not_shown("subdivision of meshes", || object.node.at());
         }
         // What is left of all that was needed meanwhile.
-        let kept: u64 = parts.iter().map(|part| part.mesh.size() + size_of::<Part>() as u64).sum();
+        let kept: u64 = made.iter().map(|part| part.mesh.size() + size_of::<Part>() as u64).sum();
         reading.budget.release((reading.budget.spent() - spent).saturating_sub(kept));
-        let parts = Arc::new(parts);
-        self.parts.insert(index, parts.clone());
-        Ok(parts)
+        Ok(made)
     }
+}
+
+/// The materials of a node, and before version 7 its textures.
+struct Choice<'d> {
+    materials: Vec<Index>,
+    textures: Vec<Index>,
+    second_set: Option<&'d [u8]>,
+}
+
+impl<'d> Choice<'d> {
+    /// The material of a part with this number; the last one if there are fewer.
+    fn worn(&self, number: usize) -> Worn<'d> {
+        let of = |all: &[Index]| all.get(number).or(all.last()).copied();
+        Worn { material: of(&self.materials), second_set: self.second_set, texture: of(&self.textures) }
+    }
+}
+
+/// The second set of texture coordinates of a mesh, with its name.
+fn second_set<'d>(mesh: Node<'d>) -> Option<(Node<'d>, Option<&'d [u8]>)> {
+    let layer = layers_named(mesh, "LayerElementUV").into_iter().nth(1)?;
+    Some((layer, layer.child_value("Name").and_then(Value::text)))
 }
 
 /// The meshes of a node: objects of their own, or before version 7 the node itself.
@@ -116,9 +184,4 @@ fn geometries(document: &Document, model: Index) -> Vec<Index> {
         geometries.push(model);
     }
     geometries
-}
-
-fn note_vanished(document: &Document, model: Index, oddities: &mut Oddities) {
-    let what = "a node with a scale of zero is not shown";
-    oddities.remark(what, || document.object(model).node.at());
 }

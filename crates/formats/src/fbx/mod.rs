@@ -1,8 +1,14 @@
 //! FBX of Autodesk, versions 6.1 to 7.7, binary and as text. See `docs/formats/fbx.md`.
 
+mod animation;
+mod attributes;
+mod cameras;
+mod deform;
 mod document;
 mod geometry;
 mod graph;
+mod lights;
+mod materials;
 mod meshes;
 mod posed;
 mod reader;
@@ -21,7 +27,20 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         parameters: &[],
     },
     extensions: &["fbx"],
-    capabilities: &["polygons", "normals", "uv", "vertex-kd", "objects", "instances"],
+    capabilities: &[
+        "polygons",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "objects",
+        "instances",
+        "materials",
+        "textures",
+        "moved textures",
+        "cameras",
+        "lights",
+        "animation",
+    ],
     sniff: |bytes| bytes.starts_with(tree::BINARY_MAGIC) || tree::is_text(bytes),
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Binary(reader::read)),

@@ -1,22 +1,32 @@
 //! A document as it is at one time.
 
-use super::document::{Animated, Document, Index, Properties};
-use std::collections::HashMap;
+use super::animation::Pose;
+use super::document::{Document, Index, Properties};
+use crate::FormatError;
+use crate::oddities::Oddities;
+use crate::reading::Reading;
 
 /// A document with the values that its animation gives to properties.
 pub(super) struct Posed<'d> {
     pub(super) document: &'d Document<'d>,
-    animated: HashMap<Index, Animated<'d>>,
+    pub(super) pose: Pose<'d>,
 }
 
 impl<'d> Posed<'d> {
-    /// The document without animation.
-    pub(super) fn still(document: &'d Document<'d>) -> Posed<'d> {
-        Posed { document, animated: HashMap::new() }
+    /// The document at a time in seconds, with the animation that the options name.
+    pub(super) fn read(
+        document: &'d Document<'d>,
+        time: f32,
+        reading: &mut Reading,
+        oddities: &mut Oddities,
+    ) -> Result<Posed<'d>, FormatError> {
+        let wanted = reading.options.animation.as_deref();
+        let pose = Pose::read(document, time, wanted, &mut reading.budget, oddities)?;
+        Ok(Posed { document, pose })
     }
 
     /// The properties of an object at this time.
     pub(super) fn properties(&self, index: Index) -> Properties<'d, '_> {
-        self.document.properties(index).animated(self.animated.get(&index))
+        self.document.properties(index).animated(self.pose.animated.get(&index))
     }
 }

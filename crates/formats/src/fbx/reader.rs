@@ -1,55 +1,83 @@
 //! Converts a document to a scene.
 
 use super::document::Document;
-use super::graph::{Graph, Placed};
+use super::graph::Graph;
 use super::meshes::Meshes;
 use super::posed::Posed;
 use super::tree::Tree;
+use super::{cameras, deform, lights};
 use crate::FormatError;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
 use crate::sink::Sink;
 use bilux_scene::SceneBuilder;
+use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut sink = Sink::for_bare_files();
     let tree = Tree::read(source, &mut reading.budget)?;
-    let document = Document::load(&tree, &mut reading.budget, &mut sink.oddities)?;
-    let posed = Posed::still(&document);
-    place_all(&posed, &mut Meshes::default(), reading, &mut sink)?;
+    let document = Document::load(&tree, source, &mut reading.budget, &mut sink.oddities)?;
+    let mut meshes = Meshes::new(&document);
+    place_all(&document, reading.options.time, &mut meshes, reading, &mut sink)?;
+    if reading.options.whole_movement && sink.scene.inventory.moves() {
+        let end = sink.scene.inventory.seconds();
+        sink.scene.movement = Some(Arc::new(movement(&document, &mut meshes, reading, end)?));
+    }
     Ok(sink.finish())
 }
 
-/// Adds all nodes to the scene, as they are posed.
-fn place_all<'d>(
-    posed: &Posed<'d>,
-    meshes: &mut Meshes,
+/// The number of intervals into which the animation is divided to find where objects move.
+const MOMENTS: u32 = 8;
+
+/// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
+fn movement<'d>(
+    document: &'d Document<'d>,
+    meshes: &mut Meshes<'d>,
     reading: &mut Reading,
-    sink: &mut Sink,
-) -> Result<(), FormatError> {
-    let graph = Graph::read(posed, reading.origin, &mut reading.budget, &mut sink.oddities)?;
-    for placed in &graph.nodes {
-        place(placed, posed, &graph, meshes, reading, sink)?;
+    end: f32,
+) -> Result<SceneBuilder, FormatError> {
+    let mut all = SceneBuilder::default();
+    for moment in 0..=MOMENTS {
+        let time = end * moment as f32 / MOMENTS as f32;
+        let mut sink = Sink::default();
+        place_all(document, time, meshes, reading, &mut sink)?;
+        all.objects.extend(sink.scene.objects);
     }
-    share_trees(&mut sink.scene);
-    if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
-        let at = || posed.document.tree.whole();
-        sink.oddities.note("there is nothing to render in this file", at);
-    }
-    Ok(())
+    Ok(all)
 }
 
-/// Adds what belongs to a node.
-fn place<'d>(
-    placed: &Placed,
-    posed: &Posed<'d>,
-    graph: &Graph,
-    meshes: &mut Meshes,
+/// Adds all nodes to the scene, as they are at a time in seconds.
+fn place_all<'d>(
+    document: &'d Document<'d>,
+    time: f32,
+    meshes: &mut Meshes<'d>,
     reading: &mut Reading,
     sink: &mut Sink,
 ) -> Result<(), FormatError> {
-    if placed.is_visible {
-        meshes.place(placed, posed, graph, reading, sink)?;
+    let posed = Posed::read(document, time, reading, &mut sink.oddities)?;
+    let graph = Graph::read(&posed, reading.origin, &mut reading.budget, &mut sink.oddities)?;
+    for placed in graph.nodes.iter().filter(|placed| placed.is_visible) {
+        meshes.place(placed, &posed, &graph, reading, sink)?;
+    }
+    let bounds = sink.scene.bounds(0.0);
+    let middle = if bounds.is_empty() {
+        bilux_math::DVec3::ZERO
+    } else {
+        ((bounds.min + bounds.max) * 0.5).as_dvec3()
+    };
+    for placed in &graph.nodes {
+        sink.scene.cameras.extend(cameras::camera(placed, &posed, &graph, &mut sink.oddities));
+        if placed.is_visible {
+            lights::place(placed, &posed, &graph, middle, reading.options.light_radius, sink);
+        }
+    }
+    let scene = &mut sink.scene;
+    share_trees(scene);
+    scene.inventory.animations = posed.pose.animations;
+    scene.inventory.skins = deform::skin_names(document);
+    if scene.objects.is_empty() && scene.lights.is_empty() {
+        let at = || document.tree.whole();
+        sink.oddities.note("there is nothing to render in this file", at);
     }
     Ok(())
 }

@@ -3,10 +3,10 @@
 use super::data::DataReader;
 use super::json::JsonNode;
 use crate::FormatError;
+use crate::choice::named_or_numbered;
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan2_f64, sin_f64};
-use bilux_scene::error::nearest_name;
-use bilux_scene::{Animation, Span};
+use bilux_scene::Animation;
 use std::collections::{HashMap, HashSet};
 
 /// The animated values of nodes, which replace those of the rest pose.
@@ -228,25 +228,6 @@ fn pointed(pointer: &str) -> Option<Target> {
         name => property_named(name)?,
     };
     Some(Target { node: node.parse().ok()?, property })
-}
-
-/// The index of an item that the user selected by name or by number, from 0.
-pub(super) fn named_or_numbered(
-    what: &str,
-    wanted: &str,
-    names: &[String],
-    at: &Span,
-) -> Result<usize, FormatError> {
-    let numbered = || wanted.parse().ok().filter(|&i: &usize| i < names.len());
-    names.iter().position(|name| name == wanted).or_else(numbered).ok_or_else(|| {
-        let nearest =
-            nearest_name(wanted, names).map_or_else(String::new, |name| format!(" (did you mean {name}?)"));
-        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        FormatError::malformed(
-            format!("there is no {what} '{wanted}' in this file{nearest}; there are: {known}"),
-            at.clone(),
-        )
-    })
 }
 
 /// Keys in order of time: `width` numbers each; cubic keys also have an in-tangent and an out-tangent.

@@ -3,7 +3,6 @@
 use super::alpha::opacity;
 use super::document::Document;
 use super::draft::{Alpha, Draft, OnMesh};
-use super::fitting::fitted;
 use super::glossiness::glossy;
 use super::json::JsonNode;
 use super::pictures::Pictures;
@@ -11,6 +10,7 @@ use super::remapped::{angles, film};
 use super::scatter::scatter;
 use super::textures::{ChannelSelection, Textures, UvSets};
 use crate::FormatError;
+use crate::fitting::fitted;
 use crate::reading::Reading;
 use crate::sink::Sink;
 use bilux_math::Rgb;

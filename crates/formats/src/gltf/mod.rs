@@ -13,7 +13,6 @@ mod draco;
 mod draft;
 mod extensions;
 mod extras;
-mod fitting;
 mod glass;
 mod glossiness;
 mod graph;

@@ -5,7 +5,8 @@ use super::json::JsonNode;
 use super::place;
 use super::posed::Posed;
 use crate::FormatError;
-use bilux_math::{DMat3, DMat4};
+use crate::affine::cofactors;
+use bilux_math::DMat4;
 use bilux_scene::Mesh;
 
 /// For each joint of a skin, the matrix from the mesh in its rest pose to world space.
@@ -126,11 +127,4 @@ fn moved(mesh: &mut Mesh, by: &[DMat4]) {
     if by.first().is_some_and(|m| m.determinant() < 0.0) {
         mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
-}
-
-/// The matrix for normals: the inverse transpose up to a positive factor, and finite if the inverse is not.
-fn cofactors(m: &DMat4) -> DMat3 {
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate());
-    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-    DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
 }

@@ -1,8 +1,8 @@
 //! `KHR_materials_variants`: alternative materials for the same meshes.
 
-use super::animation::named_or_numbered;
 use super::json::JsonNode;
 use crate::FormatError;
+use crate::choice::named_or_numbered;
 
 const NAME: &str = "KHR_materials_variants";
 

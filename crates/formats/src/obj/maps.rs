@@ -5,10 +5,11 @@ use super::library::Library;
 use super::surface::NUMBERS;
 use crate::FormatError;
 use crate::float::parse_f32;
+use crate::heights::{holds_normals, normals_of_heights};
 use crate::reading::Texels;
 use crate::text::{in_quotes, name_of};
-use bilux_math::{Rgb, Vec3};
-use bilux_scene::texture::{Channel, Image, Texels as Held};
+use bilux_math::Rgb;
+use bilux_scene::texture::Channel;
 use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
 use std::sync::Arc;
 
@@ -203,28 +204,4 @@ fn put(scene: &mut SceneBuilder, spec: &mut Spec, key: &str, texture: Texture, m
 
 fn has_alpha(texture: &Texture) -> bool {
     Texture { channel: Some(Channel::A), ..texture.clone() }.texels().any(|alpha| alpha.r < 1.0)
-}
-
-/// True for a normal map, which many files declare as a bump map: blue, with red and green near the middle.
-fn holds_normals(texture: &Texture) -> bool {
-    let count = texture.texels().count().max(1) as f32;
-    let mean = texture.texels().sum::<Rgb>() / count;
-    mean.b > 0.65 && (mean.r - 0.5).abs() < 0.15 && (mean.g - 0.5).abs() < 0.15
-}
-
-/// Converts a height map to a normal map; white is `bump` texels higher than black.
-fn normals_of_heights(texture: &Texture, bump: f32) -> Texture {
-    let (width, height) = (texture.width(), texture.height());
-    let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance() * bump;
-    let mut bytes = Vec::with_capacity(width * height);
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let along_u = 0.5 * (at(x + 1, y) - at(x + width - 1, y));
-        // Rows run downwards, but v points upwards.
-        let along_v = 0.5 * (at(x, y + height - 1) - at(x, y + 1));
-        let n = Vec3::new(-along_u, -along_v, 1.0).normalize();
-        let [r, g, b] = (n * 0.5 + 0.5).to_array().map(|c| (c * 255.0).round() as u8);
-        bytes.push([r, g, b, 255]);
-    }
-    let image = Image { width, height, texels: Held::Bytes(bytes) };
-    Texture::of(&texture.name, Arc::new(image), true)
 }

@@ -185,7 +185,7 @@ impl<'c> Grid<'c> {
     }
 }
 
-/// The number of corners with the same position, of those also with the same normal, and of those also with the same uv.
+/// The number of corners with the same position, of those also with the same uv, and of those also with the same normal.
 fn found(of: &[Corner], among: &[Corner], truth: &Truth) -> [usize; 3] {
     let grid = Grid::new(among, truth.tolerance.max(1e-9) * 2.0);
     let mut found = [0; 3];
@@ -202,7 +202,7 @@ fn found(of: &[Corner], among: &[Corner], truth: &Truth) -> [usize; 3] {
                     .uv
                     .zip(other.uv)
                     .is_none_or(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < 2e-3);
-            best = best.max(1 + usize::from(same_n) + usize::from(same_n && same_uv));
+            best = best.max(1 + usize::from(same_uv) + usize::from(same_n && same_uv));
         }
         found.iter_mut().take(best).for_each(|count| *count += 1);
     }
@@ -251,7 +251,7 @@ fn meshes_are_where_other_programs_put_them() {
         }
     }
     truths.sort();
-    let (mut equal, mut different, mut refused, mut report) = (0, 0, 0, String::new());
+    let (mut equal, mut but_normals, mut different, mut refused, mut report) = (0, 0, 0, 0, String::new());
     let mut opened = 0;
     for (stem, path) in &truths {
         let Some((mut files, frame)) = subject(stem, &all).filter(|_| stem.contains(&only)) else { continue };
@@ -260,7 +260,13 @@ fn meshes_are_where_other_programs_put_them() {
         for file in files {
             let bytes = std::fs::read(&file).unwrap();
             let fps = if stem.starts_with("max") { 30.0 } else { 24.0 };
-            let time = frame.map_or(0.0, |frame| (frame / fps - start(&bytes)) as f32);
+            // The frames of these are counted from the beginning of their clips in a longer animation.
+            let before = [("_spin_", 20.0), ("_deform_", 40.0)];
+            let before = before
+                .iter()
+                .find(|(part, _)| stem.starts_with("maya") && stem.contains(part))
+                .map_or(0.0, |b| b.1);
+            let time = frame.map_or(0.0, |frame| ((frame + before) / fps - start(&bytes)) as f32);
             let name = file.file_stem().unwrap().to_string_lossy().into_owned();
             let options = ReadOptions { time, ..ReadOptions::default() };
             let scene = match read(&file, &options) {
@@ -289,8 +295,12 @@ fn meshes_are_where_other_programs_put_them() {
                     break;
                 }
             }
+            let [whole, ours_whole] = [truth.corners.len(), ours.len()];
             if is_same {
                 equal += 1;
+            } else if in_ours[1] == whole && in_truth[1] == ours_whole {
+                but_normals += 1;
+                let _ = writeln!(report, "normals    {stem} {name}: {in_ours:?} of {whole}");
             } else {
                 different += 1;
                 let (of, ours) = (truth.corners.len(), ours.len());
@@ -302,6 +312,58 @@ fn meshes_are_where_other_programs_put_them() {
         }
     }
     println!(
-        "{report}compared with an OBJ: opened {opened}, refused {refused}, equal {equal}, different {different}"
+        "{report}compared with an OBJ: opened {opened}, refused {refused}, equal {equal}, equal but for normals {but_normals}, \
+         different {different}"
     );
+}
+
+/// Every file below a folder, in folders of folders.
+fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            files_below(&path, found);
+        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("fbx")) {
+            found.push(path);
+        }
+    }
+}
+
+/// `BILUX_FBX=FOLDER` reads all files below a folder: what opens, and why others are refused.
+#[test]
+fn files_of_others_open() {
+    let Some(folder) = std::env::var_os("BILUX_FBX").map(PathBuf::from) else {
+        println!("skipped: BILUX_FBX does not name a folder");
+        return;
+    };
+    let mut files = Vec::new();
+    files_below(&folder, &mut files);
+    files.sort();
+    let mut refused: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let (mut empty, mut slowest) = (0, (0.0, String::new()));
+    for file in &files {
+        let start = std::time::Instant::now();
+        let name = file.display().to_string();
+        match read(file, &ReadOptions::default()) {
+            Ok(scene) => empty += usize::from(scene.objects.is_empty()),
+            Err(error) => {
+                let reason: String = error.to_string().replace(&name, "").chars().take(90).collect();
+                refused.entry(reason).or_default().push(name.clone());
+            }
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        if seconds > slowest.0 {
+            slowest = (seconds, name);
+        }
+    }
+    let count: usize = refused.values().map(Vec::len).sum();
+    for (reason, all) in &refused {
+        println!("{:5} refused{reason}: {}", all.len(), all[0]);
+    }
+    println!(
+        "{} files: opened {}, of which {empty} without meshes; refused {count}",
+        files.len(),
+        files.len() - count
+    );
+    println!("the slowest took {:.2} s: {}", slowest.0, slowest.1);
 }

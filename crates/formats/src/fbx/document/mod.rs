@@ -16,10 +16,12 @@ use super::tree::{Node, Tree, Value};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::oddities::Oddities;
+use crate::reading::Source;
 use connections::Connections;
 use keys::Key;
 use properties::Template;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// An object of the file.
 #[derive(Clone, Copy)]
@@ -37,7 +39,12 @@ pub(super) struct Document<'d> {
     objects: Vec<Object<'d>>,
     connections: Connections<'d>,
     templates: HashMap<&'d [u8], Vec<Template<'d>>>,
+    keys: HashMap<Key<'d>, Index>,
     pub(super) settings: Settings,
+    /// The folder of the file.
+    pub(super) folder: Option<&'d Path>,
+    /// Its name without folder and extension.
+    pub(super) stem: String,
 }
 
 /// The bytes of an object with its entry in the table of keys.
@@ -46,6 +53,7 @@ type Entry<'d> = (Object<'d>, [usize; 6]);
 impl<'d> Document<'d> {
     pub(super) fn load(
         tree: &'d Tree<'d>,
+        source: &Source<'d>,
         budget: &mut Budget,
         oddities: &mut Oddities,
     ) -> Result<Document<'d>, FormatError> {
@@ -78,7 +86,8 @@ impl<'d> Document<'d> {
         let connections = Connections::read(root, &keys, objects.len(), budget)?;
         let templates = properties::templates(root, budget)?;
         let settings = Settings::read(root);
-        Ok(Document { tree, objects, connections, templates, settings })
+        let (folder, stem) = (source.folder, source.stem());
+        Ok(Document { tree, objects, connections, templates, keys, settings, folder, stem })
     }
 
     /// The name of the file.
@@ -88,6 +97,20 @@ impl<'d> Document<'d> {
 
     pub(super) fn object(&self, index: Index) -> &Object<'d> {
         &self.objects[index as usize]
+    }
+
+    /// The object that connections call so.
+    pub(super) fn named(&self, name: Value<'d>) -> Option<Index> {
+        self.keys.get(&Key::of(name)?).copied()
+    }
+
+    /// The name of the animation that was shown when the file was written.
+    pub(super) fn active_animation(&self) -> Option<String> {
+        let root = self.tree.root();
+        let mut documents = root.children_named("Documents").flat_map(|list| list.children());
+        let stated = documents.find_map(|node| Properties::read(node, None).text("ActiveAnimStackName"));
+        let old = || root.child("Takes")?.child_value("Current")?.text();
+        stated.or_else(old).map(display_name)
     }
 
     /// The indices of all objects but the scene.

@@ -46,6 +46,11 @@ impl<'d, 't> Properties<'d, 't> {
         self.own.get(name.as_bytes()).copied()
     }
 
+    /// The names of the properties that the object itself has.
+    pub(in crate::fbx) fn own_names(&self) -> impl Iterator<Item = &'d str> + '_ {
+        self.own.keys().filter_map(|name| std::str::from_utf8(name).ok())
+    }
+
     /// A number, if it is finite.
     pub(in crate::fbx) fn number(&self, name: &str) -> Option<f64> {
         if let Some(animated) = self.animated.and_then(|animated| animated.get(name.as_bytes())) {
@@ -56,6 +61,10 @@ impl<'d, 't> Properties<'d, 't> {
 
     pub(in crate::fbx) fn integer(&self, name: &str) -> Option<i64> {
         self.values(name)?.next()?.integer()
+    }
+
+    pub(in crate::fbx) fn text(&self, name: &str) -> Option<&'d [u8]> {
+        self.values(name)?.next()?.text()
     }
 
     /// Three numbers, if they are finite.

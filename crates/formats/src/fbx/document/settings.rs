@@ -1,13 +1,24 @@
-//! The settings of the whole file: axes and unit.
+//! The settings of the whole file: axes, unit and time.
 
 use super::properties::Properties;
-use crate::fbx::tree::Node;
+use crate::fbx::tree::{Node, Value};
 use bilux_math::{DMat3, DMat4, DVec3};
+
+/// Ticks of time per second up to version 7.
+const TICKS: f64 = 46_186_158_000.0;
+/// Those of version 8, which files may opt into before.
+const NEW_TICKS: f64 = 141_120_000.0;
 
 /// What holds for all of a file.
 pub(in crate::fbx) struct Settings {
     /// From the file's axes and unit to metres with y up: x to the right, and z to the front.
     pub(in crate::fbx) to_world: DMat4,
+    /// Metres per unit of length.
+    pub(in crate::fbx) unit: f64,
+    /// Units of time per second.
+    pub(in crate::fbx) ticks: f64,
+    /// True for files that Blender wrote: its colours are linear.
+    pub(in crate::fbx) is_of_blender: bool,
 }
 
 impl Settings {
@@ -19,7 +30,7 @@ impl Settings {
         // A file without a unit is in centimetres.
         let unit = properties.number("UnitScaleFactor").filter(|unit| *unit > 0.0).unwrap_or(1.0) / 100.0;
         let to_world = DMat4::from_mat3(axes(&properties) * unit);
-        Settings { to_world }
+        Settings { to_world, unit, ticks: ticks(root), is_of_blender: is_of_blender(root) }
     }
 }
 
@@ -33,4 +44,20 @@ fn axes(properties: &Properties) -> DMat3 {
     let stated =
         || Some(DMat3::from_cols(axis("CoordAxis")?, axis("UpAxis")?, axis("FrontAxis")?).transpose());
     stated().filter(|axes| axes.determinant() != 0.0).unwrap_or(DMat3::IDENTITY)
+}
+
+fn ticks(root: Node) -> f64 {
+    let header = root.child("FBXHeaderExtension");
+    let version = header.and_then(|header| header.child_value("FBXHeaderVersion")).and_then(Value::integer);
+    let definition = header.and_then(|header| header.child("OtherFlags")?.child_value("TCDefinition"));
+    match definition.and_then(Value::integer) {
+        Some(definition) if definition != 127 && version.is_some_and(|version| version >= 1004) => NEW_TICKS,
+        _ => TICKS,
+    }
+}
+
+fn is_of_blender(root: Node) -> bool {
+    let header = root.child("FBXHeaderExtension");
+    let creators = [header.and_then(|header| header.child_value("Creator")), root.child_value("Creator")];
+    creators.into_iter().flatten().filter_map(Value::text).any(|creator| creator.starts_with(b"Blender"))
 }

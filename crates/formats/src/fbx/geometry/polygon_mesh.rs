@@ -24,6 +24,8 @@ pub(in crate::fbx) struct Geometry {
     /// The number of each polygon's material among those of its node.
     materials: Layer<i32>,
     smoothing: Layer<i32>,
+    /// True if its transform has mirrored it, so that its corners run the other way round.
+    pub(in crate::fbx) is_mirrored: bool,
 }
 
 impl Geometry {
@@ -75,7 +77,17 @@ impl Geometry {
             Some(layer) => colours(layer, workshop)?,
             None => Layer::default(),
         };
-        Ok(Some(Geometry { name, positions, polygons, normals, uvs, colours, materials, smoothing }))
+        Ok(Some(Geometry {
+            name,
+            positions,
+            polygons,
+            normals,
+            uvs,
+            colours,
+            materials,
+            smoothing,
+            is_mirrored: false,
+        }))
     }
 
     /// Adds normals if there are none, by smoothing groups or the crease angle.
@@ -100,6 +112,29 @@ impl Geometry {
             let indices = found.of_corner.into_iter().map(|index| index as i32).collect();
             self.normals = Layer::indexed(found.normals, indices, Mapping::ByCorner);
         }
+        Ok(())
+    }
+
+    /// Replaces each normal by what `turn` makes of it and of its control point.
+    pub(in crate::fbx) fn turn_normals(
+        &mut self,
+        workshop: &mut Workshop,
+        file: &str,
+        turn: impl Fn(Vec3, usize) -> Vec3,
+    ) -> Result<(), FormatError> {
+        if self.normals.is_empty() {
+            return Ok(());
+        }
+        workshop.budget.take_bytes(12 * self.polygons.corners.len() as u64, file)?;
+        let mut turned = Vec::with_capacity(self.polygons.corners.len());
+        for polygon in 0..self.polygons.len() {
+            for corner in self.polygons.start(polygon)..self.polygons.ends[polygon] as usize {
+                let vertex = self.polygons.corners[corner] as usize;
+                let normal = self.normals.at(corner, polygon, vertex).unwrap_or(Vec3::ZERO);
+                turned.push(turn(normal, vertex));
+            }
+        }
+        self.normals = Layer::indexed(turned, Vec::new(), Mapping::ByCorner);
         Ok(())
     }
 

@@ -14,6 +14,8 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(in crate::fbx) struct Part {
     pub(in crate::fbx) mesh: Arc<Mesh>,
+    /// The number of its material among those of the node.
+    pub(in crate::fbx) material: usize,
 }
 
 /// A vertex: position, normal, two pairs of texture coordinates, colour, and its link.
@@ -46,11 +48,11 @@ pub(in crate::fbx) fn parts(
         has_uvs: false,
     };
     let mut parts = Vec::new();
-    for polygons in of_material.into_values() {
+    for (material, polygons) in of_material {
         workshop.budget.take::<(Part, Mesh)>(1, file)?;
         let mesh = welder.part(&polygons, workshop, file)?;
         if !mesh.triangles.is_empty() {
-            parts.push(Part { mesh: Arc::new(mesh) });
+            parts.push(Part { mesh: Arc::new(mesh), material: material as usize });
         }
     }
     Ok(parts)
@@ -120,6 +122,9 @@ impl Welder<'_> {
         mesh.name.clone_from(&geometry.name);
         if !std::mem::take(&mut self.has_uvs) {
             mesh.uvs = Vec::new();
+        }
+        if geometry.is_mirrored {
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
         mesh.positions.shrink_to_fit();
         mesh.normals.shrink_to_fit();

@@ -106,6 +106,11 @@ impl<'d> Node<'d> {
         Ok(numbers)
     }
 
+    /// True in a binary file.
+    pub(in crate::fbx) fn is_binary(&self) -> bool {
+        self.tree.encoding != Encoding::Text
+    }
+
     /// Where it is: a line of a text, or the whole of a binary file.
     pub(in crate::fbx) fn at(&self) -> Span {
         match self.tree.encoding {

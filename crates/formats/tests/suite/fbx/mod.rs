@@ -1,7 +1,9 @@
 //! FBX files, made here by a small writer.
 
 mod broken;
+mod looks;
 mod meshes;
+mod motion;
 mod seeds;
 mod writer;
 

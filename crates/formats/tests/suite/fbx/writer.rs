@@ -13,6 +13,7 @@ pub(super) enum V {
     Text(String),
     /// A name with its class.
     Name(&'static str, &'static str),
+    Bytes(Vec<u8>),
     Ints(Vec<i32>),
     Longs(Vec<i64>),
     Floats(Vec<f32>),
@@ -39,6 +40,11 @@ pub(super) fn text(text: &str) -> V {
 pub(super) fn p(name: &str, numbers: &[f64]) -> N {
     let head = [text(name), text(""), text(""), text("A")];
     n("P", head.into_iter().chain(numbers.iter().map(|&x| V::Double(x))).collect(), vec![])
+}
+
+/// A property with a text.
+pub(super) fn ps(name: &str, value: &str) -> N {
+    n("P", [name, "KString", "", "", value].map(text).to_vec(), vec![])
 }
 
 /// The properties of an object.
@@ -118,6 +124,7 @@ fn encoded(value: &V, packed: bool) -> Vec<u8> {
         V::Double(x) => [&b"D"[..], &x.to_le_bytes()].concat(),
         V::Text(text) => string(b'S', text.as_bytes()),
         V::Name(name, class) => string(b'S', format!("{name}\0\x01{class}").as_bytes()),
+        V::Bytes(bytes) => string(b'R', bytes),
         V::Ints(list) => array(b'i', list.len(), list.iter().flat_map(|x| x.to_le_bytes()).collect()),
         V::Longs(list) => array(b'l', list.len(), list.iter().flat_map(|x| x.to_le_bytes()).collect()),
         V::Floats(list) => array(b'f', list.len(), list.iter().flat_map(|x| x.to_le_bytes()).collect()),
@@ -151,6 +158,7 @@ fn put_text(node: &N, depth: usize, out: &mut String) {
             V::Double(x) => x.to_string(),
             V::Text(text) => format!("\"{text}\""),
             V::Name(name, class) => format!("\"{class}::{name}\""),
+            V::Bytes(bytes) => format!("\"{}\"", base64(bytes)),
             V::Ints(all) => list(all.iter().map(ToString::to_string).collect()),
             V::Longs(all) => list(all.iter().map(ToString::to_string).collect()),
             V::Floats(all) => list(all.iter().map(ToString::to_string).collect()),
@@ -164,4 +172,19 @@ fn put_text(node: &N, depth: usize, out: &mut String) {
         out.push_str(&format!("{indent}}}"));
     }
     out.push('\n');
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    bytes
+        .chunks(3)
+        .flat_map(|chunk| {
+            let bits =
+                chunk.iter().fold(0u32, |sum, &byte| sum << 8 | u32::from(byte)) << (8 * (3 - chunk.len()));
+            (0..4).map(move |i| match i <= chunk.len() {
+                true => DIGITS[(bits >> (18 - 6 * i)) as usize & 63] as char,
+                false => '=',
+            })
+        })
+        .collect()
 }

@@ -5,11 +5,11 @@ use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::{MATERIALS, Span, Spec, Value};
 
-/// The one material that glTF materials map to.
+/// The one material that those of other programs map to.
 const KIND: &str = "principled";
 
 /// A material clamped to the ranges of its table row; warns about parameters that the row lacks.
-pub(super) fn fitted(draft: Spec, oddities: &mut Oddities) -> Spec {
+pub(crate) fn fitted(draft: Spec, oddities: &mut Oddities) -> Spec {
     let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
     let known = row.map_or(&[][..], |row| row.entry.parameters);
     let mut fitted = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, KIND) };

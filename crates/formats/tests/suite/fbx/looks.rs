@@ -1,0 +1,153 @@
+//! Materials, textures, lights and cameras.
+
+use super::writer::ps;
+use super::*;
+use bilux_math::Rgb;
+use bilux_math::colour::srgb_decode;
+use std::f32::consts::PI;
+
+/// A quad with a material, or what else is connected to its node (2) or to the material (3).
+fn with(more: Vec<N>, links: Vec<N>) -> Vec<N> {
+    let objects = vec![quad(1), model(2, "node", vec![])].into_iter().chain(more).collect();
+    let links = vec![link(1, 2, ""), link(2, 0, "")].into_iter().chain(links).collect();
+    file(vec![p("UnitScaleFactor", &[100.0])], objects, links)
+}
+
+fn phong(list: Vec<N>) -> N {
+    object("Material", 3, "paint", "", vec![n("ShadingModel", vec![text("phong")], vec![]), properties(list)])
+}
+
+#[test]
+fn phong_becomes_principled() {
+    let list = vec![
+        p("DiffuseColor", &[0.5, 0.25, 1.0]),
+        p("DiffuseFactor", &[0.8]),
+        p("SpecularColor", &[0.5, 0.5, 0.5]),
+        p("ShininessExponent", &[6.0]),
+        p("TransparentColor", &[1.0, 1.0, 1.0]),
+        p("TransparencyFactor", &[0.25]),
+        p("EmissiveColor", &[1.0, 1.0, 1.0]),
+        p("EmissiveFactor", &[0.5]),
+    ];
+    let scene = read_all(&with(vec![phong(list)], vec![link(3, 2, "")]));
+    let spec = &scene.materials[scene.objects[0].material];
+    assert_eq!((spec.name.as_str(), spec.kind.as_str()), ("paint", "principled"));
+    assert_eq!(
+        spec.colour("base_color"),
+        Some(Rgb::new(srgb_decode(0.4), srgb_decode(0.2), srgb_decode(0.8)))
+    );
+    assert_eq!(spec.colour("emission"), Some(Rgb::grey(srgb_decode(0.5))));
+    assert_eq!((spec.number("opacity"), spec.number("specular_weight")), (Some(0.75), Some(0.5)));
+    // Blinn's exponent of 6 is a GGX alpha of a half.
+    assert!((spec.number("specular_roughness").unwrap() - 0.5f32.sqrt()).abs() < 1e-6);
+}
+
+#[test]
+fn shaders_of_programs_have_their_own_names() {
+    let list = |prefix: &str| {
+        [
+            ("base_color", &[1.0, 0.0, 0.0][..]),
+            ("metalness", &[0.75]),
+            ("roughness", &[0.25]),
+            ("emission", &[0.0]),
+        ]
+        .map(|(name, value)| p(&format!("{prefix}{name}"), value))
+        .to_vec()
+    };
+    for prefix in ["3dsMax|Parameters|", "3dsMax|main|", "Maya|"] {
+        let scene = read_all(&with(vec![phong(list(prefix))], vec![link(3, 2, "")]));
+        let spec = &scene.materials[scene.objects[0].material];
+        assert_eq!(spec.colour("base_color"), Some(Rgb::new(1.0, 0.0, 0.0)));
+        assert_eq!(
+            (spec.number("base_metalness"), spec.number("specular_roughness")),
+            (Some(0.75), Some(0.25))
+        );
+    }
+}
+
+/// Two texels in the file, red at the left; moved by half of the width.
+#[test]
+fn textures_in_the_file_lie_as_it_says() {
+    let video = object(
+        "Video",
+        5,
+        "v",
+        "Clip",
+        vec![
+            n("RelativeFilename", vec![text("two.ppm")], vec![]),
+            n("Content", vec![V::Bytes(b"P6 2 1 255\n\xff\0\0\0\0\xff".to_vec())], vec![]),
+        ],
+    );
+    let texture = |list: Vec<N>| object("Texture", 4, "t", "", vec![properties(list)]);
+    let links = || vec![link(3, 2, ""), link(4, 3, "DiffuseColor"), link(5, 4, "")];
+    let at = |list: Vec<N>, uv: [f32; 2]| {
+        let scene = read_all(&with(vec![phong(vec![]), texture(list), video.clone()], links()));
+        let Some((bilux_scene::Value::Texture(index), _)) = scene.materials[0].parameters.find("base_color")
+        else {
+            panic!("{:?}", scene.materials)
+        };
+        scene.textures[*index].at(bilux_math::Vec2::from(uv))
+    };
+    let (red, blue) = (Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 0.0, 1.0));
+    assert_eq!((at(vec![], [0.25, 0.5]), at(vec![], [0.75, 0.5])), (red, blue));
+    assert_eq!(at(vec![p("Translation", &[0.5, 0.0, 0.0])], [0.25, 0.5]), blue);
+    assert_eq!(at(vec![p("Scaling", &[2.0, 1.0, 1.0])], [0.375, 0.5]), blue);
+    // A quarter turn takes v to -u.
+    assert_eq!(at(vec![p("Rotation", &[0.0, 0.0, 90.0])], [0.5, 0.25]), blue);
+    let missing = with(
+        vec![phong(vec![]), texture(vec![ps("UVSet", "a")])],
+        vec![link(3, 2, ""), link(4, 3, "DiffuseColor")],
+    );
+    let missing = scene_of(&binary(7400, true, &missing)).unwrap();
+    assert!(crate::warnings(&missing).contains("magenta checker"));
+}
+
+#[test]
+fn lights_shine_down_their_node_as_bright_as_their_programs_show_them() {
+    let light = |kind: f64, more: Vec<N>| {
+        let mut list = vec![p("LightType", &[kind]), p("Color", &[1.0, 0.0, 0.0]), p("Intensity", &[200.0])];
+        list.extend(more);
+        let attribute = object("NodeAttribute", 6, "", "Light", vec![properties(list)]);
+        let node = model(7, "lamp", vec![p("Lcl Translation", &[0.0, 0.0, 5.0])]);
+        read_all(&with(vec![attribute, node], vec![link(6, 7, ""), link(7, 0, "")])).lights[0].clone()
+    };
+    let sun = light(1.0, vec![]);
+    assert_eq!(
+        (sun.vector("direction"), sun.colour("irradiance")),
+        (Some(-Vec3::Y), Some(Rgb::new(2.0 * PI, 0.0, 0.0)))
+    );
+    let point = light(0.0, vec![p("DecayType", &[2.0])]);
+    assert_eq!(
+        (point.kind.as_str(), point.colour("intensity")),
+        ("point", Some(Rgb::new(2.0 * PI, 0.0, 0.0)))
+    );
+    assert_eq!(point.vector("position"), Some(Vec3::new(0.0, 0.0, 5.0)));
+    // The middle of the quad is at (0.5, 1, 0), so the distance² is 26.25.
+    let constant = light(0.0, vec![]).colour("intensity").unwrap().r;
+    assert!((constant - 2.0 * PI * 26.25).abs() < 1e-3, "{constant}");
+    let spot = light(2.0, vec![p("OuterAngle", &[60.0]), p("InnerAngle", &[40.0])]);
+    assert_eq!((spot.number("angle"), spot.number("inner_angle")), (Some(30.0), Some(20.0)), "half angles");
+}
+
+/// A film of 36 × 24 mm behind a lens of 50 mm sees 26.99° × 39.6°, as any table of lenses says.
+#[test]
+fn cameras_look_along_x_with_the_angle_of_their_lens() {
+    let camera = |list: Vec<N>| {
+        let attribute = object("NodeAttribute", 6, "", "Camera", vec![properties(list)]);
+        let node = model(7, "eye", vec![p("Lcl Translation", &[-3.0, 0.0, 0.0])]);
+        read_all(&with(vec![attribute, node], vec![link(6, 7, ""), link(7, 0, "")])).cameras[0].spec.clone()
+    };
+    let film =
+        || vec![p("FilmWidth", &[36.0 / 25.4]), p("FilmHeight", &[24.0 / 25.4]), p("FocalLength", &[50.0])];
+    let spec = camera([film(), vec![p("ApertureMode", &[3.0])]].concat());
+    assert!((spec.number("fov").unwrap() - 26.99).abs() < 0.01, "{spec:?}");
+    assert_eq!(
+        (spec.vector("position"), spec.vector("up")),
+        (Some(Vec3::new(-3.0, 0.0, 0.0)), Some(Vec3::Y))
+    );
+    assert!(spec.vector("look_at").unwrap().x > -3.0);
+    let spec = camera([film(), vec![p("ApertureMode", &[1.0]), p("FieldOfView", &[39.6])]].concat());
+    assert!((spec.number("fov").unwrap() - 26.99).abs() < 0.02, "{spec:?}");
+    let spec = camera(vec![p("ApertureMode", &[2.0]), p("FieldOfView", &[33.0])]);
+    assert_eq!(spec.number("fov"), Some(33.0));
+}
