@@ -1,9 +1,11 @@
 //! Universal Scene Description, as text, as crate files, and in packages. See `docs/formats/usd.md`.
 
+mod cameras;
 mod composition;
 mod context;
 mod instancer;
 mod layer;
+mod lights;
 mod list_op;
 mod meshes;
 mod package;
@@ -11,6 +13,7 @@ mod polygons;
 mod primvars;
 mod read;
 mod scene;
+mod shading;
 mod shapes;
 mod stage;
 mod strokes;
@@ -33,6 +36,11 @@ const CAPABILITIES: &[&str] = &[
     "vertex-kd",
     "objects",
     "instances",
+    "materials",
+    "textures",
+    "moved textures",
+    "cameras",
+    "lights",
     "animation",
     "variants",
 ];

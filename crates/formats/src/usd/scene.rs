@@ -4,11 +4,12 @@ use super::context::{Context, Worn};
 use super::instancer::Copies;
 use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
 use super::primvars::{Interpolation, Primvar};
+use super::shading::{self, Shaded};
 use super::stage::Stage;
 use super::subdivision::Subdivision;
 use super::transforms;
 use super::value::Text;
-use super::{shapes, strokes};
+use super::{cameras, lights, shapes, strokes};
 use crate::reading::{Reading, plain_material};
 use crate::sink::Sink;
 use crate::{FormatError, flat};
@@ -35,14 +36,18 @@ pub(super) struct Scene<'r, 'o> {
     meshes: HashMap<Key, Arc<[Part]>>,
     /// Of surfaces without a material, by their colours and opacities.
     plain: HashMap<([u32; 3], u32, bool), usize>,
+    /// What prims `Material` are, if something that can be read.
+    materials: HashMap<u32, Option<Worn>>,
+    /// The same by all that is said of them.
+    alike: HashMap<Vec<[u32; 2]>, Option<Worn>>,
     /// The prims above the current one.
     lineage: Vec<u32>,
 }
 
 impl<'r, 'o> Scene<'r, 'o> {
     pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
-        let (meshes, plain) = Default::default();
-        Scene { context: Context { reading, sink }, meshes, plain, lineage: Vec::new() }
+        let (meshes, plain, materials, alike) = Default::default();
+        Scene { context: Context { reading, sink }, meshes, plain, materials, alike, lineage: Vec::new() }
     }
 
     /// Adds all prims, as they are at the time of the stage.
@@ -81,7 +86,11 @@ impl<'r, 'o> Scene<'r, 'o> {
                 let parts = self.parts(stage, prim)?;
                 self.place(stage, prim, &parts, &state.world)?;
             }
-            "NurbsPatch" | "TetMesh" | "HermiteCurves" if is_shown => {
+            "Camera" => cameras::add(stage, prim, &state.world, &mut self.context)?,
+            kind if lights::is_light(kind) && state.is_visible => {
+                lights::add(stage, prim, &state.world, &mut self.context)?;
+            }
+            "NurbsPatch" | "TetMesh" | "Volume" | "HermiteCurves" if is_shown => {
                 let what = format!("prims of type {}", stage.prim(prim).type_name);
                 self.context.sink.oddities.not_shown(&what, || stage.at(prim));
             }
@@ -145,6 +154,11 @@ impl<'r, 'o> Scene<'r, 'o> {
         let Some(mut polygons) = polygons(stage, prim, vertices, &mut self.context)? else {
             return Ok(Vec::new());
         };
+        let weights = stage.array(prim, "primvars:skel:jointWeights", &mut self.context.reading.budget)?;
+        if weights.is_some() || !stage.targets(prim, "skel:blendShapeTargets").is_empty() {
+            let what = "skeletons and blend shapes (meshes have the shape that they were bound in)";
+            self.context.sink.oddities.not_shown(what, || stage.at(prim));
+        }
         let subdivision = Subdivision::read(stage, prim, &mut self.context.reading.budget)?;
         note_subdivision(stage, prim, &subdivision, &mut self.context);
         add_normals(stage, prim, &mut polygons, &subdivision, &mut self.context)?;
@@ -228,13 +242,56 @@ impl<'r, 'o> Scene<'r, 'o> {
     }
 
     /// The faces of a mesh with materials of their own.
-    fn subsets(&mut self, _: &Stage, _: u32) -> Result<Vec<Subset>, FormatError> {
-        Ok(Vec::new())
+    fn subsets(&mut self, stage: &Stage, prim: u32) -> Result<Vec<Subset>, FormatError> {
+        let mut subsets = Vec::new();
+        self.lineage.push(prim);
+        for &child in &stage.prim(prim).children {
+            let faces = shading::subset_faces(stage, child, &mut self.context.reading.budget)?;
+            if let Some(faces) = faces {
+                let worn = self.worn(stage, child)?;
+                subsets.push(Subset { faces, worn });
+            }
+        }
+        self.lineage.pop();
+        Ok(subsets)
     }
 
     /// What a surface wears: what it is bound to, or else its own colour.
     fn worn(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
-        self.plain(stage, prim)
+        let Some(material) = shading::bound(stage, prim, &self.lineage) else {
+            return self.plain(stage, prim);
+        };
+        if let Some(known) = self.materials.get(&material) {
+            return known.clone().map_or_else(|| self.plain(stage, prim), Ok);
+        }
+        // Copies of a material have the same opinions.
+        let said = self.said_below(stage, material);
+        if let Some(known) = self.alike.get(&said).cloned() {
+            self.materials.insert(material, known.clone());
+            return known.map_or_else(|| self.plain(stage, prim), Ok);
+        }
+        let Context { reading, sink } = &mut self.context;
+        let shaded = shading::material(stage, material, reading, sink)?;
+        let worn = shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction }| Worn {
+            index: sink.scene.add_material(spec),
+            uvs,
+            uses_colours,
+            uses_opacities,
+            has_direction,
+        });
+        self.materials.insert(material, worn.clone());
+        self.alike.insert(said, worn.clone());
+        worn.map_or_else(|| self.plain(stage, prim), Ok)
+    }
+
+    /// All opinions about a prim and those below it.
+    fn said_below(&self, stage: &Stage, prim: u32) -> Vec<[u32; 2]> {
+        let (mut all, mut waiting) = (Vec::new(), vec![prim]);
+        while let Some(prim) = waiting.pop() {
+            all.extend(stage.prim(prim).opinions.iter().map(|o| [o.layer, o.prim]));
+            waiting.extend(&stage.prim(prim).children);
+        }
+        all
     }
 
     /// The material of a surface with nothing but a colour and an opacity.

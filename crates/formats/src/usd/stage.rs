@@ -19,6 +19,13 @@ pub(super) struct Stage {
     pub(super) time: f64,
 }
 
+/// A value, and the layer that it comes from.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    pub(super) value: Value,
+    pub(super) layer: u32,
+}
+
 impl Stage {
     pub(super) fn new(layers: Vec<Layer>, prims: Vec<Prim>) -> Stage {
         let by_path = prims.iter().enumerate().map(|(i, prim)| (prim.path.clone(), i as u32)).collect();
@@ -56,27 +63,49 @@ impl Stage {
         })
     }
 
+    /// The names of a prim's properties that begin with a prefix.
+    pub(super) fn names(&self, prim: u32, prefix: &str) -> Vec<Text> {
+        let mut all: Vec<Text> = Vec::new();
+        for opinion in &self.prim(prim).opinions {
+            for property in &self.spec(opinion).properties {
+                if property.name.starts_with(prefix) && !all.contains(&property.name) {
+                    all.push(property.name.clone());
+                }
+            }
+        }
+        all
+    }
+
     /// The value of an attribute at the time of the stage.
+    pub(super) fn found(
+        &self,
+        prim: u32,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<Found>, FormatError> {
+        for (opinion, property) in self.properties(prim, name) {
+            let layer = opinion.layer;
+            if let Some(samples) = &property.samples {
+                let time = opinion.offset.inverse(self.time);
+                if let Some(value) = self.sampled(layer, samples, time, budget)? {
+                    return Ok((value != Value::Blocked).then_some(Found { value, layer }));
+                }
+            }
+            if let Some(value) = &property.value {
+                let value = self.unpacked(layer, value, budget)?;
+                return Ok((value != Value::Blocked).then_some(Found { value, layer }));
+            }
+        }
+        Ok(None)
+    }
+
     pub(super) fn value(
         &self,
         prim: u32,
         name: &str,
         budget: &mut Budget,
     ) -> Result<Option<Value>, FormatError> {
-        for (opinion, property) in self.properties(prim, name) {
-            let layer = opinion.layer;
-            if let Some(samples) = &property.samples {
-                let time = opinion.offset.inverse(self.time);
-                if let Some(value) = self.sampled(layer, samples, time, budget)? {
-                    return Ok((value != Value::Blocked).then_some(value));
-                }
-            }
-            if let Some(value) = &property.value {
-                let value = self.unpacked(layer, value, budget)?;
-                return Ok((value != Value::Blocked).then_some(value));
-            }
-        }
-        Ok(None)
+        Ok(self.found(prim, name, budget)?.map(|found| found.value))
     }
 
     pub(super) fn number(

@@ -215,3 +215,149 @@ fn circles_and_missing_layers_are_warned_of() {
     _ = read_text("usda", format!("#usda 1.0\n{doubled}"));
     assert!(begin.elapsed().as_secs() < 20);
 }
+
+/// A material of the first object, by parameter.
+#[track_caller]
+fn number(scene: &SceneBuilder, object: usize, key: &str) -> f32 {
+    let material = &scene.materials[scene.objects[object].material];
+    material.colour(key).map(|c| c.g).or(material.number(key)).unwrap_or_else(|| panic!("{key}"))
+}
+
+#[test]
+fn preview_surfaces_become_principled_and_bindings_are_inherited() {
+    let material = |inputs: &str, id: &str| {
+        format!(
+            "def Material \"m\" {{ token outputs:surface.connect = </m/s.outputs:surface>\n float inputs:r = 0.25\n \
+                 def Shader \"s\" {{ uniform token info:id = \"{id}\"\n {inputs}\n token outputs:surface }} }}\n"
+        )
+    };
+    let preview = material(
+        "color3f inputs:diffuseColor = (1, 0.5, 0.25)\n float inputs:metallic = 1\n float inputs:roughness.connect = </m.inputs:r>\n \
+         float inputs:opacity = 0.5\n color3f inputs:emissiveColor = (2, 3, 4)\n float inputs:clearcoat = 1",
+        "UsdPreviewSurface",
+    );
+    let cube = "def Xform \"x\" { rel material:binding = </m>\n def Cube \"c\" {} }";
+    let scene = text(&(preview + cube));
+    for (key, value) in [
+        ("base_color", 0.5),
+        ("base_metalness", 1.0),
+        ("specular_roughness", 0.25),
+        ("opacity", 0.5),
+        ("emission", 3.0),
+        ("coat_weight", 1.0),
+        ("coat_roughness", 0.01),
+    ] {
+        assert_eq!(number(&scene, 0, key), value, "{key}");
+    }
+    assert_eq!(warnings(&scene), "");
+    // Half of the reflectance of a mirror at normal incidence, by an index of refraction of (1 + √.5) / (1 - √.5).
+    let specular = material(
+        "int inputs:useSpecularWorkflow = 1\n color3f inputs:specularColor = (0.5, 0.5, 0.5)",
+        "UsdPreviewSurface",
+    );
+    assert!((number(&text(&(specular + cube)), 0, "specular_ior") - 5.828_43).abs() < 1e-3);
+    let standard = material(
+        "color3f inputs:base_color = (0.5, 0.5, 0.5)\n float inputs:base = 0.5\n float inputs:coat = 0.75",
+        "ND_standard_surface_surfaceshader",
+    );
+    let scene = text(&(standard + cube));
+    assert_eq!(
+        [
+            number(&scene, 0, "base_color"),
+            number(&scene, 0, "coat_weight"),
+            number(&scene, 0, "specular_roughness")
+        ],
+        [0.25, 0.75, 0.2]
+    );
+    let unknown = text(&(material("", "SomethingElse") + cube));
+    assert!(
+        warnings(&unknown).contains("materials with the surface 'SomethingElse'"),
+        "{}",
+        warnings(&unknown)
+    );
+}
+
+#[test]
+fn subsets_collections_and_stronger_bindings_choose_materials() {
+    let material = |name: &str, green: f32| {
+        format!(
+            "def Material \"{name}\" {{ token outputs:surface.connect = </{name}/s.outputs:surface>\n def Shader \"s\" {{ \
+         uniform token info:id = \"UsdPreviewSurface\"\n color3f inputs:diffuseColor = (0, {green}, 0)\n token outputs:surface }} }}\n"
+        )
+    };
+    let all = material("a", 0.25) + &material("b", 0.5) + &material("c", 0.75);
+    let mesh = "def Mesh \"q\" { int[] faceVertexCounts = [3, 3]\n int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]\n \
+                point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]\n rel material:binding = </a>\n \
+                def GeomSubset \"one\" { uniform token elementType = \"face\"\n int[] indices = [1]\n rel material:binding = </b> } }";
+    let scene = text(&(all.clone() + mesh));
+    assert_eq!(
+        (scene.objects.len(), number(&scene, 0, "base_color"), number(&scene, 1, "base_color")),
+        (2, 0.5, 0.25)
+    );
+    let group = |said: &str| {
+        format!(
+            "{all}def Xform \"g\" {{ {said}\n def Cube \"x\" {{ rel material:binding = </a> }}\n def Cube \"y\" {{}} }}"
+        )
+    };
+    let colours = |said: &str| {
+        let scene = text(&group(said));
+        [number(&scene, 0, "base_color"), number(&scene, 1, "base_color")]
+    };
+    assert_eq!(colours("rel material:binding = </b>"), [0.25, 0.5]);
+    assert_eq!(
+        colours("rel material:binding = </b> ( bindMaterialAs = \"strongerThanDescendants\" )"),
+        [0.5, 0.5]
+    );
+    let collection = "rel material:binding = </b>\n rel material:binding:collection:k = [</g.collection:k>, </c>]\n \
+                      rel collection:k:includes = </g/y>";
+    assert_eq!(colours(collection), [0.25, 0.75]);
+}
+
+/// Lamps in numbers worked out by hand from the schemas. [OpenUSD]
+#[test]
+fn lights_are_as_bright_as_the_schema_says() {
+    let light = |text_of: &str| {
+        let scene = text(text_of);
+        assert_eq!((scene.lights.len(), scene.environment_unspecified), (1, false), "{}", warnings(&scene));
+        scene.lights[0].clone()
+    };
+    let sun = light("def DistantLight \"l\" { float inputs:intensity = 1000\n float inputs:angle = 2 }");
+    // π sin² 1° · 1000
+    assert!((sun.colour("irradiance").unwrap().g - 0.956_89).abs() < 1e-4);
+    let panel = light(
+        "def RectLight \"l\" { float inputs:width = 2\n float inputs:height = 3\n bool inputs:normalize = 1\n \
+                       float inputs:intensity = 12\n float inputs:exposure = 1\n color3f inputs:color = (1, 0.5, 0) }",
+    );
+    assert_eq!(panel.colour("radiance").unwrap().to_array(), [4.0, 2.0, 0.0]);
+    let edges = ["edge_u", "edge_v"].map(|key| Vec3::from_array(panel.colour(key).unwrap().to_array()));
+    assert_eq!(edges[0].cross(edges[1]), Vec3::Z * -6.0, "it shines along -z");
+    let warm = light(
+        "def SphereLight \"l\" { bool inputs:enableColorTemperature = 1\n float inputs:colorTemperature = 3000\n \
+                      float inputs:radius = 2 }",
+    );
+    let radiance = warm.colour("radiance").unwrap();
+    assert!(
+        (radiance.luminance() - 1.0).abs() < 1e-3
+            && radiance.r > radiance.b
+            && warm.number("radius") == Some(2.0)
+    );
+    assert!(
+        light("def DomeLight \"l\" { float inputs:intensity = 3 }")
+            .colour("radiance")
+            .is_some_and(|c| c.g == 3.0)
+    );
+}
+
+#[test]
+fn cameras_have_the_field_of_view_of_their_film() {
+    let scene = text(
+        "def Camera \"c\" { float focalLength = 20\n float horizontalAperture = 40\n float verticalAperture = 40\n float fStop = 2\n \
+         float focusDistance = 7\n float horizontalApertureOffset = 10\n double3 xformOp:translate = (0, 0, 5)\n \
+         uniform token[] xformOpOrder = [\"xformOp:translate\"] }\ndef Cube \"x\" {}",
+    );
+    let camera = &scene.cameras[0].spec;
+    let of = |key: &str| camera.number(key).unwrap();
+    assert!((of("fov") - 90.0).abs() < 1e-4, "2 atan(20 / 20)");
+    // A focal length of 2 units through half of a diameter of 1 unit, and a quarter of the film to the right.
+    assert_eq!([of("aperture"), of("focus"), of("principal_x"), of("frame")], [0.5, 7.0, 0.25, 1.0]);
+}

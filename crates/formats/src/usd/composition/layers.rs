@@ -188,6 +188,11 @@ impl<'r, 'o> Layers<'r, 'o> {
         }
         stack.layers.push((layer, offset));
         let fields = &self.all[layer as usize].root().fields;
+        if fields.find("relocates").or(fields.find("layerRelocates")).is_some() {
+            let at = at.clone();
+            self.oddities.not_shown("relocates of prims", || at);
+        }
+        let fields = &self.all[layer as usize].root().fields;
         let rate = self.all[layer as usize].time_codes_per_second();
         let names = fields.find("subLayers").and_then(Value::texts).unwrap_or_else(|| Arc::from([]));
         let offsets = match fields.find("subLayerOffsets") {

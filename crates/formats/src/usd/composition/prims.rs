@@ -81,6 +81,14 @@ impl Composer {
             if field("instanceable") == Some(true) && child.children.iter().any(|arc| !arc.specs.is_empty()) {
                 child.as_instance();
             }
+            let has = |key: &str| {
+                let spec = |o: &Opinion| &layers.all[o.layer as usize].prims[o.prim as usize];
+                opinions.iter().any(|o| spec(o).fields.find(key).is_some())
+            };
+            if has("clips") {
+                let at = layers.all[0].at(0);
+                layers.oddities.not_shown("value clips", || at);
+            }
             let is_defined = self.prims[parent as usize].is_defined && is_defined(&opinions, layers);
             let type_name = type_name(&opinions, layers);
             let path = child.site.path.as_str().into();

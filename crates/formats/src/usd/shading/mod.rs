@@ -1,0 +1,14 @@
+//! Materials: what surfaces are bound to, networks of shaders, and `principled`.
+
+mod bindings;
+mod draft;
+mod materials;
+mod materialx;
+mod network;
+mod preview;
+mod setting;
+mod textures;
+
+pub(super) use bindings::{bound, subset_faces};
+pub(super) use draft::Shaded;
+pub(super) use materials::material;
