@@ -73,17 +73,34 @@ impl Cloud {
 
     /// Builds the scene of the cloud.
     pub(crate) fn into_scene(self, name: String) -> SceneBuilder {
+        let count = self.positions.len();
+        self.into_scene_of(vec![(name, count)])
+    }
+
+    /// Builds the scene of a cloud of several parts, each with its name and the number of its points.
+    pub(crate) fn into_scene_of(mut self, parts: Vec<(String, usize)>) -> SceneBuilder {
         let mut scene = SceneBuilder { origin: self.origin.unwrap_or_default(), ..SceneBuilder::default() };
         let material = scene.add_material(plain_material(!self.colours.is_empty(), false));
-        let points = (0..self.positions.len() as u32).collect();
-        let mesh = Mesh {
-            name: name.clone(),
-            positions: self.positions,
-            vertex_kd: self.colours,
-            points,
-            ..Mesh::default()
-        };
-        scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        // From the last to the first, so that each is cut off at the end.
+        for (name, count) in parts.into_iter().rev().filter(|(_, count)| *count > 0) {
+            let first = self.positions.len().saturating_sub(count);
+            let mesh = Mesh {
+                name: name.clone(),
+                positions: if first == 0 {
+                    std::mem::take(&mut self.positions)
+                } else {
+                    self.positions.split_off(first)
+                },
+                vertex_kd: match first {
+                    0 => std::mem::take(&mut self.colours),
+                    _ => self.colours.split_off(first.min(self.colours.len())),
+                },
+                points: (0..count as u32).collect(),
+                ..Mesh::default()
+            };
+            scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        }
+        scene.objects.reverse();
         scene
     }
 }

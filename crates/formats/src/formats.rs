@@ -4,7 +4,7 @@ use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
 use crate::{
-    FormatError, asc, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, usd, xyz,
+    FormatError, asc, e57, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, usd, xyz,
 };
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
@@ -25,6 +25,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     stl::ENTRY,
     off::ENTRY,
     las::ENTRY,
+    e57::ENTRY,
     xyz::ENTRY,
     grids::ENTRY,
     threemf::ENTRY,
@@ -117,8 +118,8 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 
 /// Extensions of scene formats that other programs read.
 const FOREIGN: &[&str] = &[
-    "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
-    "step", "stp", "vrm", "wrl", "x3d",
+    "3ds", "abc", "blend", "c4d", "dae", "iges", "igs", "lwo", "ma", "max", "mb", "skp", "step", "stp",
+    "vrm", "wrl", "x3d",
 ];
 
 pub(crate) fn unknown(

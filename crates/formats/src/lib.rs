@@ -17,6 +17,7 @@ mod camera_loss;
 mod choice;
 mod cloud;
 mod colours;
+mod e57;
 mod error;
 mod fbx;
 mod files;

@@ -33,6 +33,8 @@ pub(super) struct Header {
     /// The offset of the points.
     pub(super) points: usize,
     pub(super) count: u64,
+    /// True if the points are compressed (LAZ).
+    pub(super) is_compressed: bool,
     /// The size of a point record in bytes.
     pub(super) record: usize,
     /// The offset of the colour in a record.
@@ -59,11 +61,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
         return fail(format!("this is LAS {major}.{minor}, but only 1.0 to 1.4 can be read"));
     }
     // The highest bits mark compressed records.
-    let format = bytes[104];
-    if format & 0xc0 != 0 {
-        let message = "this file is compressed (LAZ), which cannot be read: decompress it first, for example with laszip or PDAL";
-        return fail(message.to_owned());
-    }
+    let (format, is_compressed) = (bytes[104] & 0x3f, bytes[104] & 0xc0 != 0);
     let Some(&(least, colour)) = FORMATS.get(usize::from(format)) else {
         return fail(format!("its points have format {format}, but only 0 to 10 exist"));
     };
@@ -83,7 +81,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     }
     let points = u32_at(bytes, 96) as usize;
     let room = bytes.len().saturating_sub(points) / record;
-    if count > room as u64 {
+    if count > room as u64 && !is_compressed {
         let message = format!(
             "the header says {count} points of {record} bytes from byte {points} on, but there are bytes for only {room}: \
              the file was cut off"
@@ -96,7 +94,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     if count >= u64::from(u32::MAX) {
         return fail("there are more than 4 billion points: split the file".to_owned());
     }
-    Ok(Header { points, count, record, colour, scale, offset })
+    Ok(Header { points, count, is_compressed, record, colour, scale, offset })
 }
 
 /// The number at an offset; 0 beyond the end.

@@ -1,5 +1,6 @@
 //! LAS: point clouds from laser scanners. See `docs/formats/las.md`.
 
+mod compressed;
 mod header;
 mod read;
 
@@ -10,11 +11,10 @@ use bilux_scene::{Axis, UpHint};
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "las",
-        summary: "LAS 1.0 to 1.4, uncompressed: point clouds from laser scanners",
+        summary: "LAS 1.0 to 1.4, LAZ and COPC: point clouds from laser scanners",
         source: "",
         parameters: &[],
     },
-    // Compressed files are accepted here, and then refused with a helpful message.
     extensions: &["las", "laz"],
     capabilities: &["points", "vertex-kd"],
     sniff: |bytes| bytes.starts_with(header::SIGNATURE),

@@ -1,6 +1,7 @@
 //! Reads LAS.
 
-use super::header::{Header, read_header, u16_at, u32_at};
+use super::compressed::points;
+use super::header::{Header, u16_at, u32_at};
 use crate::FormatError;
 use crate::cloud::{Cloud, SAMPLES};
 use crate::colours::{Greatest, Stored, decoded};
@@ -15,8 +16,8 @@ use bilux_scene::SceneBuilder;
 const INTENSITY: usize = 12;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
-    let header = read_header(source)?;
-    let records = || source.bytes[header.points..].chunks_exact(header.record).take(header.count as usize);
+    let (bytes, header) = points(reading, source)?;
+    let records = || bytes[header.points..].chunks_exact(header.record).take(header.count as usize);
     let position = |record: &[u8]| {
         let number = |at: usize| f64::from(u32_at(record, at) as i32);
         DVec3::new(number(0), number(4), number(8)) * header.scale + header.offset

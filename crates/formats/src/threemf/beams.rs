@@ -35,8 +35,21 @@ impl Lattice {
         SIDES[usize::from(self.beams.len() > FEW)]
     }
 
-    /// The beams as open tubes of triangles.
-    pub(super) fn tubes(&self, positions: &[Vec3]) -> Mesh {
+    /// The beams as open tubes of triangles, and the balls as points with widths.
+    pub(super) fn mesh(&self, positions: &[Vec3]) -> Mesh {
+        let mut mesh = self.tubes(positions);
+        let balls = self.balls.iter().filter(|(_, radius)| *radius > 0.0);
+        mesh.point_widths.resize(mesh.positions.len(), 0.0);
+        for &(vertex, radius) in balls {
+            mesh.points.push(mesh.positions.len() as u32);
+            mesh.positions.push(positions[vertex as usize]);
+            mesh.normals.push(Vec3::Z);
+            mesh.point_widths.push(2.0 * radius);
+        }
+        mesh
+    }
+
+    fn tubes(&self, positions: &[Vec3]) -> Mesh {
         let (mut mesh, sides) = (Mesh::default(), self.sides());
         let circle: Vec<Vec2> = (0..sides)
             .map(|side| {
@@ -62,14 +75,5 @@ impl Lattice {
             }
         }
         mesh
-    }
-
-    /// The balls as points with widths.
-    pub(super) fn spheres(&self, positions: &[Vec3]) -> Mesh {
-        let balls = self.balls.iter().filter(|(_, radius)| *radius > 0.0);
-        let (positions, point_widths): (Vec<Vec3>, Vec<f32>) =
-            balls.map(|&(vertex, radius)| (positions[vertex as usize], 2.0 * radius)).unzip();
-        let points = (0..positions.len() as u32).collect();
-        Mesh { positions, point_widths, points, ..Mesh::default() }
     }
 }

@@ -1,12 +1,13 @@
 //! The scene: what is to be built, with the objects that it is made of.
 
-use super::looks::Looks;
+use super::looks::{Look, Looks};
 use super::mesh_data::MeshData;
-use super::model::{Component, Content, Model, Object, Reference, Resource, Role};
+use super::model::{Content, Model, Object, Reference, Resource, Role};
 use super::package::Package;
 use super::part::PartReader;
 use super::pictures::Pictures;
-use super::pieces::{Piece, pieces};
+use super::pieces::{Piece, Whole, pieces};
+use super::slicers::{ObjectSettings, project};
 use crate::FormatError;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
@@ -15,6 +16,7 @@ use crate::sink::Sink;
 use crate::text::whole_file;
 use bilux_math::{DMat4, Transform};
 use bilux_scene::{Object as Placed, SceneBuilder, Span};
+use std::collections::HashMap;
 
 /// Components within components, up to this depth.
 const MAX_DEPTH: usize = 64;
@@ -32,11 +34,15 @@ pub(super) fn scene(
         return Err(FormatError::malformed(message, whole_file(&package.named(&model.parts[0]))));
     }
     let pictures = Pictures::of(&model, package);
+    let mut project = project(package, reading)?;
+    let filaments = std::mem::take(&mut project.filaments);
     let mut builder = Builder {
         reading,
         file: source.name,
         meshes: model.objects.iter().map(|_| None).collect(),
-        looks: Looks::with(pictures),
+        has_filaments: !filaments.is_empty(),
+        looks: Looks::with(pictures, filaments),
+        settings: project.objects,
         sink,
     };
     let model = builder.build(model)?;
@@ -72,12 +78,24 @@ fn parts(reading: &mut Reading, package: &Package, oddities: &mut Oddities) -> R
     Ok(model)
 }
 
+/// Where an object is placed, and the extruder that prints it.
+#[derive(Clone, Copy)]
+struct Place {
+    transform: DMat4,
+    extruder: u32,
+    /// The number of objects that it is within.
+    depth: usize,
+}
+
 struct Builder<'a, 'o> {
     reading: &'a mut Reading<'o>,
     file: &'a str,
     /// The pieces of each object, once it has been placed.
     meshes: Vec<Option<Vec<Piece>>>,
     looks: Looks,
+    has_filaments: bool,
+    /// What a slicer says of objects of the main part.
+    settings: HashMap<u32, ObjectSettings>,
     sink: Sink,
 }
 
@@ -89,7 +107,8 @@ impl Builder<'_, '_> {
                 self.sink.oddities.not_shown("objects that are not to be printed", || item.at.clone());
                 continue;
             }
-            self.place(&mut model, item.object, item.transform, &item.at, 0)?;
+            let place = Place { transform: item.transform, extruder: 1, depth: 0 };
+            self.place(&mut model, item.object, place, &item.at)?;
         }
         Ok(model)
     }
@@ -99,16 +118,15 @@ impl Builder<'_, '_> {
         &mut self,
         model: &mut Model,
         object: Reference,
-        transform: DMat4,
+        place: Place,
         at: &Span,
-        depth: usize,
     ) -> Result<(), FormatError> {
         let Some(Resource::Object(number)) = model.find(object) else {
             let part = model.parts.get(object.part).map_or("", |part| part);
             let message = format!("there is no object {} in '{part}'", object.id);
             return Err(FormatError::malformed(message, at.clone()));
         };
-        if depth > MAX_DEPTH {
+        if place.depth > MAX_DEPTH {
             let message = format!("components are nested more than {MAX_DEPTH} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
@@ -120,7 +138,11 @@ impl Builder<'_, '_> {
                 self.sink.oddities.not_shown("supports", || model.objects[number].at.clone());
                 return Ok(());
             }
-            Role::Other if depth == 0 => {
+            Role::Modifier => {
+                self.sink.oddities.not_shown("modifiers", || model.objects[number].at.clone());
+                return Ok(());
+            }
+            Role::Other if place.depth == 0 => {
                 let message =
                     "an object of the type 'other' is to be built, but such objects are only for reference";
                 return Err(FormatError::malformed(message, at.clone()));
@@ -132,22 +154,52 @@ impl Builder<'_, '_> {
                 return Ok(());
             }
         }
-        if let Content::Components(components) = &mut model.objects[number].content {
-            let components = std::mem::take(components);
-            for Component { object, transform: inner, at } in &components {
-                self.place(model, *object, transform * *inner, at, depth + 1)?;
+        self.place_content(model, number, object, place, at)
+    }
+
+    fn place_content(
+        &mut self,
+        model: &mut Model,
+        number: usize,
+        object: Reference,
+        place: Place,
+        at: &Span,
+    ) -> Result<(), FormatError> {
+        let settings = self.settings.get(&object.id).filter(|_| object.part == 0);
+        let extruder = settings.and_then(|settings| settings.extruder).unwrap_or(place.extruder);
+        let Content::Components(components) = &mut model.objects[number].content else {
+            // An object of a single part is that part.
+            let alone = settings.map(|settings| &settings.parts).filter(|parts| parts.len() == 1);
+            let own = alone.and_then(|parts| parts.values().next()).and_then(|part| part.extruder);
+            let place = Place { extruder: own.unwrap_or(extruder), ..place };
+            return self.place_mesh(model, number, object, place, at);
+        };
+        let components = std::mem::take(components);
+        for component in &components {
+            let settings = self.settings.get(&object.id).filter(|_| object.part == 0);
+            let part = settings.and_then(|settings| settings.parts.get(&component.object.id).copied());
+            let part = part.unwrap_or_default();
+            if let Some(what) = part.unprinted {
+                self.sink.oddities.not_shown(what, || component.at.clone());
+                continue;
             }
-            model.objects[number].content = Content::Components(components);
-            return Ok(());
+            let inner = Place {
+                transform: place.transform * component.transform,
+                extruder: part.extruder.unwrap_or(extruder),
+                depth: place.depth + 1,
+            };
+            self.place(model, component.object, inner, &component.at)?;
         }
-        self.place_mesh(model, number, transform, at)
+        model.objects[number].content = Content::Components(components);
+        Ok(())
     }
 
     fn place_mesh(
         &mut self,
         model: &mut Model,
         number: usize,
-        transform: DMat4,
+        object: Reference,
+        Place { transform, extruder, .. }: Place,
         at: &Span,
     ) -> Result<(), FormatError> {
         let Some(place) = Transform::from_matrix(transform) else {
@@ -160,11 +212,23 @@ impl Builder<'_, '_> {
                 Content::Components(_) => MeshData::default(),
             };
             let Object { property, name, .. } = &model.objects[number];
-            self.meshes[number] = Some(pieces(self.reading, self.file, model, data, *property, name)?);
+            let whole = Whole {
+                model,
+                name,
+                property: *property,
+                has_filaments: self.has_filaments,
+                settings: self.settings.get(&object.id).filter(|_| object.part == 0),
+            };
+            let made = pieces(self.reading, self.file, &whole, data, &mut self.sink.oddities)?;
+            self.meshes[number] = Some(made);
         }
         for piece in self.meshes[number].clone().unwrap_or_default() {
             self.reading.budget.take_bytes((2 * size_of::<Placed>()) as u64, self.file)?;
-            let material = self.looks.material(piece.look, model, self.reading, &mut self.sink)?;
+            let look = match piece.look {
+                Look::Filament(0) => Look::Filament(extruder),
+                look => look,
+            };
+            let material = self.looks.material(look, model, self.reading, &mut self.sink)?;
             let name = &model.objects[number].name;
             let mut placed = Placed::new(name, piece.mesh, material);
             if !place.is_identity() {

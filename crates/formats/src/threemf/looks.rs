@@ -1,6 +1,7 @@
 //! How triangles look: materials, made from properties once each.
 
 use super::blend::Ink;
+use super::colour::Colour;
 use super::groups::{Appearance, Base, Display, GroupKind, TexturedAppearance};
 use super::mesh_data::{NONE, TriangleProperties};
 use super::model::{Model, Reference, Resource};
@@ -21,6 +22,8 @@ use std::sync::Arc;
 pub(super) enum Look {
     /// No property.
     Plain,
+    /// What is printed with the filament of an extruder, from 1 on; 0 stands for that of the part.
+    Filament(u32),
     /// An entry of a group, the same all over a triangle.
     Solid { group: usize, index: u32 },
     /// Colours at corners.
@@ -73,7 +76,7 @@ impl Look {
 
     /// True if vertices have colours or texture coordinates.
     pub(super) fn is_painted(self) -> bool {
-        !matches!(self, Look::Plain | Look::Solid { .. })
+        !matches!(self, Look::Plain | Look::Filament(_) | Look::Solid { .. })
     }
 }
 
@@ -84,11 +87,13 @@ const MAX_COMPARED: usize = 64;
 pub(super) struct Looks {
     materials: HashMap<Look, usize>,
     pictures: Pictures,
+    /// The colours of filaments.
+    filaments: Vec<Option<Colour>>,
 }
 
 impl Looks {
-    pub(super) fn with(pictures: Pictures) -> Looks {
-        Looks { materials: HashMap::new(), pictures }
+    pub(super) fn with(pictures: Pictures, filaments: Vec<Option<Colour>>) -> Looks {
+        Looks { materials: HashMap::new(), pictures, filaments }
     }
 
     /// The material of a look.
@@ -104,6 +109,7 @@ impl Looks {
         }
         let spec = match look {
             Look::Plain => plain_material(false, false),
+            Look::Filament(number) => self.filament(number),
             Look::Solid { group, index } => solid(model, group, index, sink),
             Look::Colours { .. } => Spec::new("vertices", "principled").with("base_color", Rgb::WHITE),
             Look::Picture { group } => self.picture(model, group, reading, sink)?,
@@ -113,6 +119,15 @@ impl Looks {
         let index = sink.scene.add_material(spec);
         self.materials.insert(look, index);
         Ok(index)
+    }
+
+    fn filament(&self, number: u32) -> Spec {
+        let colour = self.filaments.get(number.saturating_sub(1) as usize).copied().flatten();
+        let spec = Spec::new(&format!("filament {number}"), "principled");
+        match colour {
+            Some(colour) => spec.with("base_color", colour.rgb),
+            None => spec,
+        }
     }
 
     fn picture(

@@ -20,6 +20,7 @@ mod part;
 mod pictures;
 mod pieces;
 mod resources;
+mod slicers;
 mod values;
 mod xml;
 

@@ -87,6 +87,8 @@ pub(super) struct Property {
 pub(super) enum Role {
     Printed,
     Support,
+    /// It changes how others are printed.
+    Modifier,
     Other,
 }
 

@@ -45,7 +45,8 @@ impl PartReader<'_, '_> {
             self.oddities.not_shown("slices (the mesh is shown)", || at);
         }
         // Registered at the end: an object cannot contain itself.
-        let content = self.content(inside, property)?;
+        let (content, unprinted) = self.content(inside, property)?;
+        let role = if unprinted { Role::Modifier } else { role };
         let Some(content) = content else {
             let message = "this object has neither a mesh nor components";
             return Err(FormatError::malformed(message, at));
@@ -60,8 +61,12 @@ impl PartReader<'_, '_> {
         Ok(())
     }
 
-    fn content(&mut self, level: Level, property: Option<Property>) -> Result<Option<Content>, FormatError> {
-        let mut content = None;
+    fn content(
+        &mut self,
+        level: Level,
+        property: Option<Property>,
+    ) -> Result<(Option<Content>, bool), FormatError> {
+        let (mut content, mut unprinted) = (None, false);
         while let Some(child) = self.xml.child(level)? {
             let inside = child.inside;
             match (child.namespace, child.name) {
@@ -71,6 +76,7 @@ impl PartReader<'_, '_> {
                 (Namespace::Core, "components") => {
                     content = Some(Content::Components(self.components(inside)?))
                 }
+                (Namespace::Core, "metadatagroup") => unprinted |= self.says_unprinted(inside)?,
                 (Namespace::Named(what), _) => {
                     let at = child.at();
                     content.get_or_insert(Content::Components(Vec::new()));
@@ -80,7 +86,22 @@ impl PartReader<'_, '_> {
                 _ => {}
             }
         }
-        Ok(content)
+        Ok((content, unprinted))
+    }
+
+    /// True if metadata say that an object only changes how others are printed (Cura).
+    fn says_unprinted(&mut self, level: Level) -> Result<bool, FormatError> {
+        const MODIFIERS: [&str; 4] = ["anti_overhang_mesh", "infill_mesh", "cutting_mesh", "support_mesh"];
+        let mut unprinted = false;
+        while let Some(element) = self.xml.child(level)? {
+            let name = element.get("name").unwrap_or_default();
+            let is_it = MODIFIERS.contains(&name.rsplit(':').next().unwrap_or_default());
+            let inside = element.inside;
+            if element.name == "metadata" && is_it {
+                unprinted |= self.xml.text(inside)?.eq_ignore_ascii_case("true");
+            }
+        }
+        Ok(unprinted)
     }
 
     fn components(&mut self, level: Level) -> Result<Vec<Component>, FormatError> {

@@ -67,6 +67,18 @@ impl Package {
         found.map(String::as_str)
     }
 
+    /// The members whose names end so, in the order of their names.
+    pub(super) fn members_ending(&self, end: &str) -> Vec<String> {
+        let mut found: Vec<String> = self
+            .members
+            .iter()
+            .filter(|(name, _)| name.ends_with(end))
+            .map(|(_, name)| name.clone())
+            .collect();
+        found.sort();
+        found
+    }
+
     /// What messages call a part.
     pub(super) fn named(&self, part: &str) -> Arc<str> {
         format!("{}/{}", self.name, part.trim_start_matches('/')).into()

@@ -1,13 +1,17 @@
 //! The meshes that an object of a file becomes: one for each look of its triangles.
 
+use super::beams::Lattice;
 use super::groups::GroupKind;
 use super::looks::Look;
 use super::mesh_data::{MeshData, NONE, TriangleProperties};
 use super::model::{Model, Property};
+use super::slicers::{Leaf, ObjectSettings, leaves};
 use crate::FormatError;
 use crate::normals::{BY_ANGLE, CornerNormals, Faces};
+use crate::oddities::Oddities;
 use crate::reading::Reading;
-use bilux_math::{Rgb, Vec2};
+use crate::text::whole_file;
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -19,68 +23,130 @@ pub(super) struct Piece {
     pub(super) mesh: Arc<Mesh>,
 }
 
-/// Splits a mesh by the looks of its triangles.
-pub(super) fn pieces(
-    reading: &mut Reading,
-    file: &str,
-    model: &Model,
-    mut data: MeshData,
-    of_object: Option<Property>,
-    name: &str,
-) -> Result<Vec<Piece>, FormatError> {
-    let mut pieces = Vec::new();
-    let of_object = of_object.map_or(TriangleProperties::OF_OBJECT, |own| TriangleProperties {
-        group: own.group as u32,
-        corners: [own.index; 3],
-    });
-    if let Some(lattice) = data.lattice.take() {
-        reading.budget.take_bytes(lattice.size(), file)?;
-        let look = Look::of(model, &of_object);
-        for mesh in [lattice.tubes(&data.positions), lattice.spheres(&data.positions)] {
-            if !mesh.is_empty() {
-                // What is painted at corners is that of the object everywhere.
-                let paint = look.paint(model, of_object.corners[0]);
-                let count = mesh.positions.len();
-                let mesh = Mesh { name: name.to_owned(), vertex_kd: vec_of(paint.colour, count), ..mesh };
-                pieces.push(Piece { look, mesh: Arc::new(mesh) });
-            }
+/// An object whose mesh becomes pieces.
+pub(super) struct Whole<'a> {
+    pub(super) model: &'a Model,
+    pub(super) name: &'a str,
+    /// The property of triangles without one.
+    pub(super) property: Option<Property>,
+    /// True if what has no property is printed with a filament whose colour is known.
+    pub(super) has_filaments: bool,
+    /// What a slicer says of parts of the mesh.
+    pub(super) settings: Option<&'a ObjectSettings>,
+}
+
+impl Whole<'_> {
+    fn of_object(&self) -> TriangleProperties {
+        self.property.map_or(TriangleProperties::OF_OBJECT, |own| TriangleProperties {
+            group: own.group as u32,
+            corners: [own.index; 3],
+        })
+    }
+
+    /// The look of a triangle with properties, of a part that an extruder prints.
+    fn look(&self, properties: &TriangleProperties, extruder: u32) -> Look {
+        match Look::of(self.model, properties) {
+            Look::Plain if self.has_filaments => Look::Filament(extruder),
+            look => look,
         }
     }
-    if data.triangles.is_empty() {
-        return Ok(pieces);
+
+    /// The beams and balls of a mesh.
+    fn lattice(&self, lattice: &Lattice, positions: &[Vec3], pieces: &mut Vec<Piece>) {
+        let own = self.of_object();
+        let look = self.look(&own, 0);
+        let mesh = lattice.mesh(positions);
+        if !mesh.is_empty() {
+            // What is painted at corners is that of the object everywhere.
+            let paint = look.paint(self.model, own.corners[0]);
+            let vertex_kd = vec_of(paint.colour, mesh.positions.len());
+            let mesh = Mesh { name: self.name.to_owned(), vertex_kd, ..mesh };
+            pieces.push(Piece { look, mesh: Arc::new(mesh) });
+        }
     }
-    let normals = normals(reading, file, &data)?;
-    let look = Look::of(model, &of_object);
-    if data.properties.is_empty() && normals.is_none() {
-        let paint = look.paint(model, of_object.corners[0]);
+
+    /// The whole mesh as one piece.
+    fn piece(&self, data: MeshData) -> Piece {
+        let own = self.of_object();
+        let look = self.look(&own, 0);
+        let paint = look.paint(self.model, own.corners[0]);
         let count = data.positions.len();
-        reading.budget.take_bytes((count * size_of::<(Rgb, Vec2)>()) as u64, file)?;
         let mesh = Mesh {
-            name: name.to_owned(),
+            name: self.name.to_owned(),
             positions: data.positions,
             triangles: data.triangles,
             uvs: vec_of(paint.uv, count),
             vertex_kd: vec_of(paint.colour, count),
             ..Mesh::default()
         };
-        pieces.push(Piece { look, mesh: Arc::new(mesh) });
+        Piece { look, mesh: Arc::new(mesh) }
+    }
+}
+
+/// Splits a mesh by the looks of its triangles.
+pub(super) fn pieces(
+    reading: &mut Reading,
+    file: &str,
+    whole: &Whole,
+    mut data: MeshData,
+    oddities: &mut Oddities,
+) -> Result<Vec<Piece>, FormatError> {
+    let mut pieces = Vec::new();
+    if let Some(lattice) = data.lattice.take() {
+        reading.budget.take_bytes(lattice.size(), file)?;
+        whole.lattice(&lattice, &data.positions, &mut pieces);
+    }
+    if data.triangles.is_empty() {
         return Ok(pieces);
     }
-    let mut welder = Welder::new(reading, file, model, data.positions.len())?;
+    let normals = normals(reading, file, &data)?;
+    let is_painted = whole.has_filaments && !data.paint.is_empty();
+    let has_volumes = whole.settings.is_some_and(|settings| !settings.volumes.is_empty());
+    if data.properties.is_empty() && !is_painted && !has_volumes && normals.is_none() {
+        reading.budget.take_bytes((data.positions.len() * size_of::<(Rgb, Vec2)>()) as u64, file)?;
+        pieces.push(whole.piece(data));
+        return Ok(pieces);
+    }
+    let mut welder = Welder::new(reading, file, whole.model, data.positions.len(), normals.is_some())?;
+    let (own, mut paint) = (whole.of_object(), data.paint.iter().peekable());
     for (triangle, corners) in data.triangles.iter().enumerate() {
-        let own = data.properties.get(triangle).filter(|own| own.group != NONE).unwrap_or(&of_object);
-        let look = Look::of(model, own);
-        let piece = welder.piece(look, name);
+        let code = paint.next_if(|(painted, _)| *painted as usize == triangle).map(|(_, code)| code);
+        let part = whole.settings.map(|all| all.of_triangle(triangle as u32)).unwrap_or_default();
+        if let Some(what) = part.unprinted {
+            oddities.not_shown(what, || whole_file(&file.into()));
+            continue;
+        }
+        let own = data.properties.get(triangle).filter(|own| own.group != NONE).unwrap_or(&own);
+        let look = whole.look(own, part.extruder.unwrap_or(0));
+        let normal_of =
+            [0, 1, 2].map(|i| normals.as_ref().map_or(NONE, |all| all.of_corner[3 * triangle + i]));
+        if let (Some(code), Look::Filament(_)) = (code, look) {
+            let leaves = leaves(code).unwrap_or_else(|| {
+                let what = "a triangle is painted by a code that is not understood";
+                oddities.note(what, || whole_file(&file.into()));
+                vec![Leaf::whole(0)]
+            });
+            reading.budget.take::<[[Vec3; 3]; 3]>(leaves.len(), file)?;
+            let normals =
+                normal_of.map(|i| normals.as_ref().map_or(Vec3::ZERO, |all| all.normals[i as usize]));
+            for leaf in leaves {
+                let look = if leaf.filament > 0 { Look::Filament(leaf.filament) } else { look };
+                let piece = welder.piece(look, whole.name);
+                welder.leaf(piece, &leaf, corners.map(|i| data.positions[i as usize]), normals);
+            }
+            continue;
+        }
+        let piece = welder.piece(look, whole.name);
         let mut made = [0; 3];
         for corner in 0..3 {
-            let normal = normals.as_ref().map_or(NONE, |normals| normals.of_corner[3 * triangle + corner]);
             let property = if look.is_painted() { own.corners[corner] } else { 0 };
-            made[corner] = welder.vertex(piece, corners[corner], normal, property, &data, normals.as_ref());
+            made[corner] =
+                welder.vertex(piece, corners[corner], normal_of[corner], property, &data, normals.as_ref());
         }
         welder.pieces[piece].1.triangles.push(made);
         reading.budget.take::<[u32; 3]>(1 + 2 * welder.take_made(), file)?;
     }
-    pieces.extend(welder.pieces.into_iter().map(|(look, mesh)| Piece { look, mesh: Arc::new(mesh) }));
+    pieces.extend(welder.into_pieces());
     Ok(pieces)
 }
 
@@ -116,6 +182,7 @@ struct Welder<'m> {
     made: Vec<Made>,
     /// The vertices that were counted already.
     counted: usize,
+    has_normals: bool,
 }
 
 /// A vertex that was made from a position.
@@ -138,6 +205,7 @@ impl<'m> Welder<'m> {
         file: &str,
         model: &'m Model,
         positions: usize,
+        has_normals: bool,
     ) -> Result<Welder<'m>, FormatError> {
         reading.budget.take_bytes(4 * positions as u64, file)?;
         let heads = vec![NONE; positions];
@@ -149,6 +217,7 @@ impl<'m> Welder<'m> {
             heads,
             made: Vec::new(),
             counted: 0,
+            has_normals,
         })
     }
 
@@ -170,6 +239,24 @@ impl<'m> Welder<'m> {
         }
         self.last = Some((look, piece));
         piece
+    }
+
+    fn into_pieces(self) -> impl Iterator<Item = Piece> {
+        self.pieces.into_iter().map(|(look, mesh)| Piece { look, mesh: Arc::new(mesh) })
+    }
+
+    /// Adds a part of a triangle with these corners and normals.
+    fn leaf(&mut self, piece: usize, leaf: &Leaf, places: [Vec3; 3], normals: [Vec3; 3]) {
+        let mesh = &mut self.pieces[piece].1;
+        let first = mesh.positions.len() as u32;
+        let at = |of: [Vec3; 3], w: Vec3| of[0] * w.x + of[1] * w.y + of[2] * w.z;
+        for weights in leaf.corners {
+            mesh.positions.push(at(places, weights));
+            if self.has_normals {
+                mesh.normals.push(at(normals, weights));
+            }
+        }
+        mesh.triangles.push([first, first + 1, first + 2]);
     }
 
     fn vertex(
@@ -221,7 +308,7 @@ impl Look {
             _ => Vec2::ZERO,
         };
         match self {
-            Look::Plain | Look::Solid { .. } => Paint::default(),
+            Look::Plain | Look::Filament(_) | Look::Solid { .. } => Paint::default(),
             Look::Colours { group } => {
                 colour(model.groups[group].colour(property).map_or(Rgb::WHITE, |colour| colour.rgb))
             }

@@ -128,7 +128,9 @@ fn las_has_positions_and_colours_in_all_of_its_formats() {
         assert!(mesh.vertex_kd[0].r < mesh.vertex_kd[2].r, "{name}");
     }
     for (name, wanted) in [
-        ("broken_compressed.laz", "compressed (LAZ)"),
+        ("broken_compressed.laz", "the record that says how they are compressed is missing"),
+        ("broken_cut_off.laz", "they are damaged, or the file was cut off"),
+        ("broken_chunk_count.laz", "they are damaged, or the file was cut off"),
         ("broken_cut_off.las", "3 points of 26 bytes from byte 227 on, but there are bytes for only 1"),
         ("broken_count.las", "was cut off"),
         ("broken_format.las", "format 20, but only 0 to 10 exist"),
@@ -136,6 +138,43 @@ fn las_has_positions_and_colours_in_all_of_its_formats() {
         ("broken_version.las", "LAS 2.2, but only 1.0 to 1.4"),
     ] {
         let message = refusal("las", corpus(name));
+        assert!(message.contains(wanted), "{name}: {message}");
+    }
+}
+
+#[test]
+fn compressed_points_are_those_of_the_same_file_without_compression() {
+    for name in ["same_12", "same_14"] {
+        let [plain, packed] =
+            ["las", "laz"].map(|extension| read_text("las", corpus(&format!("{name}.{extension}"))).unwrap());
+        assert_eq!((only(&plain), plain.origin), (only(&packed), packed.origin), "{name}");
+        assert_eq!(only(&packed).positions.len(), 40);
+    }
+}
+
+#[test]
+fn scans_of_e57_have_their_poses_and_colours() {
+    let read = |name: &str| {
+        let path = format!("{}/../../fuzz/corpus/scene_e57/{name}", env!("CARGO_MANIFEST_DIR"));
+        read_text("e57", std::fs::read(path).unwrap())
+    };
+    let scene = read("coloured.e57").unwrap();
+    let mesh = only(&scene);
+    assert_eq!((mesh.positions.len(), mesh.positions[3], &*mesh.name), (8, Vec3::new(3.0, 6.0, 9.0), "hall"));
+    assert!((mesh.vertex_kd[7].r - srgb_decode(210.0 / 255.0)).abs() < 0.01 && mesh.vertex_kd[7].g == 1.0);
+    let scene = read("posed.e57").unwrap();
+    // A quarter turn about z, then a translation by (10, 20, 30).
+    let [first, second] = [0, 1].map(|i| scene.objects[i].mesh.clone());
+    assert_eq!(first.positions[1], Vec3::new(1.0, 2.0, 3.0));
+    assert!((second.positions[1] - Vec3::new(8.0, 21.0, 33.0)).length() < 1e-5, "{}", second.positions[1]);
+    let grey = read("intensity.e57").unwrap().objects[0].mesh.clone();
+    assert!(grey.vertex_kd[0].r < grey.vertex_kd[7].r);
+    for (name, wanted) in [
+        ("broken_cut_off.e57", "cut off"),
+        ("broken_checksum.e57", "its checksum is wrong"),
+        ("broken_length.e57", "states more data than there are"),
+    ] {
+        let message = read(name).unwrap_err().to_string();
         assert!(message.contains(wanted), "{name}: {message}");
     }
 }

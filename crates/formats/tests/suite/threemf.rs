@@ -187,10 +187,13 @@ fn textures_lie_with_v_upwards() {
 fn beams_are_tubes_with_balls_at_their_ends() {
     let lattice = r#"<object id="1"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="0" y="0" z="4"/></vertices><triangles/><b:beamlattice radius="0.5" minlength="0.1"><b:beams><b:beam v1="0" v2="1" r1="0.5" r2="0.25"/></b:beams></b:beamlattice></mesh></object>"#;
     let scene = file(lattice, &items(&[1])).unwrap();
-    let [tubes, balls] = [0, 1].map(|i| &scene.objects[i].mesh);
+    let tubes = &scene.objects[0].mesh;
     let radius = |p: &Vec3| p.truncate().length();
-    assert!(tubes.positions.iter().all(|p| (radius(p) - if p.z == 0.0 { 0.5 } else { 0.25 }).abs() < 1e-6));
-    assert_eq!((&balls.point_widths[..], &balls.points[..]), (&[1.0, 0.5][..], &[0, 1][..]));
+    let [first, second] = tubes.points[..] else { panic!("{:?}", tubes.points) };
+    let wall = &tubes.positions[..first as usize];
+    assert!(wall.iter().all(|p| (radius(p) - if p.z == 0.0 { 0.5 } else { 0.25 }).abs() < 1e-6));
+    let ball = |i: u32| (tubes.positions[i as usize], tubes.point_widths[i as usize]);
+    assert_eq!([ball(first), ball(second)], [(Vec3::ZERO, 1.0), (Vec3::Z * 4.0, 0.5)]);
     let [a, b, c] = tubes.triangles[0].map(|i| tubes.positions[i as usize]);
     assert!((b - a).cross(c - a).dot(tubes.normals[0]) > 0.0, "outwards");
 }
@@ -227,6 +230,45 @@ fn what_is_not_printed_is_named_and_left_out() {
         "{}",
         warnings(&scene)
     );
+}
+
+/// The colours of all triangles, by object.
+fn colours(scene: &SceneBuilder) -> Vec<(usize, Rgb)> {
+    (0..scene.objects.len()).map(|i| (scene.objects[i].mesh.triangles.len(), base_colour(scene, i))).collect()
+}
+
+#[test]
+fn projects_of_slicers_say_which_filament_prints_what() {
+    const RED: Rgb = Rgb::new(1.0, 0.0, 0.0);
+    const GREEN: Rgb = Rgb::new(0.0, 1.0, 0.0);
+    // PrusaSlicer: ranges of triangles, and triangles that are painted in parts.
+    let config = r#"<config><object id="1"><metadata type="object" key="extruder" value="2"/><volume firstid="0" lastid="1"><metadata type="volume" key="extruder" value="1"/></volume><volume firstid="2" lastid="2"><metadata type="volume" key="volume_type" value="ParameterModifier"/></volume></object></config>"#;
+    let settings = "; a = 1\n; extruder_colour = \"\";#00FF00\n; filament_colour = #FF0000;#0000FF\n";
+    let members: [(&str, &[u8]); 2] = [
+        ("Metadata/Slic3r_PE_model.config", config.as_bytes()),
+        ("Metadata/Slic3r_PE.config", settings.as_bytes()),
+    ];
+    let scene = file_with(&model(&object(1, ""), &items(&[1])), &members).unwrap();
+    assert_eq!(colours(&scene), [(2, RED), (1, GREEN)]);
+    assert!(warnings(&scene).contains("modifiers"), "{}", warnings(&scene));
+    let painted =
+        object(1, "").replace(r#"v1="0" v2="2" v3="1""#, r#"v1="0" v2="2" v3="1" mmu_segmentation="00043""#);
+    let scene = file_with(&model(&painted, &items(&[1])), &members[1..]).unwrap();
+    assert_eq!(colours(&scene).iter().map(|(count, _)| count).sum::<usize>(), 7, "one in four parts");
+    // Bambu Studio: components, and colours as JSON.
+    let resources = format!(
+        r#"{}{}<object id="3"><components><component objectid="1"/><component objectid="2"/></components></object>"#,
+        object(1, ""),
+        object(2, "")
+    );
+    let config = r#"<config><object id="3"><metadata key="extruder" value="2"/><part id="1" subtype="normal_part"/><part id="2" subtype="negative_part"/></object></config>"#;
+    let members: [(&str, &[u8]); 2] = [
+        ("Metadata/model_settings.config", config.as_bytes()),
+        ("Metadata/project_settings.config", br##"{"filament_colour": ["#FF0000", "#00FF00"]}"##),
+    ];
+    let scene = file_with(&model(&resources, &items(&[3])), &members).unwrap();
+    assert_eq!(colours(&scene), [(4, GREEN)]);
+    assert!(warnings(&scene).contains("negative parts"), "{}", warnings(&scene));
 }
 
 #[test]
