@@ -1,7 +1,7 @@
 //! The options for the choices that a scene file leaves open.
 
 use crate::help;
-use crate::values::{parse_radius, parse_scheme, parse_time};
+use crate::values::{parse_definition, parse_radius, parse_scheme, parse_time};
 use bilux::formats::Scheme;
 use clap::{Args, ValueEnum};
 
@@ -14,6 +14,9 @@ pub struct Choices {
     /// The material variant to show, by name or by number from 0 [default: the materials of the meshes]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub variant: Option<String>,
+    /// Give a variable of the scene this value in place of its default, in Mitsuba's files; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition, help_heading = help::WHAT)]
+    pub definitions: Vec<(String, String)>,
     /// How to treat glass if the file does not say whether it is solid or thin-walled
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
@@ -24,6 +27,11 @@ pub struct Choices {
     #[arg(long, value_name = "RADIUS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
         value_parser = parse_radius, help_heading = help::LIGHT)]
     pub light_radius: f32,
+}
+
+/// Definitions as they are written.
+pub fn defined(definitions: &[(String, String)]) -> Vec<String> {
+    definitions.iter().map(|(name, value)| format!("{name}={value}")).collect()
 }
 
 /// The same choices, and a time.

@@ -202,6 +202,13 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
         .map_err(|_| "this time is too long: write a smaller number of seconds".to_owned())
 }
 
+/// Parses the value of a variable.
+pub fn parse_definition(text: &str) -> Result<(String, String), String> {
+    let parts = text.split_once('=').filter(|(name, _)| !name.is_empty());
+    let parts = parts.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    parts.ok_or_else(|| "write a name and a value, such as spp=64".to_owned())
+}
+
 /// Parses a length, 0 or more.
 pub fn parse_radius(text: &str) -> Result<f32, String> {
     let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);

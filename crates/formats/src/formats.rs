@@ -4,7 +4,8 @@ use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
 use crate::{
-    FormatError, asc, e57, fbx, gltf, grids, las, native, obj, off, packed, pbrt, ply, stl, threemf, usd, xyz,
+    FormatError, asc, e57, fbx, gltf, grids, las, mitsuba, native, obj, off, packed, pbrt, ply, stl, threemf,
+    usd, xyz,
 };
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
@@ -20,6 +21,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     pbrt::ENTRY,
     usd::ENTRY,
     usd::PACKAGE,
+    mitsuba::ENTRY,
     obj::ENTRY,
     ply::ENTRY,
     stl::ENTRY,

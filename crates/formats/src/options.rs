@@ -34,6 +34,8 @@ pub struct ReadOptions {
     /// If given, polygons of formats that do not say whether their surfaces are smooth (OBJ, PLY, OFF) are the cage of a
     /// subdivision surface.
     pub subdivide: Option<Scheme>,
+    /// Values for variables of the scene, by their names (Mitsuba): they replace the defaults of the file.
+    pub definitions: Vec<(String, String)>,
     /// How to interpret transmissive materials without a thickness.
     pub glass: Glass,
     /// The radius of point lights in metres, if above 0.
@@ -58,6 +60,7 @@ impl Default for ReadOptions {
             animation: None,
             variant: None,
             subdivide: None,
+            definitions: Vec::new(),
             glass: Glass::Auto,
             light_radius: 0.0,
             picture_layer: None,

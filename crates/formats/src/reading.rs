@@ -77,6 +77,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) cages: Vec<PendingCage>,
     /// Every file that was opened, by its full name.
     pub(crate) files: BTreeSet<PathBuf>,
+    /// True once something has looked at [`ReadOptions::definitions`].
+    pub(crate) has_variables: bool,
 }
 
 /// The memory that counts as held at some moment.
@@ -110,6 +112,7 @@ impl<'o> Reading<'o> {
             open: Vec::new(),
             cages: Vec::new(),
             files: BTreeSet::new(),
+            has_variables: false,
         }
     }
 
@@ -145,6 +148,10 @@ impl<'o> Reading<'o> {
 
     /// Adds to the scene what is known of all files that it refers to.
     pub(crate) fn complete(self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
+        if let (false, Some((name, _))) = (self.has_variables, self.options.definitions.first()) {
+            let message = format!("the scene has no variable '{name}', nor any other: leave it out");
+            return Err(FormatError::malformed(message, Span::default()));
+        }
         scene.files = self.files;
         scene.warnings.extend(self.picture_faults);
         self.locator.into_notes(&mut scene);

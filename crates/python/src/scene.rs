@@ -47,7 +47,7 @@ impl Scene {
     }
 
     #[classmethod]
-    #[pyo3(signature = (file, *, format, folder, time, animation, variant, subdivide, glass, light_radius, max_memory, allow_outside, strict))]
+    #[pyo3(signature = (file, *, format, folder, time, animation, variant, definitions, subdivide, glass, light_radius, max_memory, allow_outside, strict))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of bilux.load")]
     fn _load<'py>(
         class: &Bound<'py, PyType>,
@@ -58,6 +58,7 @@ impl Scene {
         animation: Option<String>,
         variant: Option<String>,
         subdivide: Option<&str>,
+        definitions: Vec<(String, String)>,
         glass: &str,
         light_radius: f32,
         max_memory: u64,
@@ -74,6 +75,7 @@ impl Scene {
             animation,
             variant,
             subdivide: subdivide.map(scheme_named).transpose()?,
+            definitions,
             glass: glass_named(glass)?,
             light_radius,
             ..ReadOptions::default()

@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout};
-use crate::choices::GlassArgument;
+use crate::choices::{GlassArgument, defined};
 use crate::ending;
 use crate::lasting::Checkpoints;
 use crate::output;
@@ -167,6 +167,7 @@ fn identity(input: &Input, user: &Parameters) -> anyhow::Result<Identity> {
         ("--animation", said(a.choices.animation.as_ref())),
         ("--variant", said(a.choices.variant.as_ref())),
         ("--subdivide", said(a.choices.subdivide.map(Scheme::name))),
+        ("--define", defined(&a.choices.definitions).join(" ")),
         ("--glass", glass.to_owned()),
         ("--light-radius", a.choices.light_radius.to_string()),
         ("--fast", a.fast.to_string()),

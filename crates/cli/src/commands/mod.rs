@@ -66,6 +66,7 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
         animation: choices.animation.clone(),
         variant: choices.variant.clone(),
         subdivide: choices.subdivide,
+        definitions: choices.definitions.clone(),
         glass: match choices.glass {
             GlassArgument::Auto => Glass::Auto,
             GlassArgument::Thin => Glass::Thin,

@@ -2,7 +2,7 @@
 
 use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::Common;
-use crate::choices::{Choices, GlassArgument};
+use crate::choices::{Choices, GlassArgument, defined};
 use crate::interrupt::interrupt;
 use crate::sandbox_paths::{SandboxPaths, folder_of};
 use crate::serving::Serve;
@@ -131,9 +131,12 @@ fn command(arguments: &Serve) -> Vec<String> {
     say("--layer", layer.clone());
     say("--background", studio.picture_behind().map(|path| path.display().to_string()));
     say("--preset", preset.clone());
-    let Choices { animation, variant, glass, subdivide, light_radius } = choices;
+    let Choices { animation, variant, definitions, glass, subdivide, light_radius } = choices;
     say("--animation", animation.clone());
     say("--variant", variant.clone());
+    for definition in defined(definitions) {
+        say("--define", Some(definition));
+    }
     say(
         "--glass",
         match glass {

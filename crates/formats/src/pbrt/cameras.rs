@@ -3,12 +3,13 @@
 use super::entity::Entity;
 use super::lens_system::ThinLens;
 use super::loader::Loader;
-use super::names::unknown;
 use super::options::{Options, Settings};
 use super::parameters::ParameterList;
-use super::state::{Matrices, half_tangent};
+use super::state::Matrices;
 use crate::FormatError;
+use crate::names::unknown;
 use crate::oddities::Oddities;
+use crate::placement::{half_tangent, view_of};
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{atan, atan2_f64};
 use bilux_math::{DMat3, DMat4, DVec2, DVec3, Motion, MotionKey, Vec3};
@@ -269,14 +270,5 @@ fn is_flat(entity: &Entity) -> FormatError {
 
 /// The placement of a camera.
 fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
-    let position = to_world.w_axis.truncate();
-    let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
-    let (Some(forward), Some(up)) = (axis(DVec3::Z), axis(DVec3::Y)) else { return Err(is_flat(entity)) };
-    // Far from the origin, 32-bit floats may not resolve one metre.
-    let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
-    let mut parameters = Parameters::default();
-    for (key, v) in [("position", position), ("look_at", ahead), ("up", up)] {
-        parameters.set(key, v.as_vec3());
-    }
-    Ok(parameters)
+    view_of(to_world).ok_or_else(|| is_flat(entity))
 }

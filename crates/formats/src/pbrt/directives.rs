@@ -1,16 +1,16 @@
 //! Parses directives in order.
 
-use super::colours::SPACES;
 use super::directive::Directive;
 use super::entity::Entity;
 use super::lexer::{Lexer, Token, shown};
 use super::media;
-use super::names::unknown;
 use super::parameters;
 use super::parser::{Parser, Scope};
 use super::shapes;
 use super::state::{MaterialKey, TARGETS};
 use crate::FormatError;
+use crate::names::unknown;
+use crate::spectra::colours::SPACES;
 use crate::text::name_of;
 use bilux_scene::SceneError;
 use std::sync::Arc;
@@ -116,7 +116,7 @@ impl Directive<'_, '_, '_, '_> {
         let (name, at) = self.lexer.text("the name of a file")?;
         let at = self.lexer.place(at);
         let Parser { includes, loader, .. } = &mut *self.parser;
-        let mut file = includes.open(&name, &at, loader)?;
+        let mut file = includes.open(&name, &at, loader.folder.as_deref(), loader.reading)?;
         let begins = file.bytes.len() + 1;
         let more = self.lexer.skip_parameters()?;
         if let Some((_, text)) = more {
@@ -130,7 +130,7 @@ impl Directive<'_, '_, '_, '_> {
             None => lexer,
         };
         run(self.parser, &mut lexer)?;
-        self.parser.includes.close(file, &mut self.parser.loader);
+        self.parser.includes.close(file, self.parser.loader.reading);
         Ok(())
     }
 

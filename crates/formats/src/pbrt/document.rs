@@ -1,11 +1,11 @@
 //! What the directives of a file say: all that a scene is made of, before names are resolved.
 
 use super::entity::Entity;
-use super::media::Medium;
-use super::names::unknown;
 use super::options::Options;
 use super::state::{MaterialKey, Matrices};
 use crate::FormatError;
+use crate::filling::Medium;
+use crate::names::unknown;
 use bilux_math::DMat4;
 use bilux_scene::{Mesh, Span};
 use std::collections::HashMap;

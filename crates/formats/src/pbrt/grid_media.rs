@@ -3,59 +3,11 @@
 use super::loader::Loader;
 use super::parameters::ParameterList;
 use crate::FormatError;
+use crate::filling::{Density, Temperature};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
 use bilux_scene::media::{BLOCK_VOXELS, Faults, Grid};
-use bilux_scene::wavelength::black_body_of_peak_one;
-use bilux_scene::{Span, Spec, Value};
+use bilux_scene::{Spec, Value};
 use std::sync::Arc;
-
-/// A grid, and the place of its medium in the world.
-#[derive(Clone, Debug)]
-pub(super) struct Density {
-    grid: Arc<Grid>,
-    to_world: DMat4,
-}
-
-/// Temperatures of a medium, whose light has the spectrum of a black body with a maximum of 1.
-#[derive(Clone, Debug)]
-pub(super) struct Temperature {
-    pub(super) grid: Density,
-    /// Kelvins for each unit.
-    pub(super) scale: f32,
-}
-
-impl Temperature {
-    /// The luminance of its hottest place.
-    pub(super) fn brightest(&self) -> f32 {
-        black_body_of_peak_one(self.grid.grid.maximum() * self.scale).luminance()
-    }
-}
-
-impl Density {
-    /// True if it is in the same place as a shape with this matrix.
-    fn is_placed_as(&self, shape_to_world: &DMat4) -> bool {
-        self.to_world == *shape_to_world
-    }
-
-    /// A grid in the space of a shape, whose medium has a place of its own in the world; `None` for a shape
-    /// without extent.
-    pub(super) fn within(
-        &self,
-        shape_to_world: &DMat4,
-        at: &Span,
-        loader: &mut Loader,
-    ) -> Result<Option<Arc<Grid>>, FormatError> {
-        if self.is_placed_as(shape_to_world) {
-            return Ok(Some(self.grid.clone()));
-        }
-        let to_medium = self.grid.to_object().matrix().as_dmat4();
-        let to_shape = shape_to_world.inverse() * self.to_world * to_medium;
-        let Some(to_shape) = Transform::from_matrix(to_shape) else { return Ok(None) };
-        let grid = Grid::clone(&self.grid).placed(&to_shape);
-        loader.reading.charge_grid(&grid, &at.file)?;
-        Ok(Some(Arc::new(grid)))
-    }
-}
 
 /// Makes the grids that the parameters of a medium describe.
 pub(super) struct GridMaker<'m, 'o, 'r> {

@@ -2,11 +2,11 @@
 
 use super::entity::Entity;
 use super::loader::SpectrumType;
-use super::names::unknown;
 use super::parameters::{Kind, ParameterList};
-use super::texture_or_value::TextureOrValue;
 use super::textures::Textures;
 use crate::FormatError;
+use crate::names::unknown;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use std::f64::consts::PI;
 use std::sync::Arc;

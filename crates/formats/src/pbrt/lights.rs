@@ -6,11 +6,11 @@
 use super::entity::Entity;
 use super::environment;
 use super::light_maker::{LightMaker, picture_name};
-use super::names::unknown;
 use super::parameters::ParameterList;
-use super::state::half_tangent;
-use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
+use crate::names::unknown;
+use crate::placement::half_tangent;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::transcendental::cos_f64;
 use bilux_math::{DMat4, DVec3, Rgb, Vec3};
 use bilux_scene::{SceneError, Spec};

@@ -1,16 +1,16 @@
 //! What parameters refer to: colours, spectra and pictures, many of them in files of their own.
 
-use super::colours::{ColourSpace, from_xyz};
 use super::lexer::number_of;
-use super::metals;
-use super::names::unknown;
 use super::parameters::{Kind, Parameter, ParameterList, Values};
-use super::spectra::{self, Named, Spectrum};
+use super::spectra::{self, Named};
 use crate::FormatError;
+use crate::names::unknown;
 use crate::oddities::Oddities;
 use crate::reading::{self, Reading};
+use crate::spectra::colours::{ColourSpace, from_xyz};
+use crate::spectra::metals;
+use crate::spectra::{Spectrum, blackbody};
 use bilux_math::Rgb;
-use bilux_scene::texture::{Image, Texels};
 use bilux_scene::{Span, Texture};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -78,9 +78,9 @@ impl<'o, 'r> Loader<'o, 'r> {
             (Kind::Rgb | Kind::Xyz, _) => return wrong("three numbers"),
             (Kind::Float, Values::Numbers(c)) if c.len() == 1 => Rgb::grey(c[0]),
             (Kind::Blackbody, Values::Numbers(c)) => match c.as_slice() {
-                [kelvin] => spectra::blackbody(*kelvin),
+                [kelvin] => blackbody(*kelvin),
                 // Version 3 adds a factor.
-                [kelvin, factor] => spectra::blackbody(*kelvin) * *factor,
+                [kelvin, factor] => blackbody(*kelvin) * *factor,
                 _ => return wrong("a temperature in kelvin"),
             },
             (Kind::Spectrum, Values::Numbers(c)) => {
@@ -172,18 +172,6 @@ impl<'o, 'r> Loader<'o, 'r> {
             },
             _ => Ok(None),
         }
-    }
-
-    /// A texture from rows of texels, the top one first.
-    pub(super) fn picture(
-        &mut self,
-        name: &str,
-        [width, height]: [usize; 2],
-        colours: Vec<Rgb>,
-    ) -> Result<Texture, FormatError> {
-        let image = Image { width, height, texels: Texels::Floats { colours, alpha: Vec::new() } };
-        self.reading.charge_image(&image, name)?;
-        Ok(Texture::of(name, Arc::new(image), true))
     }
 
     /// An image from a file; a magenta checker, with a warning, if it cannot be read.

@@ -1,51 +1,11 @@
 //! Participating media: the same everywhere, or as dense as a grid says.
 
-use super::grid_media::{Density, GridMaker, Temperature};
+use super::grid_media::GridMaker;
 use super::loader::{Loader, SpectrumType};
 use super::parameters::ParameterList;
 use crate::FormatError;
+use crate::filling::{Density, Medium};
 use bilux_math::{DMat4, Rgb};
-use bilux_scene::{Span, Spec, Value};
-
-/// The supported properties of a medium.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Medium {
-    /// Absorption per unit of length; where a grid varies it, where that is 1.
-    pub(super) absorption: Rgb,
-    /// Scattering per unit of length.
-    pub(super) scattering: Rgb,
-    /// The mean cosine of Henyey and Greenstein's phase function.
-    pub(super) anisotropy: f32,
-    /// The factor on both.
-    pub(super) density: Option<Density>,
-    /// The radiance of a thick layer, and a factor on it.
-    pub(super) emission: Rgb,
-    pub(super) emission_grid: Option<Density>,
-    pub(super) temperature: Option<Temperature>,
-}
-
-impl Medium {
-    /// True when it changes nothing.
-    pub(super) fn is_clear(&self) -> bool {
-        self.absorption.is_black() && self.scattering.is_black()
-    }
-
-    /// Sets the parameters of a material that it fills.
-    pub(super) fn fill(&self, spec: &mut Spec) {
-        spec.parameters.set("absorption", self.absorption.clamp(0.0, 1e6));
-        if !self.scattering.is_black() {
-            spec.parameters.set("scattering", self.scattering.clamp(0.0, 1e6));
-            spec.parameters.set("scattering_anisotropy", self.anisotropy.clamp(-0.99, 0.99));
-        }
-        if !self.emission.is_black() {
-            spec.parameters.set("medium_emission", self.emission.clamp(0.0, 1e9));
-        }
-        if let Some(temperature) = &self.temperature {
-            spec.parameters.set("temperature_scale", temperature.scale.min(1e6));
-            spec.parameters.set("temperature_norm", "peak");
-        }
-    }
-}
 
 /// Measured media: scattering (reduced) and absorption per millimetre. [Jensen 2001, figure 5]
 const MEASURED: &[(&str, [f32; 3], [f32; 3])] = &[
@@ -145,37 +105,4 @@ fn coefficients(list: &ParameterList, loader: &mut Loader) -> Result<[Rgb; 2], F
         Ok(loader.spectrum(list, name, SpectrumType::Number)?.unwrap_or(Rgb::WHITE))
     };
     Ok([given("sigma_a")?, given("sigma_s")?])
-}
-
-/// Fills a material, which is on a shape with this transform to world space, with a medium.
-pub(super) fn fill(
-    spec: &mut Spec,
-    medium: &Medium,
-    to_world: &DMat4,
-    at: &Span,
-    loader: &mut Loader,
-) -> Result<(), FormatError> {
-    let is_interface = spec.kind == "interface";
-    let is_solid_glass = spec.kind == "dielectric" && spec.parameters.find("thin").is_none();
-    if !is_interface && !is_solid_glass {
-        let what = "a medium inside is supported only in dielectrics and interfaces";
-        loader.note(what, || at.clone());
-        return Ok(());
-    }
-    if !is_interface && (medium.density.is_some() || !medium.emission.is_black()) {
-        let what = "a medium that varies or emits light is supported only in interfaces";
-        loader.note(what, || at.clone());
-        return Ok(());
-    }
-    medium.fill(spec);
-    let temperature = medium.temperature.as_ref().map(|temperature| &temperature.grid);
-    let [density, emission] = [&medium.density, &medium.emission_grid].map(Option::as_ref);
-    let grids = [("density", density), ("medium_emission_grid", emission), ("temperature", temperature)];
-    for (key, grid) in grids {
-        let Some(grid) = grid else { continue };
-        if let Some(grid) = grid.within(to_world, at, loader)? {
-            spec.parameters.set(key, Value::Grid(grid));
-        }
-    }
-    Ok(())
 }

@@ -1,7 +1,6 @@
 //! pbrt-v4 scenes, including those names of version 3 that are unambiguous. See `docs/formats/pbrt.md`.
 
 mod cameras;
-mod colours;
 mod directive;
 mod directives;
 mod document;
@@ -9,8 +8,6 @@ mod entity;
 mod environment;
 mod finish;
 mod grid_media;
-mod gzip;
-mod includes;
 mod lens_system;
 mod lexer;
 mod light_maker;
@@ -18,9 +15,7 @@ mod lights;
 mod loader;
 mod materials;
 mod media;
-mod metals;
 mod motion;
-mod names;
 mod options;
 mod parameters;
 mod parser;
@@ -31,7 +26,6 @@ mod shapes;
 mod spectra;
 mod state;
 mod surfaces;
-mod texture_or_value;
 mod textures;
 mod transforms;
 mod write;

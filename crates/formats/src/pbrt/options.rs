@@ -1,9 +1,9 @@
 //! The directives before `WorldBegin`: film, filter, sampler and integrator, as settings that a render may follow.
 
 use super::entity::Entity;
-use super::names::unknown;
 use super::state::Matrices;
 use crate::FormatError;
+use crate::names::unknown;
 use crate::oddities::Oddities;
 use bilux_scene::{Parameters, Span, Value};
 

@@ -1,11 +1,11 @@
 //! Parameter lists: any number of `"type name" [ values ]`.
 
-use super::colours::ColourSpace;
 use super::lexer::{Lexer, Token, number_of, shown};
-use super::names::{shortened, unknown};
 use crate::FormatError;
 use crate::budget::Budget;
+use crate::names::{shortened, unknown};
 use crate::oddities::Oddities;
+use crate::spectra::colours::ColourSpace;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Span;
 use bilux_scene::error::nearest_name;

@@ -1,10 +1,10 @@
 //! What the directives of a file change.
 
 use super::document::{Document, Piece};
-use super::includes::Includes;
 use super::loader::Loader;
 use super::shapes::ShapeCache;
 use super::state::{Matrices, State};
+use crate::includes::Includes;
 use bilux_scene::Span;
 use std::collections::HashMap;
 

@@ -6,9 +6,10 @@ use super::motion::motion_within;
 use super::shapes::{ShapeCache, unit_sphere};
 use super::state::Matrices;
 use super::surfaces::{Glow, Surfaces};
-use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
-use bilux_math::{DMat4, DVec3, Rgb, Vec3};
+use crate::emissive::{fronted, uniform_scale};
+use crate::texture_or_value::TextureOrValue;
+use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Mesh, Object, Spec};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -114,20 +115,6 @@ impl<'d, 'o, 'r> Placer<'d, 'o, 'r> {
     }
 }
 
-/// The scale of a matrix, if it is uniform.
-fn uniform_scale(matrix: &DMat4) -> Option<f64> {
-    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate());
-    let scale = x.length();
-    let off = [
-        x.dot(y),
-        y.dot(z),
-        z.dot(x),
-        x.length_squared() - y.length_squared(),
-        x.length_squared() - z.length_squared(),
-    ];
-    (scale > 0.0 && off.iter().all(|o| o.abs() < 1e-5 * scale * scale)).then_some(scale)
-}
-
 /// The area of a mesh in world space.
 fn area(mesh: &Mesh, matrix: &DMat4) -> f64 {
     let corner = |i: u32| matrix.transform_point3(mesh.positions[i as usize].as_dvec3());
@@ -136,27 +123,4 @@ fn area(mesh: &Mesh, matrix: &DMat4) -> f64 {
         0.5 * (b - a).cross(c - a).length()
     };
     mesh.triangles.iter().map(one).filter(|area| area.is_finite()).sum()
-}
-
-/// A copy of a mesh whose triangles are counter-clockwise as seen from the side of their normals, from which it
-/// emits.
-fn fronted(mesh: &Arc<Mesh>) -> Arc<Mesh> {
-    if mesh.normals.is_empty() {
-        return mesh.clone();
-    }
-    let turned = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-        let normal: Vec3 = t.iter().map(|i| mesh.normals[*i as usize]).sum();
-        (b - a).cross(c - a).dot(normal) < 0.0
-    };
-    if !mesh.triangles.iter().any(turned) {
-        return mesh.clone();
-    }
-    let mut front = (**mesh).clone();
-    for t in &mut front.triangles {
-        if turned(t) {
-            t.swap(1, 2);
-        }
-    }
-    Arc::new(front)
 }

@@ -2,11 +2,11 @@
 
 use super::directives;
 use super::finish::finish;
-use super::includes::Includes;
 use super::lexer::Lexer;
 use super::loader::Loader;
 use super::parser::Parser;
 use crate::FormatError;
+use crate::includes::Includes;
 use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use bilux_scene::SceneBuilder;

@@ -1,10 +1,8 @@
 //! The graphics state, which applies to the following directives.
 
-use super::colours::ColourSpace;
 use super::parameters::Parameter;
-use bilux_math::glam::DQuat;
-use bilux_math::transcendental::{sin_cos_f64, tan_f64};
-use bilux_math::{DMat4, DVec3};
+use crate::spectra::colours::ColourSpace;
+use bilux_math::DMat4;
 use std::sync::Arc;
 
 /// The transforms from the current space to world space, at the start and the end time.
@@ -61,28 +59,4 @@ impl State {
         let index = TARGETS.iter().position(|known| *known == target);
         index.map(|i| self.attributes[i].clone()).unwrap_or_default()
     }
-}
-
-/// A rotation by an angle in degrees about an axis; `None` for a zero axis.
-pub(super) fn rotation(degrees: f64, axis: DVec3) -> Option<DMat4> {
-    let axis = axis.try_normalize()?;
-    let (sin, cos) = sin_cos_f64((degrees % 360.0).to_radians() * 0.5);
-    Some(DMat4::from_quat(DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)))
-}
-
-/// The transform from world space to a camera that looks along +z with +x to the right.
-///
-/// `None` if the direction is zero or parallel to up.
-pub(super) fn look_at(eye: DVec3, at: DVec3, up: DVec3) -> Option<DMat4> {
-    let forward = (at - eye).try_normalize()?;
-    let right = up.try_normalize()?.cross(forward).try_normalize()?;
-    let above = forward.cross(right);
-    let columns = [right, above, forward].map(|axis| axis.extend(0.0));
-    let to_world = DMat4::from_cols(columns[0], columns[1], columns[2], eye.extend(1.0));
-    Some(to_world.inverse())
-}
-
-/// The tangent of half an angle in degrees.
-pub(super) fn half_tangent(degrees: f32) -> f64 {
-    tan_f64(f64::from(degrees).to_radians() * 0.5)
 }

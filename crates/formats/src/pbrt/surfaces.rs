@@ -4,10 +4,10 @@ use super::document::{Alpha, Document, ObjectInstance, Piece, SurfaceAttributes}
 use super::light_maker::{AreaEmission, LightMaker};
 use super::loader::{Loader, SpectrumType};
 use super::materials::{MaterialMaker, material};
-use super::media::fill;
 use super::state::MaterialKey;
-use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
+use crate::filling::fill;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::{DMat4, Rgb};
 use bilux_scene::{MATERIALS, Span, Spec, Texture, Value};
 use std::collections::HashMap;
@@ -127,7 +127,8 @@ impl<'d, 'o, 'r> Surfaces<'d, 'o, 'r> {
             None => Spec::new("interface", "interface"),
         };
         if !medium.is_clear() {
-            fill(&mut spec, &medium, to_world, &piece.at, self.maker.loader())?;
+            let loader = self.maker.loader();
+            fill(&mut spec, &medium, to_world, &piece.at, (loader.reading, &mut loader.oddities))?;
         }
         if let Some(glow) = glow.filter(|_| spec.kind != "interface") {
             spec = self.glowing(spec, glow, piece);

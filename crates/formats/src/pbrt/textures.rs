@@ -3,11 +3,11 @@
 use super::document::NamedTextures;
 use super::entity::Entity;
 use super::loader::{Loader, SpectrumType};
-use super::names::unknown;
 use super::parameters::{Kind, ParameterList};
-use super::texture_or_value::{TextureOrValue, by_formula};
 use crate::FormatError;
+use crate::names::unknown;
 use crate::reading::Texels;
+use crate::texture_or_value::{TextureOrValue, by_formula};
 use bilux_math::Rgb;
 use bilux_math::transcendental::powf;
 use bilux_scene::texture::{Filter, UvTransform, Wrap};
@@ -236,9 +236,13 @@ fn scale(
         (TextureOrValue::Colour(colour), other) | (other, TextureOrValue::Colour(colour)) => {
             Ok(other.scaled(colour))
         }
-        (a, b) => {
-            by_formula("scale", [("a", &a), ("b", &b)], &[], |uv| a.at(uv) * b.at(uv), &mut textures.loader)
-        }
+        (a, b) => by_formula(
+            "scale",
+            [("a", &a), ("b", &b)],
+            &[],
+            |uv| a.at(uv) * b.at(uv),
+            textures.loader.reading,
+        ),
     }
 }
 
@@ -259,7 +263,7 @@ fn mix(
             [("a", &a), ("b", &b), ("amount", &amount)],
             &[],
             |uv| blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance())),
-            &mut textures.loader,
+            textures.loader.reading,
         ),
     }
 }
@@ -299,7 +303,7 @@ fn checkerboard(
             let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
             if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
         },
-        &mut textures.loader,
+        textures.loader.reading,
     )
 }
 
@@ -313,7 +317,7 @@ fn bilerp(
     let (v00, v01, v10, v11) =
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
     let [su, sv, du, dv] = textures.uv_mapping(list)?;
-    let ramp = textures.loader.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
+    let ramp = textures.loader.reading.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
     // The centres of the four texels are the corners.
     let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
     let transform = Some(UvTransform::new(offset, 0.0, [0.5 * su, 0.5 * sv]));
@@ -353,11 +357,11 @@ fn image_map(
     }
     let mut source = TextureOrValue::Picture(Arc::new(texture));
     if let Some(gamma) = gamma {
-        source = source.mapped(|c| c.map(|c| powf(c.max(0.0), gamma)), &mut textures.loader)?;
+        source = source.mapped(|c| c.map(|c| powf(c.max(0.0), gamma)), textures.loader.reading)?;
     }
     source = source.scaled(Rgb::grey(list.finite("scale", 1.0)?));
     if list.flag("invert", false)? {
-        source = source.mapped(|c| c.map(|c| (1.0 - c).max(0.0)), &mut textures.loader)?;
+        source = source.mapped(|c| c.map(|c| (1.0 - c).max(0.0)), textures.loader.reading)?;
     }
     Ok(source)
 }

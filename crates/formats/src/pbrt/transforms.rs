@@ -2,9 +2,9 @@
 
 use super::directive::Directive;
 use super::lexer::{Token, shown};
-use super::names::unknown;
-use super::state::{look_at, rotation};
 use crate::FormatError;
+use crate::names::unknown;
+use crate::placement::{look_at, rotation};
 use bilux_math::glam::DVec4;
 use bilux_math::{DMat4, DVec3};
 

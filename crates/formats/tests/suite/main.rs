@@ -30,6 +30,7 @@ mod left_out;
 mod luminaires;
 mod materials_of_exporters;
 mod messages;
+mod mitsuba;
 mod native;
 mod obj;
 mod off;

@@ -356,6 +356,7 @@ class Scene:
         animation: str | None,
         variant: str | None,
         subdivide: str | None,
+        definitions: list[tuple[str, str]],
         glass: str,
         light_radius: float,
         max_memory: int,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, BinaryIO, Literal
 
 import numpy as np
@@ -899,6 +899,7 @@ def load(
     animation: str | None = None,
     variant: str | None = None,
     subdivide: Literal["catmull-clark", "loop", "bilinear"] | None = None,
+    definitions: Mapping[str, object] | None = None,
     glass: Literal["auto", "thin", "solid"] = "auto",
     light_radius: float = 0.0,
     max_memory: int = MAX_MEMORY,
@@ -917,6 +918,7 @@ def load(
         variant: the variant of materials to show, by its name or number.
         subdivide: the scheme by which polygons of a file that states none (OBJ, PLY, OFF) are the cage of a subdivision
             surface; by default they stay as they are.
+        definitions: values for variables of the scene, in place of their defaults (Mitsuba).
         glass: how to read glass whose thickness the file does not give.
         light_radius: the radius of point lights in metres, which softens their shadows.
         max_memory: bytes that reading may take.
@@ -945,6 +947,7 @@ def load(
         animation=animation,
         variant=variant,
         subdivide=subdivide,
+        definitions=[(name, str(value)) for name, value in (definitions or {}).items()],
         glass=glass,
         light_radius=light_radius,
         max_memory=_bytes(max_memory),

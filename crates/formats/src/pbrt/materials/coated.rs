@@ -2,13 +2,14 @@
 
 use super::super::loader::SpectrumType;
 use super::super::media::measured;
-use super::super::metals::straight_and_grazing;
 use super::super::parameters::ParameterList;
-use super::super::texture_or_value::TextureOrValue;
 use super::maker::MaterialMaker;
-use super::plain::{CONDUCTOR, INTERFACE, Metal, extinction_of};
+use super::plain::{CONDUCTOR, INTERFACE, Metal};
 use super::roughness::{Keys, OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
+use crate::fresnel::{extinction_of, reflected_inside};
+use crate::spectra::metals::straight_and_grazing;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
@@ -36,7 +37,7 @@ impl MaterialMaker<'_, '_, '_> {
         let index = self.clamped_index(index, list).max(1.0);
         let internal_reflectance = reflected_inside(index);
         let below = |c: f32| c * (1.0 - internal_reflectance) / (1.0 - c * internal_reflectance);
-        let base = reflectance.mapped(|c| c.map(below), self.loader())?;
+        let base = reflectance.mapped(|c| c.map(below), self.loader().reading)?;
         let mut spec = Spec::new("", "principled").with("specular_ior", index);
         self.set(&mut spec, "base_color", base, list.place("reflectance"));
         self.set_roughness(&mut spec, list, OWN, roughness, is_old, PRINCIPLED)?;
@@ -55,27 +56,6 @@ impl MaterialMaker<'_, '_, '_> {
         }
         Ok(())
     }
-}
-
-/// The fraction of diffuse light from below that a boundary reflects.
-///
-/// By reciprocity, the transmitted fraction is that from above divided by the squared index.
-pub(in crate::pbrt) fn reflected_inside(index: f32) -> f32 {
-    const STEPS: u32 = 512;
-    let step = |i: u32| {
-        let cos = (i as f32 + 0.5) / STEPS as f32;
-        fresnel(cos, index) * 2.0 * cos / STEPS as f32
-    };
-    let above: f32 = (0..STEPS).map(step).sum();
-    1.0 - (1.0 - above) / (index * index)
-}
-
-/// The reflectance of a dielectric from outside. [Fresnel 1823]
-fn fresnel(cos: f32, index: f32) -> f32 {
-    let inside = (1.0 - (1.0 - cos * cos) / (index * index)).max(0.0).sqrt();
-    let across = (cos - index * inside) / (cos + index * inside);
-    let along = (index * cos - inside) / (index * cos + inside);
-    0.5 * (across * across + along * along)
 }
 
 /// Metal below a clear coat.
@@ -169,17 +149,5 @@ impl MaterialMaker<'_, '_, '_> {
             self.note(what, || list.place(name));
         }
         Ok(source.map(|source| source.mean()))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn internal_reflectance_matches_tables() {
-        // [Egan 1973]: 0.596 for an index of 1.5.
-        assert!((reflected_inside(1.5) - 0.596).abs() < 2e-3, "{}", reflected_inside(1.5));
-        assert!(reflected_inside(1.0).abs() < 1e-4);
     }
 }

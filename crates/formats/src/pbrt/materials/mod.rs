@@ -6,17 +6,15 @@ mod plain;
 mod roughness;
 mod version_3;
 
-pub(super) use coated::reflected_inside;
 pub(super) use maker::MaterialMaker;
-pub(super) use plain::extinction_of;
 
 use super::entity::Entity;
-use super::names::unknown;
 use super::parameters::ParameterList;
 use super::state::MaterialKey;
-use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
+use crate::names::unknown;
 use crate::reading::Texels;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::{Span, Spec};
 use std::sync::Arc;

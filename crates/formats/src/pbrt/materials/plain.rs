@@ -1,13 +1,14 @@
 //! Materials with one layer.
 
 use super::super::loader::SpectrumType;
-use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
 use super::super::spectra::{Named, named};
-use super::super::texture_or_value::TextureOrValue;
 use super::maker::MaterialMaker;
 use super::roughness::{Names, OWN, PLAIN};
 use crate::FormatError;
+use crate::fresnel::extinction_of;
+use crate::spectra::metals::{self, Reduced};
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
@@ -210,14 +211,6 @@ impl MaterialMaker<'_, '_, '_> {
             picture => self.set(spec, "reflectance", picture, at),
         }
     }
-}
-
-/// The extinction coefficient at which a metal of index 1 has this reflectance at normal incidence.
-pub(in crate::pbrt) fn extinction_of(reflectance: Rgb) -> Rgb {
-    reflectance.map(|r| {
-        let r = r.clamp(0.0, 0.9999);
-        (2.0 * r.sqrt() / (1.0 - r).sqrt()).min(100.0)
-    })
 }
 
 pub(super) fn measured(maker: &mut MaterialMaker, list: &ParameterList) -> Result<Option<Spec>, FormatError> {

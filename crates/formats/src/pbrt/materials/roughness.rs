@@ -2,9 +2,11 @@
 //! and an anisotropy that reduces it along the direction of brushing.
 
 use super::super::parameters::ParameterList;
-use super::super::texture_or_value::TextureOrValue;
 use super::maker::MaterialMaker;
 use crate::FormatError;
+use crate::roughness::set_alphas;
+pub(super) use crate::roughness::{Keys, PLAIN, PRINCIPLED};
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Spec;
@@ -12,12 +14,6 @@ use bilux_scene::Spec;
 /// The parameter names in pbrt: for both directions, along u, along v.
 pub(super) type Names = [&'static str; 3];
 pub(super) const OWN: Names = ["roughness", "uroughness", "vroughness"];
-
-/// The parameter names in Bilux: roughness, anisotropy, rotation; and the value of a quarter turn.
-pub(super) type Keys = ([&'static str; 3], f32);
-pub(super) const PLAIN: Keys = (["roughness", "anisotropy", "rotation"], 90.0);
-pub(super) const PRINCIPLED: Keys =
-    (["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"], 0.25);
 
 /// How numbers are converted to alphas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,18 +60,8 @@ impl MaterialMaker<'_, '_, '_> {
         let u = self.textures.float_texture(list, along)?.unwrap_or_else(|| even.clone());
         let v = self.textures.float_texture(list, across)?.unwrap_or(even);
         let at = list.place(both);
-        let ([roughness, anisotropy, rotation], quarter) = keys;
         if let (TextureOrValue::Colour(u), TextureOrValue::Colour(v)) = (&u, &v) {
-            let (u, v) = (remap.alpha(u.r).clamp(0.0, 1.0), remap.alpha(v.r).clamp(0.0, 1.0));
-            let ratio = if u == v { 1.0 } else { u.min(v) / u.max(v) };
-            let even = u.max(v) * ((1.0 + ratio * ratio) * 0.5).sqrt();
-            spec.parameters.set_at(roughness, even.sqrt().into(), at.clone());
-            if ratio < 1.0 {
-                spec.parameters.set_at(anisotropy, (1.0 - ratio).into(), at.clone());
-            }
-            if u > v {
-                spec.parameters.set_at(rotation, quarter.into(), at);
-            }
+            set_alphas(spec, keys, [remap.alpha(u.r), remap.alpha(v.r)], &at);
             return Ok(());
         }
         let is_same = match (&u, &v) {
@@ -88,8 +74,8 @@ impl MaterialMaker<'_, '_, '_> {
             self.note(what, || at.clone());
         }
         let root = |c: Rgb| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt());
-        let source = u.mapped(root, self.loader())?;
-        self.set(spec, roughness, source, at);
+        let source = u.mapped(root, self.loader().reading)?;
+        self.set(spec, keys.0[0], source, at);
         Ok(())
     }
 }

@@ -2,11 +2,11 @@
 
 use super::super::loader::SpectrumType;
 use super::super::parameters::ParameterList;
-use super::super::texture_or_value::TextureOrValue;
 use super::maker::MaterialMaker;
 use super::plain::Metal;
 use super::roughness::{OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
+use crate::texture_or_value::TextureOrValue;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
@@ -57,7 +57,7 @@ pub(super) fn plastic(maker: &mut MaterialMaker, list: &ParameterList) -> Result
     maker.set(&mut spec, "base_color", kd, list.place("Kd"));
     spec.parameters.set("specular_weight", weight.clamp(0.0, 1.0));
     if let Some(opacity) = maker.textures.texture_or_value(list, "opacity", SpectrumType::Surface)? {
-        let grey = opacity.mapped(|c| Rgb::grey(c.luminance()), maker.loader())?;
+        let grey = opacity.mapped(|c| Rgb::grey(c.luminance()), maker.loader().reading)?;
         let value = maker.textures.number_value(grey, [0.0, 1.0]);
         spec.parameters.set_at("opacity", value, list.place("opacity"));
     }

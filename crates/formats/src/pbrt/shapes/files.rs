@@ -1,11 +1,11 @@
 //! `plymesh`: triangles from a PLY file, which may be compressed.
 
 use super::super::document::ShapeGeometry;
-use super::super::gzip;
 use super::super::parameters::ParameterList;
 use super::maker::ShapeMaker;
 use crate::FormatError;
 use crate::files::read_source;
+use crate::gzip;
 use crate::reading::Source;
 use bilux_scene::{Mesh, SceneError};
 use std::path::Path;

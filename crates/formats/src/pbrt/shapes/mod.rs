@@ -3,7 +3,6 @@
 mod bilinear;
 mod curve;
 mod files;
-mod grid;
 mod loop_subdivision;
 mod maker;
 mod quadrics;
@@ -15,10 +14,10 @@ pub(super) use quadrics::unit_sphere;
 use super::document::{Alpha, Piece, ShapeGeometry, SurfaceAttributes};
 use super::entity::Entity;
 use super::loader::Loader;
-use super::names::unknown;
 use super::parameters::ParameterList;
 use super::state::State;
 use crate::FormatError;
+use crate::names::unknown;
 use maker::ShapeMaker;
 
 /// Builds a shape; `None` if it is invisible.

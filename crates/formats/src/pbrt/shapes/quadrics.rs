@@ -2,19 +2,15 @@
 
 use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
-use super::grid;
 use super::maker::{ShapeCache, ShapeMaker, reversed};
 use crate::FormatError;
+use crate::tessellation::grid;
+use crate::tessellation::sphere::{AROUND, part_of_sphere};
 use bilux_math::glam::DVec3;
 use bilux_math::transcendental::{acos_f64, sin_cos_f64};
 use bilux_scene::Mesh;
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// Quads around a whole turn.
-const AROUND: u32 = 192;
-/// Quads from pole to pole.
-const ALONG: u32 = 96;
 
 /// The fraction of a whole turn that a shape covers, and its number of quads.
 fn turn(list: &ParameterList) -> Result<(f64, u32), FormatError> {
@@ -58,25 +54,6 @@ pub(super) fn sphere(
     maker.round(list, key(maker, 0, &[radius, from, to, turn]), || {
         part_of_sphere(radius, [from, to], turn, around)
     })
-}
-
-/// A part of a sphere between two angles to the upper pole.
-fn part_of_sphere(radius: f64, [from, to]: [f64; 2], turn: f64, around: u32) -> Mesh {
-    let mut mesh = Mesh { name: "sphere".to_owned(), ..Mesh::default() };
-    let rows = ((f64::from(ALONG) * (from - to).abs() / PI).ceil() as u32).max(1);
-    grid::add(&mut mesh, around, rows, turn == 1.0, &|u, v| {
-        let theta = from + (to - from) * v;
-        let (sin, cos) = match theta {
-            // Each pole is exactly one point.
-            0.0 => (0.0, 1.0),
-            PI => (0.0, -1.0),
-            t => sin_cos_f64(t),
-        };
-        let (sin_phi, cos_phi) = sin_cos_f64(2.0 * PI * turn * u);
-        let n = DVec3::new(sin * cos_phi, sin * sin_phi, cos);
-        (n * radius, n)
-    });
-    mesh
 }
 
 /// The sphere of radius 1.

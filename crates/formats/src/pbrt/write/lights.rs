@@ -2,7 +2,7 @@
 
 use super::document::{Document, float, from_to, numbers, point, rgb};
 use crate::FormatError;
-use crate::pbrt::environment::on_the_sphere;
+use crate::environment_maps::on_the_sphere;
 use crate::values::{colour, number, texture, vector};
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};

@@ -1,11 +1,11 @@
 //! Writes pbrt materials: the inverse of [`super::super::materials`].
 
-use super::super::media::Medium;
 use super::document::{Document, float, rgb};
 use super::material_parameters::HOLDS;
 use super::textures::{AS_IT_IS, Change, TexelMeaning};
 use crate::FormatError;
-use crate::pbrt::materials::{extinction_of, reflected_inside};
+use crate::filling::Medium;
+use crate::fresnel::{extinction_of, reflected_inside};
 use crate::pbrt::spectra::GLASSES;
 use crate::values::{as_principled, colour, number, texture};
 use crate::writing::Writing;

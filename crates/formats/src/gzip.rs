@@ -10,7 +10,7 @@ use std::path::Path;
 /// Decompresses bytes if they begin with the gzip header, within the remaining memory.
 ///
 /// The result counts against the budget until [`Reading::release`].
-pub(super) fn plain(
+pub(crate) fn plain(
     bytes: Vec<u8>,
     reading: &mut Reading,
     path: &Path,

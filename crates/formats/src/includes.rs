@@ -1,8 +1,8 @@
 //! Files that other files include.
 
-use super::gzip;
-use super::loader::Loader;
 use crate::FormatError;
+use crate::gzip;
+use crate::reading::Reading;
 use bilux_scene::Span;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,7 +15,7 @@ const MAX_CHAIN: usize = 32;
 
 /// The files that are open.
 #[derive(Default)]
-pub(super) struct Includes {
+pub(crate) struct Includes {
     /// The chain of includes, from the first file to the current one.
     open: Vec<PathBuf>,
     /// The total bytes of included files, counted once per inclusion.
@@ -23,27 +23,27 @@ pub(super) struct Includes {
 }
 
 /// A file that is included.
-pub(super) struct Included {
+pub(crate) struct Included {
     /// What messages call it.
-    pub(super) name: Arc<str>,
-    pub(super) bytes: Vec<u8>,
+    pub(crate) name: Arc<str>,
+    pub(crate) bytes: Vec<u8>,
 }
 
 impl Includes {
     /// Of the first file, by its full path if it has one.
-    pub(super) fn of(first: Option<PathBuf>) -> Includes {
+    pub(crate) fn of(first: Option<PathBuf>) -> Includes {
         Includes { open: vec![first.unwrap_or_default()], included: 0 }
     }
 
     /// Opens another file, until [`Includes::close`].
-    pub(super) fn open(
+    pub(crate) fn open(
         &mut self,
         name: &str,
         at: &Span,
-        loader: &mut Loader,
+        folder: Option<&Path>,
+        reading: &mut Reading,
     ) -> Result<Included, FormatError> {
-        let reading = &mut *loader.reading;
-        let path = reading.locator.locate_except(loader.folder.as_deref(), name, &self.open, at)?;
+        let path = reading.locator.locate_except(folder, name, &self.open, at)?;
         if self.open.contains(&path) {
             let message =
                 format!("'{name}' includes itself, directly or through other files: remove it here");
@@ -67,8 +67,8 @@ impl Includes {
     }
 
     /// Closes the file that was opened last.
-    pub(super) fn close(&mut self, file: Included, loader: &mut Loader) {
+    pub(crate) fn close(&mut self, file: Included, reading: &mut Reading) {
         self.open.pop();
-        loader.reading.release(file.bytes);
+        reading.release(file.bytes);
     }
 }

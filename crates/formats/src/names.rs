@@ -4,7 +4,7 @@ use crate::FormatError;
 use bilux_scene::{SceneError, Span};
 
 /// The error for an unknown name. Names come from untrusted files, so only a few, shortened ones are compared.
-pub(super) fn unknown<'n>(
+pub(crate) fn unknown<'n>(
     what: impl Into<String>,
     name: &str,
     known: impl IntoIterator<Item = &'n str>,
@@ -18,6 +18,6 @@ pub(super) fn unknown<'n>(
 }
 
 /// The beginning of a name.
-pub(super) fn shortened(name: &str) -> String {
+pub(crate) fn shortened(name: &str) -> String {
     name.chars().take(60).collect()
 }

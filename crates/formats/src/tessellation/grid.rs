@@ -5,13 +5,13 @@ use bilux_math::glam::DVec3;
 use bilux_scene::Mesh;
 
 /// The point and normal of a surface at two coordinates from 0 to 1.
-pub(super) type Surface<'s> = &'s dyn Fn(f64, f64) -> (DVec3, DVec3);
+pub(crate) type Surface<'s> = &'s dyn Fn(f64, f64) -> (DVec3, DVec3);
 
 /// Adds a surface as a grid of quads with two triangles each.
 ///
 /// It faces the cross product of its derivatives by the first and the second coordinate. Triangles with coinciding
 /// corners are left out. If `closes` is set, the last column repeats the first exactly.
-pub(super) fn add(mesh: &mut Mesh, columns: u32, rows: u32, closes: bool, at: Surface) {
+pub(crate) fn add(mesh: &mut Mesh, columns: u32, rows: u32, closes: bool, at: Surface) {
     let first = mesh.positions.len() as u32;
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
         let (u, v) = (f64::from(i) / f64::from(columns), f64::from(j) / f64::from(rows));

@@ -5,7 +5,7 @@ use bilux_math::glam::{DMat3, DVec3};
 
 /// The colour space of an RGB value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum ColourSpace {
+pub(crate) enum ColourSpace {
     /// Rec. 709 primaries, linear.
     #[default]
     Srgb,
@@ -15,7 +15,7 @@ pub(super) enum ColourSpace {
 }
 
 /// The names of the colour spaces in directives.
-pub(super) const SPACES: &[(&str, ColourSpace)] = &[
+pub(crate) const SPACES: &[(&str, ColourSpace)] = &[
     ("srgb", ColourSpace::Srgb),
     ("rec709", ColourSpace::Srgb),
     ("dci-p3", ColourSpace::DciP3),
@@ -40,7 +40,7 @@ impl ColourSpace {
     }
 
     /// The colour of a light in Rec. 709; white becomes the white of the space.
-    pub(super) fn light(self, colour: Rgb) -> Rgb {
+    pub(crate) fn light(self, colour: Rgb) -> Rgb {
         if self == ColourSpace::Srgb {
             return colour;
         }
@@ -49,7 +49,7 @@ impl ColourSpace {
     }
 
     /// The colour of a surface in Rec. 709; white stays white.
-    pub(super) fn surface(self, colour: Rgb) -> Rgb {
+    pub(crate) fn surface(self, colour: Rgb) -> Rgb {
         if self == ColourSpace::Srgb {
             return colour;
         }
@@ -78,17 +78,17 @@ fn to_xyz([r, g, b, white]: Primaries) -> DMat3 {
 }
 
 /// Converts XYZ to linear Rec. 709; components may be negative.
-pub(super) fn from_xyz(c: DVec3) -> DVec3 {
+pub(crate) fn from_xyz(c: DVec3) -> DVec3 {
     to_xyz(REC709).inverse() * c
 }
 
 /// The colour with this chromaticity and luminance 1, in Rec. 709.
-pub(super) fn of_chromaticity(xy: [f64; 2]) -> Rgb {
+pub(crate) fn of_chromaticity(xy: [f64; 2]) -> Rgb {
     clipped(from_xyz(xyz(xy)))
 }
 
 /// An XYZ colour scaled to luminance 1, in Rec. 709; black if it has none.
-pub(super) fn of_unit_luminance(c: DVec3) -> Rgb {
+pub(crate) fn of_unit_luminance(c: DVec3) -> Rgb {
     if c.y > 0.0 && c.is_finite() { clipped(from_xyz(c / c.y)) } else { Rgb::BLACK }
 }
 

@@ -1,9 +1,10 @@
 //! Surface parameters that are either a constant or a texture.
 
-use super::loader::Loader;
 use crate::FormatError;
 use crate::images::mean;
+use crate::reading::Reading;
 use bilux_math::{Rgb, Vec2};
+use bilux_scene::texture::{Image, Texels};
 use bilux_scene::{Spec, Texture, Value};
 use std::sync::Arc;
 
@@ -12,14 +13,14 @@ const MAX_PARTS: usize = 16;
 
 /// A constant or a texture.
 #[derive(Clone, Debug)]
-pub(super) enum TextureOrValue {
+pub(crate) enum TextureOrValue {
     Colour(Rgb),
     Picture(Arc<Texture>),
 }
 
 impl TextureOrValue {
     /// Multiplies it by a colour.
-    pub(super) fn scaled(self, by: Rgb) -> TextureOrValue {
+    pub(crate) fn scaled(self, by: Rgb) -> TextureOrValue {
         match self {
             TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour * by),
             TextureOrValue::Picture(picture) if by == Rgb::WHITE => TextureOrValue::Picture(picture),
@@ -31,7 +32,7 @@ impl TextureOrValue {
     }
 
     /// The constant, or the mean of the texture.
-    pub(super) fn mean(&self) -> Rgb {
+    pub(crate) fn mean(&self) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,
             TextureOrValue::Picture(picture) => mean(picture),
@@ -39,28 +40,28 @@ impl TextureOrValue {
     }
 
     /// Its value at texture coordinates.
-    pub(super) fn at(&self, uv: Vec2) -> Rgb {
+    pub(crate) fn at(&self, uv: Vec2) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,
             TextureOrValue::Picture(picture) => picture.at(uv),
         }
     }
 
-    pub(super) fn is_black(&self) -> bool {
+    pub(crate) fn is_black(&self) -> bool {
         matches!(self, TextureOrValue::Colour(colour) if colour.is_black())
     }
 
     /// Applies a function to each texel, or to the constant.
-    pub(super) fn mapped(
+    pub(crate) fn mapped(
         self,
         rule: impl Fn(Rgb) -> Rgb,
-        loader: &mut Loader,
+        reading: &mut Reading,
     ) -> Result<TextureOrValue, FormatError> {
         match self {
             TextureOrValue::Colour(colour) => Ok(TextureOrValue::Colour(rule(colour))),
             TextureOrValue::Picture(picture) => {
                 let texels = picture.texels().map(rule).collect();
-                let made = loader.picture(&picture.name, [picture.width(), picture.height()], texels)?;
+                let made = reading.picture(&picture.name, [picture.width(), picture.height()], texels)?;
                 Ok(TextureOrValue::Picture(Arc::new(Texture {
                     wrap: picture.wrap,
                     filter: picture.filter,
@@ -74,12 +75,12 @@ impl TextureOrValue {
 
 /// A procedural texture of these parts; bakes `rule` if the kind does not accept these values, or has too many
 /// parts.
-pub(super) fn by_formula<const N: usize>(
+pub(crate) fn by_formula<const N: usize>(
     kind: &str,
     sources: [(&str, &TextureOrValue); N],
     numbers: &[(&str, f32)],
     rule: impl Fn(Vec2) -> Rgb,
-    loader: &mut Loader,
+    reading: &mut Reading,
 ) -> Result<TextureOrValue, FormatError> {
     let mut spec = Spec::new("", kind);
     let mut parts = Vec::new();
@@ -99,7 +100,7 @@ pub(super) fn by_formula<const N: usize>(
         Ok(texture) if texture.formula().is_some_and(|formula| formula.cost() <= MAX_PARTS) => {
             Ok(TextureOrValue::Picture(Arc::new(texture)))
         }
-        _ => baked(kind, &sources.map(|(_, source)| source), rule, loader),
+        _ => baked(kind, &sources.map(|(_, source)| source), rule, reading),
     }
 }
 
@@ -108,7 +109,7 @@ fn baked(
     name: &str,
     parts: &[&TextureOrValue],
     rule: impl Fn(Vec2) -> Rgb,
-    loader: &mut Loader,
+    reading: &mut Reading,
 ) -> Result<TextureOrValue, FormatError> {
     /// Limits on the sides of the image.
     const MIN: usize = 256;
@@ -121,12 +122,26 @@ fn baked(
         sides.max().unwrap_or(0).clamp(MIN, MAX)
     };
     let (width, height) = (side(Texture::width), side(Texture::height));
-    loader.reading.budget.take_bytes((width * height * size_of::<Rgb>()) as u64, name)?;
+    reading.budget.take_bytes((width * height * size_of::<Rgb>()) as u64, name)?;
     let at = |i: usize| {
         let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
         rule(Vec2::new(x / width as f32, 1.0 - y / height as f32))
     };
     let texels = (0..width * height).map(at).collect();
-    loader.reading.budget.release((width * height * size_of::<Rgb>()) as u64);
-    Ok(TextureOrValue::Picture(Arc::new(loader.picture(name, [width, height], texels)?)))
+    reading.budget.release((width * height * size_of::<Rgb>()) as u64);
+    Ok(TextureOrValue::Picture(Arc::new(reading.picture(name, [width, height], texels)?)))
+}
+
+impl Reading<'_> {
+    /// A texture from rows of texels, the top one first, charged for good.
+    pub(crate) fn picture(
+        &mut self,
+        name: &str,
+        [width, height]: [usize; 2],
+        colours: Vec<Rgb>,
+    ) -> Result<Texture, FormatError> {
+        let image = Image { width, height, texels: Texels::Floats { colours, alpha: Vec::new() } };
+        self.charge_image(&image, name)?;
+        Ok(Texture::of(name, Arc::new(image), true))
+    }
 }

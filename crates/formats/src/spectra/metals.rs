@@ -1,6 +1,6 @@
 //! Reduces the spectral indices of metals to three channels.
 
-use super::spectra::{Spectrum, under_daylight};
+use super::{Spectrum, under_daylight};
 use bilux_math::Rgb;
 use bilux_scene::materials::metal_indices;
 
@@ -14,7 +14,7 @@ const MEASURED: [(&str, [Rgb; 2]); 4] = [
 ];
 
 /// The indices of one of pbrt's metals, by its name in the table of Bilux; those of copper for an unknown name.
-pub(super) fn indices(metal: &str) -> [Rgb; 2] {
+pub(crate) fn indices(metal: &str) -> [Rgb; 2] {
     let measured =
         |metal: &str| MEASURED.iter().find(|(name, _)| *name == metal).map(|(_, indices)| *indices);
     let known = measured(metal).or_else(|| metal_indices(metal)).or_else(|| measured("copper"));
@@ -37,7 +37,7 @@ fn reflectance(cos: f64, eta: f64, k: f64) -> f64 {
 
 /// The reflectance of each channel at normal incidence and at 82 degrees, relative to the index of the medium
 /// above.
-pub(super) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
+pub(crate) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
     [1.0, COS_82].map(|cos| {
         let channel = |c: usize| reflectance(cos, f64::from(eta[c] / above), f64::from(k[c] / above)) as f32;
         Rgb::new(channel(0), channel(1), channel(2))
@@ -45,18 +45,18 @@ pub(super) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
 }
 
 /// The spectra of a metal, reduced to three channels.
-pub(super) struct Reduced {
+pub(crate) struct Reduced {
     /// The index of refraction and the extinction.
-    pub(super) indices: [Rgb; 2],
+    pub(crate) indices: [Rgb; 2],
     /// True if the colour at normal incidence is outside the gamut of sRGB.
-    pub(super) is_cut: bool,
+    pub(crate) is_cut: bool,
 }
 
 /// For each channel, the index whose reflectance matches that channel of the metal's colour under daylight.
 ///
 /// The match is at normal incidence and at 82 degrees. [Gulbrandsen 2014] A channel is at most the metal's maximum
 /// reflectance at any wavelength: the red of gold in sRGB is above 1, and no index has such a reflectance.
-pub(super) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> Reduced {
+pub(crate) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> Reduced {
     let mut is_cut = false;
     let [straight, grazing] = [1.0, COS_82].map(|cos| {
         let of = |wavelength| reflectance(cos, eta.at(wavelength).max(1e-3), k.at(wavelength));

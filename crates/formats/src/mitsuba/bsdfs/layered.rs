@@ -1,0 +1,77 @@
+//! Materials below a dielectric boundary.
+
+use crate::FormatError;
+use crate::fresnel::reflected_inside;
+use crate::mitsuba::maker::{Maker, Meaning};
+use crate::mitsuba::plugin::Plugin;
+use crate::roughness::PRINCIPLED;
+use bilux_math::Rgb;
+use bilux_scene::{Spec, Value};
+
+/// A smooth boundary over a diffuse base.
+pub(super) fn plastic(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+    if plugin.kind == "pplastic" {
+        return rough_plastic(maker, plugin);
+    }
+    Ok(Some(below_boundary(maker, plugin)?.with("specular_roughness", 0.0f32)))
+}
+
+/// A rough boundary over a diffuse base.
+pub(super) fn rough_plastic(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+    let mut spec = below_boundary(maker, plugin)?;
+    maker.set_roughness(&mut spec, plugin, PRINCIPLED)?;
+    Ok(Some(spec))
+}
+
+/// A diffuse base whose colour accounts for what the boundary reflects back inside: of its own colour each time that
+/// happens if it is not linear, otherwise without a change of colour.
+fn below_boundary(maker: &mut Maker, plugin: &Plugin) -> Result<Spec, FormatError> {
+    let index = maker.relative_index(plugin, "polypropylene")?.max(1.0);
+    let reflectance = maker.source_or(plugin, "diffuse_reflectance", Meaning::Surface, 0.5)?;
+    let base = if plugin.flag("nonlinear", false)? {
+        let inside = reflected_inside(index);
+        let below = |c: f32| c * (1.0 - inside) / (1.0 - c * inside);
+        reflectance.mapped(|c| c.map(below), maker.reading)?
+    } else {
+        reflectance
+    };
+    let mut spec = Spec::new("", "principled").with("specular_ior", index);
+    maker.set(&mut spec, "base_color", base, &plugin.place("diffuse_reflectance"));
+    let shine = maker.source_or(plugin, "specular_reflectance", Meaning::Surface, 1.0)?;
+    if shine.mean() != Rgb::WHITE {
+        maker.set(&mut spec, "specular_color", shine, &plugin.place("specular_reflectance"));
+    }
+    Ok(spec)
+}
+
+/// A clear coat of version 0.5 over another material.
+pub(super) fn coating(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+    plugin.ignore(&["thickness", "distribution"]);
+    let index = maker.relative_index(plugin, "bk7")?.max(1.0);
+    let alpha = maker.even(plugin, "alpha", Meaning::Number)?.map_or(0.0, |c| c.r);
+    for name in ["sigma_a", "specular_reflectance"] {
+        if plugin.has(name) {
+            maker.oddities.not_shown(&format!("'{name}' of {}", plugin.named()), || plugin.place(name));
+        }
+    }
+    let Some(base) = maker.document.part_of(plugin, "bsdf")? else {
+        return Err(plugin.missing("a bsdf below the coating"));
+    };
+    let Some(base) = maker.material(&base)? else { return Ok(None) };
+    let mut spec = match base.kind.as_str() {
+        "principled" => base,
+        "diffuse" => {
+            let colour = base.parameters.find("reflectance").map(|(value, _)| value.clone());
+            let spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
+            spec.with("base_color", colour.unwrap_or(Value::from(0.5f32)))
+        }
+        other => {
+            maker.note(&format!("a coating over {other} is not supported: it is left out"), &plugin.at);
+            return Ok(Some(base));
+        }
+    };
+    spec.parameters.set("coat_weight", 1.0f32);
+    spec.parameters.set("coat_ior", index);
+    spec.parameters.set("coat_roughness", alpha.clamp(0.0, 1.0).sqrt());
+    Ok(Some(spec))
+}

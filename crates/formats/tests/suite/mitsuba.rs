@@ -1,0 +1,248 @@
+//! Scenes of Mitsuba 3 and of older versions.
+
+use crate::{read_text, refusal, warnings};
+use bilux_formats::{ReadOptions, read, read_bytes};
+use bilux_math::transcendental::{atan, tan};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{SceneBuilder, Spec, Value};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+fn scene(inside: &str) -> SceneBuilder {
+    let text = format!("<scene version=\"3.0.0\">{inside}</scene>");
+    read_text("mitsuba", text).unwrap_or_else(|error| panic!("{inside}: {error}"))
+}
+
+/// A sphere with this material.
+fn material(bsdf: &str) -> Spec {
+    scene(&format!("<shape type=\"sphere\">{bsdf}</shape>")).materials.last().unwrap().clone()
+}
+
+fn close(found: Rgb, wanted: [f32; 3], by: f32) -> bool {
+    (0..3).all(|i| (found[i] - wanted[i]).abs() <= by)
+}
+
+#[test]
+fn a_whole_scene_is_read() {
+    let bytes =
+        fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/scene_mitsuba/all.xml"));
+    let bytes = bytes.unwrap();
+    let given = [("spp".to_owned(), "8".to_owned())];
+    let options = ReadOptions { definitions: given.to_vec(), ..ReadOptions::default() };
+    let scene = read_bytes(&bytes, "", None, "all.xml", &options).unwrap();
+    assert_eq!((scene.objects.len(), scene.lights.len(), scene.cameras.len()), (6, 2, 1));
+    let setting = |key| scene.settings.find(key).map(|(value, _)| value.clone());
+    assert_eq!(setting("spp"), Some(Value::Integer(8)), "the command line overrides the default");
+    assert_eq!(setting("max_depth"), Some(Value::Integer(5)), "edges count one more than events");
+    assert_eq!(setting("size"), Some(Value::Text("64x48".to_owned())));
+    assert_eq!(warnings(&scene), "");
+    let unknown = ReadOptions { definitions: vec![("sp".into(), "8".into())], ..ReadOptions::default() };
+    let error = read_bytes(&bytes, "", None, "all.xml", &unknown).unwrap_err().to_string();
+    assert!(error.contains("did you mean 'spp'"), "{error}");
+    let other = read_bytes(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "off", None, "x", &unknown)
+        .unwrap_err()
+        .to_string();
+    assert!(other.contains("has no variable 'sp'"), "{other}");
+}
+
+/// The numbers are those of Mitsuba 3.9 (`scalar_rgb`), for the same elements.
+#[test]
+fn conventions_are_those_of_mitsuba() {
+    let camera = |inside: &str| {
+        let film = "<film type=\"hdrfilm\"><integer name=\"width\" value=\"200\"/><integer name=\"height\" value=\"100\"/></film>";
+        scene(&format!("<sensor type=\"perspective\">{film}{inside}</sensor>")).cameras[0].spec.clone()
+    };
+    // The horizontal field of view: half its tangent is the vertical one here.
+    let vertical = |x: f32| 2.0 * atan(0.5 * tan(x.to_radians() * 0.5)).to_degrees();
+    for (inside, x) in [
+        ("<float name=\"fov\" value=\"40\"/>", 40.0),
+        ("<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"y\"/>", 72.104_774),
+        ("<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"diagonal\"/>", 36.064_79),
+        ("<float name=\"fov\" value=\"40\"/><string name=\"fov_axis\" value=\"smaller\"/>", 72.104_774),
+        ("<string name=\"focal_length\" value=\"50mm\"/>", 42.311_714),
+    ] {
+        let fov = camera(inside).number("fov").unwrap();
+        assert!((fov - vertical(x)).abs() < 1e-3, "{inside}: {fov}");
+    }
+    let shifted =
+        camera("<float name=\"fov\" value=\"60\"/><float name=\"principal_point_offset_x\" value=\"0.2\"/>");
+    assert_eq!(shifted.number("principal_x"), Some(0.3));
+    assert!(camera("").parameters.find("mirrored").is_none(), "cameras are right-handed");
+
+    let light = |inside: &str| {
+        scene(&format!("<emitter type=\"constant\">{inside}</emitter>")).lights[0].colour("radiance").unwrap()
+    };
+    for (inside, wanted) in [
+        ("<spectrum name=\"radiance\" value=\"2\"/>", [2.4096, 1.8966, 1.8178]),
+        ("<spectrum name=\"radiance\" value=\"400:1, 500:2, 600:3,700:1\"/>", [3.2733, 2.3709, 1.2525]),
+        (
+            "<spectrum name=\"radiance\" type=\"uniform\"><float name=\"value\" value=\"2\"/></spectrum>",
+            [2.0; 3],
+        ),
+        ("<rgb name=\"radiance\" value=\"0.5\"/>", [0.5; 3]),
+        ("<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"3\"/></spectrum>", [3.0; 3]),
+    ] {
+        assert!(close(light(inside), wanted, 0.01), "{inside}: {:?}", light(inside));
+    }
+    let surface = material(
+        "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:.1, 500:.2, 600:.8,700:.1\"/></bsdf>",
+    );
+    assert!(close(surface.colour("reflectance").unwrap(), [0.7909, 0.459, 0.1075], 0.005));
+    let glass = material("<bsdf type=\"dielectric\"/>");
+    assert!((glass.number("eta").unwrap() - 1.504_183_3).abs() < 1e-5);
+    let gold = material("<bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/></bsdf>");
+    assert!(close(gold.colour("k").unwrap(), [3.983, 2.386, 1.603], 1e-3));
+    let rough = material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.25\"/></bsdf>");
+    assert_eq!(rough.number("roughness"), Some(0.5), "the square root of alpha");
+}
+
+#[test]
+fn texture_coordinates_count_downwards() {
+    let quad = &scene("<shape type=\"rectangle\"/>").objects[0].mesh;
+    let at =
+        |mesh: &bilux_scene::Mesh, p: Vec3| mesh.uvs[mesh.positions.iter().position(|q| *q == p).unwrap()];
+    assert_eq!(at(quad, Vec3::new(-1.0, -1.0, 0.0)), Vec2::new(0.0, 1.0), "the top left of a picture");
+    let cube = &scene("<shape type=\"cube\"/>").objects[0].mesh;
+    assert!(cube.triangles.iter().all(|t| {
+        let [a, b, c] = t.map(|i| cube.positions[i as usize]);
+        (b - a).cross(c - a).dot(a + b + c) > 0.0
+    }));
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nusemtl x\nf 1/1 2/1 3/1\n";
+    fs::write(folder.path().join("a.obj"), obj).unwrap();
+    let file = folder.path().join("a.xml");
+    fs::write(&file, "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/></shape></scene>").unwrap();
+    let read = read(&file, &ReadOptions::default()).unwrap();
+    assert_eq!((read.objects[0].mesh.uvs[0].y, warnings(&read)), (0.25, String::new()));
+    // The lower left square of the file is the upper left one of the texture, which has the first colour.
+    let checker = scene(
+        "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\"/></bsdf></shape>",
+    );
+    let texture = &checker.textures[0];
+    assert!((texture.at(Vec2::new(0.1, 0.9)).r - 0.4).abs() < 1e-6);
+    assert!((texture.at(Vec2::new(0.1, 0.1)).r - 0.2).abs() < 1e-6);
+}
+
+#[test]
+fn older_names_are_those_of_version_3() {
+    let new = "<scene version=\"3.0.0\"><sensor type=\"perspective\"><string name=\"fov_axis\" value=\"y\"/><float name=\"fov\" value=\"30\"/>\
+        <transform name=\"to_world\"><lookat origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/></transform></sensor>\
+        <shape type=\"sphere\"><bsdf type=\"roughdielectric\"><float name=\"int_ior\" value=\"1.3\"/><float name=\"alpha_u\" value=\"0.2\"/></bsdf></shape></scene>";
+    let old = new.replace("3.0.0", "0.6.0").replace("fov_axis", "fovAxis").replace("to_world", "toWorld");
+    let old = old.replace("lookat", "lookAt").replace("int_ior", "intIOR").replace("alpha_u", "alphaU");
+    let (new, old) = (read_text("mitsuba", new).unwrap(), read_text("mitsuba", old).unwrap());
+    let plain = |spec: &Spec| {
+        spec.parameters.0.iter().map(|(key, value, _)| (key.clone(), value.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(plain(&new.materials[0]), plain(&old.materials[0]));
+    assert_eq!(plain(&new.cameras[0].spec), plain(&old.cameras[0].spec));
+    let light = "<scene version=\"0.5.0\"><shape type=\"sphere\"><bsdf type=\"diffuse\"><srgb name=\"reflectance\" value=\"#808080\"/></bsdf></shape></scene>";
+    let grey = read_text("mitsuba", light).unwrap().materials[0].colour("reflectance").unwrap();
+    assert!(close(grey, [0.2159; 3], 1e-3), "sRGB");
+}
+
+/// A file with a mesh in it, a triangle whose corners have texture coordinates.
+fn serialized(version: u16, vertices: u64, corner: u32) -> Vec<u8> {
+    let mut inside = 0x1002u32.to_le_bytes().to_vec();
+    if version == 4 {
+        inside.extend(b"name\0");
+    }
+    inside.extend([vertices.to_le_bytes(), 1u64.to_le_bytes()].concat());
+    let positions = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    inside.extend(positions.iter().chain(&[0.0, 0.25, 1.0, 0.0, 0.0, 1.0]).flat_map(|x| x.to_le_bytes()));
+    inside.extend([0, 1, corner].iter().flat_map(|i: &u32| i.to_le_bytes()));
+    let mut bytes = [0x041cu16.to_le_bytes(), version.to_le_bytes()].concat();
+    let mut encoder = flate2::write::ZlibEncoder::new(&mut bytes, flate2::Compression::fast());
+    encoder.write_all(&inside).unwrap();
+    encoder.finish().unwrap();
+    let start: &[u8] = if version == 4 { &[0; 8] } else { &[0; 4] };
+    [&bytes, start, &1u32.to_le_bytes()].concat()
+}
+
+#[test]
+fn serialized_meshes_are_read_and_their_counts_are_not_believed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.xml");
+    fs::write(&file, "<scene version=\"3.0.0\"><shape type=\"serialized\"><string name=\"filename\" value=\"a.serialized\"/></shape></scene>").unwrap();
+    let read = |bytes: &[u8]| {
+        fs::write(folder.path().join("a.serialized"), bytes).unwrap();
+        read(&file, &ReadOptions::default())
+    };
+    for version in [3, 4] {
+        let scene = read(&serialized(version, 3, 2)).unwrap();
+        let mesh = &scene.objects[0].mesh;
+        assert_eq!(
+            (mesh.triangles.as_slice(), mesh.positions[1], mesh.uvs[0]),
+            (&[[0, 1, 2]][..], Vec3::X, Vec2::new(0.0, 0.75))
+        );
+        assert_eq!(mesh.normals[0], Vec3::Z);
+    }
+    for (bytes, part) in [
+        (serialized(4, u64::MAX / 7, 2), "ends in the middle of a mesh"),
+        (serialized(4, 3, 3), "refers to vertices that it does not have"),
+        (serialized(5, 3, 2), "has version 5"),
+        (b"\x1c\x04\x04\0".to_vec(), "is not a file of meshes"),
+        (b"ply".to_vec(), "is not a file of meshes"),
+    ] {
+        let error = read(&bytes).unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn what_cannot_be_read_says_where_and_why() {
+    let broken = |inside: &str| refusal("mitsuba", format!("<scene version=\"3.0.0\">\n{inside}</scene>"));
+    for (inside, part) in [
+        (
+            "<shape type=\"spher\"/>",
+            "scene.mitsuba:2:1: there is no type 'spher' of shape; did you mean 'sphere'?",
+        ),
+        ("<shape type=\"sphere\"><ref id=\"x\"/></shape>", "2:22: there is no id 'x'"),
+        (
+            "<shape type=\"sphere\"><float name=\"radius\" value=\"big\"/></shape>",
+            "'radius' must be a number, not 'big'",
+        ),
+        ("<shape type=\"sphere\"/><bsdf type=\"diffuse\"", "2:43: this is not well-formed XML"),
+        ("<shape type=\"obj\"/>", "filename"),
+        (
+            "<bsdf id=\"a\" type=\"twosided\"><ref id=\"a\"/></bsdf><shape type=\"sphere\"><ref id=\"a\"/></shape>",
+            "contains itself",
+        ),
+        ("<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>", "variable 'r'"),
+    ] {
+        let message = broken(inside);
+        assert!(message.contains(part), "{inside}: {message}");
+    }
+    let odd =
+        scene("<shape type=\"sphere\"><float name=\"radios\" value=\"1\"/></shape><shape type=\"sdfgrid\"/>");
+    let said = warnings(&odd);
+    assert!(said.contains("'radios' of the shape 'sphere' is not used; did you mean 'radius'?"), "{said}");
+    assert!(said.contains("more than the picture shows: the shape 'sdfgrid'"), "{said}");
+}
+
+#[test]
+fn hostile_files_end_soon() {
+    let nested =
+        |count: usize| format!("{}{}", "<bsdf type=\"twosided\">".repeat(count), "</bsdf>".repeat(count));
+    let message = refusal("mitsuba", format!("<scene version=\"3.0.0\">{}</scene>", nested(100_000)));
+    assert!(message.contains("more than"), "{message}");
+    let bomb = "<!DOCTYPE s [<!ENTITY a \"aaaaaaaaaa\">]><scene version=\"3.0.0\"><string name=\"a\" value=\"&a;\"/></scene>";
+    assert!(refusal("mitsuba", bomb).contains("document type"));
+    let attributes: String = (0..5000).map(|i| format!(" a{i}=\"\"")).collect();
+    assert!(
+        refusal("mitsuba", format!("<scene version=\"3\"><x{attributes}/></scene>"))
+            .contains("5000 attributes")
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("a.xml", "<scene version=\"3.0.0\"><include filename=\"b.xml\"/></scene>");
+    write("b.xml", "<scene version=\"3.0.0\"><include filename=\"a.xml\"/></scene>");
+    let error = read(&folder.path().join("a.xml"), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        error.contains("b.xml:1:24: there is no file 'a.xml'") || error.contains("includes itself"),
+        "{error}"
+    );
+    write("c.xml", "<scene version=\"3.0.0\"><include filename=\"../../etc/passwd\"/></scene>");
+    assert!(read(&folder.path().join("c.xml"), &ReadOptions::default()).is_err());
+}
