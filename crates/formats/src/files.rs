@@ -1,5 +1,6 @@
 //! Reads and writes files with the table of formats.
 
+use crate::authors::written_by;
 use crate::bake::{warn_of_vertices, with_pictures, without_media};
 use crate::formats::{
     ReadFormat, SceneFormatEntry, extension, format_named, format_of_path, sniffed, unknown,
@@ -262,6 +263,9 @@ fn flow(
     };
     let mut scene = read.map_err(|error| explained(error, row, source))?;
     reading.refine_cages(&mut scene, source.name);
+    if scene.written_by.is_empty() {
+        scene.written_by = written_by(row.entry.name, source.bytes).unwrap_or_default();
+    }
     // A scene that is based on another one keeps what that file says.
     if scene.up == UpHint::default() {
         scene.up = row.up;

@@ -9,6 +9,7 @@ mod affine;
 mod archive;
 mod as_metal;
 mod asc;
+mod authors;
 mod bake;
 mod blocks;
 mod budget;

@@ -159,7 +159,14 @@ pub(crate) fn rows<'py>(py: Python<'py>, table: &str) -> PyResult<Vec<Bound<'py,
     let found = TABLES.iter().find(|row| row.name == table);
     let found =
         found.ok_or_else(|| of_scene(SceneError::unknown("table", table, names, &Span::default())))?;
-    (found.rows)().iter().map(|row| as_dictionary(py, row)).collect()
+    let of_row = |row: &Entry| {
+        let dictionary = as_dictionary(py, row)?;
+        (found.details)(row.name)
+            .into_iter()
+            .try_for_each(|(heading, words)| dictionary.set_item(heading, words))?;
+        Ok(dictionary)
+    };
+    (found.rows)().iter().map(of_row).collect()
 }
 
 fn as_dictionary<'py>(py: Python<'py>, row: &Entry) -> PyResult<Bound<'py, PyDict>> {

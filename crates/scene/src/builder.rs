@@ -93,6 +93,8 @@ pub struct SceneBuilder {
     pub up: UpHint,
     /// Metres per unit of length of the file; 0 means one metre, as in scenes that state no unit.
     pub unit: f64,
+    /// The program that wrote the file, as the file says; empty if it does not.
+    pub written_by: String,
     /// A common offset of all positions in the file, left out of ours so that 32-bit floats hold the rest.
     pub origin: DVec3,
     /// The widths of points and lines.

@@ -77,7 +77,7 @@ pub(super) fn write_what_is_seen(scene: &SceneBuilder, to: &mut Encoder) {
 }
 
 impl Coded for SceneBuilder {
-    /// All but the names of the files that it was read from, which another machine does not have.
+    /// All but the names of the files that it was read from, which another machine does not have, and of what wrote them.
     fn write(&self, to: &mut Encoder) {
         let SceneBuilder { textures, materials, objects, lights, cameras, .. } = self;
         textures.write(to);
@@ -122,6 +122,7 @@ impl Coded for SceneBuilder {
             notes: Coded::read(from)?,
             inventory: Coded::read(from)?,
             movement: if bool::read(from)? { Some(Arc::new(from.nested(Coded::read)?)) } else { None },
+            written_by: String::new(),
             files: BTreeSet::new(),
         };
         check(&scene).map_err(|what| from.wrong(what))?;

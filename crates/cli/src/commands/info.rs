@@ -55,6 +55,7 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
             };
             json!({ "min": in_file(bounds.min), "max": in_file(bounds.max) })
         },
+        "written_by": scene.written_by,
         "metres_per_unit": metres(scene),
         "up": up(scene),
         "objects": scene.objects.iter().map(|o| json!({
@@ -90,6 +91,14 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
     })
 }
 
+/// The line about the program that wrote the file.
+fn author(scene: &SceneBuilder) -> String {
+    match scene.written_by.as_str() {
+        "" => String::new(),
+        program => format!("written by {program}\n"),
+    }
+}
+
 fn as_text(scene: &SceneBuilder) -> String {
     let bounds = scene.bounds(0.0);
     let own = meshes(scene);
@@ -99,13 +108,14 @@ fn as_text(scene: &SceneBuilder) -> String {
     };
     let size = bounds.extent();
     format!(
-        "{}triangles  {} in {} ({} with {}; {} instanced, {} moving)\n\
+        "{}{}triangles  {} in {} ({} with {}; {} instanced, {} moving)\n\
          bounds     {:?} to {:?}, {} x {} x {} {}\n\
          materials  {}\n\
          textures   {}\n\
          {}lights     {}\n\
          cameras    {}\n\
          memory     {}{}",
+        author(scene),
         strokes(scene),
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
         counted(scene.objects.len(), "object", "objects"),

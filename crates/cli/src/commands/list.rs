@@ -5,7 +5,7 @@ use crate::arguments::List;
 use crate::{output, usage};
 use anyhow::anyhow;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
-use bilux::tables::{TABLES, values};
+use bilux::tables::{Detail, TABLES, values};
 use serde_json::json;
 
 pub fn run(arguments: &List) -> anyhow::Result<u8> {
@@ -19,12 +19,12 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
     };
     let rows = (table.rows)();
     if arguments.json {
-        let rows: Vec<_> = rows.iter().map(row_json).collect();
+        let rows: Vec<_> = rows.iter().map(|row| row_json(row, &(table.details)(row.name))).collect();
         output::print(serde_json::to_string_pretty(&json!({ table.name: rows }))?)?;
     } else {
         output::print(format_args!("{}: {}\n", table.name, table.summary))?;
         let width = rows.iter().map(|row| row.name.len()).max().unwrap_or(0);
-        rows.iter().try_for_each(|row| output::print(row_text(row, width)))?;
+        rows.iter().try_for_each(|row| output::print(row_text(row, &(table.details)(row.name), width)))?;
     }
     Ok(DONE)
 }
@@ -43,9 +43,12 @@ pub fn schema() -> anyhow::Result<u8> {
 }
 
 /// A row and its parameters, one a line; the names in a column of this width.
-fn row_text(row: &Entry, width: usize) -> String {
+fn row_text(row: &Entry, details: &[Detail], width: usize) -> String {
     let source = if row.source.is_empty() { String::new() } else { format!(" [{}]", row.source) };
     let mut text = format!("  {:<width$}  {}{source}", row.name, row.summary);
+    for (heading, words) in details.iter().filter(|(_, words)| !words.is_empty()) {
+        text += &format!("\n  {:<width$}    {heading} {}", "", words.join(", "));
+    }
     let width = row.parameters.iter().map(|p| p.name.len()).max().unwrap_or(0);
     for p in row.parameters {
         let unit = if p.unit.is_empty() { String::new() } else { format!(", in {}", p.unit) };
@@ -71,9 +74,15 @@ fn units_of(p: &Parameter) -> Vec<&'static str> {
     }
 }
 
-fn row_json(row: &Entry) -> serde_json::Value {
+fn row_json(row: &Entry, details: &[Detail]) -> serde_json::Value {
     let parameters: Vec<_> = row.parameters.iter().map(parameter_json).collect();
-    json!({ "name": row.name, "summary": row.summary, "source": row.source, "parameters": parameters })
+    let mut json = json!({
+        "name": row.name, "summary": row.summary, "source": row.source, "parameters": parameters,
+    });
+    for (heading, words) in details {
+        json[*heading] = json!(words);
+    }
+    json
 }
 
 fn parameter_json(p: &Parameter) -> serde_json::Value {

@@ -10,6 +10,9 @@ use super::pictures::Pictures;
 use super::posed::Posed;
 use super::primitive::Part;
 use super::{area_lights, cameras, container, extensions, lights, soundness, validate};
+use crate::FormatError;
+use crate::authors::program;
+use crate::flat;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
 use crate::sink::Sink;
@@ -31,6 +34,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         return Err(root.error("this JSON is not glTF: it must be an object in braces"));
     }
     check_version(root)?;
+    let generator = root.need("asset")?.text("generator").ok().flatten();
+    sink.scene.written_by = generator.map(program).unwrap_or_default();
     extensions::check(root, &mut sink.oddities)?;
     let document = Document::load(root, &container, reading, source, &mut sink.oddities)?;
     #[cfg(feature = "draco")]
