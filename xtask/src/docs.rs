@@ -117,7 +117,9 @@ fn bilux(arguments: &[&str]) -> Result<String> {
 /// What else a row says, as a list: headings with words.
 fn details(row: &Value) -> String {
     let mut list = String::new();
-    for (heading, words) in row.as_object().into_iter().flatten().filter(|(heading, _)| *heading != "parameters") {
+    for (heading, words) in
+        row.as_object().into_iter().flatten().filter(|(heading, _)| *heading != "parameters")
+    {
         let words: Vec<&str> = words.as_array().into_iter().flatten().filter_map(Value::as_str).collect();
         if !words.is_empty() {
             list += &format!("- {heading}: {}\n", words.join(", "));

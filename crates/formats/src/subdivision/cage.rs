@@ -73,7 +73,6 @@ impl Cage {
     }
 
     /// Makes an edge sharp for this many levels; infinity keeps it sharp.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for formats that state it"))]
     pub(crate) fn crease(&mut self, ends: [u32; 2], sharpness: f32) {
         if sharpness > 0.0 {
             self.creases.insert(Edge::key(ends[0], ends[1]), f64::from(sharpness));
@@ -81,7 +80,6 @@ impl Cage {
     }
 
     /// The same for a point.
-    #[expect(dead_code, reason = "for formats that state it")]
     pub(crate) fn sharpen(&mut self, point: u32, sharpness: f32) {
         if sharpness > 0.0 {
             self.corner_sharpness.insert(point, f64::from(sharpness));
@@ -89,7 +87,6 @@ impl Cage {
     }
 
     /// Rounds the corners of the border, which are points of a single polygon.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for formats that state it"))]
     pub(crate) fn round_corners(&mut self) {
         self.sharp_corners = false;
     }

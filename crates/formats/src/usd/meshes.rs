@@ -202,7 +202,7 @@ pub(super) fn name_of(stage: &Stage, prim: u32) -> &str {
 }
 
 /// The texture coordinates that a material asks for; the usual ones if it asks for none.
-fn uvs(
+pub(super) fn uvs(
     stage: &Stage,
     prim: u32,
     worn: &Worn,

@@ -12,6 +12,7 @@ mod package;
 mod polygons;
 mod primvars;
 mod read;
+mod refined;
 mod scene;
 mod shading;
 mod shapes;

@@ -9,7 +9,7 @@ use super::stage::Stage;
 use super::subdivision::Subdivision;
 use super::transforms;
 use super::value::Text;
-use super::{cameras, lights, shapes, strokes};
+use super::{cameras, lights, refined, shapes, strokes};
 use crate::reading::{Reading, plain_material};
 use crate::sink::Sink;
 use crate::{FormatError, flat};
@@ -160,7 +160,6 @@ impl<'r, 'o> Scene<'r, 'o> {
             self.context.sink.oddities.not_shown(what, || stage.at(prim));
         }
         let subdivision = Subdivision::read(stage, prim, &mut self.context.reading.budget)?;
-        note_subdivision(stage, prim, &subdivision, &mut self.context);
         add_normals(stage, prim, &mut polygons, &subdivision, &mut self.context)?;
         let budget = &mut self.context.reading.budget;
         let constant = Interpolation::Constant;
@@ -169,6 +168,12 @@ impl<'r, 'o> Scene<'r, 'o> {
             Primvar::read(stage, prim, "primvars:displayColor", constant, budget)?.filter(varies);
         polygons.opacities =
             Primvar::read(stage, prim, "primvars:displayOpacity", constant, budget)?.filter(varies);
+        let refined =
+            refined::parts(stage, prim, &polygons, &subdivision, &subsets, rest, &mut self.context)?;
+        if let Some(parts) = refined {
+            return Ok(parts);
+        }
+        note_subdivision(stage, prim, &subdivision, &mut self.context);
         parts(stage, prim, &mut polygons, subsets, rest, &mut self.context)
     }
 

@@ -28,6 +28,19 @@ pub(super) struct Subdivision {
     pub(super) crease_sharpnesses: Option<Arc<Array>>,
     pub(super) corner_indices: Option<Arc<Array>>,
     pub(super) corner_sharpnesses: Option<Arc<Array>>,
+    /// Corners of the border are rounded.
+    pub(super) rounds_corners: bool,
+}
+
+impl Scheme {
+    /// The scheme by which the surface is refined, if it is.
+    pub(super) fn refined(self) -> Option<crate::subdivision::Scheme> {
+        match self {
+            Scheme::None | Scheme::Bilinear => None,
+            Scheme::CatmullClark => Some(crate::subdivision::Scheme::CatmullClark),
+            Scheme::Loop => Some(crate::subdivision::Scheme::Loop),
+        }
+    }
 }
 
 impl Subdivision {
@@ -38,6 +51,7 @@ impl Subdivision {
             Some("bilinear") => Scheme::Bilinear,
             _ => Scheme::CatmullClark,
         };
+        let border = stage.text(prim, "interpolateBoundary", budget)?;
         let mut list = |name: &str| -> Result<Option<Arc<Array>>, FormatError> {
             Ok(stage.array(prim, name, budget)?.filter(|list| list.len() > 0))
         };
@@ -48,6 +62,7 @@ impl Subdivision {
             crease_sharpnesses: list("creaseSharpnesses")?,
             corner_indices: list("cornerIndices")?,
             corner_sharpnesses: list("cornerSharpnesses")?,
+            rounds_corners: border.as_deref() == Some("edgeOnly"),
         })
     }
 

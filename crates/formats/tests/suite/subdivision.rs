@@ -83,3 +83,59 @@ fn broken_cages_do_no_harm() {
         }
     }
 }
+
+/// The cube as USD, with more lines in its mesh.
+fn usd(lines: &str) -> SceneBuilder {
+    let text = format!(
+        "#usda 1.0\n(defaultPrim = \"c\")\ndef Mesh \"c\" {{\n\
+         int[] faceVertexCounts = [4, 4, 4, 4, 4, 4]\n\
+         int[] faceVertexIndices = [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]\n\
+         point3f[] points = [(-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1), (-1, -1, 1), (1, -1, 1), (-1, 1, 1), \
+         (1, 1, 1)]\n{lines}\n}}\n"
+    );
+    read_bytes(text.as_bytes(), "usda", None, "cube.usda", &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn meshes_of_usd_are_refined_by_their_schemes_and_creases() {
+    let size = |scene: &SceneBuilder| scene.bounds(0.0).max;
+    let round = (16.0 + 12.0 + 20.0 / 9.0) / 36.0;
+    // The scheme of meshes that state none is Catmull and Clark's. [OpenUSD, UsdGeomMesh]
+    for lines in [
+        "",
+        "uniform token subdivisionScheme = \"catmullClark\"",
+        "uniform token orientation = \"leftHanded\"",
+    ] {
+        let scene = usd(lines);
+        assert!((size(&scene) - round).abs().max_element() < 1e-6, "{lines}: {:?}", size(&scene));
+        let mesh = &scene.objects[0].mesh;
+        let side = if lines.contains("leftHanded") { -1.0 } else { 1.0 };
+        let outward =
+            mesh.positions.iter().zip(&mesh.normals).all(|(p, n)| side * p.normalize().dot(*n) > 0.9);
+        assert!(outward, "{lines}");
+        assert_eq!(warnings(&scene), "", "{lines}");
+    }
+    let flat = [
+        "uniform token subdivisionScheme = \"none\"",
+        "normal3f[] normals = [(0, 0, 1)] (interpolation = \"constant\")",
+    ];
+    for lines in flat {
+        assert_eq!(
+            (size(&usd(lines)).to_array(), usd(lines).objects[0].mesh.triangles.len()),
+            ([1.0; 3], 12),
+            "{lines}"
+        );
+    }
+    // The upper square keeps its place, as sharp as can be; its corners are kept too.
+    let sharp = usd(
+        "int[] creaseIndices = [4, 5, 7, 6, 4]\nint[] creaseLengths = [5]\nfloat[] creaseSharpnesses = [10]\n\
+                     int[] cornerIndices = [4, 5, 6, 7]\nfloat[] cornerSharpnesses = [10, 10, 10, 10]",
+    );
+    assert_eq!(size(&sharp).to_array(), [1.0; 3]);
+    assert!(sharp.bounds(0.0).min.max_element() > -1.0 && sharp.bounds(0.0).min.z > -0.9);
+    // Less sharp lies between.
+    let soft = usd(
+        "int[] creaseIndices = [4, 5, 7, 6, 4]\nint[] creaseLengths = [5]\nfloat[] creaseSharpnesses = [1.5, 1.5, 1.5, 1.5]",
+    );
+    assert!(size(&soft).z > round + 0.02 && size(&soft).z < 1.0, "{}", size(&soft));
+}
