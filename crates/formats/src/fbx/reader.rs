@@ -17,6 +17,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let mut sink = Sink::for_bare_files();
     let tree = Tree::read(source, &mut reading.budget)?;
     let document = Document::load(&tree, source, &mut reading.budget, &mut sink.oddities)?;
+    sink.scene.written_by.clone_from(&document.settings.creator);
     let mut meshes = Meshes::new(&document);
     place_all(&document, reading.options.time, &mut meshes, reading, &mut sink)?;
     if reading.options.whole_movement && sink.scene.inventory.moves() {

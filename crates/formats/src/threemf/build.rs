@@ -9,6 +9,7 @@ use super::pictures::Pictures;
 use super::pieces::{Piece, Whole, pieces};
 use super::slicers::{ObjectSettings, project};
 use crate::FormatError;
+use crate::authors::program;
 use crate::oddities::Oddities;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
@@ -51,10 +52,7 @@ pub(super) fn scene(
         let message = "nothing that it builds has a shape that can be shown";
         return Err(FormatError::malformed(message, whole_file(source.name)));
     }
-    if !model.application.is_empty() {
-        let what = format!("this file was written by {}", model.application);
-        sink.oddities.remark(&what, || whole_file(source.name));
-    }
+    sink.scene.written_by = program(&model.application);
     sink.scene.unit = model.unit;
     share_trees(&mut sink.scene);
     Ok(sink.finish())

@@ -90,11 +90,7 @@ fn objects_components_and_items_are_placed_and_share_their_mesh() {
     assert_eq!(at(1, Vec3::X), Vec3::new(10.0, 2.0, 7.0));
     assert_eq!(at(1, Vec3::Y), Vec3::new(8.0, 0.0, 7.0));
     assert_eq!(at(2, Vec3::Z), Vec3::Z);
-    assert!(
-        scene.notes.iter().any(|note| note.message.contains("written by Hand 1.0 & more")),
-        "{:?}",
-        scene.notes
-    );
+    assert_eq!(scene.written_by, "Hand 1.0 & more");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The settings of the whole file: axes, unit and time.
 
 use super::properties::Properties;
+use crate::authors::program;
 use crate::fbx::tree::{Node, Value};
 use bilux_math::{DMat3, DMat4, DVec3};
 
@@ -17,6 +18,8 @@ pub(in crate::fbx) struct Settings {
     pub(in crate::fbx) unit: f64,
     /// Units of time per second.
     pub(in crate::fbx) ticks: f64,
+    /// The program that wrote the file; may be empty.
+    pub(in crate::fbx) creator: String,
     /// True for files that Blender wrote: its colours are linear.
     pub(in crate::fbx) is_of_blender: bool,
 }
@@ -29,8 +32,16 @@ impl Settings {
         let properties = Properties::read(node, None);
         // A file without a unit is in centimetres.
         let unit = properties.number("UnitScaleFactor").filter(|unit| *unit > 0.0).unwrap_or(1.0) / 100.0;
+        let creator = creators(root).next().map(String::from_utf8_lossy);
+        let creator = creator.map(|creator| program(&creator)).unwrap_or_default();
         let to_world = DMat4::from_mat3(axes(&properties) * unit);
-        Settings { to_world, unit, ticks: ticks(root), is_of_blender: is_of_blender(root) }
+        Settings {
+            to_world,
+            unit,
+            ticks: ticks(root),
+            is_of_blender: creators(root).any(|creator| creator.starts_with(b"Blender")),
+            creator,
+        }
     }
 }
 
@@ -56,8 +67,9 @@ fn ticks(root: Node) -> f64 {
     }
 }
 
-fn is_of_blender(root: Node) -> bool {
+/// What the file says of the program that wrote it, in two places.
+fn creators<'a>(root: Node<'a>) -> impl Iterator<Item = &'a [u8]> {
     let header = root.child("FBXHeaderExtension");
-    let creators = [header.and_then(|header| header.child_value("Creator")), root.child_value("Creator")];
-    creators.into_iter().flatten().filter_map(Value::text).any(|creator| creator.starts_with(b"Blender"))
+    let creators = [root.child_value("Creator"), header.and_then(|header| header.child_value("Creator"))];
+    creators.into_iter().flatten().filter_map(Value::text)
 }
