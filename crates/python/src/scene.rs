@@ -47,7 +47,7 @@ impl Scene {
     }
 
     #[classmethod]
-    #[pyo3(signature = (file, *, format, folder, time, animation, variant, definitions, subdivide, glass, light_radius, max_memory, allow_outside, strict))]
+    #[pyo3(signature = (file, *, format, folder, time, animation, variant, subdivide, definitions, glass, light_radius, max_memory, allow_outside, strict))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of bilux.load")]
     fn _load<'py>(
         class: &Bound<'py, PyType>,
