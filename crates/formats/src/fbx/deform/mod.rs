@@ -12,6 +12,8 @@ use crate::FormatError;
 /// The deformers of a mesh.
 pub(super) struct Deformers<'d> {
     skins: Vec<Index>,
+    /// Files with the positions of points over time, which are not read.
+    caches: Vec<Index>,
     shapes: Vec<shapes::Channel<'d>>,
 }
 
@@ -27,7 +29,11 @@ impl<'d> Deformers<'d> {
             of_kind(b"BlendShape").flat_map(|shape| shapes::channels(shape, posed)).collect();
         channels.extend(shapes::old_channels(geometry, posed));
         channels.retain(|channel| channel.percent != 0.0);
-        Deformers { skins: of_kind(b"Skin").collect(), shapes: channels }
+        Deformers {
+            skins: of_kind(b"Skin").collect(),
+            caches: of_kind(b"VertexCacheDeformer").collect(),
+            shapes: channels,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -48,6 +54,10 @@ impl<'d> Deformers<'d> {
         graph: &Graph,
         workshop: &mut Workshop,
     ) -> Result<(), FormatError> {
+        for &cache in &self.caches {
+            let at = posed.document.object(cache).node;
+            workshop.oddities.not_shown("caches of points", || at.at());
+        }
         let mut turns = Vec::new();
         for channel in &self.shapes {
             channel.add(geometry, &mut turns, workshop)?;

@@ -24,7 +24,7 @@ impl<'a> Value<'a> {
         match self {
             Value::Integer(integer) => Some(integer as f64),
             Value::Number(number) => Some(number),
-            Value::Word(word) => parse_f64(word),
+            Value::Word(word) => parse_f64(word).or_else(|| not_finite(word)),
             _ => None,
         }
     }
@@ -43,6 +43,17 @@ impl<'a> Value<'a> {
             Value::Text(text) => Some(text),
             _ => None,
         }
+    }
+}
+
+/// What C libraries print for numbers that are none: `1.#QNAN`, `-1.#IND`, `nan(ind)`, `1.#INF`.
+fn not_finite(word: &[u8]) -> Option<f64> {
+    let text = String::from_utf8_lossy(word).to_lowercase();
+    let has = |part: &str| text.contains(part);
+    match () {
+        () if has("nan") || has("ind") => Some(f64::NAN),
+        () if has("inf") => Some(if text.starts_with('-') { f64::NEG_INFINITY } else { f64::INFINITY }),
+        () => None,
     }
 }
 

@@ -86,6 +86,15 @@ fn cycles_and_indices_out_of_range_leave_out_what_they_concern() {
 }
 
 #[test]
+fn numbers_that_are_none_are_kept_and_reported() {
+    for word in ["1.#QNAN", "-1.#IND", "nan(ind)", "-1.#INF", "inf"] {
+        let text = as_text(&placed(vec![])).replace("a: 0,0,0,1", &format!("a: 0,0,{word},1"));
+        let scene = scene_of(text.as_bytes()).unwrap();
+        assert!(crate::warnings(&scene).contains("positions have numbers that are infinite"), "{word}");
+    }
+}
+
+#[test]
 fn mistakes_in_texts_have_their_line() {
     let text = as_text(&placed(vec![]));
     let cases = [
