@@ -62,6 +62,7 @@ fn numbers(scene: &mut SceneBuilder) -> Vec<&mut f32> {
         warnings: _,
         notes: _,
         inventory: _,
+        written_by: _,
         files: _,
     } = scene;
     let mut all: Vec<&mut f32> = vec![&mut stroke_widths.points, &mut stroke_widths.lines];
