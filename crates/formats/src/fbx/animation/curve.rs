@@ -244,8 +244,10 @@ mod tests {
         // From 0 to 1 with slopes 0 and 0: 3 t² - 2 t³.
         let flat = |part: f64, weights| bezier([0.0, 0.0, 1.0, 1.0], parameter(weights, part));
         assert!((flat(0.25, [THIRD; 2]) - 0.156_25).abs() < 1e-12);
-        // With weights of 1 the parameter at x = 1/2 is 1/2 by symmetry, and x rises slowest there.
-        assert!((flat(0.5, [1.0; 2]) - 0.5).abs() < 1e-9);
+        // The parameter at x = 1/2 is 1/2 by symmetry. With weights of 1, x does not rise there at all, and a parameter
+        // is as good as the cube root of what numbers distinguish.
+        assert!((flat(0.5, [0.9; 2]) - 0.5).abs() < 1e-9);
+        assert!((flat(0.5, [1.0; 2]) - 0.5).abs() < 1e-4);
         assert!(flat(0.4, [1.0; 2]) < 0.4);
     }
 }
