@@ -192,11 +192,15 @@ impl PartReader<'_, '_> {
             let given = element.indices("pindices")?;
             for (&layer, &group) in places.iter().zip(&groups) {
                 let (index, count) = (given.get(layer).copied().unwrap_or(0), self.model.groups[group].len());
-                if index as usize >= count {
-                    let message = format!("pindices names entry {index} of layer {layer}, which has {count}");
-                    return Err(element.error(message));
+                if count == 0 {
+                    return Err(element.error(format!("layer {layer} of multiproperties is empty")));
                 }
-                indices.push(index);
+                let is_there = (index as usize) < count;
+                if !is_there {
+                    let what = "pindices names an entry that its layer does not have; it has the first one";
+                    self.oddities.note(what, || element.at());
+                }
+                indices.push(if is_there { index } else { 0 });
             }
         }
         Ok(GroupKind::Layers(Layers { groups, methods, indices }))

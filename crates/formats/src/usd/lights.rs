@@ -60,6 +60,15 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     if profile.is_some_and(|file| !file.is_empty()) {
         context.sink.oddities.not_shown("IES profiles of lights", || stage.at(prim));
     }
+    if !stage.targets(prim, "light:filters").is_empty() {
+        context.sink.oddities.not_shown("filters of lights", || stage.at(prim));
+    }
+    let links = ["lightLink", "shadowLink"].map(|link| format!("collection:{link}:"));
+    let is_listed =
+        |link: &String| ["includes", "excludes"].map(|list| stage.targets(prim, &format!("{link}{list}")));
+    if links.iter().flat_map(is_listed).any(|paths| !paths.is_empty()) {
+        context.sink.oddities.not_shown("which objects a light is for (light linking)", || stage.at(prim));
+    }
     if radiance.is_black() {
         return Ok(());
     }

@@ -346,6 +346,11 @@ fn lights_are_as_bright_as_the_schema_says() {
             .colour("radiance")
             .is_some_and(|c| c.g == 3.0)
     );
+    let linked = text(
+        "def SphereLight \"l\" { rel light:filters = </f>\n rel collection:lightLink:includes = </x>\n float inputs:radius = 1 }",
+    );
+    let said = warnings(&linked);
+    assert!(said.contains("filters of lights") && said.contains("light linking"), "{said}");
 }
 
 #[test]
