@@ -909,8 +909,8 @@ def load(
     """Reads a scene file.
 
     Args:
-        file: a glTF, GLB, OBJ, PLY, STL, OFF, pbrt or native scene, or a point cloud (`bilux.formats`): a path, bytes, or
-            a file that is open in binary mode.
+        file: a scene, a model, a point cloud or an archive with one, in any format of `bilux.formats`: a path, bytes, or a
+            file that is open in binary mode.
         format: its format (`bilux.formats`), such as "obj". By default, its extension or its first bytes say it.
         folder: the folder of the files that it refers to; by default its own, if it has one.
         time: what moves is as at this time, in seconds.
