@@ -1,5 +1,6 @@
 //! Reads and writes files with the table of formats.
 
+use crate::archive::is_archive;
 use crate::authors::written_by;
 use crate::bake::{warn_of_vertices, with_pictures, without_media};
 use crate::formats::{
@@ -41,7 +42,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
 /// The archive in which a path lies, as in `models.zip/parts/wheel.stl`.
 pub fn archive_of(path: &Path) -> Option<&Path> {
     let around = path.ancestors().skip(1).find(|around| !around.as_os_str().is_empty() && around.exists());
-    around.filter(|around| around.is_file())
+    let file = around.filter(|around| around.is_file())?;
+    let mut head = Vec::new();
+    std::fs::File::open(file).ok()?.take(BEGINNING).read_to_end(&mut head).ok()?;
+    is_archive(&head).then_some(file)
 }
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.

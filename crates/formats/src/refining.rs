@@ -7,6 +7,7 @@ use crate::values::vector;
 use bilux_math::transcendental::tan;
 use bilux_math::{Aabb, Mat3, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Warning};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The finest that a picture is taken to be, in pixels of its height.
@@ -25,8 +26,10 @@ impl Reading<'_> {
         if cages.is_empty() {
             return;
         }
-        let views = Views::of(scene, &cages);
-        let wanted: Vec<u32> = cages.iter().map(|pending| views.levels(&scene.objects, pending)).collect();
+        let waiting = Waiting::of(scene);
+        let views = Views::of(scene, &cages, &waiting);
+        let wanted: Vec<u32> =
+            cages.iter().map(|pending| views.levels(&waiting.objects(scene, pending), pending)).collect();
         let mut coarse = None;
         for (pending, wanted) in cages.into_iter().zip(wanted) {
             let PendingCage { mut cage, stand_ins, at } = pending;
@@ -42,15 +45,16 @@ impl Reading<'_> {
             let meshes = cage.meshes(stand_ins.len());
             for (stand_in, mesh) in stand_ins.iter().zip(meshes) {
                 let mesh = Arc::new(Mesh { name: stand_in.name.clone(), ..mesh });
-                for object in scene.objects.iter_mut().filter(|object| Arc::ptr_eq(&object.mesh, stand_in)) {
-                    object.mesh = mesh.clone();
+                for &object in waiting.indices(stand_in) {
+                    scene.objects[object].mesh = mesh.clone();
                 }
             }
         }
         scene.objects.retain(|object| !object.mesh.positions.is_empty());
         if let Some((at, level, wanted)) = coarse {
             let message = format!(
-                "a subdivision surface is refined {level} times, not {wanted}: there is no more memory for it"
+                "a subdivision surface is refined {level} times, not {wanted}: it would have too many polygons, or take \
+                 more memory than is allowed"
             );
             scene.warnings.push(Warning { message, at });
         }
@@ -62,6 +66,32 @@ fn fits(cage: &Cage, budget: &mut Budget, file: &str) -> bool {
     cage.faces() * 4 <= MOST && budget.take_bytes(cage.bytes_of_next(), file).is_ok()
 }
 
+/// Which objects have which mesh, so that many cages of many objects take no longer than there are of both.
+struct Waiting(HashMap<*const Mesh, Vec<usize>>);
+
+impl Waiting {
+    fn of(scene: &SceneBuilder) -> Waiting {
+        let mut by_mesh: HashMap<*const Mesh, Vec<usize>> = HashMap::new();
+        for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.mesh.positions.is_empty()) {
+            by_mesh.entry(Arc::as_ptr(&object.mesh)).or_default().push(index);
+        }
+        Waiting(by_mesh)
+    }
+
+    fn indices(&self, stand_in: &Arc<Mesh>) -> &[usize] {
+        self.0.get(&Arc::as_ptr(stand_in)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The objects that wait for a cage.
+    fn objects<'s>(&self, scene: &'s SceneBuilder, pending: &PendingCage) -> Vec<&'s Object> {
+        let indices = pending.stand_ins.iter().flat_map(|stand_in| self.indices(stand_in));
+        indices.map(|&index| &scene.objects[index]).collect()
+    }
+}
+
+/// Cameras beyond these are not considered.
+const CAMERAS: usize = 32;
+
 /// From where a scene is seen.
 struct Views {
     /// The places of cameras, and the height of a pixel at distance 1.
@@ -71,9 +101,9 @@ struct Views {
 }
 
 impl Views {
-    fn of(scene: &SceneBuilder, cages: &[PendingCage]) -> Views {
+    fn of(scene: &SceneBuilder, cages: &[PendingCage], waiting: &Waiting) -> Views {
         let perspective = scene.cameras.iter().filter(|camera| camera.spec.kind == "perspective");
-        let cameras = perspective.map(|camera| {
+        let cameras = perspective.take(CAMERAS).map(|camera| {
             let fov = camera.spec.number("fov").unwrap_or(40.0).to_radians();
             (
                 vector(&camera.spec, "position").unwrap_or(Vec3::new(0.0, 0.0, 5.0)),
@@ -82,20 +112,18 @@ impl Views {
         });
         let of_cage = |pending: &PendingCage| {
             let bounds = Aabb::of_points(pending.cage.positions());
-            pending
-                .objects(&scene.objects)
-                .map(|object| object.motion.at(0.0).bounds(&bounds))
-                .fold(Aabb::EMPTY, Aabb::union)
+            let objects = waiting.objects(scene, pending).into_iter();
+            objects.map(|object| object.motion.at(0.0).bounds(&bounds)).fold(Aabb::EMPTY, Aabb::union)
         };
         let whole = cages.iter().map(of_cage).fold(scene.bounds(0.0), Aabb::union);
         Views { cameras: cameras.collect(), of_whole: whole.extent().length() / HEIGHT }
     }
 
     /// How many times a cage is refined until its edges are short in every view.
-    fn levels(&self, objects: &[Object], pending: &PendingCage) -> u32 {
+    fn levels(&self, objects: &[&Object], pending: &PendingCage) -> u32 {
         let bounds = Aabb::of_points(pending.cage.positions());
         let edge = pending.cage.longest_edge() as f32;
-        let in_pixels = pending.objects(objects).map(|object| {
+        let in_pixels = objects.iter().map(|object| {
             let transform = object.motion.at(0.0);
             let linear = Mat3::from_mat4(*transform.matrix());
             let scale = [linear.x_axis, linear.y_axis, linear.z_axis]

@@ -1,7 +1,7 @@
 //! A cage that waits until the whole scene is known, so that it can be as fine as its pictures need.
 
 use super::cage::Cage;
-use bilux_scene::{Mesh, Object, Span};
+use bilux_scene::{Mesh, Span};
 use std::sync::Arc;
 
 /// A cage, and the meshes that stand for it in objects until it is refined: one for each of its groups.
@@ -21,12 +21,5 @@ impl PendingCage {
     /// The mesh of a group.
     pub(crate) fn mesh(&self, group: usize) -> &Arc<Mesh> {
         &self.stand_ins[group]
-    }
-
-    /// The objects that wait for it.
-    pub(crate) fn objects<'s>(&'s self, objects: &'s [Object]) -> impl Iterator<Item = &'s Object> {
-        let waits =
-            |object: &&Object| self.stand_ins.iter().any(|stand_in| Arc::ptr_eq(stand_in, &object.mesh));
-        objects.iter().filter(waits)
     }
 }

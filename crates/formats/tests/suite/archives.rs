@@ -107,6 +107,10 @@ fn of_several_scenes_one_is_shown_and_any_can_be_named() {
     assert!(named.files.iter().any(|file| file.ends_with("parts.zip")), "{:?}", named.files);
     let absent = read(&path.join("a/none.stl"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(absent.contains("parts.zip/a/none.stl: cannot open it: no file in the archive"), "{absent}");
+    std::fs::write(folder.path().join("plain.stl"), STL).unwrap();
+    let message =
+        read(&folder.path().join("plain.stl/x.stl"), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("plain.stl/x.stl: cannot open it") && !message.contains("archive"), "{message}");
 }
 
 #[test]

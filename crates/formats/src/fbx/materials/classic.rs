@@ -99,6 +99,11 @@ fn transparency(properties: &Properties, draft: &mut Draft) -> Result<(), Format
     };
     let map = draft.map("TransparentColor").or(draft.map("TransparencyFactor")).or(draft.map("Opacity"));
     if let Some(texture) = map.map(|map| draft.texture(map, true)).transpose()?.flatten() {
+        let is_of_colours = map == draft.map("DiffuseColor");
+        if is_of_colours && !has_alpha(&texture) {
+            // Exporters connect the transparency of the picture with the colours, of which it has none.
+            return Ok(());
+        }
         let channel = if has_alpha(&texture) { Channel::A } else { Channel::G };
         return draft.put("opacity", Texture { channel: Some(channel), ..texture });
     }
