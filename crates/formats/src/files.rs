@@ -4,8 +4,9 @@ use crate::archive::is_archive;
 use crate::authors::written_by;
 use crate::bake::{warn_of_vertices, with_pictures, without_media};
 use crate::formats::{
-    ReadFormat, SceneFormatEntry, extension, format_named, format_of_path, sniffed, unknown,
+    ReadFormat, SceneFormatEntry, extension, format_named, format_of_path, format_to_read, sniffed, unknown,
 };
+use crate::gzip;
 use crate::locating::Locator;
 use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
@@ -28,7 +29,7 @@ use std::sync::Arc;
 /// A [`FormatError`] with its location.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
     let mut reading = Reading::new(options, path.parent());
-    let row = extension(path).and_then(|e| format_named(&e));
+    let row = format_to_read(path);
     let name = path.display().to_string().into();
     if let Some(archive) = archive_of(path) {
         reading.locator = Locator::new(archive.parent(), options.allow_outside);
@@ -159,12 +160,14 @@ pub fn read_bytes(
     name: &str,
     options: &ReadOptions,
 ) -> Result<SceneBuilder, FormatError> {
+    let mut reading = Reading::new(options, base);
+    let bytes = plain_bytes(bytes, &mut reading, name)?;
+    let bytes = &*bytes;
     let found = if format.is_empty() { sniffed(bytes) } else { format_named(format) };
     let asked = if format.is_empty() { name } else { format };
     let row = found.ok_or_else(|| {
         not_a_scene(name, bytes).unwrap_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))
     })?;
-    let mut reading = Reading::new(options, base);
     reading.budget.take_bytes(bytes.len() as u64, name)?;
     let name = Arc::from(name);
     let mut source = Source { bytes, name: &name, folder: base };
@@ -175,6 +178,16 @@ pub fn read_bytes(
     }
     let scene = keeping_digits(&mut reading, |reading| Ok((row, read_source(row, reading, &source)?)))?;
     reading.complete(scene)
+}
+
+/// The bytes, or what they hold if they are compressed by gzip.
+fn plain_bytes<'b>(bytes: &'b [u8], reading: &mut Reading, name: &str) -> Result<Cow<'b, [u8]>, FormatError> {
+    if !bytes.starts_with(&gzip::SIGNATURE) {
+        return Ok(Cow::Borrowed(bytes));
+    }
+    let failed = |source| FormatError::Io { path: name.into(), action: "open it", source };
+    let stream = gzip::plain(Box::new(bytes)).map_err(failed)?;
+    reading.take(stream, bytes.len() as u64, Path::new(name)).map(Cow::Owned)
 }
 
 /// Writes a scene and its accompanying files, in the format of the path's extension.
@@ -314,11 +327,8 @@ fn picture_by_name(path: &Path) -> Option<FormatError> {
 
 /// An error of a reader, or if the bytes are in another format than the file's name says, that.
 fn explained(error: FormatError, row: &SceneFormatEntry, source: &Source) -> FormatError {
-    // pbrt files may be compressed.
-    let is_as_named =
-        (row.sniff)(source.bytes) || (row.entry.name == "pbrt" && source.bytes.starts_with(b"\x1f\x8b"));
     match error {
-        FormatError::Malformed { .. } if !is_as_named => {
+        FormatError::Malformed { .. } if !(row.sniff)(source.bytes) => {
             not_a_scene(source.name, source.bytes).unwrap_or(error)
         }
         error => error,

@@ -1,5 +1,6 @@
 //! The table of formats.
 
+use crate::gzip::plain_name;
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
@@ -112,6 +113,11 @@ pub(crate) fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {
         _ => (row.sniff)(bytes),
     };
     SCENE_FORMATS.iter().filter(|row| row.reads()).find(looks_like)
+}
+
+/// The format of a file to read, by its extension; `.gz` after it does not count.
+pub(crate) fn format_to_read(path: &Path) -> Option<&'static SceneFormatEntry> {
+    extension(&plain_name(path)).and_then(|e| format_named(&e))
 }
 
 pub(crate) fn extension(path: &Path) -> Option<String> {

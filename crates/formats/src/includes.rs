@@ -1,7 +1,6 @@
 //! Files that other files include.
 
 use crate::FormatError;
-use crate::gzip;
 use crate::reading::Reading;
 use bilux_scene::Span;
 use std::path::{Path, PathBuf};
@@ -53,9 +52,7 @@ impl Includes {
             let message = format!("files are included more than {MAX_CHAIN} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
-        let raw = reading.load(&path)?;
-        let unpacked = gzip::plain(raw, reading, &path, at)?;
-        let bytes = reading.as_text(unpacked, &path)?;
+        let bytes = reading.load_text(&path)?;
         self.included = self.included.saturating_add(bytes.len() as u64 + MIN_FILE);
         if self.included > reading.options.max_memory {
             let message = "the includes multiply so much that reading would not end: remove some";

@@ -2,6 +2,7 @@
 
 use crate::archive::OpenMember;
 use crate::budget::Budget;
+use crate::gzip;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
 use crate::subdivision::PendingCage;
@@ -266,13 +267,23 @@ impl<'o> Reading<'o> {
     /// The bytes of a file. They count as held until [`Reading::release`].
     pub(crate) fn load(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
         let (file, length) = self.open_file(path)?;
+        self.take(file, length, path)
+    }
+
+    /// All of a stream, which is expected to have this length. It counts as held until [`Reading::release`].
+    pub(crate) fn take(
+        &mut self,
+        stream: impl Read,
+        length: u64,
+        path: &Path,
+    ) -> Result<Vec<u8>, FormatError> {
         let limit = self.budget.left();
         // Reserves the memory at once if the system reports a length.
         let mut bytes = Vec::new();
         let stated = length.min(limit).saturating_add(1);
         let _ = usize::try_from(stated).map(|stated| bytes.try_reserve_exact(stated));
         let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
-        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
+        stream.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
         self.budget.take_bytes(bytes.len() as u64, &path.display().to_string())?;
         Ok(bytes)
     }
@@ -280,11 +291,6 @@ impl<'o> Reading<'o> {
     /// The bytes of a text file without its byte order mark, as UTF-8. They count as held until [`Reading::release`].
     pub(crate) fn load_text(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
         let bytes = self.load(path)?;
-        self.as_text(bytes, path)
-    }
-
-    /// The same for bytes that count as held.
-    pub(crate) fn as_text(&mut self, bytes: Vec<u8>, path: &Path) -> Result<Vec<u8>, FormatError> {
         if !is_marked(&bytes) {
             return Ok(bytes);
         }
@@ -294,16 +300,19 @@ impl<'o> Reading<'o> {
         Ok(text)
     }
 
-    /// Opens a file for reading, or a member of an archive; also returns the length that the system or the archive states.
+    /// Opens a file for reading, or a member of an archive; one that is compressed by gzip gives what it holds. Also returns
+    /// the length that the system or the archive states.
     pub(crate) fn open_file(&mut self, path: &Path) -> Result<OpenMember, FormatError> {
-        if let Some((archive, opened)) = self.locator.archives.open(path) {
+        let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
+        let (stream, length): OpenMember = if let Some((archive, opened)) = self.locator.archives.open(path) {
             self.files.extend(fs::canonicalize(archive));
-            let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
-            return opened.map_err(failed);
-        }
-        let (file, length) = open(path)?;
-        self.files.extend(fs::canonicalize(path));
-        Ok((Box::new(file), length))
+            opened.map_err(failed)?
+        } else {
+            let (file, length) = open(path)?;
+            self.files.extend(fs::canonicalize(path));
+            (Box::new(file), length)
+        };
+        Ok((gzip::plain(stream).map_err(failed)?, length))
     }
 
     /// Releases the bytes of a loaded file.

@@ -4,6 +4,7 @@ use crate::FormatError;
 use crate::archive::{Archive, Member, is_archive};
 use crate::files::read_file;
 use crate::formats::{ReadFormat, SCENE_FORMATS, SceneFormatEntry, extension, format_named};
+use crate::gzip::plain_name;
 use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use bilux_math::registry::Entry;
@@ -72,7 +73,7 @@ fn candidates(archive: &Archive) -> Vec<Candidate<'_>> {
 fn candidate(member: &Member) -> Option<Candidate<'_>> {
     let name = member.name.as_str();
     let is_hidden = name.split('/').any(|part| part.starts_with('.') || part == "__MACOSX");
-    let extension = extension(Path::new(name)).filter(|_| !is_hidden)?.to_lowercase();
+    let extension = extension(&plain_name(Path::new(name))).filter(|_| !is_hidden)?.to_lowercase();
     let row = format_named(&extension).filter(|row| row.reads() && row.extensions.contains(&&*extension))?;
     let format = SCENE_FORMATS.iter().position(|other| other.entry.name == row.entry.name)?;
     let depth = name.matches('/').count();

@@ -90,6 +90,41 @@ fn a_model_and_its_textures_are_read_from_every_kind_of_archive() {
     }
 }
 
+/// A file of one model, packed alone.
+#[test]
+fn files_compressed_by_gzip_are_read_by_any_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    // What stands beside a packed model may be packed too.
+    put("l.mtl", &gzip(MTL));
+    put("t.png", &gzip(&picture()));
+    for name in ["m.obj.gz", "m.OBJ.GZ", "m.gz", "m.obj", "m"] {
+        let scene = read(&put(name, &gzip(OBJ)), &ReadOptions::default()).unwrap();
+        assert_eq!((warnings(&scene).as_str(), scene.textures.len()), ("", 1), "{name}");
+        assert_eq!(scene.objects[0].mesh.triangles.len(), 1, "{name}");
+    }
+    assert_eq!(from_bytes(&gzip(STL)).unwrap().objects.len(), 1);
+    let in_zip = put("parts.zip", &zip_of(&[("m.stl.gz", &gzip(STL))], CompressionMethod::Stored));
+    assert_eq!(read(&in_zip, &ReadOptions::default()).unwrap().objects.len(), 1);
+
+    let refused = |name: &str, bytes: &[u8]| {
+        let options = ReadOptions { max_memory: 1 << 20, ..ReadOptions::default() };
+        read(&put(name, bytes), &options).map(|_| ()).unwrap_err().to_string()
+    };
+    let packed = gzip(OBJ);
+    let cut = refused("cut.obj.gz", &packed[..packed.len() - 9]);
+    assert!(cut.contains("cut.obj.gz: ") && cut.contains("it cannot be decompressed"), "{cut}");
+    assert!(cut.contains("compress it again"), "{cut}");
+    let bomb = refused("bomb.stl.gz", &gzip(&vec![0; 40 << 20]));
+    assert!(bomb.contains("bomb.stl.gz") && bomb.contains("takes more than the"), "{bomb}");
+    let picture = refused("t.gz", &gzip(&picture()));
+    assert!(picture.contains("picture"), "{picture}");
+}
+
 #[test]
 fn of_several_scenes_one_is_shown_and_any_can_be_named() {
     let files: Files = &[("a/small.stl", STL), ("big.stl", &[STL, STL].concat()), ("read me.txt", b"hello")];

@@ -5,7 +5,6 @@ use super::super::parameters::ParameterList;
 use super::maker::ShapeMaker;
 use crate::FormatError;
 use crate::files::read_source;
-use crate::gzip;
 use crate::reading::Source;
 use bilux_scene::{Mesh, SceneError};
 use std::path::Path;
@@ -29,8 +28,7 @@ pub(super) fn make(
     if let Some(mesh) = maker.cache.files.get(&key) {
         return Ok(Some(ShapeGeometry::Mesh(mesh.clone())));
     }
-    let raw = maker.loader.reading.load(&path)?;
-    let bytes = gzip::plain(raw, maker.loader.reading, &path, &at)?;
+    let bytes = maker.loader.reading.load(&path)?;
     let shown: Arc<str> = Path::new(&*at.file).with_file_name(name).display().to_string().into();
     let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
     // In pbrt, a mesh without normals is flat.
