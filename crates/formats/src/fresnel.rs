@@ -15,8 +15,8 @@ pub(crate) fn reflected_inside(index: f32) -> f32 {
     1.0 - (1.0 - above) / (index * index)
 }
 
-/// The reflectance of a dielectric from outside. [Fresnel 1823]
-fn fresnel(cos: f32, index: f32) -> f32 {
+/// The reflectance of a dielectric with an index relative to where light comes from. [Fresnel 1823]
+pub(crate) fn fresnel(cos: f32, index: f32) -> f32 {
     let inside = (1.0 - (1.0 - cos * cos) / (index * index)).max(0.0).sqrt();
     let across = (cos - index * inside) / (cos + index * inside);
     let along = (index * cos - inside) / (index * cos + inside);

@@ -1,4 +1,7 @@
-//! If Mitsuba 3's Python package is installed, it renders the same boxes for comparison: `witness/cornell.py`.
+//! If Mitsuba 3's Python package is installed, it renders the same boxes for comparison: `witness/cornell.py`; and the scenes of others,
+//! if a folder of them is named: `witness/scenes.py`.
+//!
+//! `BILUX_MITSUBA=FOLDER cargo test -p bilux-cli --test suite scenes_of_mitsuba -- --nocapture` prints a table of them.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use std::process::Command;
@@ -14,13 +17,34 @@ fn agrees(options: &[&str]) -> bool {
     status.unwrap().success()
 }
 
-#[test]
-fn mitsuba_renders_the_same_cornell_boxes() {
+/// Whether Mitsuba is there; if not, says how to install it.
+fn has_mitsuba() -> bool {
     let found = python().args(["-c", "import mitsuba, numpy"]).output();
-    if !found.is_ok_and(|output| output.status.success()) {
+    let found = found.is_ok_and(|output| output.status.success());
+    if !found {
         eprintln!(
             "skipped: `pip install mitsuba numpy`, and name the interpreter in $BILUX_PYTHON if need be"
         );
+    }
+    found
+}
+
+#[test]
+fn scenes_of_mitsuba_are_as_bright_as_there() {
+    let Some(folder) = std::env::var_os("BILUX_MITSUBA") else {
+        eprintln!("skipped: BILUX_MITSUBA does not name a folder of scenes");
+        return;
+    };
+    if has_mitsuba() {
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/scenes.py");
+        let status = python().args([script, env!("CARGO_BIN_EXE_bilux")]).arg(folder).status();
+        assert!(status.unwrap().success());
+    }
+}
+
+#[test]
+fn mitsuba_renders_the_same_cornell_boxes() {
+    if !has_mitsuba() {
         return;
     }
     assert!(agrees(&["--spp", "64", "--integrators", "path,bdpt,vcm"]));

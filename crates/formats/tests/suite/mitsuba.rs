@@ -4,6 +4,7 @@ use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read, read_bytes};
 use bilux_math::transcendental::{atan, tan};
 use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::bsdf::{Albedo, Ggx};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::fs;
 use std::io::Write;
@@ -21,6 +22,40 @@ fn material(bsdf: &str) -> Spec {
 
 fn close(found: Rgb, wanted: [f32; 3], by: f32) -> bool {
     (0..3).all(|i| (found[i] - wanted[i]).abs() <= by)
+}
+
+/// Cosine-weighted means of what Mitsuba 3.9.1 (`scalar_rgb`) reflects, by `bsdf.sample`; Bilux's materials reflect as much.
+#[test]
+fn principled_is_as_bright_as_in_mitsuba() {
+    let given = "<rgb name=\"base_color\" value=\"0.5, 0.1, 0.8\"/>";
+    for (roughness, wanted) in [(0.5f32, [0.565, 0.1597, 0.869]), (0.2, [0.576, 0.1846, 0.8696])] {
+        let spec = material(&format!(
+            "<bsdf type=\"principled\">{given}<float name=\"roughness\" value=\"{roughness}\"/></bsdf>"
+        ));
+        let boundary = Albedo::new(&Ggx::new(roughness * roughness), spec.number("specular_ior").unwrap());
+        let reflected =
+            spec.colour("base_color").unwrap() * (1.0 - boundary.mean()) + Rgb::grey(boundary.mean());
+        assert!(close(reflected, wanted, 0.01), "{reflected:?}, not {wanted:?}");
+    }
+    let inside = format!("{given}<float name=\"spec_trans\" value=\"1\"/>");
+    let glass = material(&format!("<bsdf type=\"principled\">{inside}</bsdf>"));
+    assert!(close(glass.colour("transmission_color").unwrap(), [0.7071, 0.3162, 0.8944], 1e-3));
+    let thin = material(&format!("<bsdf type=\"principledthin\">{inside}</bsdf>"));
+    assert!(close(thin.colour("transmission_color").unwrap(), [0.5, 0.1, 0.8], 1e-6));
+    let metal =
+        material(&format!("<bsdf type=\"principled\">{given}<float name=\"metallic\" value=\"1\"/></bsdf>"));
+    assert!(
+        close(metal.colour("base_color").unwrap(), [0.5, 0.1, 0.8], 1e-6),
+        "metals have the colour given"
+    );
+}
+
+/// Filters let half of unpolarised light through, and bend none.
+#[test]
+fn polarisers_are_grey_filters() {
+    let spec = material("<bsdf type=\"polarizer\"><float name=\"theta\" value=\"45\"/></bsdf>");
+    assert_eq!((spec.kind.as_str(), spec.number("eta")), ("dielectric", Some(1.0)));
+    assert_eq!(spec.colour("tint"), Some(Rgb::grey(0.5)));
 }
 
 #[test]

@@ -1,39 +1,65 @@
 //! Materials below a dielectric boundary.
 
+use super::rough_boundary::{Facets, RoughBoundary};
 use crate::FormatError;
 use crate::fresnel::reflected_inside;
 use crate::mitsuba::maker::{Maker, Meaning};
 use crate::mitsuba::plugin::Plugin;
 use crate::roughness::PRINCIPLED;
 use bilux_math::Rgb;
+use bilux_scene::bsdf::{Albedo, Ggx};
 use bilux_scene::{Spec, Value};
+
+/// The default alpha.
+const ALPHA: f32 = 0.1;
 
 /// A smooth boundary over a diffuse base.
 pub(super) fn plastic(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     if plugin.kind == "pplastic" {
         return rough_plastic(maker, plugin);
     }
-    Ok(Some(below_boundary(maker, plugin)?.with("specular_roughness", 0.0f32)))
+    let index = maker.relative_index(plugin, "polypropylene")?.max(1.0);
+    let inside = reflected_inside(index);
+    Ok(Some(below_boundary(maker, plugin, index, [1.0 - inside, inside])?.with("specular_roughness", 0.0f32)))
 }
 
 /// A rough boundary over a diffuse base.
 pub(super) fn rough_plastic(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
-    let mut spec = below_boundary(maker, plugin)?;
+    let index = maker.relative_index(plugin, "polypropylene")?.max(1.0);
+    let alpha = maker.even(plugin, "alpha", Meaning::Number)?.map_or(ALPHA, Rgb::luminance).clamp(1e-3, 1.0);
+    let facets = match plugin.text("distribution")? {
+        Some("ggx") => Facets::Ggx,
+        _ => Facets::Beckmann,
+    };
+    let here = 1.0 - Albedo::new(&Ggx::new(alpha), index).mean();
+    let [factor, inside] = if plugin.kind == "pplastic" {
+        // Its base loses what a smooth boundary reflects, and what that reflects back inside as well.
+        let passed = index * index * (1.0 - reflected_inside(index));
+        [passed * passed, 0.0]
+    } else {
+        let there = RoughBoundary::new(facets, alpha, index);
+        [there.passed * there.passed / (index * index), there.reflected_inside]
+    };
+    let mut spec = below_boundary(maker, plugin, index, [factor / here, inside])?;
     maker.set_roughness(&mut spec, plugin, PRINCIPLED)?;
     Ok(Some(spec))
 }
 
 /// A diffuse base whose colour accounts for what the boundary reflects back inside: of its own colour each time that
 /// happens if it is not linear, otherwise without a change of colour.
-fn below_boundary(maker: &mut Maker, plugin: &Plugin) -> Result<Spec, FormatError> {
-    let index = maker.relative_index(plugin, "polypropylene")?.max(1.0);
+fn below_boundary(
+    maker: &mut Maker,
+    plugin: &Plugin,
+    index: f32,
+    [factor, inside]: [f32; 2],
+) -> Result<Spec, FormatError> {
     let reflectance = maker.source_or(plugin, "diffuse_reflectance", Meaning::Surface, 0.5)?;
-    let base = if plugin.flag("nonlinear", false)? {
-        let inside = reflected_inside(index);
-        let below = |c: f32| c * (1.0 - inside) / (1.0 - c * inside);
-        reflectance.mapped(|c| c.map(below), maker.reading)?
-    } else {
-        reflectance
+    let changes = plugin.flag("nonlinear", false)?;
+    let below = |c: f32| (c * factor / (1.0 - inside * if changes { c } else { 1.0 })).min(1.0);
+    let base = match reflectance {
+        // The same as without a boundary.
+        _ if !changes && factor + inside == 1.0 => reflectance,
+        _ => reflectance.mapped(|c| c.map(below), maker.reading)?,
     };
     let mut spec = Spec::new("", "principled").with("specular_ior", index);
     maker.set(&mut spec, "base_color", base, &plugin.place("diffuse_reflectance"));

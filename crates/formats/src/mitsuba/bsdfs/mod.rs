@@ -8,6 +8,7 @@ mod measured_indices;
 mod normals;
 mod plain;
 mod principled;
+mod rough_boundary;
 
 use super::maker::Maker;
 use super::plugin::{Plugin, row};

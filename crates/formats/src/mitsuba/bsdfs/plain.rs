@@ -33,11 +33,14 @@ pub(super) fn null(_: &mut Maker, _: &Plugin) -> Result<Option<Spec>, FormatErro
     Ok(None)
 }
 
-/// Polarisers and the like, which halve light that is not polarised.
+/// Polarisers and retarders as Mitsuba's unpolarised modes have them: they let light straight through, polarisers the half of it.
 pub(super) fn filter(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
-    maker.not_shown(plugin);
-    plugin.properties.iter().for_each(|property| property.used.set(true));
-    Ok(None)
+    plugin.ignore(&["theta", "delta", "polarizing", "left_handed"]);
+    let passed = if plugin.kind == "retarder" { 1.0 } else { 0.5 };
+    let tint = maker.source_or(plugin, "transmittance", Meaning::Surface, 1.0)?.scaled(Rgb::grey(passed));
+    let mut spec = Spec::new("", "dielectric").with("eta", 1.0f32).with("thin", true);
+    maker.set(&mut spec, "tint", tint, &plugin.place("transmittance"));
+    Ok(Some(spec))
 }
 
 /// What cannot be described here: grey.
@@ -156,6 +159,12 @@ pub(super) fn thin_dielectric(maker: &mut Maker, plugin: &Plugin) -> Result<Opti
 pub(super) fn rough_dielectric(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     let mut spec = glass(maker, plugin)?;
     maker.set_roughness(&mut spec, plugin, PLAIN)?;
+    if plugin.text("distribution")? != Some("ggx") {
+        // Half of the facets are as steep as those of Beckmann, or more light would be lost between them.
+        if let Some(roughness) = spec.number("roughness") {
+            spec.parameters.set("roughness", roughness * std::f32::consts::LN_2.sqrt().sqrt());
+        }
+    }
     Ok(Some(spec))
 }
 

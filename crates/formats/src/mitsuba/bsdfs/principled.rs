@@ -5,6 +5,7 @@ use crate::mitsuba::maker::{Maker, Meaning};
 use crate::mitsuba::plugin::Plugin;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
+use bilux_scene::bsdf::{Albedo, FuzzAlbedo, Ggx};
 
 /// Numbers that become textures or numbers of ours as they are.
 const SAME: [(&str, &str, f32); 3] = [
@@ -12,6 +13,16 @@ const SAME: [(&str, &str, f32); 3] = [
     ("metallic", "base_metalness", 0.0),
     ("spec_trans", "transmission_weight", 0.0),
 ];
+
+/// The cosine-weighted mean reflectance of a white base of [Burley 2012], over directions of light and view: without its retroreflection,
+/// which is proportional to the roughness, and with the two terms of that. Its sheen likewise.
+const DIFFUSE: [f32; 3] = [0.9529, 0.1087, 0.0035];
+const SHEEN: f32 = 0.01158;
+/// The same of a coat, for a gloss of 0 and of 1.
+const COAT: [f32; 2] = [0.0168, 0.0205];
+
+/// The roughness of our fuzz that stands for sheen.
+const FUZZ: f32 = 0.3;
 
 pub(super) fn principled(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     let mut spec = common(maker, plugin, &SAME)?;
@@ -23,24 +34,63 @@ pub(super) fn principled(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Sp
             2.0 / (1.0 - root).max(0.1) - 1.0
         }
     };
-    spec.parameters.set("specular_ior", index.clamp(1.0, 10.0));
+    let mut index = index.clamp(1.0, 10.0);
+    set_base(maker, plugin, &mut spec, index)?;
     if plugin.has("clearcoat") {
-        // A coat reflects a quarter of what its number says, with an alpha from 0.1 to 0.001.
-        let coat = maker.source_or(plugin, "clearcoat", Meaning::Number, 0.0)?.scaled(Rgb::grey(0.25));
-        maker.set_number(&mut spec, "coat_weight", coat, &plugin.place("clearcoat"));
         let gloss = maker.even(plugin, "clearcoat_gloss", Meaning::Number)?.map_or(0.0, Rgb::luminance);
-        let alpha = 0.1 + (0.001 - 0.1) * gloss.clamp(0.0, 1.0);
-        spec.parameters.set("coat_roughness", alpha.sqrt());
-        spec.parameters.set("coat_ior", 1.5f32);
+        let gloss = gloss.clamp(0.0, 1.0);
+        // As bright as there, where a highlight is not divided by the cosines; alpha is from 0.1 to 0.001.
+        let share = (COAT[0] + (COAT[1] - COAT[0]) * gloss) / Albedo::new(&Ggx::new(0.05), COAT_INDEX).mean();
+        let coat = maker.source_or(plugin, "clearcoat", Meaning::Number, 0.0)?.scaled(Rgb::grey(share));
+        // Below a coat the boundary of the base reflects less here, but not there.
+        let mean = coat.mean().luminance().clamp(0.0, 1.0);
+        index /= 1.0 - mean * (1.0 - 1.0 / COAT_INDEX);
+        maker.set_number(&mut spec, "coat_weight", coat, &plugin.place("clearcoat"));
+        spec.parameters.set("coat_roughness", (0.1 + (0.001 - 0.1) * gloss).sqrt());
+        spec.parameters.set("coat_ior", COAT_INDEX);
     }
+    spec.parameters.set("specular_ior", index.clamp(1.0, 10.0));
     not_shown(maker, plugin, &["spec_tint", "flatness"])?;
     Ok(Some(spec))
+}
+
+/// The index of a coat.
+const COAT_INDEX: f32 = 1.5;
+
+/// Sets the colour of the base, which there loses nothing to the boundary above it, and that of glass, whose square root each boundary
+/// has.
+fn set_base(maker: &mut Maker, plugin: &Plugin, spec: &mut Spec, index: f32) -> Result<(), FormatError> {
+    let at = plugin.place("base_color");
+    let colour = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?;
+    let mut mean = |name, default| {
+        let source = maker.source_or(plugin, name, Meaning::Number, default)?;
+        Ok::<_, FormatError>(source.mean().luminance().clamp(0.0, 1.0))
+    };
+    let (metal, roughness) = (mean("metallic", 0.0)?, mean("roughness", 0.5)?);
+    let here = 1.0 - Albedo::new(&Ggx::new(roughness * roughness), index).mean();
+    let there = DIFFUSE[0] + roughness * (DIFFUSE[1] + roughness * DIFFUSE[2]);
+    let factor = metal + (1.0 - metal) * there / here;
+    let base = colour.clone().mapped(|c| (c * factor).clamp(0.0, 1.0), maker.reading)?;
+    maker.set(spec, "base_color", base, &at);
+    if plugin.has("spec_trans") {
+        let passed = colour.mapped(|c| c.map(f32::sqrt), maker.reading)?;
+        maker.set(spec, "transmission_color", passed, &at);
+    }
+    Ok(())
 }
 
 /// The same for walls without thickness.
 pub(super) fn thin(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     let mut spec = common(maker, plugin, &[SAME[0], SAME[2]])?.with("thin_walled", true);
     spec.parameters.set("specular_ior", (plugin.number_or("eta", 1.5)? as f32).clamp(1.0, 10.0));
+    let colour = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?;
+    maker.set(&mut spec, "base_color", colour.clone(), &plugin.place("base_color"));
+    if plugin.has("spec_trans") {
+        maker.set(&mut spec, "transmission_color", colour, &plugin.place("base_color"));
+    } else {
+        // Only the clear part has a boundary there.
+        spec.parameters.set("specular_weight", 0.0f32);
+    }
     if plugin.has("diff_trans") {
         // At 2, all diffuse light is transmitted.
         let share = maker.source_or(plugin, "diff_trans", Meaning::Number, 0.0)?.scaled(Rgb::grey(0.5));
@@ -69,8 +119,6 @@ fn common(
         "diff_trans_sampling_rate",
     ]);
     let mut spec = Spec::new("", "principled");
-    let colour = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?;
-    maker.set(&mut spec, "base_color", colour, &plugin.place("base_color"));
     for (name, key, default) in same {
         let source = maker.source_or(plugin, name, Meaning::Number, *default)?;
         maker.set_number(&mut spec, key, source, &plugin.place(name));
@@ -83,10 +131,21 @@ fn common(
         spec.parameters.set("anisotropy_rotation", 0.25f32);
     }
     if plugin.has("sheen") {
-        let sheen = maker.source_or(plugin, "sheen", Meaning::Number, 0.0)?;
+        // ∫ albedo(µ) 2µ dµ of our fuzz.
+        let fuzz = FuzzAlbedo::new(FUZZ);
+        let mean: f32 =
+            (0..64).map(|i| (i as f32 + 0.5) / 64.0).map(|cos| fuzz.at(cos) * 2.0 * cos / 64.0).sum();
+        let sheen = maker.source_or(plugin, "sheen", Meaning::Number, 0.0)?.scaled(Rgb::grey(SHEEN / mean));
         maker.set_number(&mut spec, "fuzz_weight", sheen, &plugin.place("sheen"));
-        plugin.ignore(&["sheen_tint"]);
-        let what = "sheen is rendered as fuzz";
+        spec.parameters.set("fuzz_roughness", FUZZ);
+        let tint =
+            maker.even(plugin, "sheen_tint", Meaning::Number)?.map_or(0.0, Rgb::luminance).clamp(0.0, 1.0);
+        if tint > 0.0 {
+            let base = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?.mean();
+            let hue = base * (1.0 / base.luminance().max(f32::MIN_POSITIVE));
+            spec.parameters.set("fuzz_color", Rgb::WHITE.lerp(hue, tint).clamp(0.0, 1.0));
+        }
+        let what = "sheen is rendered as fuzz that reflects as much";
         maker.oddities.remark(what, || plugin.place("sheen"));
     }
     Ok(spec)
