@@ -2,7 +2,7 @@
 
 use crate::writing::Writing;
 use bilux_math::transcendental::atan;
-use bilux_scene::Spec;
+use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Warns about a camera that is more than a perspective one.
 pub(crate) fn not_perspective(spec: &Spec, format: &str, writing: &mut Writing) {
@@ -46,4 +46,12 @@ pub(crate) fn field_of_view(spec: &Spec) -> f32 {
         _ => spec.number("fov").unwrap_or(90.0),
     };
     degrees.clamp(1.0, 120.0)
+}
+
+/// The aspect ratio of the scene's picture, if the scene states its size.
+pub(crate) fn picture_aspect_ratio(scene: &SceneBuilder) -> Option<f32> {
+    let Some((Value::Text(size), _)) = scene.settings.find("size") else { return None };
+    let (width, height) = size.split_once('x')?;
+    let [width, height]: [f32; 2] = [width.trim().parse().ok()?, height.trim().parse().ok()?];
+    Some(width / height).filter(|shape| shape.is_finite() && *shape > 0.0)
 }

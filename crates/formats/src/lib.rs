@@ -18,6 +18,7 @@ mod camera_loss;
 mod choice;
 mod cloud;
 mod colours;
+mod dome;
 mod e57;
 mod emissive;
 mod environment_maps;
@@ -73,6 +74,7 @@ mod vdb;
 mod writing;
 mod xml;
 mod xyz;
+mod zipped;
 
 pub use calibrations::{CalibratedCameras, read_cameras};
 pub use error::FormatError;

@@ -2,7 +2,7 @@
 
 use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{sin_cos_f64, tan_f64};
-use bilux_math::{DMat4, DVec3};
+use bilux_math::{DMat4, DVec3, Mat3, Mat4, Quat, Vec3};
 use bilux_scene::Parameters;
 
 /// A rotation by an angle in degrees about an axis; `None` for a zero axis.
@@ -41,4 +41,12 @@ pub(crate) fn view_of(to_world: &DMat4) -> Option<Parameters> {
         parameters.set(key, v.as_vec3());
     }
     Some(parameters)
+}
+
+/// The place of something that looks along its own -z axis, with y upwards.
+pub(crate) fn looking(position: Vec3, forward: Vec3, up: Vec3) -> Mat4 {
+    let forward = forward.normalize_or(Vec3::NEG_Z);
+    let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+    let axes = Mat3::from_cols(right, right.cross(forward), -forward);
+    Mat4::from_rotation_translation(Quat::from_mat3(&axes), position)
 }

@@ -3,7 +3,7 @@
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::materials::{self, AsPrincipled, SHARED};
-use bilux_scene::{MATERIALS, Spec, Value};
+use bilux_scene::{MATERIALS, SceneBuilder, Spec, Value};
 
 /// The number under a key, if there is one.
 pub(crate) fn number(spec: &Spec, key: &str) -> Option<f32> {
@@ -69,4 +69,31 @@ pub(crate) fn as_principled(spec: &Spec, format: &'static str, writing: &mut Wri
     let of_kinds = &[(row.entry.name, keeps)];
     MaterialSupport { format, of_kinds, of_any: SHARED, textured: None }.warn_unsupported(spec, writing);
     materials::as_principled(spec)
+}
+
+/// A material of any kind as `principled`, for formats that know no other, with warnings about what that leaves out.
+pub(crate) fn nearest_principled(
+    spec: &Spec,
+    scene: &SceneBuilder,
+    format: &'static str,
+    writing: &mut Writing,
+) -> Spec {
+    if spec.kind == "principled" {
+        return spec.clone();
+    }
+    let spec = &*materials::with_indices(spec);
+    if let Some(principled) = as_principled(spec, format, writing) {
+        return principled;
+    }
+    let first = spec.parameters.find("a").and_then(|(value, _)| match value {
+        Value::Material(index) => scene.materials.get(*index),
+        _ => None,
+    });
+    let instead = if first.is_some() { "its first part is" } else { "a plain one with its name is" };
+    writing
+        .warn(format!("{format} files cannot store the material '{}': {instead} written instead", spec.kind));
+    match first.filter(|first| first.kind != "mix") {
+        Some(first) => Spec { name: spec.name.clone(), ..nearest_principled(first, scene, format, writing) },
+        None => Spec::new(&spec.name, "principled"),
+    }
 }

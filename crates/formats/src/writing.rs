@@ -101,6 +101,11 @@ impl<'o> Writing<'o> {
         self.add_first_free((number..).map(|i| format!("{stem}-{kind}-{i}.{extension}")), bytes)
     }
 
+    /// The accompanying files so far, for formats that keep them within the main file.
+    pub(crate) fn take_beside(&mut self) -> Vec<(String, Vec<u8>)> {
+        std::mem::take(&mut self.beside)
+    }
+
     /// The number of accompanying files so far.
     pub(crate) fn count(&self) -> usize {
         self.beside.len()

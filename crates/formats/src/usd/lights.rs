@@ -53,7 +53,9 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
         radiance = radiance * body * (1.0 / body.luminance().max(f32::MIN_POSITIVE));
     }
     let is_normalized = number(stage, prim, "normalize", 0.0, context)? != 0.0;
-    if number(stage, prim, "shaping:cone:angle", 180.0, context)? < 90.0 {
+    let cone = number(stage, prim, "shaping:cone:angle", 180.0, context)?;
+    let is_point = number(stage, prim, "treatAsPoint", 0.0, context)? != 0.0;
+    if cone < 90.0 && !(&*kind == "SphereLight" && is_point) {
         context.sink.oddities.not_shown("cones of lights (shaping)", || stage.at(prim));
     }
     let profile = stage.text(prim, "inputs:shaping:ies:file", &mut context.reading.budget)?;
@@ -154,10 +156,16 @@ impl Light<'_> {
         if radius <= 0.0 || is_point {
             let area = if radius > 0.0 { PI * radius * radius } else { 1.0 };
             let intensity = radiance * area as f32;
-            self.push(
-                Spec::new(self.name, "point").with("position", centre).with("intensity", intensity),
-                context,
-            );
+            let cone = self.number("shaping:cone:angle", 180.0, context)?;
+            let kind = if cone < 180.0 { "spot" } else { "point" };
+            let mut spec = Spec::new(self.name, kind).with("position", centre).with("intensity", intensity);
+            if cone < 180.0 {
+                let softness = self.number("shaping:cone:softness", 0.0, context)?.min(1.0);
+                let ahead = self.axis(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
+                spec = spec.with("look_at", centre + ahead * (1.0 + 1e-4 * centre.abs().max_element()));
+                spec = spec.with("angle", cone as f32).with("inner_angle", (cone * (1.0 - softness)) as f32);
+            }
+            self.push(spec, context);
             return Ok(());
         }
         let spec = Spec::new(self.name, "sphere")

@@ -23,6 +23,7 @@ mod transforms;
 mod usda;
 mod usdc;
 mod value;
+mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
@@ -58,7 +59,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| bytes.starts_with(usdc::MAGIC) || usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)),
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Binary(read::read)),
-    write: None,
+    write: Some(write::write),
 };
 
 pub(crate) const PACKAGE: SceneFormatEntry = SceneFormatEntry {
@@ -73,5 +74,5 @@ pub(crate) const PACKAGE: SceneFormatEntry = SceneFormatEntry {
     sniff: package::is_package,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Packed(package::read)),
-    write: None,
+    write: Some(write::write_package),
 };

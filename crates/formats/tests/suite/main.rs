@@ -49,6 +49,7 @@ mod subdivision;
 mod threemf;
 mod tolerance;
 mod usd;
+mod usd_written;
 mod wrong_files;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};

@@ -3,8 +3,7 @@
 use super::Document;
 use crate::values::{self, number};
 use crate::writing::Writing;
-use bilux_scene::materials::with_indices;
-use bilux_scene::{Spec, Value};
+use bilux_scene::Spec;
 
 /// Converts any material to `principled`; textures are checked after that.
 pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
@@ -18,18 +17,5 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
         }
         return same;
     }
-    let spec = &*with_indices(spec);
-    if let Some(principled) = values::as_principled(spec, "glTF", writing) {
-        return principled;
-    }
-    let first = spec.parameters.find("a").and_then(|(value, _)| match value {
-        Value::Material(index) => document.scene.materials.get(*index),
-        _ => None,
-    });
-    let instead = if first.is_some() { "its first part is" } else { "a plain one with its name is" };
-    writing.warn(format!("glTF files cannot store the material '{}': {instead} written instead", spec.kind));
-    match first.filter(|first| first.kind != "mix") {
-        Some(first) => Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
-        None => Spec::new(&spec.name, "principled"),
-    }
+    values::nearest_principled(spec, document.scene, "glTF", writing)
 }

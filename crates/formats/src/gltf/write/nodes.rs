@@ -1,14 +1,14 @@
 //! Everything in the scene other than meshes: cameras, lights and animations.
 
 use super::Document;
-use crate::camera_loss::{field_of_view, not_perspective};
+use crate::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
+use crate::placement::looking;
 use crate::values::{colour, number, vector};
 use crate::writing::Writing;
-use bilux_math::glam::{Mat3, Mat4, Quat};
 use bilux_math::{MotionKey, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
-use bilux_scene::{Mesh, Spec, Value};
+use bilux_scene::{Mesh, Spec};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
@@ -34,14 +34,6 @@ impl Document<'_> {
         self.push("animations", json!({ "channels": channels, "samplers": samplers }));
     }
 
-    /// The aspect ratio of the scene's image, if the scene states its size.
-    fn picture_aspect_ratio(&self) -> Option<f32> {
-        let Some((Value::Text(size), _)) = self.scene.settings.find("size") else { return None };
-        let (width, height) = size.split_once('x')?;
-        let [width, height]: [f32; 2] = [width.trim().parse().ok()?, height.trim().parse().ok()?];
-        Some(width / height).filter(|shape| shape.is_finite() && *shape > 0.0)
-    }
-
     pub(super) fn camera(&mut self, camera: &CameraSpec, writing: &mut Writing) {
         let spec = &camera.spec;
         if !camera.keyframes.is_empty() {
@@ -52,7 +44,7 @@ impl Document<'_> {
         }
         let point = |key, default: Vec3| vector(spec, key).unwrap_or(default);
         let position = point("position", Vec3::new(0.0, 0.0, 5.0));
-        let forward = (point("look_at", Vec3::ZERO) - position).normalize_or(Vec3::NEG_Z);
+        let forward = point("look_at", Vec3::ZERO) - position;
         let lens = if spec.kind == "orthographic" {
             let half = number(spec, "height").unwrap_or(2.0) * 0.5;
             json!({ "type": "orthographic", "orthographic": { "xmag": half, "ymag": half, "znear": 0.0, "zfar": 1e6 } })
@@ -62,7 +54,7 @@ impl Document<'_> {
             let mut lens = json!({ "yfov": fov, "znear": 0.001 });
             // With an aspect ratio, images of another shape show no less.
             if let Some(shape) =
-                number(spec, "frame").filter(|&shape| shape > 0.0).or(self.picture_aspect_ratio())
+                number(spec, "frame").filter(|&shape| shape > 0.0).or(picture_aspect_ratio(self.scene))
             {
                 lens["aspectRatio"] = json!(shape);
             }
@@ -72,7 +64,7 @@ impl Document<'_> {
         self.root(json!({
             "name": spec.name,
             "camera": lens,
-            "matrix": looking(position, forward, point("up", Vec3::Y)),
+            "matrix": looking(position, forward, point("up", Vec3::Y)).to_cols_array(),
         }));
     }
 
@@ -109,7 +101,7 @@ impl Document<'_> {
             light["spot"] = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
         }
         let light = self.push("lights", light);
-        let matrix = looking(position, forward.normalize_or(Vec3::NEG_Z), Vec3::Y);
+        let matrix = looking(position, forward, Vec3::Y).to_cols_array();
         let extension = json!({ "KHR_lights_punctual": { "light": light } });
         self.root(json!({ "name": spec.name, "matrix": matrix, "extensions": extension }));
     }
@@ -144,11 +136,4 @@ impl Document<'_> {
         // The mesh is dropped after this; another may be allocated at the same address.
         self.meshes.retain(|(at, _), _| *at != Arc::as_ptr(&mesh));
     }
-}
-
-/// The transform of a node that looks along its -z axis, as a column-major matrix.
-fn looking(position: Vec3, forward: Vec3, up: Vec3) -> [f32; 16] {
-    let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-    let axes = Mat3::from_cols(right, right.cross(forward), -forward);
-    Mat4::from_rotation_translation(Quat::from_mat3(&axes), position).to_cols_array()
 }
