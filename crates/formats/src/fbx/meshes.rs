@@ -2,13 +2,14 @@
 
 use super::deform::Deformers;
 use super::document::{Document, Index, display_name};
-use super::geometry::{Geometry, Part, Workshop, layers_named, parts};
+use super::geometry::{self, layers_named};
 use super::graph::{Graph, Placed};
 use super::materials::{Materials, Worn};
 use super::posed::Posed;
 use super::tree::{Node, Value};
 use crate::FormatError;
 use crate::flat;
+use crate::polygon_mesh::{Part, Workshop, parts};
 use crate::reading::Reading;
 use crate::sink::Sink;
 use bilux_math::motion::Motion;
@@ -133,7 +134,7 @@ impl<'d> Meshes<'d> {
             Workshop { budget: &mut reading.budget, oddities: &mut sink.oddities, crease_angle };
         let has_second = second_set(object.node).and_then(|(_, name)| name);
         let has_second = has_second.is_some_and(|name| self.named_sets.contains(name));
-        let made = match Geometry::read(object.node, display_name(object.name), has_second, &mut workshop)? {
+        let made = match geometry::read(object.node, display_name(object.name), has_second, &mut workshop)? {
             Some(mut geometry) => {
                 deformers.apply(&mut geometry, placed, posed, graph, &mut workshop)?;
                 geometry.add_normals(&mut workshop, document.file())?;

@@ -7,11 +7,11 @@ use super::posed::Posed;
 use super::tree::Tree;
 use super::{cameras, deform, lights};
 use crate::FormatError;
+use crate::movement::whole_movement;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
 use crate::sink::Sink;
 use bilux_scene::SceneBuilder;
-use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut sink = Sink::for_bare_files();
@@ -22,29 +22,10 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     place_all(&document, reading.options.time, &mut meshes, reading, &mut sink)?;
     if reading.options.whole_movement && sink.scene.inventory.moves() {
         let end = sink.scene.inventory.seconds();
-        sink.scene.movement = Some(Arc::new(movement(&document, &mut meshes, reading, end)?));
+        let place = |time, sink: &mut Sink| place_all(&document, time, &mut meshes, reading, sink);
+        sink.scene.movement = Some(whole_movement(end, place)?);
     }
     Ok(sink.finish())
-}
-
-/// The number of intervals into which the animation is divided to find where objects move.
-const MOMENTS: u32 = 8;
-
-/// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
-fn movement<'d>(
-    document: &'d Document<'d>,
-    meshes: &mut Meshes<'d>,
-    reading: &mut Reading,
-    end: f32,
-) -> Result<SceneBuilder, FormatError> {
-    let mut all = SceneBuilder::default();
-    for moment in 0..=MOMENTS {
-        let time = end * moment as f32 / MOMENTS as f32;
-        let mut sink = Sink::default();
-        place_all(document, time, meshes, reading, &mut sink)?;
-        all.objects.extend(sink.scene.objects);
-    }
-    Ok(all)
 }
 
 /// Adds all nodes to the scene, as they are at a time in seconds.

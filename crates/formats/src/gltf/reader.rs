@@ -11,6 +11,7 @@ use super::posed::Posed;
 use super::primitive::Part;
 use super::{area_lights, cameras, container, extensions, lights, soundness, validate};
 use crate::authors::program;
+use crate::movement::whole_movement;
 use crate::reading::{Reading, Source};
 use crate::sharing::share_trees;
 use crate::sink::Sink;
@@ -46,7 +47,11 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     check(&document, &meshes.materials.pictures, reading, &mut sink)?;
     if reading.options.whole_movement && sink.scene.inventory.moves() {
         let end = sink.scene.inventory.seconds();
-        sink.scene.movement = Some(Arc::new(movement(&document, meshes, reading, end)?));
+        let place = |time, sink: &mut Sink| {
+            meshes.forget_skinned();
+            place_all(&document, time, &mut meshes, reading, sink)
+        };
+        sink.scene.movement = Some(whole_movement(end, place)?);
     }
     Ok(sink.finish())
 }
@@ -64,27 +69,6 @@ fn check(
     } else {
         soundness::check_data(&mut DataReader::new(document, &mut reading.budget, &mut sink.oddities))
     }
-}
-
-/// The number of intervals into which the animation is divided to find where objects move.
-const MOMENTS: u32 = 8;
-
-/// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
-fn movement(
-    document: &Document,
-    mut meshes: Meshes,
-    reading: &mut Reading,
-    end: f32,
-) -> Result<SceneBuilder, FormatError> {
-    let mut all = SceneBuilder::default();
-    for moment in 0..=MOMENTS {
-        let time = end * moment as f32 / MOMENTS as f32;
-        let mut sink = Sink::default();
-        meshes.forget_skinned();
-        place_all(document, time, &mut meshes, reading, &mut sink)?;
-        all.objects.extend(sink.scene.objects);
-    }
-    Ok(all)
 }
 
 /// Adds all nodes to the scene, as they are at a time in seconds.

@@ -4,10 +4,11 @@ mod shapes;
 mod skin;
 
 use super::document::{Document, Index, display_name};
-use super::geometry::{Geometry, Workshop};
+
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use crate::FormatError;
+use crate::polygon_mesh::{PolygonMesh, Workshop};
 
 /// The deformers of a mesh.
 pub(super) struct Deformers<'d> {
@@ -48,7 +49,7 @@ impl<'d> Deformers<'d> {
     /// Deforms a mesh as it is on a node.
     pub(super) fn apply(
         &self,
-        geometry: &mut Geometry,
+        geometry: &mut PolygonMesh,
         placed: &Placed,
         posed: &Posed,
         graph: &Graph,

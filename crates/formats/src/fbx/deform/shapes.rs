@@ -2,7 +2,8 @@
 
 use crate::FormatError;
 use crate::fbx::document::Index;
-use crate::fbx::geometry::{Geometry, Workshop};
+use crate::polygon_mesh::{PolygonMesh, Workshop};
+
 use crate::fbx::posed::Posed;
 use crate::fbx::tree::{Node, Value};
 use bilux_math::Vec3;
@@ -81,7 +82,7 @@ impl Channel<'_> {
     /// Adds what there is of the shapes to a mesh, and how they turn the normals at each control point to `turns`.
     pub(super) fn add(
         &self,
-        geometry: &mut Geometry,
+        geometry: &mut PolygonMesh,
         turns: &mut Vec<Vec3>,
         workshop: &mut Workshop,
     ) -> Result<(), FormatError> {

@@ -1,10 +1,10 @@
 //! Skins: each vertex follows several bones, by weights.
 
 use crate::FormatError;
-use crate::affine::cofactors;
 use crate::budget::Budget;
 use crate::fbx::document::Index;
-use crate::fbx::geometry::{Geometry, Workshop};
+use crate::polygon_mesh::{PolygonMesh, Workshop};
+
 use crate::fbx::graph::{Graph, Placed};
 use crate::fbx::posed::Posed;
 use crate::fbx::tree::Node;
@@ -13,7 +13,7 @@ use bilux_math::DMat4;
 /// Moves a mesh to where its bones are, in world space. Vertices without weights stay on their node.
 pub(super) fn bend(
     skin: Index,
-    geometry: &mut Geometry,
+    geometry: &mut PolygonMesh,
     placed: &Placed,
     posed: &Posed,
     graph: &Graph,
@@ -63,15 +63,7 @@ pub(super) fn bend(
     for (blend, sum) in blends.iter_mut().zip(sums) {
         *blend = if sum == 0.0 { still } else { *blend * (1.0 / sum) };
     }
-    for (position, blend) in geometry.positions.iter_mut().zip(&blends) {
-        *position = blend.transform_point3(position.as_dvec3()).as_vec3();
-    }
-    geometry.turn_normals(workshop, node.file(), |normal, vertex| {
-        (cofactors(&blends[vertex]) * normal.as_dvec3()).normalize_or_zero().as_vec3()
-    })?;
-    if blends.first().is_some_and(|blend| blend.determinant() < 0.0) {
-        geometry.is_mirrored = true;
-    }
+    geometry.bend(&blends, workshop, node.file())?;
     workshop.budget.release((count * size_of::<(DMat4, f64)>()) as u64);
     Ok(())
 }

@@ -4,9 +4,9 @@ use crate::budget::Budget;
 use crate::oddities::Oddities;
 
 /// What a reader of meshes needs besides the mesh.
-pub(in crate::fbx) struct Workshop<'r> {
-    pub(in crate::fbx) budget: &'r mut Budget,
-    pub(in crate::fbx) oddities: &'r mut Oddities,
+pub(crate) struct Workshop<'r> {
+    pub(crate) budget: &'r mut Budget,
+    pub(crate) oddities: &'r mut Oddities,
     /// Faces that meet at a smaller angle are smooth, in degrees.
-    pub(in crate::fbx) crease_angle: f32,
+    pub(crate) crease_angle: f32,
 }

@@ -1,6 +1,6 @@
 //! Makes triangles of polygons. Corners at one control point that have the same attributes share a vertex.
 
-use super::polygon_mesh::Geometry;
+use super::mesh::PolygonMesh;
 use super::workshop::Workshop;
 use crate::FormatError;
 use crate::indexed_faces::NONE;
@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 /// The faces of a mesh that have one material.
 #[derive(Clone)]
-pub(in crate::fbx) struct Part {
-    pub(in crate::fbx) mesh: Arc<Mesh>,
-    /// The number of its material among those of the node.
-    pub(in crate::fbx) material: usize,
+pub(crate) struct Part {
+    pub(crate) mesh: Arc<Mesh>,
+    /// The number of its material among those of the mesh.
+    pub(crate) material: usize,
 }
 
 /// A vertex: position, normal, two pairs of texture coordinates, colour, and its link.
@@ -25,8 +25,8 @@ type Vertex = [u32; 14];
 const MAX_CHAIN: usize = 32;
 
 /// The mesh in parts of one material each.
-pub(in crate::fbx) fn parts(
-    geometry: Geometry,
+pub(crate) fn parts(
+    geometry: PolygonMesh,
     workshop: &mut Workshop,
     file: &str,
 ) -> Result<Vec<Part>, FormatError> {
@@ -60,7 +60,7 @@ pub(in crate::fbx) fn parts(
 
 /// Makes one part after the other.
 struct Welder<'g> {
-    geometry: &'g Geometry,
+    geometry: &'g PolygonMesh,
     /// The first vertex at each control point.
     first: Vec<u32>,
     /// For each vertex the next one at the same control point.
