@@ -5,8 +5,8 @@ use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
 use crate::{
-    FormatError, asc, e57, fbx, gltf, grids, las, mitsuba, native, obj, off, packed, pbrt, ply, stl, threemf,
-    usd, xyz,
+    FormatError, asc, dae, e57, fbx, gltf, grids, las, mitsuba, native, obj, off, packed, pbrt, ply, stl,
+    threemf, usd, xyz,
 };
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
@@ -19,6 +19,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     asc::ENTRY,
     gltf::ENTRY,
     fbx::ENTRY,
+    dae::ENTRY,
     pbrt::ENTRY,
     usd::ENTRY,
     usd::PACKAGE,
@@ -126,8 +127,8 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 
 /// Extensions of scene formats that other programs read.
 const FOREIGN: &[&str] = &[
-    "3ds", "abc", "blend", "c4d", "dae", "iges", "igs", "lwo", "ma", "max", "mb", "skp", "step", "stp",
-    "vrm", "wrl", "x3d",
+    "3ds", "abc", "blend", "c4d", "iges", "igs", "lwo", "ma", "max", "mb", "skp", "step", "stp", "vrm",
+    "wrl", "x3d",
 ];
 
 pub(crate) fn unknown(

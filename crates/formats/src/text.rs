@@ -279,6 +279,11 @@ impl<'a> Places<'a> {
         self.bytes
     }
 
+    /// The file's name.
+    pub(crate) fn file(&self) -> &str {
+        &self.file
+    }
+
     /// The location of the file as a whole.
     pub(crate) fn whole(&self) -> Span {
         whole_file(&self.file)

@@ -47,6 +47,11 @@ impl<'a> Xml<'a> {
         self.document.root_element()
     }
 
+    /// The file's name.
+    pub(crate) fn file(&self) -> &str {
+        self.places.file()
+    }
+
     /// Where an element begins.
     pub(crate) fn at(&self, node: Node) -> Span {
         self.places.at(node.range().start)

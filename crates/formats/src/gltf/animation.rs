@@ -3,9 +3,8 @@
 use super::data::DataReader;
 use super::json::JsonNode;
 use crate::FormatError;
+use crate::between_keys::slerp;
 use crate::choice::named_or_numbered;
-use bilux_math::glam::DQuat;
-use bilux_math::transcendental::{atan2_f64, sin_f64};
 use bilux_scene::Animation;
 use std::collections::{HashMap, HashSet};
 
@@ -279,20 +278,6 @@ impl Keys<'_> {
     }
 }
 
-/// Interpolates along the shorter great arc at constant speed. [Shoemake 1985]
-fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
-    let quaternion = |q: &[f64]| DQuat::from_xyzw(q[0], q[1], q[2], q[3]).normalize();
-    let (a, mut b) = (quaternion(a), quaternion(b));
-    if a.dot(b) < 0.0 {
-        b = -b;
-    }
-    let half = 2.0 * atan2_f64((b - a).length(), (b + a).length());
-    let whole = sin_f64(half);
-    let part = |part: f64| if whole > 1e-9 { sin_f64(part * half) / whole } else { part };
-    let between = a * part(1.0 - t) + b * part(t);
-    between.to_array().to_vec()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -312,15 +297,5 @@ mod tests {
         // (1/8 · 3 - 1/8 · (-1)) = 8.
         let cubic = keys(&times, &[0.0, 5.0, 3.0, -1.0, 9.0, 0.0], 1, Interpolation::Cubic);
         assert_eq!([0.0, 1.0, 2.0, 3.0].map(|t| cubic.at(t)[0]), [5.0, 5.0, 8.0, 9.0]);
-    }
-
-    #[test]
-    fn rotations_take_the_shorter_way() {
-        let half = std::f64::consts::FRAC_1_SQRT_2;
-        // A quarter turn about z, written as the negated quaternion.
-        let turned = slerp(&[0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, -half, -half], 1.0 / 3.0);
-        let expected = 15f64.to_radians();
-        assert!((2.0 * atan2_f64(turned[2], turned[3]) - 2.0 * expected).abs() < 1e-12, "{turned:?}");
-        assert_eq!(slerp(&[0.0, 0.0, 0.0, 2.0], &[0.0, 0.0, 0.0, 1.0], 0.5), [0.0, 0.0, 0.0, 1.0]);
     }
 }

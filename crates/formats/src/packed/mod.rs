@@ -72,7 +72,9 @@ fn candidates(archive: &Archive) -> Vec<Candidate<'_>> {
 
 fn candidate(member: &Member) -> Option<Candidate<'_>> {
     let name = member.name.as_str();
-    let is_hidden = name.split('/').any(|part| part.starts_with('.') || part == "__MACOSX");
+    // What names the model of a `.zae` is none itself.
+    let is_hidden = name.split('/').any(|part| part.starts_with('.') || part == "__MACOSX")
+        || name.eq_ignore_ascii_case("manifest.xml");
     let extension = extension(&plain_name(Path::new(name))).filter(|_| !is_hidden)?.to_lowercase();
     let row = format_named(&extension).filter(|row| row.reads() && row.extensions.contains(&&*extension))?;
     let format = SCENE_FORMATS.iter().position(|other| other.entry.name == row.entry.name)?;

@@ -7,6 +7,7 @@ mod asc;
 mod calibrations;
 mod clouds;
 mod colours;
+mod dae;
 #[path = "../../../accel/tests/suite/support/effort.rs"]
 mod effort;
 mod fbx;

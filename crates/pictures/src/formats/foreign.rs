@@ -72,7 +72,7 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
         is_zip_of(b, &[b"[Content_Types].xml", b"3D/", b"_rels/"])
     }),
     scene("a Blender file", |b| b.starts_with(b"BLENDER")),
-    scene("a COLLADA scene (DAE)", |b| has_root(b, b"<COLLADA")),
+    other("a COLLADA scene", "give it a name that ends in .dae", |b| has_root(b, b"<COLLADA")),
     scene("an X3D scene", |b| has_root(b, b"<X3D")),
     scene("an AMF model", |b| has_root(b, b"<amf")),
     scene("a Mitsuba scene", |b| has_root(b, b"<scene")),

@@ -1,6 +1,7 @@
 //! Curves: keys in time with values and slopes.
 
 use crate::FormatError;
+use crate::between_keys::{THIRD, bezier, parameter};
 use crate::budget::Budget;
 use crate::fbx::tree::{Node, Value};
 
@@ -10,9 +11,6 @@ const CUBIC: i64 = 0x8;
 const CONSTANT_NEXT: i64 = 0x100;
 const WEIGHTED_RIGHT: u32 = 0x100_0000;
 const WEIGHTED_NEXT_LEFT: u32 = 0x200_0000;
-
-/// The part of an interval at which a tangent's end lies, if it has no weight.
-const THIRD: f64 = 1.0 / 3.0;
 
 /// How values run from a key to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,41 +211,4 @@ fn interpolation(flags: i64, data: &[f32]) -> Interpolation {
     let weights =
         [weight(flags & WEIGHTED_RIGHT != 0, bits), weight(flags & WEIGHTED_NEXT_LEFT != 0, bits >> 16)];
     Interpolation::Cubic { slopes: [data[0], data[1]].map(f64::from), weights }
-}
-
-/// A cubic Bézier curve.
-fn bezier([a, b, c, d]: [f64; 4], t: f64) -> f64 {
-    let s = 1.0 - t;
-    s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d
-}
-
-/// The parameter at which a part of the interval is reached; the same number if both weights are a third.
-fn parameter(weights: [f64; 2], part: f64) -> f64 {
-    if weights.iter().all(|weight| (weight - THIRD).abs() < 1e-4) {
-        return part;
-    }
-    let points = [0.0, weights[0].clamp(0.0, 1.0), 1.0 - weights[1].clamp(0.0, 1.0), 1.0];
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if bezier(points, middle) < part { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cubic_curves_are_hermite_splines_unless_weighted() {
-        // From 0 to 1 with slopes 0 and 0: 3 t² - 2 t³.
-        let flat = |part: f64, weights| bezier([0.0, 0.0, 1.0, 1.0], parameter(weights, part));
-        assert!((flat(0.25, [THIRD; 2]) - 0.156_25).abs() < 1e-12);
-        // The parameter at x = 1/2 is 1/2 by symmetry. With weights of 1, x does not rise there at all, and a parameter
-        // is as good as the cube root of what numbers distinguish.
-        assert!((flat(0.5, [0.9; 2]) - 0.5).abs() < 1e-9);
-        assert!((flat(0.5, [1.0; 2]) - 0.5).abs() < 1e-4);
-        assert!(flat(0.4, [1.0; 2]) < 0.4);
-    }
 }

@@ -3,9 +3,9 @@
 use super::draft::Draft;
 use crate::FormatError;
 use crate::fbx::document::Properties;
+use crate::phong;
 use bilux_math::Rgb;
-use bilux_scene::Texture;
-use bilux_scene::texture::{Channel, Texels};
+use bilux_scene::texture::Channel;
 
 /// Sets what a material of the SDK's own kinds says.
 pub(super) fn fill(properties: &Properties, draft: &mut Draft) -> Result<(), FormatError> {
@@ -36,7 +36,7 @@ pub(super) fn fill(properties: &Properties, draft: &mut Draft) -> Result<(), For
     draft.normals(map, factor("BumpFactor", 1.0))?;
     for name in ["DisplacementColor", "VectorDisplacementColor", "ReflectionColor"] {
         if draft.map(name).is_some() {
-            draft.not_shown(&format!("textures of {name}"));
+            draft.inner.not_shown(&format!("textures of {name}"));
         }
     }
     Ok(())
@@ -74,9 +74,7 @@ fn highlight(properties: &Properties, is_of_blender: bool, draft: &mut Draft) ->
     let specular = properties.vector("SpecularColor").or_else(|| properties.vector("Specular"));
     let weight = specular.map_or(0.0, |specular| specular.max_element() * factor);
     let map = draft.map("SpecularColor").filter(|_| !is_lambert);
-    // From Blinn's exponent. [Walter 2007]
-    let exponent = exponent.unwrap_or(20.0).max(0.0);
-    draft.set("specular_roughness", (2.0 / (exponent + 2.0)).sqrt().sqrt() as f32);
+    draft.set("specular_roughness", phong::roughness(exponent.unwrap_or(20.0)));
     let weight = if is_lambert { 0.0 } else { weight.clamp(0.0, 1.0) };
     draft.number("specular_weight", if map.is_some() { 1.0 } else { weight }, map, Channel::G)
 }
@@ -90,9 +88,9 @@ fn transparency(properties: &Properties, draft: &mut Draft) -> Result<(), Format
         Some(opacity) if opacity < 1.0 || product >= 1.0 => 1.0 - opacity,
         // White times one, without an opacity, is what some exporters write for everything.
         None if product >= 1.0 => {
-            let at = draft.spec.span.clone();
+            let at = draft.inner.spec.span.clone();
             let what = "a material that is wholly transparent, without an opacity, is read as opaque";
-            draft.sink.oddities.note(what, || at);
+            draft.inner.sink.oddities.note(what, || at);
             0.0
         }
         _ => product,
@@ -100,24 +98,13 @@ fn transparency(properties: &Properties, draft: &mut Draft) -> Result<(), Format
     let map = draft.map("TransparentColor").or(draft.map("TransparencyFactor")).or(draft.map("Opacity"));
     if let Some(texture) = map.map(|map| draft.texture(map, true)).transpose()?.flatten() {
         let is_of_colours = map == draft.map("DiffuseColor");
-        if is_of_colours && !has_alpha(&texture) {
-            // Exporters connect the transparency of the picture with the colours, of which it has none.
-            return Ok(());
-        }
-        let channel = if has_alpha(&texture) { Channel::A } else { Channel::G };
-        return draft.put("opacity", Texture { channel: Some(channel), ..texture });
+        return match phong::opacity(texture, is_of_colours) {
+            Some(opacity) => draft.inner.put("opacity", opacity),
+            None => Ok(()),
+        };
     }
     if transparent > 0.0 {
         draft.set("opacity", (1.0 - transparent).clamp(0.0, 1.0) as f32);
     }
     Ok(())
-}
-
-/// True if some texel lets light through.
-fn has_alpha(texture: &Texture) -> bool {
-    match &texture.image.texels {
-        Texels::Bytes(bytes) => bytes.iter().any(|texel| texel[3] < 255),
-        Texels::Floats { alpha, .. } => alpha.iter().any(|alpha| *alpha < 1.0),
-        Texels::Formula(_) => false,
-    }
 }

@@ -10,6 +10,7 @@ use super::document::display_name;
 use super::posed::Posed;
 use crate::FormatError;
 use crate::fitting::fitted;
+use crate::principled_draft::PrincipledDraft;
 use crate::reading::{Reading, default_material};
 use crate::sink::Sink;
 use bilux_scene::Spec;
@@ -41,11 +42,17 @@ impl<'d> Materials<'d> {
         let spec = match worn.material {
             None if worn.texture.is_none() => default_material(),
             material => {
-                let mut draft = Draft::new(worn, posed, &mut self.textures, reading, sink);
+                let inner = PrincipledDraft::new(
+                    Spec::new("default", "principled"),
+                    reading,
+                    sink,
+                    posed.document.file(),
+                );
+                let mut draft = Draft::new(inner, worn, posed, &mut self.textures);
                 if let Some(index) = material {
                     let object = posed.document.object(index);
-                    draft.spec = Spec::new(&display_name(object.name), "principled");
-                    draft.spec.span = object.node.at();
+                    draft.inner.spec = Spec::new(&display_name(object.name), "principled");
+                    draft.inner.spec.span = object.node.at();
                     let properties = posed.properties(index);
                     if !shaders::fill(&properties, &mut draft)? {
                         classic::fill(&properties, &mut draft)?;
@@ -53,7 +60,7 @@ impl<'d> Materials<'d> {
                 } else {
                     draft.colour("base_color", bilux_math::Rgb::WHITE, worn.texture)?;
                 }
-                let spec = draft.spec;
+                let spec = draft.inner.spec;
                 fitted(spec, &mut sink.oddities)
             }
         };

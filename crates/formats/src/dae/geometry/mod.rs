@@ -1,0 +1,10 @@
+//! Meshes: polygons in several forms, with an index for each kind of data.
+
+mod builder;
+mod channel;
+mod holes;
+mod mesh;
+mod primitives;
+
+pub(super) use builder::Symbol;
+pub(super) use mesh::{Mesh, read};

@@ -1,0 +1,411 @@
+//! Collada files as programs write them.
+
+use crate::{read_text, refusal, warnings};
+use bilux_formats::{ReadOptions, read, read_bytes};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{SceneBuilder, Value};
+
+/// Positions of a square of two by two, for a mesh with an id.
+fn geometry(id: &str, positions: &str, polygons: &str) -> String {
+    let count = positions.split_whitespace().count();
+    format!(
+        "<geometry id='{id}'><mesh><source id='{id}-p'><float_array id='{id}-a' count='{count}'>{positions}</float_array>\
+         <technique_common><accessor source='#{id}-a' count='{}' stride='3'/></technique_common></source>\
+         <vertices id='{id}-v'><input semantic='POSITION' source='#{id}-p'/></vertices>{polygons}</mesh></geometry>",
+        count / 3
+    )
+}
+
+const SQUARE: &str = "0 0 0 2 0 0 2 2 0 0 2 0";
+
+fn polylist(id: &str) -> String {
+    format!(
+        "<polylist material='m' count='1'><input semantic='VERTEX' source='#{id}-v' offset='0'/><vcount>4</vcount>\
+         <p>0 1 2 3</p></polylist>"
+    )
+}
+
+/// A file with an asset, libraries and the nodes of its scene.
+fn file(asset: &str, libraries: &str, nodes: &str) -> String {
+    format!(
+        "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>\
+         <asset>{asset}</asset>{libraries}<library_visual_scenes><visual_scene id='s'>{nodes}</visual_scene>\
+         </library_visual_scenes><scene><instance_visual_scene url='#s'/></scene></COLLADA>"
+    )
+}
+
+/// A file with the square at a node.
+fn placed(asset: &str, more: &str, transforms: &str) -> String {
+    let square =
+        format!("<library_geometries>{}</library_geometries>{more}", geometry("g", SQUARE, &polylist("g")));
+    file(asset, &square, &format!("<node id='n'>{transforms}{INSTANCE}</node>"))
+}
+
+const INSTANCE: &str = "<instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='m' \
+                        target='#mat'/></technique_common></bind_material></instance_geometry>";
+
+fn scene(text: &str) -> SceneBuilder {
+    read_text("dae", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Where the corners of the first object are.
+fn corners(scene: &SceneBuilder) -> Vec<Vec3> {
+    let object = &scene.objects[0];
+    object.mesh.positions.iter().map(|p| object.motion.at(0.0).point(*p)).collect()
+}
+
+fn near(a: Vec3, b: [f32; 3]) -> bool {
+    (a - Vec3::from(b)).length() < 1e-5
+}
+
+#[test]
+fn scenes_are_in_metres_with_y_up() {
+    let third = |asset: &str| corners(&scene(&placed(asset, "", "<translate>0 0 1</translate>")))[2];
+    let inch = "<unit name='inch' meter='0.0254'/>";
+    assert!(near(third(""), [2.0, 2.0, 1.0]));
+    assert!(near(third(inch), [0.0508, 0.0508, 0.0254]));
+    assert!(near(third("<up_axis>Z_UP</up_axis>"), [2.0, 1.0, -2.0]));
+    assert!(near(third("<up_axis>X_UP</up_axis>"), [-2.0, 2.0, 1.0]));
+    let tool = "<contributor><authoring_tool>SketchUp 26.0</authoring_tool></contributor>";
+    let read = read_text("", placed(tool, "", "")).unwrap();
+    assert_eq!(read.written_by, "SketchUp 26.0", "by its first bytes");
+    let odd = scene(&placed("<unit meter='0'/>", "", ""));
+    assert!(warnings(&odd).contains("it is read as a metre"), "{}", warnings(&odd));
+}
+
+#[test]
+fn transforms_apply_in_the_order_of_the_file() {
+    let third = |transforms: &str| corners(&scene(&placed("", "", transforms)))[2];
+    for (transforms, expected) in [
+        ("<translate>1 0 0</translate><scale>2 2 2</scale>", [5.0, 4.0, 0.0]),
+        ("<scale>2 2 2</scale><translate>1 0 0</translate>", [6.0, 4.0, 0.0]),
+        ("<rotate>0 0 1 90</rotate>", [-2.0, 2.0, 0.0]),
+        ("<matrix>1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1</matrix>", [7.0, 8.0, 7.0]),
+        // Points along y turn by 45 degrees towards x.
+        ("<skew>45 0 1 0 1 0 0</skew>", [4.0, 2.0, 0.0]),
+        // Looks from x = 5 to the origin: what is ahead (-z) is towards -x.
+        ("<lookat>5 0 0 0 0 0 0 1 0</lookat>", [5.0, 2.0, -2.0]),
+    ] {
+        let found = third(transforms);
+        assert!(near(found, expected), "{transforms}: {found}");
+    }
+}
+
+#[test]
+fn every_form_of_polygons_is_that_square() {
+    let input = "<input semantic='VERTEX' source='#g-v' offset='0'/>";
+    // Of a fan the first vertex is shared, of a strip each pair.
+    for polygons in [
+        format!("<triangles count='2'>{input}<p>0 1 2 0 2 3</p></triangles>"),
+        format!("<polylist count='2'>{input}<vcount>3 3</vcount><p>0 1 2 0 2 3</p></polylist>"),
+        format!("<polygons count='1'>{input}<p>0 1 2 3</p></polygons>"),
+        format!("<trifans count='1'>{input}<p>0 1 2 3</p></trifans>"),
+        format!("<tristrips count='1'>{input}<p>0 1 3 2</p></tristrips>"),
+        // The vertices come second among the indices, and what comes first does not exist.
+        "<triangles><input semantic='NORMAL' source='#no' offset='0'/><input semantic='VERTEX' source='#g-v' offset='1'/>\
+         <p>9 0 9 1 9 2 9 0 9 2 9 3</p></triangles>"
+            .to_owned(),
+    ] {
+        let libraries = format!("<library_geometries>{}</library_geometries>", geometry("g", SQUARE, &polygons));
+        let scene = scene(&file("", &libraries, "<node><instance_geometry url='#g'/></node>"));
+        let mesh = &scene.objects[0].mesh;
+        let doubled = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+            (b - a).cross(c - a)
+        };
+        assert_eq!(mesh.triangles.len(), 2, "{polygons}");
+        assert!(mesh.triangles.iter().all(|t| doubled(t) == Vec3::new(0.0, 0.0, 4.0)), "{polygons}");
+        assert_eq!(warnings(&scene), "");
+    }
+    let hole = "<polygons><input semantic='VERTEX' source='#g-v' offset='0'/><ph><p>0 1 2 3</p><h>4 5 6 7</h></ph></polygons>";
+    let positions = format!("{SQUARE} .5 .5 0 1 .5 0 1 1 0 .5 1 0");
+    let libraries = format!("<library_geometries>{}</library_geometries>", geometry("g", &positions, hole));
+    let scene = scene(&file("", &libraries, "<node><instance_geometry url='#g'/></node>"));
+    let mesh = &scene.objects[0].mesh;
+    let area: f32 = mesh
+        .triangles
+        .iter()
+        .map(|t| t.map(|i| mesh.positions[i as usize]))
+        .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
+        .sum();
+    assert!((area - 3.75).abs() < 1e-6, "{area}");
+}
+
+/// A file whose square has a material with these values of a model.
+fn with_material(asset: &str, shader: &str, more: &str) -> String {
+    let libraries = format!(
+        "<library_materials><material id='mat' name='paint'><instance_effect url='#e'/></material></library_materials>\
+         <library_effects><effect id='e'><profile_COMMON>{more}<technique sid='c'>{shader}</technique></profile_COMMON></effect></library_effects>"
+    );
+    placed(asset, &libraries, "")
+}
+
+/// Opacities by the four modes of the specification, and what programs write in spite of them.
+#[test]
+fn transparency_is_what_its_mode_says_and_never_all() {
+    let opacity = |tool: &str, inner: &str| {
+        let asset = format!("<contributor><authoring_tool>{tool}</authoring_tool></contributor>");
+        let scene = scene(&with_material(&asset, &format!("<phong>{inner}</phong>"), ""));
+        (scene.materials[0].number("opacity").unwrap_or(1.0), warnings(&scene).contains("wholly transparent"))
+    };
+    let inner = |mode: &str, colour: &str, factor: &str| {
+        format!(
+            "<transparent{mode}><color>{colour}</color></transparent><transparency><float>{factor}</float></transparency>"
+        )
+    };
+    for (mode, colour, factor, expected) in [
+        ("", "1 1 1 1", "0.25", 0.25),
+        (" opaque='A_ONE'", "0 0 0 0.5", "0.5", 0.25),
+        (" opaque='RGB_ZERO'", "0.4 0.4 0.4 1", "0.5", 0.8),
+        (" opaque='A_ZERO'", "0 0 0 0.25", "1", 0.75),
+        (" opaque='RGB_ONE'", "0.5 0.5 0.5 1", "0.5", 0.25),
+        (" opaque='RGB_ZERO'", "0 0 0 1", "1", 1.0),
+    ] {
+        let (found, is_noted) = opacity("x", &inner(mode, colour, factor));
+        assert!((found - expected).abs() < 1e-6 && !is_noted, "{mode} {colour} {factor}: {found}");
+    }
+    // White in RGB_ZERO, of 3ds Max and Maya, and no opacity at all, of old SketchUp: both are meant to be opaque.
+    assert_eq!(opacity("x", &inner(" opaque='RGB_ZERO'", "1 1 1 1", "1")), (1.0, true));
+    assert_eq!(opacity("x", &inner("", "1 1 1 1", "0")), (1.0, true));
+    assert_eq!(opacity("Google SketchUp 6.4.112", &inner("", "1 1 1 1", "0.25")).0, 0.75);
+    assert_eq!(opacity("Google SketchUp 7.1.4871", &inner("", "1 1 1 1", "0.25")).0, 0.25);
+    let alone = opacity("x", "<transparency><float>0.5</float></transparency>");
+    assert_eq!(alone.0, 0.5);
+}
+
+#[test]
+fn phong_becomes_principled() {
+    let shader = "<blinn><emission><color>0 0 0 1</color></emission><diffuse><param ref='tint'/></diffuse>\
+                  <specular><color>0.5 0.25 0 1</color></specular><shininess><float>30</float></shininess></blinn>";
+    let tint = "<newparam sid='tint'><float3>1 0 0.5</float3></newparam>";
+    let material = scene(&with_material("", shader, tint)).materials.remove(0);
+    assert_eq!(material.name, "paint");
+    let srgb = bilux_math::colour::srgb_decode(0.5);
+    assert_eq!(material.colour("base_color"), Some(Rgb::new(1.0, 0.0, srgb)));
+    // The square root of the square root of 2 / (30 + 2).
+    assert!((material.number("specular_roughness").unwrap() - 0.5).abs() < 1e-6);
+    assert!((material.number("specular_weight").unwrap() - srgb).abs() < 1e-6);
+    let blender = "<contributor><authoring_tool>Blender 2.79.0</authoring_tool></contributor>";
+    let material = scene(&with_material(blender, shader, tint)).materials.remove(0);
+    assert_eq!(material.colour("base_color"), Some(Rgb::new(1.0, 0.0, 0.5)), "linear");
+}
+
+#[test]
+fn textures_are_found_by_every_chain_of_names() {
+    let folder = std::env::temp_dir().join(format!("bilux dae {}", std::process::id()));
+    std::fs::create_dir_all(folder.join("textures")).unwrap();
+    std::fs::write(folder.join("textures/a b.ppm"), "P3 1 1 255 255 0 0").unwrap();
+    let shader = |name: &str| {
+        format!("<lambert><diffuse><texture texture='{name}' texcoord='UV'/></diffuse></lambert>")
+    };
+    let image = |inner: &str| {
+        format!("<library_images><image id='img'><init_from>{inner}</init_from></image></library_images>")
+    };
+    let surface = "<newparam sid='su'><surface type='2D'><init_from>img</init_from></surface></newparam>\
+                   <newparam sid='sa'><sampler2D><source>su</source><wrap_s>CLAMP</wrap_s></sampler2D></newparam>";
+    let new = "<newparam sid='sa'><sampler2D><instance_image url='#img'/></sampler2D></newparam>";
+    for (name, params, from) in [
+        ("sa", surface, "textures/a%20b.ppm"),
+        ("su", surface, "file:///C:/models/textures/a%20b.ppm"),
+        ("sa", new, "<ref>.\\textures\\a b.ppm</ref>"),
+        ("img", "", "/srv/me/a b.ppm"),
+    ] {
+        let text = with_material("", &shader(name), params)
+            .replace("<library_materials>", &(image(from) + "<library_materials>"));
+        let path = folder.join("scene.dae");
+        std::fs::write(&path, text).unwrap();
+        let scene = read(&path, &ReadOptions::default()).unwrap();
+        assert_eq!(warnings(&scene), "", "{from}");
+        assert!(matches!(scene.materials[0].parameters.find("base_color"), Some((Value::Texture(0), _))));
+        assert_eq!(scene.textures[0].texel(0, 0), Rgb::new(1.0, 0.0, 0.0), "{from}");
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+fn source(id: &str, kind: &str, list: &str, stride: usize) -> String {
+    let count = list.split_whitespace().count();
+    format!(
+        "<source id='{id}'><{kind} id='{id}-array' count='{count}'>{list}</{kind}><technique_common><accessor \
+         source='#{id}-array' count='{}' stride='{stride}'/></technique_common></source>",
+        count / stride
+    )
+}
+
+const IDENTITY: &str = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ";
+
+#[test]
+fn skins_follow_their_joints_by_sid_and_by_id() {
+    for kind in ["Name_array", "IDREF_array"] {
+        let skin = format!(
+            "<library_controllers><controller id='c'><skin source='#g'><bind_shape_matrix>1 0 0 10 0 1 0 0 0 0 1 0 0 0 0 1\
+             </bind_shape_matrix>{}{}{}<joints><input semantic='JOINT' source='#j'/><input semantic='INV_BIND_MATRIX' source='#b'/>\
+             </joints><vertex_weights count='4'><input semantic='JOINT' source='#j' offset='0'/><input semantic='WEIGHT' source='#w' \
+             offset='1'/><vcount>1 2 1 0</vcount><v>0 0 0 1 1 1 -1 0</v></vertex_weights></skin></controller></library_controllers>",
+            source("j", kind, "one two", 1),
+            source("b", "float_array", &IDENTITY.repeat(2), 16),
+            source("w", "float_array", "1 0.5", 1),
+        );
+        let libraries = format!(
+            "<library_geometries>{}</library_geometries>{skin}",
+            geometry("g", SQUARE, &polylist("g"))
+        );
+        let joint = |name: &str, by: &str| {
+            let key = if kind == "Name_array" {
+                format!("id='x{name}' sid='{name}'")
+            } else {
+                format!("id='{name}'")
+            };
+            format!("<node {key} type='JOINT'><translate>{by}</translate></node>")
+        };
+        let nodes = format!(
+            "<node id='root'>{}{}</node><node><translate>0 0 5</translate><instance_controller url='#c'>\
+             <skeleton>#root</skeleton></instance_controller></node>",
+            joint("one", "0 100 0"),
+            joint("two", "0 200 0")
+        );
+        let found = corners(&scene(&file("", &libraries, &nodes)));
+        // The first follows one joint, the second two; the third is as it was bound, and the last has no joints.
+        for (found, expected) in
+            found.iter().zip([[10., 100., 0.], [12., 150., 0.], [12., 2., 5.], [10., 2., 5.]])
+        {
+            assert!(near(*found, expected), "{kind}: {found} {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn morphs_are_normalized_or_relative_and_their_weights_move() {
+    let morph = |method: &str| {
+        let library = format!(
+            "<library_controllers><controller id='c'><morph source='#g' method='{method}'>{}{}<targets><input \
+             semantic='MORPH_TARGET' source='#t'/><input semantic='MORPH_WEIGHT' source='#w'/></targets></morph></controller>\
+             </library_controllers><library_animations><animation>{}{}<sampler id='sm'><input semantic='INPUT' source='#i'/>\
+             <input semantic='OUTPUT' source='#o'/></sampler><channel source='#sm' target='w(0)'/></animation></library_animations>",
+            source("t", "IDREF_array", "h", 1),
+            source("w", "float_array", "0.5", 1),
+            source("i", "float_array", "0 2", 1),
+            source("o", "float_array", "0.5 1", 1),
+        );
+        let high = geometry("h", "0 0 4 2 0 4 2 2 4 0 2 4", &polylist("h"));
+        let square = geometry("g", SQUARE, &polylist("g"));
+        let libraries = format!("<library_geometries>{square}{high}</library_geometries>{library}");
+        file("", &libraries, "<node><instance_controller url='#c'/></node>")
+    };
+    let third = |method: &str, time: f32| {
+        let options = ReadOptions { time, ..ReadOptions::default() };
+        corners(&read_bytes(morph(method).as_bytes(), "dae", None, "x", &options).unwrap())[2]
+    };
+    assert!(near(third("NORMALIZED", 0.0), [2.0, 2.0, 2.0]));
+    assert!(near(third("RELATIVE", 0.0), [3.0, 3.0, 2.0]));
+    assert!(near(third("NORMALIZED", 1.0), [2.0, 2.0, 3.0]));
+}
+
+/// An animation of a target, from time 0 to 2.
+fn animated(kind: &str, target: &str, output: (&str, usize), tangents: &str) -> String {
+    let (list, stride) = output;
+    format!(
+        "<library_animations><animation id='an'>{}{}{}{tangents}<sampler id='sm'><input semantic='INPUT' source='#i'/><input \
+         semantic='OUTPUT' source='#o'/><input semantic='INTERPOLATION' source='#k'/><input semantic='OUT_TANGENT' source='#ot'/>\
+         <input semantic='IN_TANGENT' source='#it'/></sampler><channel source='#sm' target='{target}'/></animation></library_animations>",
+        source("i", "float_array", "0 2", 1),
+        source("o", "float_array", list, stride),
+        source("k", "Name_array", &format!("{kind} {kind}"), 1),
+    )
+}
+
+#[test]
+fn animations_set_the_numbers_of_their_targets() {
+    let transforms = "<translate sid='t'>0 0 0</translate><rotate sid='r'>0 0 1 0</rotate><matrix sid='m'>1 0 0 0 0 1 0 0 0 0 1 \
+                      0 0 0 0 1</matrix>";
+    let at = |library: &str, time: f32, animation: Option<&str>| {
+        let options = ReadOptions {
+            time,
+            animation: animation.map(str::to_owned),
+            whole_movement: true,
+            ..ReadOptions::default()
+        };
+        let text = placed("", library, transforms);
+        let scene = read_bytes(text.as_bytes(), "dae", None, "x", &options).unwrap();
+        assert_eq!(scene.movement.as_ref().unwrap().objects.len(), 9);
+        corners(&scene)[2]
+    };
+    let turned = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0 -1 0 4 1 0 0 0 0 0 1 0 0 0 0 1";
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    // The first half of a Bézier curve from 0 to 8 that starts and ends level is as high as its middle, 4.
+    let level =
+        source("ot", "float_array", "0.7 0 2.7 8", 2) + &source("it", "float_array", "-0.7 0 1.3 8", 2);
+    for (kind, target, output, tangents, expected) in [
+        ("LINEAR", "n/t.X", ("0 8", 1), "", [6.0, 2.0, 0.0]),
+        ("STEP", "n/t.X", ("1 8", 1), "", [3.0, 2.0, 0.0]),
+        ("LINEAR", "n/t", ("0 0 0 8 6 4", 3), "", [6.0, 5.0, 2.0]),
+        ("LINEAR", "n/r.ANGLE", ("0 180", 1), "", [-2.0, 2.0, 0.0]),
+        ("LINEAR", "n/m(3)(1)", ("0 8", 1), "", [2.0, 6.0, 0.0]),
+        ("LINEAR", "n/m", (turned, 16), "", [2.0, 4.0 * half, 0.0]),
+        ("BEZIER", "n/t.Y", ("0 8", 1), &level, [2.0, 6.0, 0.0]),
+    ] {
+        let found = at(&animated(kind, target, output, tangents), 1.0, None);
+        assert!(near(found, expected), "{kind} {target}: {found}");
+    }
+    let clips = animated("LINEAR", "n/t.X", ("0 8", 1), "")
+        + "<library_animation_clips><animation_clip id='all' end='2'><instance_animation url='#an'/></animation_clip>\
+           <animation_clip name='late' start='1' end='2'><instance_animation url='#an'/></animation_clip></library_animation_clips>";
+    assert!(near(at(&clips, 0.0, None), [2.0, 2.0, 0.0]));
+    assert!(near(at(&clips, 0.5, Some("late")), [8.0, 2.0, 0.0]));
+}
+
+#[test]
+fn cameras_and_lights_are_those_of_the_file() {
+    let libraries = "<library_cameras><camera id='p'><optics><technique_common><perspective><xfov>90</xfov><aspect_ratio>2\
+                     </aspect_ratio></perspective></technique_common></optics></camera><camera id='o'><optics><technique_common>\
+                     <orthographic><ymag>3</ymag></orthographic></technique_common></optics></camera></library_cameras>\
+                     <library_lights><light id='d'><technique_common><directional><color>1 1 1</color></directional></technique_common>\
+                     </light><light id='q'><technique_common><point><color>1 1 1</color><constant_attenuation>0</constant_attenuation>\
+                     <quadratic_attenuation>0.25</quadratic_attenuation></point></technique_common></light><light id='s'>\
+                     <technique_common><spot><color>1 1 1</color><falloff_angle>60</falloff_angle></spot></technique_common></light>\
+                     <light id='a'><technique_common><ambient><color>0.5 0.5 0.5</color></ambient></technique_common></light></library_lights>";
+    let nodes = "<instance_camera url='#p'/><instance_camera url='#o'/><instance_light url='#d'/><instance_light url='#q'/>\
+                 <instance_light url='#s'/><instance_light url='#a'/>";
+    let read = scene(&placed("<unit meter='0.5'/>", libraries, nodes));
+    let fov = read.cameras[0].spec.number("fov").unwrap();
+    // Half as high as wide: twice the arc tangent of one half.
+    assert!((fov - 53.130_1).abs() < 1e-3, "{fov}");
+    assert_eq!(read.cameras[1].spec.number("height"), Some(3.0), "six units of half a metre");
+    let pi = std::f32::consts::PI;
+    let kinds: Vec<&str> = read.lights.iter().map(|light| &*light.kind).collect();
+    assert_eq!(kinds, ["directional", "point", "spot", "environment"]);
+    assert!((read.lights[0].colour("irradiance").unwrap().r - pi).abs() < 1e-5);
+    // At 2 units, or 1 metre, a white surface is white: 1 / (0.25 · 2²) of an irradiance of π.
+    assert!((read.lights[1].colour("intensity").unwrap().r - pi).abs() < 1e-5);
+    assert_eq!(read.lights[2].number("angle"), Some(30.0), "half of the whole cone");
+    let blender = "<contributor><authoring_tool>Blender 2.93.0</authoring_tool></contributor>";
+    let watts = libraries.replace("<color>1 1 1</color><constant", "<color>1000 1000 1000</color><constant");
+    let read = scene(&placed(blender, &watts, nodes));
+    assert!((read.lights[1].colour("intensity").unwrap().r - 1000.0 / (4.0 * pi)).abs() < 1e-3);
+}
+
+#[test]
+fn what_is_wrong_is_refused_or_said_with_its_place() {
+    let node = |inner: &str| file("", "", inner);
+    let cycle = file(
+        "",
+        "<library_nodes><node id='a'><instance_node url='#b'/></node><node id='b'><instance_node url='#a'/></node></library_nodes>",
+        "<node><instance_node url='#a'/></node>",
+    );
+    let deep = node(&("<node>".repeat(3000) + &"</node>".repeat(3000)));
+    for (text, part) in [
+        (cycle, "its own ancestor"),
+        (deep, "nested more than 2000 levels"),
+        (node("<node><translate>1 2</translate></node>"), "<translate> has 3 numbers, not 2"),
+        (node("<node><scale>1 x 1</scale></node>"), "'x' where a number has to be"),
+        ("<COLLADA/>".to_owned(), "no <visual_scene>"),
+        ("<!DOCTYPE COLLADA [<!ENTITY a 'b'>]><COLLADA/>".to_owned(), "document type"),
+        ("<COLLADA><asset>".to_owned(), "not well-formed"),
+    ] {
+        let error = refusal("dae", &text);
+        assert!(error.contains(part) && error.starts_with("scene.dae:1:"), "{error}");
+    }
+    let missing = placed("", "", "").replace("#g'>", "other.dae#g'>");
+    assert!(warnings(&scene(&missing)).contains("is in another file, which is not read"));
+    let out_of_range = placed("", "", "").replace("0 1 2 3", "0 1 2 9");
+    assert!(warnings(&scene(&out_of_range)).contains("a vertex that the mesh does not have"));
+}
