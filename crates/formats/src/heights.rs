@@ -14,14 +14,19 @@ pub(crate) fn holds_normals(texture: &Texture) -> bool {
 
 /// Converts a height map to a normal map; white is `bump` texels higher than black.
 pub(crate) fn normals_of_heights(texture: &Texture, bump: f32) -> Texture {
+    normals_of_stretched_heights(texture, [bump, bump])
+}
+
+/// The same for texels that are not square: white is so many widths of a texel higher than black, and so many heights.
+pub(crate) fn normals_of_stretched_heights(texture: &Texture, [along_u, along_v]: [f32; 2]) -> Texture {
     let (width, height) = (texture.width(), texture.height());
-    let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance() * bump;
+    let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance();
     let mut bytes = Vec::with_capacity(width * height);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let along_u = 0.5 * (at(x + 1, y) - at(x + width - 1, y));
+        let slope_u = 0.5 * along_u * (at(x + 1, y) - at(x + width - 1, y));
         // Rows run downwards, but v points upwards.
-        let along_v = 0.5 * (at(x, y + height - 1) - at(x, y + 1));
-        let n = Vec3::new(-along_u, -along_v, 1.0).normalize();
+        let slope_v = 0.5 * along_v * (at(x, y + height - 1) - at(x, y + 1));
+        let n = Vec3::new(-slope_u, -slope_v, 1.0).normalize();
         let [r, g, b] = (n * 0.5 + 0.5).to_array().map(|c| (c * 255.0).round() as u8);
         bytes.push([r, g, b, 255]);
     }

@@ -5,7 +5,7 @@ use crate::FormatError;
 use crate::names::unknown;
 use crate::reading::Reading;
 use bilux_scene::Span;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -52,6 +52,35 @@ impl Document {
     /// The first of them.
     pub(super) fn part_of(&self, plugin: &Plugin, tag: &str) -> Result<Option<Rc<Plugin>>, FormatError> {
         Ok(self.parts_of(plugin, tag)?.into_iter().next().map(|(_, part)| part))
+    }
+
+    /// The first plugin of this type within a material.
+    pub(super) fn within(
+        &self,
+        material: &Rc<Plugin>,
+        kind: &str,
+    ) -> Result<Option<Rc<Plugin>>, FormatError> {
+        let (mut seen, mut open) = (HashSet::new(), vec![material.clone()]);
+        while let Some(plugin) = open.pop() {
+            if plugin.kind == kind {
+                return Ok(Some(plugin));
+            }
+            // They may refer to themselves.
+            if seen.insert(Rc::as_ptr(&plugin)) {
+                for property in plugin.properties.iter().rev() {
+                    open.extend(self.part(property)?);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The name of the attribute of vertices or faces that a material has as a colour.
+    pub(super) fn attribute(&self, material: &Rc<Plugin>) -> Result<Option<String>, FormatError> {
+        Ok(match self.within(material, "mesh_attribute")? {
+            Some(texture) => texture.text("name")?.map(str::to_owned),
+            None => None,
+        })
     }
 }
 

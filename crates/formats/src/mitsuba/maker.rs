@@ -45,6 +45,8 @@ pub(super) struct Maker<'p, 'o> {
     made: HashMap<(*const Plugin, Meaning), TextureOrValue>,
     /// The materials of the scene.
     pub(super) materials: Vec<Spec>,
+    /// How long one unit of each texture coordinate is on the shape whose material is made.
+    pub(super) extent: [f32; 2],
     /// The number of plugins around the one that is being made.
     depth: usize,
 }
@@ -71,6 +73,7 @@ impl<'p, 'o> Maker<'p, 'o> {
             placed: HashMap::new(),
             made: HashMap::new(),
             materials: Vec::new(),
+            extent: [1.0; 2],
             depth: 0,
         }
     }

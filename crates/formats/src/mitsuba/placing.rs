@@ -10,21 +10,24 @@ use crate::FormatError;
 use crate::emissive::{fronted, uniform_scale};
 use crate::filling::{Medium, fill};
 use crate::texture_or_value::TextureOrValue;
+use bilux_math::transcendental::{ln, powf};
 use bilux_math::{DMat4, Rgb};
 use bilux_scene::{Mesh, Object, Spec};
 use std::collections::HashMap;
+use std::f32::consts::LN_2;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What materials differ by: the shape's material, emission and medium, and the matrix of one that is filled from a grid.
-type MaterialKey = ([Option<*const Plugin>; 3], [u64; 16]);
+/// What materials differ by: the shape's material, emission and medium, the matrix of one that is filled from a grid, and the size of
+/// one that has bumps.
+type MaterialKey = ([Option<*const Plugin>; 3], [u64; 16], [u32; 2]);
 
 /// Places shapes one by one.
 pub(super) struct Placer<'p, 'o> {
     pub(super) maker: Maker<'p, 'o>,
     pub(super) shapes: ShapeCache,
     /// Materials without what shapes add, built once.
-    base: HashMap<*const Plugin, Option<Spec>>,
+    base: HashMap<(*const Plugin, [u32; 2]), Option<Spec>>,
     emissions: HashMap<*const Plugin, Option<Emission>>,
     media: HashMap<*const Plugin, Medium>,
     /// The indices of materials.
@@ -92,6 +95,12 @@ impl<'p, 'o> Placer<'p, 'o> {
             }
         }
         let emission = self.emission_of(&attributes)?;
+        self.maker.extent = [1.0; 2];
+        if let Some(bsdf) = &attributes.bsdf
+            && self.maker.document.within(bsdf, "bumpmap")?.is_some()
+        {
+            self.maker.extent = extent(&piece.mesh, &piece.to_world.start());
+        }
         if self.place_sphere_light(piece, &attributes, emission.as_ref())? {
             return Ok(());
         }
@@ -169,11 +178,12 @@ impl<'p, 'o> Placer<'p, 'o> {
             let grey = Spec::new("default", "diffuse").with("reflectance", 0.5f32);
             return Ok(Some(if emits { black() } else { grey }));
         };
-        if let Some(known) = self.base.get(&Rc::as_ptr(bsdf)) {
+        let key = (Rc::as_ptr(bsdf), self.maker.extent.map(f32::to_bits));
+        if let Some(known) = self.base.get(&key) {
             return Ok(known.clone());
         }
         let made = self.maker.material(bsdf)?;
-        self.base.insert(Rc::as_ptr(bsdf), made.clone());
+        self.base.insert(key, made.clone());
         Ok(made)
     }
 
@@ -194,7 +204,7 @@ impl<'p, 'o> Placer<'p, 'o> {
         let emitter = attributes.emitter.as_ref().filter(|_| emission.is_some());
         let parts = [attributes.bsdf.as_ref(), emitter, attributes.interior.as_ref()];
         // Outside a medium a boundary without one is nothing; inside it makes a hole.
-        let key = (parts.map(|part| part.map(Rc::as_ptr)), place);
+        let key = (parts.map(|part| part.map(Rc::as_ptr)), place, self.maker.extent.map(f32::to_bits));
         if let Some(known) = self.materials.get(&key) {
             return Ok(*known);
         }
@@ -230,4 +240,35 @@ impl<'p, 'o> Placer<'p, 'o> {
         self.media.insert(Rc::as_ptr(plugin), made.clone());
         Ok(made)
     }
+}
+
+/// How long one unit of each texture coordinate is on a mesh in place, in the mean of some of its triangles; rounded, so that shapes of
+/// about the same size share a material.
+fn extent(mesh: &Mesh, to_world: &DMat4) -> [f32; 2] {
+    const MOST: usize = 1000;
+    let (mut sums, mut area) = ([0.0; 2], 0.0);
+    for t in mesh.triangles.iter().step_by(mesh.triangles.len() / MOST + 1) {
+        let corner = |i: usize| {
+            let p = to_world.transform_point3(mesh.positions[t[i] as usize].as_dvec3());
+            Some((p, mesh.uvs.get(t[i] as usize)?.as_dvec2()))
+        };
+        let Some([(a, ta), (b, tb), (c, tc)]) =
+            corner(0).zip(corner(1)).zip(corner(2)).map(|((a, b), c)| [a, b, c])
+        else {
+            return [1.0; 2];
+        };
+        let (p, q, s, t) = (b - a, c - a, tb - ta, tc - ta);
+        let (weight, turn) = (p.cross(q).length(), s.perp_dot(t));
+        if turn.abs() < 1e-12 || !weight.is_finite() {
+            continue;
+        }
+        // The derivatives of the position.
+        let both = [(p * t.y - q * s.y) / turn, (q * s.x - p * t.x) / turn];
+        (0..2).for_each(|i| sums[i] += both[i].length() * weight);
+        area += weight;
+    }
+    sums.map(|sum: f64| {
+        let mean = (sum / area) as f32;
+        if mean.is_normal() { powf(2.0, (ln(mean) * 4.0 / LN_2).round() / 4.0) } else { 1.0 }
+    })
 }

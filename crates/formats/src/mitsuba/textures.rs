@@ -26,7 +26,7 @@ const TEXTURES: &[(&str, Make)] = &[
     ("d65", daylight),
     ("gridvolume", not_shown),
     ("irregular", irregular),
-    ("mesh_attribute", not_shown),
+    ("mesh_attribute", mesh_attribute),
     ("rawconstant", constant),
     ("regular", regular),
     ("rgb", constant),
@@ -51,6 +51,20 @@ fn not_shown(maker: &mut Maker, plugin: &Plugin, _: Meaning) -> Result<TextureOr
     maker.not_shown(plugin);
     plugin.properties.iter().for_each(|property| property.used.set(true));
     Ok(TextureOrValue::Colour(Rgb::grey(0.5)))
+}
+
+/// Colours of vertices or faces: white, which the meshes with this material multiply by theirs.
+fn mesh_attribute(
+    maker: &mut Maker,
+    plugin: &Plugin,
+    meaning: Meaning,
+) -> Result<TextureOrValue, FormatError> {
+    if meaning != Meaning::Surface {
+        return not_shown(maker, plugin, meaning);
+    }
+    plugin.ignore(&["name"]);
+    let scale = plugin.number_or("scale", 1.0)? as f32;
+    Ok(TextureOrValue::Colour(Rgb::grey(scale.clamp(0.0, 1.0))))
 }
 
 fn constant(maker: &mut Maker, plugin: &Plugin, meaning: Meaning) -> Result<TextureOrValue, FormatError> {

@@ -39,7 +39,7 @@ fn principled_is_as_bright_as_in_mitsuba() {
     }
     let inside = format!("{given}<float name=\"spec_trans\" value=\"1\"/>");
     let glass = material(&format!("<bsdf type=\"principled\">{inside}</bsdf>"));
-    assert!(close(glass.colour("transmission_color").unwrap(), [0.7071, 0.3162, 0.8944], 1e-3));
+    assert!(close(glass.colour("transmission_color").unwrap(), [0.5f32.sqrt(), 0.3162, 0.8944], 1e-3));
     let thin = material(&format!("<bsdf type=\"principledthin\">{inside}</bsdf>"));
     assert!(close(thin.colour("transmission_color").unwrap(), [0.5, 0.1, 0.8], 1e-6));
     let metal =
@@ -48,6 +48,51 @@ fn principled_is_as_bright_as_in_mitsuba() {
         close(metal.colour("base_color").unwrap(), [0.5, 0.1, 0.8], 1e-6),
         "metals have the colour given"
     );
+}
+
+/// A ramp of heights is as steep as the shape is small: 45 degrees where one unit of u is one unit long, on a square two wide.
+#[test]
+fn bumps_are_lengths_on_the_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    // White on the right, of four columns.
+    let row = [0u8, 85, 170, 255].repeat(4);
+    fs::write(folder.path().join("ramp.pgm"), [b"P5 4 4 255\n".as_slice(), &row].concat()).unwrap();
+    let slope = |size: f64| {
+        let bump = "<bsdf type=\"bumpmap\"><texture type=\"bitmap\"><string name=\"filename\" value=\"ramp.pgm\"/>\
+            <boolean name=\"raw\" value=\"true\"/></texture><bsdf type=\"diffuse\"/></bsdf>";
+        let place = format!("<transform name=\"to_world\"><scale value=\"{size}\"/></transform>");
+        let text =
+            format!("<scene version=\"3.0.0\"><shape type=\"rectangle\">{place}{bump}</shape></scene>");
+        fs::write(folder.path().join("scene.xml"), text).unwrap();
+        let scene = read(&folder.path().join("scene.xml"), &ReadOptions::default()).unwrap();
+        let Some((Value::Texture(index), _)) = scene.materials.last().unwrap().parameters.find("normal")
+        else {
+            panic!("no normal map");
+        };
+        let n = scene.textures[*index].texel(1, 1) * 2.0 - Rgb::WHITE;
+        -n.r / n.b
+    };
+    // A third of the height in a quarter of the width: 4/3 per unit of u.
+    assert!((slope(0.5) - 4.0 / 3.0).abs() < 0.02, "{}", slope(0.5));
+    assert!((slope(2.0) - 1.0 / 3.0).abs() < 0.02, "{}", slope(2.0));
+}
+
+#[test]
+fn attributes_of_meshes_are_linear_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property float heat_0\nproperty float heat_1\nproperty float heat_2\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n";
+    let rows = "0 0 0 0.25 0 1\n1 0 0 0.25 0 1\n0 1 0 0.25 0 1\n3 0 1 2\n";
+    fs::write(folder.path().join("a.ply"), format!("{header}{rows}")).unwrap();
+    let text = "<scene version=\"3.0.0\"><shape type=\"ply\"><string name=\"filename\" value=\"a.ply\"/>\
+        <bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"mesh_attribute\">\
+        <string name=\"name\" value=\"vertex_heat\"/></texture></bsdf></shape></scene>";
+    fs::write(folder.path().join("scene.xml"), text).unwrap();
+    let scene = read(&folder.path().join("scene.xml"), &ReadOptions::default()).unwrap();
+    assert!(close(scene.objects[0].mesh.vertex_kd[0], [0.25, 0.0, 1.0], 1e-4));
+    assert_eq!(scene.materials[0].colour("reflectance"), Some(Rgb::WHITE));
+    assert_eq!(warnings(&scene), "");
 }
 
 /// Filters let half of unpolarised light through, and bend none.

@@ -8,7 +8,7 @@ use bilux_math::DVec3;
 use bilux_math::transcendental::{asin_f64, atan2_f64};
 use bilux_scene::Spec;
 
-pub(super) fn directional(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+pub(super) fn directional(maker: &mut Maker, plugin: &Plugin) -> Result<Vec<Spec>, FormatError> {
     let direction = match plugin.vector("direction")? {
         Some(direction) => direction,
         None => to_world(plugin)?.transform_vector3(DVec3::Z),
@@ -19,11 +19,11 @@ pub(super) fn directional(maker: &mut Maker, plugin: &Plugin) -> Result<Option<S
     };
     let irradiance = shine(maker, plugin, "irradiance")?;
     let spec = Spec::new("", "directional").with("direction", direction.as_vec3());
-    Ok(Some(spec.with("irradiance", irradiance)))
+    Ok(vec![spec.with("irradiance", irradiance)])
 }
 
 /// A sky by daylight, with or without its sun.
-pub(super) fn sky(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+pub(super) fn sky(maker: &mut Maker, plugin: &Plugin) -> Result<Vec<Spec>, FormatError> {
     let what =
         "a sky is rendered by the model of Bilux, whose brightness is of its own: correct it with --exposure";
     maker.note(what, &plugin.at);
@@ -53,7 +53,7 @@ pub(super) fn sky(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, Fo
         _ if sky > 0.0 => sun / sky,
         _ => sun,
     };
-    Ok(Some(
+    Ok(vec![
         Spec::new("", "sky")
             .with("elevation", degrees(asin_f64(towards.y.clamp(0.0, 1.0))))
             .with("azimuth", degrees(atan2_f64(towards.x, -towards.z)))
@@ -62,5 +62,5 @@ pub(super) fn sky(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, Fo
             .with("scale", sky)
             .with("sun_scale", sun_share)
             .with("sun_diameter", plugin.number_or("sun_aperture", 0.5358)?.clamp(0.01, 90.0) as f32),
-    ))
+    ])
 }

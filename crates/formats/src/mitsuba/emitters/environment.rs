@@ -13,13 +13,13 @@ use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Spec, Texture};
 use std::sync::Arc;
 
-pub(super) fn constant(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+pub(super) fn constant(maker: &mut Maker, plugin: &Plugin) -> Result<Vec<Spec>, FormatError> {
     let radiance = shine(maker, plugin, "radiance")?;
-    Ok(Some(Spec::new("", "environment").with("radiance", radiance)))
+    Ok(vec![Spec::new("", "environment").with("radiance", radiance)])
 }
 
 /// A map by longitude and latitude with +y up, whose middle is towards +z; ours has its middle towards -z.
-pub(super) fn map(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+pub(super) fn map(maker: &mut Maker, plugin: &Plugin) -> Result<Vec<Spec>, FormatError> {
     let (name, at) = plugin.file()?;
     plugin.ignore(&["mis_compensation", "cache", "gamma"]);
     let scale = plugin.number_or("scale", 1.0)?.max(0.0) as f32;
@@ -58,7 +58,7 @@ pub(super) fn map(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, Fo
         }
     };
     maker.set(&mut spec, "radiance", TextureOrValue::Picture(picture), &at);
-    Ok(Some(spec))
+    Ok(vec![spec])
 }
 
 /// The angle of a rotation about the y axis to the right, in degrees; `None` for other transforms.

@@ -14,8 +14,8 @@ use crate::FormatError;
 use bilux_scene::Spec;
 use std::rc::Rc;
 
-/// Builds a light; `None` if it is not supported.
-type Make = fn(&mut Maker, &Plugin) -> Result<Option<Spec>, FormatError>;
+/// Builds a light, of several if its colour varies; none if it is not supported.
+type Make = fn(&mut Maker, &Plugin) -> Result<Vec<Spec>, FormatError>;
 
 /// Every light that is not on a shape.
 const EMITTERS: &[(&str, Make)] = &[
@@ -33,15 +33,18 @@ const EMITTERS: &[(&str, Make)] = &[
 ];
 
 /// A light that is not on a shape.
-pub(super) fn light(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Option<Spec>, FormatError> {
+pub(super) fn light(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Vec<Spec>, FormatError> {
     let made = row(plugin, EMITTERS)?(maker, plugin)?;
     plugin.ignore(&["sampling_weight", "scene_bsphere"]);
     plugin.report_unused(&mut maker.oddities);
-    Ok(made.map(|spec| Spec { name: plugin.id.clone(), span: plugin.at.clone(), ..spec }))
+    Ok(made
+        .into_iter()
+        .map(|spec| Spec { name: plugin.id.clone(), span: plugin.at.clone(), ..spec })
+        .collect())
 }
 
-fn not_shown(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
+fn not_shown(maker: &mut Maker, plugin: &Plugin) -> Result<Vec<Spec>, FormatError> {
     maker.not_shown(plugin);
     plugin.properties.iter().for_each(|property| property.used.set(true));
-    Ok(None)
+    Ok(Vec::new())
 }

@@ -59,22 +59,33 @@ fn make(maker: &mut ShapeMaker, plugin: &Rc<Plugin>, degree: usize) -> Result<Ve
         }
     }
     drop(text);
+    // Radii are those of the world.
+    let mut placement = plugin.placement("to_world")?.as_deref().cloned().unwrap_or_default();
+    if placement.0.len() == 1 {
+        let matrix = std::mem::take(&mut placement).start();
+        strands.iter_mut().flatten().for_each(|(point, _)| *point = matrix.transform_point3(*point));
+    }
     reading.release(bytes);
     let count: usize = strands.iter().map(Vec::len).sum();
     let (along, around) = if count > MANY { COARSE } else { FINE };
     let along = if degree == 1 { 1 } else { along };
-    let vertices = (count * along as usize + strands.len()) * (around as usize + 1);
+    let vertices = (2 * count * along as usize + strands.len()) * (around as usize + 1);
     reading.budget.take::<[f32; 14]>(vertices, &at.file)?;
     let mut mesh = Mesh { name: "curves".to_owned(), ..Mesh::default() };
     for strand in strands.iter().filter(|strand| strand.len() > degree) {
-        append(&mut mesh, tube_of(strand, degree, along, around));
+        if degree == 1 {
+            // Each piece is round up to its ends.
+            strand.windows(2).for_each(|ends| append(&mut mesh, tube_of(ends, degree, along, around)));
+        } else {
+            append(&mut mesh, tube_of(strand, degree, along, around));
+        }
     }
     let flips = plugin.flag("flip_normals", false)?;
     let mesh = maker.finished(mesh, flips, plugin)?;
-    maker.placed(plugin, vec![mesh], &DMat4::IDENTITY)
+    Ok(maker.placed_by(plugin, vec![mesh], &DMat4::IDENTITY, placement))
 }
 
-fn tube_of(strand: &Strand, degree: usize, along: u32, around: u32) -> Mesh {
+fn tube_of(strand: &[(DVec3, f64)], degree: usize, along: u32, around: u32) -> Mesh {
     let point = |i: usize| strand[i].0;
     let segments: Vec<[DVec3; 4]> = match degree {
         1 => (1..strand.len()).map(|i| straight(point(i - 1), point(i))).collect(),

@@ -1,13 +1,16 @@
 //! Meshes from files of other formats.
 
+use super::attributes::select;
 use super::maker::{FileKey, Piece, ShapeMaker};
 use super::solids::upwards;
 use crate::FormatError;
 use crate::files::read_source;
 use crate::formats::SceneFormatEntry;
 use crate::mitsuba::plugin::Plugin;
+use crate::names::shortened;
 use crate::reading::Source;
 use bilux_math::DMat4;
+use bilux_math::colour::srgb_encode;
 use bilux_scene::Mesh;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -32,7 +35,11 @@ fn make(
     let is_flat = plugin.flag("face_normals", false)?;
     let v_upwards = plugin.flag("flip_tex_coords", flips_by_default)?;
     let (path, _) = maker.maker.files().locate(name, &at, maker.maker.reading)?;
-    let key: FileKey = (path.clone(), 0, [flips, is_flat, v_upwards]);
+    let attribute = match maker.maker.document.part_of(plugin, "bsdf")? {
+        Some(bsdf) if row.entry.name == "ply" => maker.maker.document.attribute(&bsdf)?,
+        _ => None,
+    };
+    let key: FileKey = (path.clone(), 0, [flips, is_flat, v_upwards], attribute.clone());
     if let Some(meshes) = maker.cache.files.get(&key) {
         let meshes = meshes.clone();
         return maker.placed(plugin, meshes, &DMat4::IDENTITY);
@@ -42,6 +49,13 @@ fn make(
     if row.entry.name == "obj" {
         without_materials(&mut bytes);
     }
+    let is_coloured = attribute.as_ref().is_some_and(|name| select(&mut bytes, name));
+    if let Some(name) = attribute.filter(|_| !is_coloured) {
+        let what =
+            format!("a mesh has no attribute '{}' of three numbers: it is taken as 1", shortened(&name));
+        maker.maker.oddities.note(&what, || at.clone());
+    }
+    let reading = &mut *maker.maker.reading;
     let shown: Arc<str> = path.display().to_string().into();
     let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
     // A mesh without normals is smooth all over, or not at all.
@@ -55,7 +69,13 @@ fn make(
     let mut meshes = Vec::new();
     for object in model.objects {
         let mesh = Arc::unwrap_or_clone(object.mesh);
-        let mut mesh = Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), ..mesh };
+        let mut mesh = Mesh { vertex_ks: Vec::new(), ..mesh };
+        if is_coloured {
+            // They are linear numbers there; our reader takes those of PLY files as sRGB.
+            mesh.vertex_kd.iter_mut().for_each(|colour| *colour = colour.map(srgb_encode));
+        } else {
+            mesh.vertex_kd = Vec::new();
+        }
         if is_flat {
             mesh.normals.clear();
         }

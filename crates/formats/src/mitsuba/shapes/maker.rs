@@ -25,8 +25,8 @@ pub(in crate::mitsuba) struct Piece {
     pub(in crate::mitsuba) plugin: Rc<Plugin>,
 }
 
-/// Meshes of files: by path, number of the mesh, and how they are changed.
-pub(super) type FileKey = (PathBuf, usize, [bool; 3]);
+/// Meshes of files: by path, number of the mesh, how they are changed, and the attribute that is their colours.
+pub(super) type FileKey = (PathBuf, usize, [bool; 3], Option<String>);
 
 /// Meshes that are built once and shared.
 #[derive(Default)]
@@ -60,8 +60,18 @@ impl ShapeMaker<'_, '_, '_> {
         meshes: Vec<Arc<Mesh>>,
         first: &DMat4,
     ) -> Result<Vec<Piece>, FormatError> {
-        let placement = plugin.placement("to_world")?;
-        let placement = placement.as_deref().cloned().unwrap_or_default();
+        let placement = plugin.placement("to_world")?.as_deref().cloned().unwrap_or_default();
+        Ok(self.placed_by(plugin, meshes, first, placement))
+    }
+
+    /// The same by another placement than that of the shape.
+    pub(super) fn placed_by(
+        &mut self,
+        plugin: &Rc<Plugin>,
+        meshes: Vec<Arc<Mesh>>,
+        first: &DMat4,
+        placement: Placement,
+    ) -> Vec<Piece> {
         let to_world = if *first == DMat4::IDENTITY { placement } else { placement.after(first) };
         let piece = |mesh| Piece {
             mesh,
@@ -70,7 +80,7 @@ impl ShapeMaker<'_, '_, '_> {
             is_sphere: false,
             plugin: plugin.clone(),
         };
-        Ok(meshes.into_iter().map(piece).collect())
+        meshes.into_iter().map(piece).collect()
     }
 
     /// A mesh of one size, made once.

@@ -1,5 +1,6 @@
 //! Shapes; the table is [`SHAPES`].
 
+mod attributes;
 mod curves;
 mod files;
 mod groups;

@@ -31,7 +31,7 @@ pub(super) fn make(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<Vec<Pi
     let index = usize::try_from(index)
         .map_err(|_| FormatError::malformed("'shape_index' counts from 0", plugin.place("shape_index")))?;
     let (path, _) = maker.maker.files().locate(name, &at, maker.maker.reading)?;
-    let key: FileKey = (path.clone(), index, [flips, is_flat, v_upwards]);
+    let key: FileKey = (path.clone(), index, [flips, is_flat, v_upwards], None);
     let meshes = match maker.cache.files.get(&key) {
         Some(meshes) => meshes.clone(),
         None => {
