@@ -280,6 +280,7 @@ fn flow(
     };
     let mut scene = read.map_err(|error| explained(error, row, source))?;
     reading.refine_cages(&mut scene, source.name);
+    reading.displace(&mut scene, source.name);
     if scene.written_by.is_empty() {
         scene.written_by = written_by(row.entry.name, source.bytes).unwrap_or_default();
     }

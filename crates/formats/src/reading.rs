@@ -2,6 +2,7 @@
 
 use crate::archive::OpenMember;
 use crate::budget::Budget;
+use crate::displacement::{Displacement, Moved};
 use crate::gzip;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
@@ -76,6 +77,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) open: Vec<PathBuf>,
     /// Subdivision surfaces of the scene that is read now.
     pub(crate) cages: Vec<PendingCage>,
+    /// Maps that move surfaces of the scene that is read now.
+    pub(crate) displacements: Vec<(Moved, Displacement)>,
     /// Every file that was opened, by its full name.
     pub(crate) files: BTreeSet<PathBuf>,
     /// True once something has looked at [`ReadOptions::definitions`].
@@ -112,6 +115,7 @@ impl<'o> Reading<'o> {
             counted: HashSet::new(),
             open: Vec::new(),
             cages: Vec::new(),
+            displacements: Vec::new(),
             files: BTreeSet::new(),
             has_variables: false,
         }

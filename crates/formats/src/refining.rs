@@ -3,16 +3,13 @@
 use crate::budget::Budget;
 use crate::reading::Reading;
 use crate::subdivision::{Cage, PendingCage};
-use crate::values::vector;
-use bilux_math::transcendental::tan;
-use bilux_math::{Aabb, Mat3, Vec3};
+use crate::views::Views;
+use bilux_math::Aabb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Warning};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The finest that a picture is taken to be, in pixels of its height.
-const HEIGHT: f32 = 1024.0;
-/// The longest edge of a refined cage in such pixels: a surface as round as a ball of 80 pixels is met within a tenth of one.
+/// The longest edge of a refined cage in pixels: a surface as round as a ball of 80 pixels is met within a tenth of one.
 const EDGE: f32 = 8.0;
 /// Polygons of a refined cage.
 const MOST: usize = 1 << 21;
@@ -27,9 +24,14 @@ impl Reading<'_> {
             return;
         }
         let waiting = Waiting::of(scene);
-        let views = Views::of(scene, &cages, &waiting);
+        let of_cage = |pending: &PendingCage| {
+            let bounds = Aabb::of_points(pending.cage.positions());
+            let objects = waiting.objects(scene, pending).into_iter();
+            objects.map(|object| object.motion.at(0.0).bounds(&bounds)).fold(Aabb::EMPTY, Aabb::union)
+        };
+        let views = Views::of(scene, cages.iter().map(of_cage).fold(Aabb::EMPTY, Aabb::union));
         let wanted: Vec<u32> =
-            cages.iter().map(|pending| views.levels(&waiting.objects(scene, pending), pending)).collect();
+            cages.iter().map(|pending| levels(&views, &waiting.objects(scene, pending), pending)).collect();
         let mut coarse = None;
         for (pending, wanted) in cages.into_iter().zip(wanted) {
             let PendingCage { mut cage, stand_ins, at } = pending;
@@ -89,58 +91,10 @@ impl Waiting {
     }
 }
 
-/// Cameras beyond these are not considered.
-const CAMERAS: usize = 32;
-
-/// From where a scene is seen.
-struct Views {
-    /// The places of cameras, and the height of a pixel at distance 1.
-    cameras: Vec<(Vec3, f32)>,
-    /// The size of a pixel if the whole scene fills a picture, for scenes without cameras.
-    of_whole: f32,
-}
-
-impl Views {
-    fn of(scene: &SceneBuilder, cages: &[PendingCage], waiting: &Waiting) -> Views {
-        let perspective = scene.cameras.iter().filter(|camera| camera.spec.kind == "perspective");
-        let cameras = perspective.take(CAMERAS).map(|camera| {
-            let fov = camera.spec.number("fov").unwrap_or(40.0).to_radians();
-            (
-                vector(&camera.spec, "position").unwrap_or(Vec3::new(0.0, 0.0, 5.0)),
-                2.0 * tan(0.5 * fov) / HEIGHT,
-            )
-        });
-        let of_cage = |pending: &PendingCage| {
-            let bounds = Aabb::of_points(pending.cage.positions());
-            let objects = waiting.objects(scene, pending).into_iter();
-            objects.map(|object| object.motion.at(0.0).bounds(&bounds)).fold(Aabb::EMPTY, Aabb::union)
-        };
-        let whole = cages.iter().map(of_cage).fold(scene.bounds(0.0), Aabb::union);
-        Views { cameras: cameras.collect(), of_whole: whole.extent().length() / HEIGHT }
-    }
-
-    /// How many times a cage is refined until its edges are short in every view.
-    fn levels(&self, objects: &[&Object], pending: &PendingCage) -> u32 {
-        let bounds = Aabb::of_points(pending.cage.positions());
-        let edge = pending.cage.longest_edge() as f32;
-        let in_pixels = objects.iter().map(|object| {
-            let transform = object.motion.at(0.0);
-            let linear = Mat3::from_mat4(*transform.matrix());
-            let scale = [linear.x_axis, linear.y_axis, linear.z_axis]
-                .map(Vec3::length)
-                .into_iter()
-                .fold(0.0, f32::max);
-            edge * scale / self.pixel(&transform.bounds(&bounds))
-        });
-        let longest = in_pixels.fold(0.0, f32::max);
-        (1..LEVELS).find(|&level| longest <= EDGE * (1 << level) as f32).unwrap_or(LEVELS)
-    }
-
-    /// The size of a pixel at what is in this box.
-    fn pixel(&self, bounds: &Aabb) -> f32 {
-        let distance = |from: Vec3| from.distance(from.clamp(bounds.min, bounds.max));
-        let nearest = self.cameras.iter().map(|(from, size)| distance(*from) * size).reduce(f32::min);
-        // A camera within the box sees some of it from very near, but not all.
-        nearest.map_or(self.of_whole, |size| size.max(0.1 * self.of_whole))
-    }
+/// How many times a cage is refined until its edges are short in every view.
+fn levels(views: &Views, objects: &[&Object], pending: &PendingCage) -> u32 {
+    let bounds = Aabb::of_points(pending.cage.positions());
+    let pixels = objects.iter().map(|object| views.pixel_on(object, &bounds));
+    let longest = pending.cage.longest_edge() as f32 / pixels.fold(f32::INFINITY, f32::min);
+    (1..LEVELS).find(|&level| longest <= EDGE * (1 << level) as f32).unwrap_or(LEVELS)
 }

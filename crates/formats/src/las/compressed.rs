@@ -13,6 +13,9 @@ const RECORD_HEADER: usize = 54;
 const PROGRAM: &[u8] = b"laszip encoded";
 const NUMBER: u16 = 22204;
 
+/// The compressor of the first versions: points in one stream, without chunks.
+const ONE_STREAM: u16 = 1;
+
 /// What is kept of a point: three coordinates, the intensity and, from here on, the colour.
 const COLOUR: usize = 14;
 
@@ -35,7 +38,7 @@ pub(super) fn unpacked(
     if vlr.items_size() != header.record as u64 {
         return Err(fail("the header and the record of the compression disagree about the size of a point"));
     }
-    let held = check_sizes(source.bytes, &header, &vlr).ok_or_else(damaged)?;
+    let held = check_sizes(source.bytes, &header, record, &vlr).ok_or_else(damaged)?;
     reading.budget.take_bytes(held, source.name)?;
     let width = COLOUR + if header.colour.is_some() { 6 } else { 0 };
     let total = header.count.saturating_mul(width as u64);
@@ -77,7 +80,10 @@ fn description(bytes: &[u8]) -> Option<&[u8]> {
 
 /// Checks the sizes that the decompressor takes from the file: the number of chunks, and the sizes of their layers.
 /// Returns how much memory it will take, in bytes.
-fn check_sizes(bytes: &[u8], header: &Header, vlr: &LazVlr) -> Option<u64> {
+fn check_sizes(bytes: &[u8], header: &Header, record: &[u8], vlr: &LazVlr) -> Option<u64> {
+    if u16_at(record, 0) == ONE_STREAM {
+        return Some(0);
+    }
     let at = |place: usize| Some(i64::from_le_bytes(*bytes.get(place..)?.first_chunk()?));
     let mut table = at(header.points)?;
     if table <= header.points as i64 {

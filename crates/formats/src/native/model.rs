@@ -7,6 +7,7 @@ use super::plain::{missing, plain_value};
 use super::reader::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
 use crate::FormatError;
+use crate::displacement::Moved;
 use crate::files::read_file;
 use crate::formats::{format_named, unknown};
 use bilux_math::registry::{Entry, ParameterKind};
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The keys of every model except those that place it; exactly one of the first three is its source.
-pub(super) const KEYS: [&str; 10] = [
+pub(super) const KEYS: [&str; 11] = [
     "file",
     "shape",
     "generate",
@@ -28,6 +29,7 @@ pub(super) const KEYS: [&str; 10] = [
     "instance",
     "category",
     "visibility",
+    "displacement",
     "with",
 ];
 
@@ -44,7 +46,13 @@ impl Native<'_, '_> {
             [("generate", item)] => (self.generated_model(table, item)?, None),
             _ => return Err(missing("one of file, shape or generate (the source of the model)", table)),
         };
+        let first = self.scene.objects.len();
+        let displacement = self.displacement(table, part)?;
         self.place(table, &model, origin)?;
+        if let Some(map) = displacement {
+            self.displaced
+                .extend((first..self.scene.objects.len()).map(|object| (Moved::Object(object), map.clone())));
+        }
         self.add_requested_parts(table, &model)
     }
 

@@ -3,6 +3,7 @@
 use super::document::Item;
 use super::include::Part;
 use crate::FormatError;
+use crate::displacement::{Displacement, Moved};
 use crate::reading::{Reading, default_material};
 use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
@@ -20,13 +21,15 @@ pub(super) struct Native<'o, 'r> {
     default_material: Option<usize>,
     /// The index of the first material of each model file.
     pub(super) brought: HashMap<PathBuf, usize>,
+    /// The maps of displaced objects: those of files of models are done when these are read.
+    pub(super) displaced: Vec<(Moved, Displacement)>,
 }
 
 impl<'o, 'r> Native<'o, 'r> {
     /// Nothing yet, upon a scene that may have something.
     pub(super) fn new(reading: &'r mut Reading<'o>, scene: SceneBuilder) -> Native<'o, 'r> {
         let (materials, brought) = (HashMap::new(), HashMap::new());
-        Native { reading, scene, materials, default_material: None, brought }
+        Native { reading, scene, materials, default_material: None, brought, displaced: Vec::new() }
     }
 
     /// Collects names first, since materials may refer to each other in any order.

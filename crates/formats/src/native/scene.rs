@@ -48,6 +48,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     for part in &parts {
         native.change(part)?;
     }
+    native.reading.displacements.append(&mut native.displaced);
     let mut scene = native.scene;
     // What a file says of light is all the light, be it black. A file that says nothing has a model without light.
     scene.describes_all_light |= !scene.environment_unspecified && mentions_light(&scene);

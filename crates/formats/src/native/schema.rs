@@ -1,5 +1,6 @@
 //! A JSON schema of scene files, for editors, generated from the tables that the reader uses.
 
+use super::displaced::DISPLACEMENT;
 use super::pictures::PICTURE;
 use super::place::KEYFRAME_KEYS;
 use super::shapes::SHAPES;
@@ -219,6 +220,13 @@ fn model() -> Value {
 fn common_of_models() -> Vec<(&'static str, Value)> {
     let words = json!({ "type": "array", "items": { "enum": ["lights", "cameras"] } });
     let renamed = json!({ "type": "object", "additionalProperties": { "type": "string" } });
+    let displacement = json!({
+        "type": "object",
+        "description": DISPLACEMENT.summary,
+        "additionalProperties": false,
+        "properties": properties(DISPLACEMENT.parameters),
+        "required": ["map"],
+    });
     vec![
         ("name", described("string", "its name")),
         ("material", described("string", "the name of the material for the whole model")),
@@ -232,6 +240,7 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
                 "description": "which rays see it: all, all but those of the camera, or none",
             }),
         ),
+        ("displacement", displacement),
         ("with", words),
     ]
 }

@@ -152,7 +152,7 @@ impl Native<'_, '_> {
 
     /// Reads a texture for a parameter of this kind. If the kind does not determine colours or numbers, `around`
     /// does.
-    fn texture(
+    pub(super) fn texture(
         &mut self,
         key: &str,
         kind: Option<ParameterKind>,

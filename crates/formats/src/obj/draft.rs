@@ -80,6 +80,8 @@ pub(super) struct Map {
     pub(super) is_clamped: bool,
     /// The bump multiplier.
     pub(super) bump: f32,
+    /// What is added to values, and their factor.
+    pub(super) range: [f32; 2],
     /// The selected channel.
     pub(super) channel: Option<Channel>,
 }

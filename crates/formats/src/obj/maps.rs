@@ -4,6 +4,7 @@ use super::draft::{Draft, Map};
 use super::library::Library;
 use super::surface::NUMBERS;
 use crate::FormatError;
+use crate::displacement::{Along, Displacement, Moved};
 use crate::float::parse_f32;
 use crate::heights::{holds_normals, normals_of_heights};
 use crate::reading::Texels;
@@ -23,6 +24,7 @@ impl Library<'_, '_, '_> {
             scale: [1.0; 2],
             is_clamped: false,
             bump: 1.0,
+            range: [0.0, 1.0],
             channel: None,
         };
         self.map_options(start, &mut map);
@@ -77,6 +79,9 @@ impl Library<'_, '_, '_> {
                 // A single number applies to u only.
                 (b"-s", _) => map.scale = pair(1.0),
                 (b"-bm", _) => map.bump = given.first().copied().unwrap_or(1.0),
+                (b"-mm", _) => {
+                    map.range = [given.first().copied().unwrap_or(0.0), given.get(1).copied().unwrap_or(1.0)]
+                }
                 (b"-clamp", word) => map.is_clamped = word.eq_ignore_ascii_case(b"on"),
                 (b"-imfchan", b"r") => map.channel = Some(Channel::R),
                 (b"-imfchan", b"g") => map.channel = Some(Channel::G),
@@ -143,6 +148,32 @@ impl Library<'_, '_, '_> {
             put(scene, spec, "normal", normals, map);
             spec.parameters.set_at("normal_scale", scale.clamp(0.0, 10.0).into(), map.at.clone());
             break;
+        }
+        Ok(())
+    }
+
+    /// Moves the surfaces that have this material as its displacement map says.
+    pub(super) fn displace(
+        &mut self,
+        draft: &Draft,
+        material: usize,
+        scene: &mut SceneBuilder,
+    ) -> Result<(), FormatError> {
+        let Some(map) = draft.maps.get("disp") else { return Ok(()) };
+        let Some(picture) = self.numbers(map, scene)? else { return Ok(()) };
+        let [base, gain] = map.range;
+        let scale = gain * map.bump;
+        if scale != 0.0 {
+            self.reading.displacements.push((
+                Moved::Material(material),
+                Displacement {
+                    map: map.placed(Texture { channel: map.channel, ..picture }),
+                    along: Along::Normal,
+                    scale,
+                    middle: -base / scale,
+                    at: map.at.clone(),
+                },
+            ));
         }
         Ok(())
     }

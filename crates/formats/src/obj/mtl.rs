@@ -57,6 +57,7 @@ pub(super) fn read_library(
         library.remark_highlight(&draft);
         library.put_maps(&draft, &mut spec, scene)?;
         let index = scene.add_material(spec);
+        library.displace(&draft, index, scene)?;
         by_name.entry(draft.name).or_insert(index);
     }
     library.oddities.into_warnings(scene);
@@ -67,17 +68,22 @@ pub(super) fn read_library(
 const COLOURS: [&str; 6] = ["Kd", "Ks", "Ke", "Tf", "Kt", "Kr"];
 const NUMBERS: [&str; 12] =
     ["Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
-const MAPS: [&str; 11] = [
+const MAPS: [&str; 12] = [
     "map_Kd", "map_Ks", "map_Ke", "map_d", "map_Pr", "map_Pm", "map_Ps", "map_Pc", "map_Pcr", "norm",
-    "map_bump",
+    "map_bump", "disp",
 ];
 /// Other spellings of keywords.
-const ALIASES: [(&str, &str); 4] =
-    [("bump", "map_bump"), ("map_opacity", "map_d"), ("map_Kn", "norm"), ("map_norm", "norm")];
+const ALIASES: [(&str, &str); 5] = [
+    ("bump", "map_bump"),
+    ("map_opacity", "map_d"),
+    ("map_Kn", "norm"),
+    ("map_norm", "norm"),
+    ("map_disp", "disp"),
+];
 /// Ambient light follows kd in Bilux, and sharpness applies to reflection maps.
 const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
 /// What one would see if Bilux had it.
-const NOT_SHOWN: [&str; 6] = ["refl", "map_refl", "disp", "decal", "map_Ns", "map_Tr"];
+const NOT_SHOWN: [&str; 5] = ["refl", "map_refl", "decal", "map_Ns", "map_Tr"];
 
 impl Library<'_, '_, '_> {
     fn statement(&mut self, key: &[u8], start: usize, draft: &mut Draft) -> Result<(), FormatError> {
@@ -104,6 +110,10 @@ impl Library<'_, '_, '_> {
                 let (places, what) = (&self.places, " has no file name, and is left out");
                 self.oddities.note_first(what, || quoted(name.as_bytes()), || places.at(start));
                 return Ok(());
+            }
+            if name != "disp" && map.range != [0.0, 1.0] {
+                let places = &self.places;
+                self.oddities.not_shown("'-mm' of textures", || places.at(start));
             }
             self.reading.budget.take::<u8>(2 * map.file.len(), self.source.name)?;
             draft.maps.insert(name, map);

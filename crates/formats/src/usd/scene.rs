@@ -10,6 +10,7 @@ use super::subdivision::Subdivision;
 use super::transforms;
 use super::value::Text;
 use super::{cameras, lights, refined, shapes, strokes};
+use crate::displacement::Moved;
 use crate::reading::{Reading, plain_material};
 use crate::sink::Sink;
 use crate::{FormatError, flat};
@@ -277,13 +278,12 @@ impl<'r, 'o> Scene<'r, 'o> {
         }
         let Context { reading, sink } = &mut self.context;
         let shaded = shading::material(stage, material, reading, sink)?;
-        let worn = shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction }| Worn {
-            index: sink.scene.add_material(spec),
-            uvs,
-            uses_colours,
-            uses_opacities,
-            has_direction,
-        });
+        let worn =
+            shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction, displacement }| {
+                let index = sink.scene.add_material(spec);
+                reading.displacements.extend(displacement.map(|map| (Moved::Material(index), map)));
+                Worn { index, uvs, uses_colours, uses_opacities, has_direction }
+            });
         self.materials.insert(material, worn.clone());
         self.alike.insert(said, worn.clone());
         worn.map_or_else(|| self.plain(stage, prim), Ok)

@@ -8,6 +8,7 @@ mod calibrations;
 mod clouds;
 mod colours;
 mod dae;
+mod displacement;
 #[path = "../../../accel/tests/suite/support/effort.rs"]
 mod effort;
 mod fbx;

@@ -2,6 +2,7 @@
 
 use super::network::{Input, input};
 use crate::FormatError;
+use crate::displacement::Displacement;
 use crate::reading::Reading;
 use crate::sink::Sink;
 use crate::usd::stage::Stage;
@@ -19,6 +20,8 @@ pub(in crate::usd) struct Shaded {
     pub(in crate::usd) uses_colours: bool,
     pub(in crate::usd) uses_opacities: bool,
     pub(in crate::usd) has_direction: bool,
+    /// The map that moves its surfaces.
+    pub(in crate::usd) displacement: Option<Displacement>,
 }
 
 /// Parameters of `principled`, and where they come from.

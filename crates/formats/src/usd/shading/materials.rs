@@ -42,6 +42,7 @@ pub(in crate::usd) fn material(
             uses_colours: false,
             uses_opacities: false,
             has_direction: false,
+            displacement: None,
         };
         let mut draft = Draft { shaded, stage, shader, reading, sink };
         read(&mut draft)?;

@@ -4,6 +4,7 @@ use super::draft::Draft;
 use super::network::Input;
 use super::textures::{Taken, bake, texture};
 use crate::FormatError;
+use crate::displacement::{Along, Displacement};
 use bilux_math::Rgb;
 
 /// The diffuse colour of surfaces that state none.
@@ -39,9 +40,24 @@ pub(super) fn preview(draft: &mut Draft) -> Result<(), FormatError> {
     }
     opacity(draft)?;
     normal(draft, "normal")?;
-    if draft.is_textured("displacement")? || draft.number("displacement")?.unwrap_or(0.0) != 0.0 {
-        draft.not_shown("displacement");
+    displacement(draft)
+}
+
+/// Heights along the normal, in lengths of the mesh.
+fn displacement(draft: &mut Draft) -> Result<(), FormatError> {
+    if draft.number("displacement")?.unwrap_or(0.0) != 0.0 {
+        draft.not_shown("displacement without a picture");
     }
+    let Input::Node(node, output) = draft.input("displacement")? else { return Ok(()) };
+    let taken = Taken { is_data: true, factor: 1.0, threshold: None };
+    let at = draft.stage.at(node);
+    draft.shaded.displacement = texture(draft, node, &output, taken)?.map(|map| Displacement {
+        map,
+        along: Along::Normal,
+        scale: 1.0,
+        middle: 0.0,
+        at,
+    });
     Ok(())
 }
 
