@@ -150,6 +150,14 @@ fn compressed_points_are_those_of_the_same_file_without_compression() {
         assert_eq!((only(&plain), plain.origin), (only(&packed), packed.origin), "{name}");
         assert_eq!(only(&packed).positions.len(), 40);
     }
+    // The first versions have no chunks: their one stream is what a file of one chunk has after the place of its table.
+    let mut old = corpus("same_12.laz");
+    let record = old.windows(14).position(|bytes| bytes == b"laszip encoded").unwrap() + 52;
+    let points = u32::from_le_bytes(*old[96..].first_chunk().unwrap()) as usize;
+    old.drain(points..points + 8);
+    old[record] = 1;
+    let plain = read_text("las", corpus("same_12.las")).unwrap();
+    assert_eq!(only(&plain), only(&read_text("las", old).unwrap()));
 }
 
 #[test]
