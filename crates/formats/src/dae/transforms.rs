@@ -34,7 +34,8 @@ pub(super) fn local(node: Element, posed: &Posed, budget: &mut Budget) -> Result
             "translate" => DMat4::from_translation(vector(0)),
             "scale" => DMat4::from_scale(vector(0)),
             "rotate" => rotation(numbers[3], vector(0)).unwrap_or(DMat4::IDENTITY),
-            "skew" => skew(numbers[0], vector(1), vector(4)).unwrap_or(DMat4::IDENTITY),
+            // Points are shifted along the first axis, the more the further they are along the second.
+            "skew" => skew(numbers[0], vector(4), vector(1)).unwrap_or(DMat4::IDENTITY),
             _ => look_at(vector(0), vector(3), vector(6))
                 .ok_or_else(|| element.error("this <lookat> has no direction, or one along its up axis"))?,
         };
@@ -42,7 +43,7 @@ pub(super) fn local(node: Element, posed: &Posed, budget: &mut Budget) -> Result
     Ok(whole)
 }
 
-/// Shifts points along `to` so that `from` turns by an angle in degrees towards it, as in RenderMan.
+/// Shifts points along `to` so that `from` turns by an angle in degrees towards it.
 fn skew(degrees: f64, from: DVec3, to: DVec3) -> Option<DMat4> {
     let along = to.try_normalize()?;
     let across = (from - along * from.dot(along)).try_normalize()?;

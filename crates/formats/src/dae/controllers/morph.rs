@@ -1,7 +1,8 @@
 //! Morphs: sums of shapes by weights.
 
 use crate::FormatError;
-use crate::dae::data::{input, inputs, names};
+use crate::dae::data::{Table, input, inputs, names};
+use crate::dae::document::Document;
 use crate::dae::element::Element;
 use crate::dae::geometry;
 use crate::dae::posed::Posed;
@@ -33,8 +34,8 @@ pub(super) fn blend<'d>(
     let mut are_normals_known = true;
     for (shape, weight) in shapes.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0) {
         let found = document.target(shape);
-        let read = found.map(|found| geometry::read(found, document, workshop)).transpose()?.flatten();
-        let Some(shape) = read.filter(|shape| shape.polygons.positions.len() == rest.len()) else {
+        let read = found.map(|found| shape_of(found, document, workshop)).transpose()?.flatten();
+        let Some((positions, turned)) = read.filter(|(positions, _)| positions.len() == rest.len()) else {
             let what = "a shape of a morph is missing, or has other vertices than the mesh: it is left out";
             workshop.oddities.note(what, || morph.at());
             continue;
@@ -44,10 +45,9 @@ pub(super) fn blend<'d>(
                 *sum += (*shape - if is_relative { Vec3::ZERO } else { *rest }) * weight;
             }
         };
-        add(&mut mesh.positions, &rest, &shape.polygons.positions);
-        let turned = shape.polygons.normals.values();
+        add(&mut mesh.positions, &rest, &positions);
         if turned.len() == normals.len() {
-            add(mesh.normals.values_mut(), &normals, turned);
+            add(mesh.normals.values_mut(), &normals, &turned);
         } else {
             are_normals_known = false;
         }
@@ -57,4 +57,26 @@ pub(super) fn blend<'d>(
         mesh.normals = Layer::default();
     }
     Ok(())
+}
+
+/// Positions, and normals if there are any.
+type Shape = (Vec<Vec3>, Vec<Vec3>);
+
+/// The positions and the normals of a shape, which need not have polygons.
+fn shape_of<'d>(
+    geometry: Element<'d>,
+    document: &Document<'d>,
+    workshop: &mut Workshop,
+) -> Result<Option<Shape>, FormatError> {
+    if let Some(mesh) = geometry::read(geometry, document, workshop)? {
+        workshop.budget.take::<Vec3>(mesh.polygons.normals.values().len(), geometry.file())?;
+        return Ok(Some((mesh.polygons.positions, mesh.polygons.normals.values().to_vec())));
+    }
+    let vertices = geometry.path(&["mesh", "vertices"]);
+    let source = vertices.and_then(|vertices| input(&inputs(vertices, document), "POSITION"));
+    let Some(source) = source else { return Ok(None) };
+    let table = Table::<f32>::read(source, document, workshop.budget)?;
+    workshop.budget.take::<Vec3>(table.len, geometry.file())?;
+    let positions = table.rows().filter_map(|row| row.first_chunk::<3>()).map(|p| Vec3::from(*p)).collect();
+    Ok(Some((positions, Vec::new())))
 }
