@@ -328,8 +328,10 @@ fn picture_by_name(path: &Path) -> Option<FormatError> {
 
 /// An error of a reader, or if the bytes are in another format than the file's name says, that.
 fn explained(error: FormatError, row: &SceneFormatEntry, source: &Source) -> FormatError {
+    // A package without a layer is a package nevertheless.
+    let is_package = row.entry.name == "usdz" && source.bytes.starts_with(b"PK\x03\x04");
     match error {
-        FormatError::Malformed { .. } if !(row.sniff)(source.bytes) => {
+        FormatError::Malformed { .. } if !is_package && !(row.sniff)(source.bytes) => {
             not_a_scene(source.name, source.bytes).unwrap_or(error)
         }
         error => error,

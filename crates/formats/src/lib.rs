@@ -20,6 +20,7 @@ mod choice;
 mod cloud;
 mod colours;
 mod dae;
+mod deformation;
 mod displacement;
 mod displacing;
 mod dome;

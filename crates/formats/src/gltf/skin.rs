@@ -5,7 +5,7 @@ use super::json::JsonNode;
 use super::place;
 use super::posed::Posed;
 use crate::FormatError;
-use crate::affine::cofactors;
+use crate::deformation::{Blends, are_mirrored, move_points, turned};
 use bilux_math::DMat4;
 use bilux_scene::Mesh;
 
@@ -61,8 +61,8 @@ pub(super) fn bend<'d>(
 ) -> Result<(), FormatError> {
     let attributes = primitive.need("attributes")?;
     let count = mesh.positions.len();
-    data.take_bytes((count * size_of::<(DMat4, f64, f32)>()) as u64)?;
-    let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
+    data.take_bytes(Blends::bytes(count) + (count * size_of::<f32>()) as u64)?;
+    let mut blends = Blends::new(count);
     let mut firsts: Vec<f32> = Vec::new();
     for (key, index) in attributes.entries() {
         let Some(set) = key.strip_prefix("JOINTS_") else { continue };
@@ -78,7 +78,6 @@ pub(super) fn bend<'d>(
         }
         for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
             for (joint, weight) in indices.into_iter().zip(weights) {
-                // Non-finite weights are skipped, so they are reported as weights that do not sum to one.
                 if weight == 0.0 || !weight.is_finite() {
                     continue;
                 }
@@ -89,42 +88,37 @@ pub(super) fn bend<'d>(
                     );
                     return Err(accessor.node.error(message));
                 };
-                blends[vertex] += *matrix * f64::from(weight);
-                sums[vertex] += f64::from(weight);
+                blends.add(vertex, matrix, f64::from(weight));
             }
         }
     }
-    if sums.iter().any(|&sum| sum != 0.0 && (sum - 1.0).abs() > 0.02) {
+    // Weights that are not finite were skipped, so they are among these.
+    if blends.are_uneven() {
         let what = "the weights of a skin do not add up to 1; they are normalised";
         data.note(what, || attributes.at());
     }
-    if sums.contains(&0.0) {
+    if blends.lack_some() {
         let what = "some vertices of a skin have no weights; they follow the first joint that they name";
         data.note(what, || attributes.at());
     }
-    for (vertex, (blend, sum)) in blends.iter_mut().zip(sums).enumerate() {
-        // The specification does not say where such a vertex is; this is where three.js and its kin put it.
-        let first = || Some(*joints.0.get(*firsts.get(vertex)? as usize)?);
-        *blend = if sum == 0.0 { first().unwrap_or(DMat4::IDENTITY) } else { *blend * (1.0 / sum) };
-    }
-    moved(mesh, &blends);
+    // The specification does not say where vertices without weights are; this is where three.js and its kin put them.
+    let first = |vertex: usize| Some(*joints.0.get(*firsts.get(vertex)? as usize)?);
+    moved(mesh, &blends.matrices(|vertex| first(vertex).unwrap_or(DMat4::IDENTITY)));
     Ok(())
 }
 
 /// Transforms each vertex by its own matrix.
 fn moved(mesh: &mut Mesh, by: &[DMat4]) {
-    for (p, m) in mesh.positions.iter_mut().zip(by) {
-        *p = m.transform_point3(p.as_dvec3()).as_vec3();
-    }
+    move_points(&mut mesh.positions, by);
     for (n, m) in mesh.normals.iter_mut().zip(by) {
-        *n = (cofactors(m) * n.as_dvec3()).normalize_or_zero().as_vec3();
+        *n = turned(*n, m);
     }
     for (t, m) in mesh.tangents.iter_mut().zip(by) {
         let along = m.transform_vector3(t.truncate().as_dvec3()).normalize_or_zero();
         *t = along.as_vec3().extend(if m.determinant() < 0.0 { -t.w } else { t.w });
     }
     // A mirrored mesh has the opposite winding. [glTF 2.0, 3.7.4]
-    if by.first().is_some_and(|m| m.determinant() < 0.0) {
+    if are_mirrored(by) {
         mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
 }

@@ -4,8 +4,8 @@ use super::layer::{Layer, Mapping};
 use super::polygons::Polygons;
 use super::workshop::Workshop;
 use crate::FormatError;
-use crate::affine::cofactors;
 use crate::colours::{Stored, decode};
+use crate::deformation::{are_mirrored, move_points, turned};
 use crate::normals::{BY_ANGLE, FLAT, Faces, Smoothing};
 use bilux_math::{DMat4, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
@@ -103,13 +103,9 @@ impl PolygonMesh {
         workshop: &mut Workshop,
         file: &str,
     ) -> Result<(), FormatError> {
-        for (position, by) in self.positions.iter_mut().zip(by) {
-            *position = by.transform_point3(position.as_dvec3()).as_vec3();
-        }
-        self.turn_normals(workshop, file, |normal, vertex| {
-            (cofactors(&by[vertex]) * normal.as_dvec3()).normalize_or_zero().as_vec3()
-        })?;
-        if by.first().is_some_and(|by| by.determinant() < 0.0) {
+        move_points(&mut self.positions, by);
+        self.turn_normals(workshop, file, |normal, vertex| turned(normal, &by[vertex]))?;
+        if are_mirrored(by) {
             self.is_mirrored = true;
         }
         Ok(())

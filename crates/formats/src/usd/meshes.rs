@@ -75,6 +75,7 @@ pub(super) fn polygons(
         is_hole,
         is_left_handed,
         normals: None,
+        has_normals: false,
         computed: None,
         colours: None,
         opacities: None,
@@ -116,6 +117,7 @@ pub(super) fn add_normals(
         None => Primvar::read(stage, prim, "normals", Interpolation::Vertex, budget)?,
     };
     polygons.normals = normals.filter(|normals| normals.values.width == 3);
+    polygons.has_normals = polygons.normals.is_some();
     let angle = if subdivision.is_smooth() { 180.0 } else { scene.reading.crease_angle };
     if polygons.normals.is_some() || angle <= 0.0 {
         return Ok(());

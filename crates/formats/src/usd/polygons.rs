@@ -18,6 +18,8 @@ pub(super) struct Polygons {
     /// Faces run clockwise.
     pub(super) is_left_handed: bool,
     pub(super) normals: Option<Primvar>,
+    /// The file has normals.
+    pub(super) has_normals: bool,
     /// In place of those.
     pub(super) computed: Option<CornerNormals>,
     pub(super) colours: Option<Primvar>,

@@ -2,6 +2,7 @@
 
 use super::composition::{Layers, compose};
 use super::scene::Scene;
+use super::skeletons;
 use super::stage::Stage;
 use crate::FormatError;
 use crate::reading::{Reading, Source};
@@ -22,6 +23,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     check_variant(reading, &variants, &stage)?;
     let (moments, seconds) = times(&stage, reading.options.time);
     stage.time = moments[0];
+    let (animations, chosen) = skeletons::playing(&stage, seconds, reading.options.animation.as_deref())?;
+    stage.animation = chosen;
     describe(&stage, &mut sink);
     sink.scene.inventory.variants = variants;
     let mut scene = Scene::new(reading, sink);
@@ -33,9 +36,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
         sink.oddities.note("there is nothing to render in this file", || stage.layers[0].at(0));
     }
+    sink.scene.inventory.animations = animations;
     if seconds > 0.0 {
-        let animation = Animation { name: String::new(), seconds, plays: true };
-        sink.scene.inventory.animations.push(animation);
+        if !sink.scene.inventory.moves() {
+            let animation = Animation { name: String::new(), seconds, plays: true };
+            sink.scene.inventory.animations.push(animation);
+        }
         if reading.options.whole_movement {
             sink.scene.movement = Some(std::sync::Arc::new(movement(reading, stage, &moments[1..])?));
         }
@@ -90,8 +96,7 @@ fn check_variant(reading: &Reading, known: &[String], stage: &Stage) -> Result<(
 /// Axes and units.
 fn describe(stage: &Stage, sink: &mut Sink) {
     let fields = &stage.layers[0].root().fields;
-    let is_z = fields.text("upAxis").is_some_and(|axis| axis.eq_ignore_ascii_case("z"));
-    sink.scene.up = UpHint::Is(if is_z { Axis::Z } else { Axis::Y });
+    sink.scene.up = UpHint::Is(if stage.is_z_up() { Axis::Z } else { Axis::Y });
     let unit = fields.number("metersPerUnit");
     // Centimetres are what files without a unit are in.
     sink.scene.unit = unit.unwrap_or(0.01);

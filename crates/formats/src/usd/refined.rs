@@ -27,7 +27,7 @@ pub(super) fn parts(
 ) -> Result<Option<Vec<Part>>, FormatError> {
     let Some(scheme) = subdivision.scheme.refined() else { return Ok(None) };
     let of_vertices = |interpolation| interpolation == Interpolation::Vertex;
-    let is_plain = polygons.normals.is_none()
+    let is_plain = !polygons.has_normals
         && polygons.opacities.is_none()
         && polygons.colours.as_ref().is_none_or(|colours| of_vertices(colours.interpolation))
         && subsets.iter().map(|subset| &subset.worn).chain([rest]).all(|worn| worn.uvs[1].is_none());

@@ -5,6 +5,7 @@ use super::instancer::Copies;
 use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
 use super::primvars::{Interpolation, Primvar};
 use super::shading::{self, Shaded};
+use super::skeletons::{Bent, Binding, Pose, Rig};
 use super::stage::Stage;
 use super::subdivision::Subdivision;
 use super::transforms;
@@ -26,10 +27,11 @@ struct State {
     world: DMat4,
     is_visible: bool,
     purpose: Option<Text>,
+    binding: Option<Binding>,
 }
 
 /// What says all of a mesh: the same opinions make the same mesh.
-type Key = (Vec<[u64; 4]>, Worn, Vec<usize>);
+type Key = (Vec<[u64; 4]>, Worn, Vec<usize>, Vec<[u64; 4]>);
 
 /// A scene while prims are added to it.
 pub(super) struct Scene<'r, 'o> {
@@ -41,19 +43,22 @@ pub(super) struct Scene<'r, 'o> {
     materials: HashMap<u32, Option<Worn>>,
     /// The same by all that is said of them.
     alike: HashMap<Vec<[u32; 2]>, Option<Worn>>,
+    /// Skeletons.
+    poses: HashMap<u32, Arc<Pose>>,
     /// The prims above the current one.
     lineage: Vec<u32>,
 }
 
 impl<'r, 'o> Scene<'r, 'o> {
     pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
-        let (meshes, plain, materials, alike) = Default::default();
-        Scene { context: Context { reading, sink }, meshes, plain, materials, alike, lineage: Vec::new() }
+        let (meshes, plain, materials, alike, poses) = Default::default();
+        let context = Context { reading, sink };
+        Scene { context, meshes, plain, materials, alike, poses, lineage: Vec::new() }
     }
 
     /// Adds all prims, as they are at the time of the stage.
     pub(super) fn add_all(&mut self, stage: &Stage) -> Result<(), FormatError> {
-        let state = State { world: DMat4::IDENTITY, is_visible: true, purpose: None };
+        let state = State { world: DMat4::IDENTITY, is_visible: true, purpose: None, binding: None };
         self.children(stage, 0, &state)
     }
 
@@ -84,8 +89,10 @@ impl<'r, 'o> Scene<'r, 'o> {
             | "Plane" | "Points" | "BasisCurves" | "NurbsCurves"
                 if is_shown =>
             {
-                let parts = self.parts(stage, prim)?;
-                self.place(stage, prim, &parts, &state.world)?;
+                let rig = self.rig(stage, prim, &state)?;
+                let parts = self.parts(stage, prim, rig.as_ref())?;
+                let world = rig.map_or(state.world, |rig| rig.place(&state.world));
+                self.place(stage, prim, &parts, &world)?;
             }
             "Camera" => cameras::add(stage, prim, &state.world, &mut self.context)?,
             kind if lights::is_light(kind) && state.is_visible => {
@@ -110,24 +117,48 @@ impl<'r, 'o> Scene<'r, 'o> {
             Some(purpose) => Some(purpose.clone()),
             None => stage.text(prim, "purpose", budget)?.filter(|purpose| &**purpose != "default"),
         };
-        Ok(State { world, is_visible: above.is_visible && !hides, purpose })
+        let binding = Binding::of(stage, prim, &world, above.binding);
+        Ok(State { world, is_visible: above.is_visible && !hides, purpose, binding })
+    }
+
+    /// What deforms a prim.
+    fn rig(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<Option<Rig>, FormatError> {
+        let Some((binding, skeleton)) = state.binding.and_then(|b| Some((b, b.skeleton?))) else {
+            return Ok(None);
+        };
+        let Context { reading, sink } = &mut self.context;
+        let pose = match self.poses.get(&skeleton) {
+            Some(pose) => pose.clone(),
+            None => {
+                let pose = Pose::read(stage, skeleton, &mut reading.budget, &mut sink.oddities)?;
+                self.poses.entry(skeleton).or_insert(Arc::new(pose)).clone()
+            }
+        };
+        let rig = Rig::of(stage, prim, &binding, &pose, reading, sink)?;
+        let can_bend = &*stage.prim(prim).type_name == "Mesh";
+        if rig.as_ref().is_some_and(|rig| !can_bend && !rig.is_rigid()) {
+            let what = "skins and blend shapes of prims that are not meshes";
+            sink.oddities.not_shown(what, || stage.at(prim));
+            return Ok(None);
+        }
+        Ok(rig)
     }
 
     /// The meshes of a prim, with their materials.
-    fn parts(&mut self, stage: &Stage, prim: u32) -> Result<Arc<[Part]>, FormatError> {
+    fn parts(&mut self, stage: &Stage, prim: u32, rig: Option<&Rig>) -> Result<Arc<[Part]>, FormatError> {
         let rest = self.worn(stage, prim)?;
         let is_mesh = &*stage.prim(prim).type_name == "Mesh";
         let subsets = if is_mesh { self.subsets(stage, prim)? } else { Vec::new() };
-        let said = stage.prim(prim).opinions.iter().map(|o| {
-            [u64::from(o.layer), u64::from(o.prim), o.offset.offset.to_bits(), o.offset.scale.to_bits()]
-        });
-        let key = (said.collect(), rest.clone(), subsets.iter().map(|subset| subset.worn.index).collect());
+        let rig = rig.filter(|rig| !rig.is_rigid());
+        let bent_by = rig.map_or(Vec::new(), |rig| rig.said(stage));
+        let of_subsets = subsets.iter().map(|subset| subset.worn.index).collect();
+        let key = (stage.said(prim).collect(), rest.clone(), of_subsets, bent_by);
         if let Some(known) = self.meshes.get(&key) {
             return Ok(known.clone());
         }
         let spent = self.context.reading.budget.spent();
         let made: Arc<[Part]> = match is_mesh {
-            true => self.polygon_parts(stage, prim, subsets, &rest)?.into(),
+            true => self.polygon_parts(stage, prim, subsets, &rest, rig)?.into(),
             false => self.other_part(stage, prim, &rest)?.into_iter().collect(),
         };
         // What was read for the meshes is no longer held; they are.
@@ -145,23 +176,25 @@ impl<'r, 'o> Scene<'r, 'o> {
         prim: u32,
         subsets: Vec<Subset>,
         rest: &Worn,
+        rig: Option<&Rig>,
     ) -> Result<Vec<Part>, FormatError> {
         let Some(array) = stage.array(prim, "points", &mut self.context.reading.budget)? else {
             return Ok(Vec::new());
         };
         self.context.reading.budget.take_bytes(12 * array.len() as u64, &stage.layers[0].name)?;
-        let vertices = points(&array);
+        let mut vertices = points(&array);
         drop(array);
+        let Context { reading, sink } = &mut self.context;
+        let bent = match rig {
+            Some(rig) => rig.bend(stage, prim, &mut vertices, reading, sink)?,
+            None => Bent::default(),
+        };
         let Some(mut polygons) = polygons(stage, prim, vertices, &mut self.context)? else {
             return Ok(Vec::new());
         };
-        let weights = stage.array(prim, "primvars:skel:jointWeights", &mut self.context.reading.budget)?;
-        if weights.is_some() || !stage.targets(prim, "skel:blendShapeTargets").is_empty() {
-            let what = "skeletons and blend shapes (meshes have the shape that they were bound in)";
-            self.context.sink.oddities.not_shown(what, || stage.at(prim));
-        }
         let subdivision = Subdivision::read(stage, prim, &mut self.context.reading.budget)?;
         add_normals(stage, prim, &mut polygons, &subdivision, &mut self.context)?;
+        bent.turn(stage, &mut polygons, self.context.reading)?;
         let budget = &mut self.context.reading.budget;
         let constant = Interpolation::Constant;
         let varies = |primvar: &Primvar| primvar.interpolation != constant;
@@ -224,7 +257,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let mut made: HashMap<u32, Vec<Object>> = HashMap::new();
         for &prototype in &copies.prototypes {
             let objects = std::mem::take(&mut self.context.sink.scene.objects);
-            let state = State { world: DMat4::IDENTITY, purpose: None, ..*state };
+            let state = State { world: DMat4::IDENTITY, purpose: None, binding: None, ..*state };
             if prototype != 0 {
                 self.prim(stage, prototype, &state)?;
             }

@@ -6,6 +6,7 @@ use super::list_op::ListOp;
 use super::value::{Array, Numbers, Text, Value};
 use crate::FormatError;
 use crate::budget::Budget;
+use bilux_math::glam::DQuat;
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ pub(super) struct Stage {
     by_path: HashMap<Text, u32>,
     /// The time code that is shown.
     pub(super) time: f64,
+    /// The animation that every skeleton plays in place of its own.
+    pub(super) animation: Option<u32>,
 }
 
 /// A value, and the layer that it comes from.
@@ -29,7 +32,7 @@ pub(super) struct Found {
 impl Stage {
     pub(super) fn new(layers: Vec<Layer>, prims: Vec<Prim>) -> Stage {
         let by_path = prims.iter().enumerate().map(|(i, prim)| (prim.path.clone(), i as u32)).collect();
-        Stage { layers, prims, by_path, time: 0.0 }
+        Stage { layers, prims, by_path, time: 0.0, animation: None }
     }
 
     pub(super) fn prim(&self, index: u32) -> &Prim {
@@ -39,6 +42,24 @@ impl Stage {
     /// The prim with a path.
     pub(super) fn named(&self, path: &str) -> Option<u32> {
         self.by_path.get(path).copied()
+    }
+
+    /// The prim above another one.
+    pub(super) fn above(&self, prim: u32) -> Option<u32> {
+        self.named(self.prim(prim).path.rsplit_once('/')?.0)
+    }
+
+    /// What all layers say about a prim: equal for prims that are alike.
+    pub(super) fn said(&self, prim: u32) -> impl Iterator<Item = [u64; 4]> {
+        self.prim(prim).opinions.iter().map(|o| {
+            [u64::from(o.layer), u64::from(o.prim), o.offset.offset.to_bits(), o.offset.scale.to_bits()]
+        })
+    }
+
+    /// True if some layer says something about a property.
+    pub(super) fn states(&self, prim: u32, name: &str) -> bool {
+        let says = |p: &Property| p.value.is_some() || p.samples.is_some() || p.targets.is_some();
+        self.properties(prim, name).any(|(_, property)| says(property))
     }
 
     fn spec(&self, opinion: &Opinion) -> &PrimSpec {
@@ -87,7 +108,7 @@ impl Stage {
             let layer = opinion.layer;
             if let Some(samples) = &property.samples {
                 let time = opinion.offset.inverse(self.time);
-                if let Some(value) = self.sampled(layer, samples, time, budget)? {
+                if let Some(value) = self.sampled(layer, samples, time, holds_turns(name), budget)? {
                     return Ok((value != Value::Blocked).then_some(Found { value, layer }));
                 }
             }
@@ -148,6 +169,7 @@ impl Stage {
         layer: u32,
         samples: &Value,
         time: f64,
+        are_turns: bool,
         budget: &mut Budget,
     ) -> Result<Option<Value>, FormatError> {
         let Value::Samples(list) = self.unpacked(layer, samples, budget)? else { return Ok(None) };
@@ -158,7 +180,11 @@ impl Stage {
         let Some((last, after)) = after.filter(|_| time > *first) else { return Ok(Some(before)) };
         let after = self.unpacked(layer, after, budget)?;
         let part = (time - first) / (last - first);
-        Ok(Some(between(&before, &after, part, budget, &self.layers[layer as usize].name)?.unwrap_or(before)))
+        let value = between(&before, &after, part, budget, &self.layers[layer as usize].name)?;
+        match value {
+            Some(value) if are_turns => Ok(Some(turned(&before, &after, part, value))),
+            value => Ok(Some(value.unwrap_or(before))),
+        }
     }
 
     /// The targets of a relationship, or the connections of an attribute, as paths on the stage.
@@ -177,6 +203,12 @@ impl Stage {
         self.properties(prim, property).find_map(|(_, property)| property.fields.find(key).cloned())
     }
 
+    /// True if z is up.
+    pub(super) fn is_z_up(&self) -> bool {
+        let axis = self.layers[0].root().fields.text("upAxis");
+        axis.is_some_and(|axis| axis.eq_ignore_ascii_case("z"))
+    }
+
     /// The end of the samples of the first layer's time, if something in the stage moves.
     pub(super) fn root_number(&self, key: &str) -> Option<f64> {
         self.layers[0].root().fields.number(key).filter(|x| x.is_finite())
@@ -186,6 +218,35 @@ impl Stage {
     pub(super) fn varies(&self, prim: u32) -> bool {
         let opinions = self.prim(prim).opinions.iter();
         opinions.flat_map(|o| &self.spec(o).properties).any(|property| property.samples.is_some())
+    }
+}
+
+/// True for attributes whose values are quaternions.
+fn holds_turns(name: &str) -> bool {
+    matches!(name, "rotations" | "orientations" | "orientationsf") || name.starts_with("xformOp:orient")
+}
+
+/// The quaternions between two values, on the shortest way, in place of those that are linear between them.
+fn turned(a: &Value, b: &Value, part: f64, linear: Value) -> Value {
+    let unit = |q: [f64; 4]| Some(DQuat::from_array(q)).filter(|q| q.length_squared() > 0.0);
+    let turn = |a: [f64; 4], b: [f64; 4]| {
+        let (a, b) = (unit(a)?.normalize(), unit(b)?.normalize());
+        Some(a.slerp(b, part).to_array())
+    };
+    let tuple = |value: &Value| value.tuple::<4>();
+    if let (Some(a), Some(b)) = (tuple(a), tuple(b)) {
+        return turn(a, b).map_or(linear, |q| Value::Tuple(q.to_vec()));
+    }
+    match (a, b, linear) {
+        (Value::Array(a), Value::Array(b), Value::Array(mut linear)) if linear.width == 4 => {
+            if let Numbers::Floats(numbers) = &mut Arc::make_mut(&mut linear).numbers {
+                for (i, q) in numbers.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                    *q = turn(a.tuple(i), b.tuple(i)).map_or(*q, |q| q.map(|x| x as f32));
+                }
+            }
+            Value::Array(linear)
+        }
+        (_, _, linear) => linear,
     }
 }
 

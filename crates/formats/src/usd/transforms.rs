@@ -36,6 +36,26 @@ pub(super) fn local(stage: &Stage, prim: u32, budget: &mut Budget) -> Result<Loc
     Ok(local)
 }
 
+/// The place of a prim in one above it; `None` if that is not above it.
+pub(super) fn below(
+    stage: &Stage,
+    prim: u32,
+    above: u32,
+    budget: &mut Budget,
+) -> Result<Option<DMat4>, FormatError> {
+    let mut place = Local { matrix: DMat4::IDENTITY, is_reset: false };
+    let mut at = prim;
+    while at != above {
+        if !place.is_reset {
+            let own = local(stage, at, budget)?;
+            place = Local { matrix: own.matrix * place.matrix, is_reset: own.is_reset };
+        }
+        let Some(next) = stage.above(at) else { return Ok(None) };
+        at = next;
+    }
+    Ok(Some(place.matrix))
+}
+
 /// A matrix that is written as rows for row vectors, for column vectors.
 pub(super) fn matrix(value: &Value) -> Option<DMat4> {
     value.tuple::<16>().map(|rows| DMat4::from_cols_array(&rows))

@@ -51,6 +51,9 @@ mod subdivision;
 mod threemf;
 mod tolerance;
 mod usd;
+mod usd_materialx;
+mod usd_skeletons;
+mod usd_truth;
 mod usd_written;
 mod wrong_files;
 

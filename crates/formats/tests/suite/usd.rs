@@ -180,6 +180,7 @@ fn what_cannot_be_read_is_refused_with_a_reason() {
             b"PXR-USDC\x00\x63\x00\x00\x00\x00\x00\x00\0\0\0\0\0\0\0\0".to_vec(),
             "version 0.99.0, but only 0.4 to",
         ),
+        ("usdz", crate::threemf::package(&[("readme.txt", b"a")]), "no layer: put a .usdc file first in it"),
     ];
     for (format, bytes, part) in cases {
         let message = refusal(format, bytes);
@@ -351,6 +352,42 @@ fn lights_are_as_bright_as_the_schema_says() {
     );
     let said = warnings(&linked);
     assert!(said.contains("filters of lights") && said.contains("light linking"), "{said}");
+}
+
+/// Cones, exponents and profiles make lights emit less in some directions, by the formulas of the schema; what is left is a light without
+/// extent. A dome's map stands along y, or as its stage does.
+#[test]
+fn shaped_lights_emit_in_the_directions_that_the_schema_says() {
+    let light = |more: &str| {
+        let scene = text(&format!(
+            "def SphereLight \"l\" {{ float inputs:radius = 2\n float inputs:intensity = 3\n {more} }}"
+        ));
+        assert_eq!((scene.lights.len(), &*scene.lights[0].kind), (1, "luminaire"), "{}", warnings(&scene));
+        scene.lights[0].clone()
+    };
+    let intensity = |light: &bilux_scene::Spec, polar: f64| {
+        let Some((_, bilux_scene::Value::Distribution(found), _)) =
+            light.parameters.0.iter().find(|(key, ..)| key == "distribution")
+        else {
+            panic!("no distribution")
+        };
+        let per_candela =
+            light.colour("flux").unwrap().g * light.colour("scale").unwrap().g / found.lumens() as f32;
+        found.at(polar, 0.0) as f32 * per_candela
+    };
+    let near = |a: f32, b: f32| assert!((a - b).abs() < 2e-3 * b.abs().max(1.0), "{a} is not {b}");
+    let whole = 3.0 * std::f32::consts::PI * 4.0;
+    let hard = light("float inputs:shaping:cone:angle = 30");
+    near(intensity(&hard, 29.9), whole);
+    near(intensity(&hard, 30.1), 0.0);
+    // Halfway between 15 and 30 degrees a smooth step is a half.
+    let soft = light("float inputs:shaping:cone:angle = 30\n float inputs:shaping:cone:softness = 0.5");
+    near(intensity(&soft, 14.9), whole);
+    near(intensity(&soft, 22.5), whole / 2.0);
+    let focused = light("float inputs:shaping:focus = 2");
+    near(intensity(&focused, 60.0), whole / 4.0);
+    near(intensity(&focused, 180.0), whole);
+    assert_eq!(hard.colour("direction").unwrap().to_array(), [0.0, 0.0, -1.0]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Blend shapes: offsets of vertices, as far as their channel says.
 
 use crate::FormatError;
+use crate::deformation::amounts;
 use crate::fbx::document::Index;
 use crate::polygon_mesh::{PolygonMesh, Workshop};
 
@@ -49,34 +50,11 @@ pub(super) fn old_channels<'d>(mesh: Index, posed: &Posed<'d>) -> Vec<Channel<'d
 }
 
 impl Channel<'_> {
-    /// How much there is of each shape: the channel runs in straight lines from none to the first, and from one to the
-    /// next, in the order of their percentages.
+    /// How much there is of each shape.
     fn weights(&self, workshop: &mut Workshop) -> Result<Vec<f64>, FormatError> {
         let mut full: Vec<f64> = self.full.map_or(Ok(Vec::new()), |list| list.numbers(workshop.budget))?;
         full.resize(self.shapes.len(), 100.0);
-        let mut weights = vec![0.0; self.shapes.len()];
-        let mut order: Vec<usize> = (0..full.len()).filter(|&shape| full[shape] != 0.0).collect();
-        order.sort_by(|&a, &b| full[a].total_cmp(&full[b]));
-        // Negative percentages run from none to the other side.
-        let side = |shape: &usize| full[*shape] > 0.0;
-        let is_positive = self.percent > 0.0 || !order.iter().any(|shape| !side(shape));
-        let mut on_side: Vec<usize> = order.into_iter().filter(|shape| side(shape) == is_positive).collect();
-        if !is_positive {
-            on_side.reverse();
-        }
-        let reached = on_side.iter().position(|&shape| full[shape].abs() > self.percent.abs());
-        let Some(last) = on_side.len().checked_sub(1) else { return Ok(weights) };
-        let next = reached.unwrap_or(last);
-        let before = next.checked_sub(1).map(|i| on_side[i]);
-        let from = before.map_or(0.0, |shape| full[shape]);
-        let part = (self.percent - from) / (full[on_side[next]] - from);
-        if part.is_finite() {
-            weights[on_side[next]] = part;
-            if let Some(before) = before {
-                weights[before] = 1.0 - part;
-            }
-        }
-        Ok(weights)
+        Ok(amounts(&full, self.percent))
     }
 
     /// Adds what there is of the shapes to a mesh, and how they turn the normals at each control point to `turns`.

@@ -2,6 +2,7 @@
 
 use crate::FormatError;
 use crate::budget::Budget;
+use crate::deformation::Blends;
 use crate::fbx::document::Index;
 use crate::polygon_mesh::{PolygonMesh, Workshop};
 
@@ -21,8 +22,8 @@ pub(super) fn bend(
 ) -> Result<(), FormatError> {
     let document = posed.document;
     let (node, count) = (document.object(skin).node, geometry.positions.len());
-    workshop.budget.take_bytes((count * size_of::<(DMat4, f64)>()) as u64, node.file())?;
-    let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
+    workshop.budget.take_bytes(Blends::bytes(count), node.file())?;
+    let mut blends = Blends::new(count);
     for cluster in document.sources_of_class(skin, "Deformer") {
         let cluster_node = document.object(cluster).node;
         let bone = document.sources_of_class(cluster, "Model").next();
@@ -47,10 +48,7 @@ pub(super) fn bend(
                     .note("a bone moves a vertex that the mesh does not have", || cluster_node.at());
                 continue;
             };
-            if weight.is_finite() {
-                blends[vertex] += whole * *weight;
-                sums[vertex] += weight;
-            }
+            blends.add(vertex, &whole, *weight);
         }
         workshop.budget.release(workshop.budget.spent() - spent);
     }
@@ -60,11 +58,8 @@ pub(super) fn bend(
         workshop.oddities.note(what, || node.at());
     }
     let still = placed.world * placed.geometric;
-    for (blend, sum) in blends.iter_mut().zip(sums) {
-        *blend = if sum == 0.0 { still } else { *blend * (1.0 / sum) };
-    }
-    geometry.bend(&blends, workshop, node.file())?;
-    workshop.budget.release((count * size_of::<(DMat4, f64)>()) as u64);
+    geometry.bend(&blends.matrices(|_| still), workshop, node.file())?;
+    workshop.budget.release(Blends::bytes(count));
     Ok(())
 }
 

@@ -6,7 +6,7 @@ use crate::oddities::Oddities;
 use crate::reading::Reading;
 use crate::usd::layer::Layer;
 use crate::usd::value::{TimeOffset, Value};
-use crate::usd::{usda, usdc};
+use crate::usd::{mtlx, usda, usdc};
 use bilux_scene::Span;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
@@ -70,6 +70,11 @@ impl<'r, 'o> Layers<'r, 'o> {
         let budget = &mut self.reading.budget;
         if bytes.starts_with(usdc::MAGIC) {
             return usdc::read(bytes, name, folder, budget);
+        }
+        if mtlx::is_document(&bytes) {
+            let layer = mtlx::read(&bytes, name, folder, budget)?;
+            budget.release(bytes.len() as u64);
+            return Ok(layer);
         }
         if !usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)) {
             let at = Span { file: name.clone(), line: 0, column: 0 };

@@ -2,9 +2,11 @@
 
 mod bindings;
 mod draft;
+mod folding;
 mod materials;
 mod materialx;
 mod network;
+mod placing;
 mod preview;
 mod setting;
 mod textures;

@@ -2,7 +2,7 @@
 
 use super::draft::Draft;
 use super::network::Input;
-use super::textures::{Taken, bake, texture};
+use super::textures::{Painted, Taken, bake, painted};
 use crate::FormatError;
 use crate::displacement::{Along, Displacement};
 use bilux_math::Rgb;
@@ -43,21 +43,24 @@ pub(super) fn preview(draft: &mut Draft) -> Result<(), FormatError> {
     displacement(draft)
 }
 
+const CONSTANT: &str = "displacement without a picture";
+
 /// Heights along the normal, in lengths of the mesh.
 fn displacement(draft: &mut Draft) -> Result<(), FormatError> {
     if draft.number("displacement")?.unwrap_or(0.0) != 0.0 {
-        draft.not_shown("displacement without a picture");
+        draft.not_shown(CONSTANT);
     }
     let Input::Node(node, output) = draft.input("displacement")? else { return Ok(()) };
     let taken = Taken { is_data: true, factor: 1.0, threshold: None };
     let at = draft.stage.at(node);
-    draft.shaded.displacement = texture(draft, node, &output, taken)?.map(|map| Displacement {
-        map,
-        along: Along::Normal,
-        scale: 1.0,
-        middle: 0.0,
-        at,
-    });
+    match painted(draft, node, &output, taken)? {
+        Some(Painted::Texture(map)) => {
+            let along = Along::Normal;
+            draft.shaded.displacement = Some(Displacement { map, along, scale: 1.0, middle: 0.0, at });
+        }
+        Some(Painted::Constant(height)) if height.r != 0.0 => draft.not_shown(CONSTANT),
+        _ => {}
+    }
     Ok(())
 }
 
@@ -86,8 +89,10 @@ fn opacity(draft: &mut Draft) -> Result<(), FormatError> {
     match draft.input("opacity")? {
         Input::Node(node, output) => {
             let taken = Taken { is_data: true, factor: 1.0, threshold };
-            if let Some(found) = texture(draft, node, &output, taken)? {
-                draft.set_texture("opacity", found)?;
+            match painted(draft, node, &output, taken)? {
+                Some(Painted::Texture(found)) => draft.set_texture("opacity", found)?,
+                Some(Painted::Constant(opacity)) => draft.set("opacity", opacity.r.clamp(0.0, 1.0)),
+                None => {}
             }
         }
         Input::Value(found) => {
@@ -107,7 +112,7 @@ pub(super) fn normal(draft: &mut Draft, name: &str) -> Result<(), FormatError> {
     let Input::Node(node, output) = draft.input(name)? else { return Ok(()) };
     let taken = Taken { is_data: true, factor: 1.0, threshold: None };
     let plain = plain_scale(draft, node)?;
-    let Some(mut found) = texture(draft, node, &output, taken)? else { return Ok(()) };
+    let Some(Painted::Texture(mut found)) = painted(draft, node, &output, taken)? else { return Ok(()) };
     if let Some(original) = plain {
         found.image = original;
         found.is_data = true;

@@ -2,7 +2,7 @@
 
 use super::draft::Draft;
 use super::network::Input;
-use super::textures::{Taken, texture};
+use super::textures::{Painted, Taken, painted};
 use crate::FormatError;
 use bilux_scene::texture::Channel;
 
@@ -12,8 +12,9 @@ impl Draft<'_, '_> {
         match self.input(name)? {
             Input::Node(node, output) => {
                 let taken = Taken { is_data: false, factor, threshold: None };
-                match texture(self, node, &output, taken)? {
-                    Some(texture) => self.set_texture(key, texture)?,
+                match painted(self, node, &output, taken)? {
+                    Some(Painted::Texture(texture)) => self.set_texture(key, texture)?,
+                    Some(Painted::Constant(colour)) => self.set(key, colour.map(|c| c.max(0.0))),
                     None => return Ok(false),
                 }
                 Ok(true)
@@ -32,8 +33,9 @@ impl Draft<'_, '_> {
         match self.input(name)? {
             Input::Node(node, output) => {
                 let taken = Taken { is_data: true, factor, threshold: None };
-                match texture(self, node, &output, taken)? {
-                    Some(mut texture) => {
+                match painted(self, node, &output, taken)? {
+                    Some(Painted::Constant(colour)) => self.set(key, colour.r),
+                    Some(Painted::Texture(mut texture)) => {
                         texture.channel = texture.channel.or(Some(Channel::R));
                         self.set_texture(key, texture)?;
                     }

@@ -1,15 +1,16 @@
 //! Nodes that read pictures.
 
 use super::draft::Draft;
-use super::network::{Input, constant, input, kind};
+use super::folding::{Folded, Linear, folded};
+use super::network::{constant, kind};
+use super::placing::placing;
 use crate::FormatError;
 use crate::reading::Texels as Meaning;
 use crate::usd::stage::Found;
-use crate::usd::value::{Text, Value};
+use crate::usd::value::Value;
 use bilux_math::Rgb;
-use bilux_math::transcendental::sin_cos;
 use bilux_scene::Texture;
-use bilux_scene::texture::{Channel, Image, Texels, UvTransform, Wrap};
+use bilux_scene::texture::{Channel, Image, Texels, Wrap};
 use std::sync::Arc;
 
 /// What a parameter takes of a texture.
@@ -21,60 +22,36 @@ pub(super) struct Taken {
     pub(super) threshold: Option<f32>,
 }
 
-/// The primvar of texture coordinates, and what is done to them.
-struct Placing {
-    name: Text,
-    transform: Option<UvTransform>,
+/// What the output of a node gives a parameter.
+pub(super) enum Painted {
+    Texture(Texture),
+    Constant(Rgb),
 }
 
-/// Nodes in a row that only move texture coordinates or pass colours on.
-const MAX_CHAIN: usize = 16;
-
-/// The texture that the output of a node is; `None`, with a note, for nodes that are not read.
-pub(super) fn texture(
+/// The texture or the constant that the output of a node is; `None`, with a note, for nodes that are not read.
+pub(super) fn painted(
     draft: &mut Draft,
     node: u32,
     output: &str,
     taken: Taken,
-) -> Result<Option<Texture>, FormatError> {
-    let (mut node, mut output) = (node, output.to_owned());
-    for _ in 0..MAX_CHAIN {
-        let id = kind(draft.stage, node, &mut draft.reading.budget)?;
-        let name = id.strip_prefix("ND_").unwrap_or(&id);
-        if name.starts_with("UsdUVTexture") || name.starts_with("image_") || name.starts_with("tiledimage_") {
-            return picture(draft, node, &output, taken, name.starts_with("UsdUVTexture"));
+) -> Result<Option<Painted>, FormatError> {
+    let linear = match folded(draft, node, output)? {
+        Some(Folded::Constant(colour)) => {
+            return Ok(Some(Painted::Constant(Rgb::from_array(colour) * taken.factor)));
         }
-        if name.starts_with("UsdPrimvarReader")
-            || name.starts_with("geompropvalue")
-            || name.starts_with("geomcolor")
-        {
-            return vertex_colours(draft, node, name);
-        }
-        // These pass on what they get, or change it in a way that a texture cannot.
-        let passes =
-            ["normalmap", "convert", "extract", "separate", "swizzle", "colorcorrect", "multiply", "dot"];
-        if !passes.iter().any(|start| name.starts_with(start)) {
-            break;
-        }
-        if !name.starts_with("normalmap") && !name.starts_with("convert") && !name.starts_with("dot") {
-            draft.not_shown(&format!("what nodes {name} do to textures"));
-        }
-        let mut next = Input::Nothing;
-        for key in ["in", "in1", "in2"] {
-            if !matches!(next, Input::Node(..)) {
-                next = input(draft.stage, node, key, &mut draft.reading.budget)?;
-            }
-        }
-        let Input::Node(before, of) = next else { break };
-        (node, output) = (before, of.to_string());
+        Some(Folded::Linear(linear)) => linear,
+        None => return Ok(None),
+    };
+    let id = kind(draft.stage, linear.node, &mut draft.reading.budget)?;
+    let name = id.strip_prefix("ND_").unwrap_or(&id);
+    if name.starts_with("UsdPrimvarReader") || name.starts_with("geom") {
+        return vertex_colours(draft, linear.node, name);
     }
-    let id = kind(draft.stage, node, &mut draft.reading.budget)?;
-    draft.not_shown(&format!("shaders {}", if id.is_empty() { "without an identifier" } else { &id }));
-    Ok(None)
+    Ok(picture(draft, &linear, taken, name.starts_with("UsdUVTexture"))?.map(Painted::Texture))
 }
 
 /// The colours of vertices in place of a texture: the material is then white, and the mesh has the colours.
-fn vertex_colours(draft: &mut Draft, node: u32, id: &str) -> Result<Option<Texture>, FormatError> {
+fn vertex_colours(draft: &mut Draft, node: u32, id: &str) -> Result<Option<Painted>, FormatError> {
     let budget = &mut draft.reading.budget;
     let name = match constant(draft.stage, node, "varname", budget)? {
         Some(found) => Some(found),
@@ -94,12 +71,11 @@ fn vertex_colours(draft: &mut Draft, node: u32, id: &str) -> Result<Option<Textu
 
 fn picture(
     draft: &mut Draft,
-    node: u32,
-    output: &str,
+    linear: &Linear,
     taken: Taken,
     is_preview: bool,
 ) -> Result<Option<Texture>, FormatError> {
-    let stage = draft.stage;
+    let (stage, node) = (draft.stage, linear.node);
     let budget = &mut draft.reading.budget;
     let Some(file) = constant(stage, node, "file", budget)? else { return Ok(None) };
     let space = constant(stage, node, "sourceColorSpace", budget)?;
@@ -112,7 +88,7 @@ fn picture(
         // What is not said follows from what it is for.
         _ => taken.is_data,
     };
-    let channel = match output {
+    let channel = match &*linear.output {
         "r" | "outr" => Some(Channel::R),
         "g" | "outg" => Some(Channel::G),
         "b" | "outb" => Some(Channel::B),
@@ -124,12 +100,8 @@ fn picture(
     for (wrap, key) in texture.wrap.iter_mut().zip(keys) {
         *wrap = wrapping(constant(stage, node, key, &mut draft.reading.budget)?);
     }
-    let placing = placing(draft, node, if is_preview { "st" } else { "texcoord" })?;
+    let placing = placing(draft, node, is_preview)?;
     texture.transform = placing.transform;
-    if !is_preview && let Some(tiles) = constant(stage, node, "uvtiling", &mut draft.reading.budget)? {
-        let [x, y] = tiles.value.tuple::<2>().unwrap_or([1.0; 2]).map(|x| x as f32);
-        texture.transform = Some(UvTransform::from_array([x, 0.0, 0.0, y, 0.0, 1.0 - y]));
-    }
     let uvs = &mut draft.shaded.uvs;
     let slot = uvs.iter().position(|slot| slot.as_ref().is_none_or(|known| *known == placing.name));
     match slot {
@@ -137,34 +109,39 @@ fn picture(
         None => draft.not_shown("a third set of texture coordinates"),
     }
     texture.second_uv = slot == Some(1);
-    texture.channel = channel;
+    texture.channel = channel.or(linear.channel);
     texture.threshold = taken.threshold;
-    change(draft, node, &mut texture, taken)?;
+    change(draft, linear, &mut texture, taken)?;
     Ok(Some(texture))
 }
 
-/// Applies the scale and the bias of a node: as a factor where that is enough, otherwise in a copy of the image.
-fn change(draft: &mut Draft, node: u32, texture: &mut Texture, taken: Taken) -> Result<(), FormatError> {
+/// Applies the scale and the bias of a node, and what further nodes do: as a factor where that is enough, otherwise in a copy of the
+/// image.
+fn change(
+    draft: &mut Draft,
+    linear: &Linear,
+    texture: &mut Texture,
+    taken: Taken,
+) -> Result<(), FormatError> {
     let stage = draft.stage;
     let budget = &mut draft.reading.budget;
     let mut four = |name: &str, default: f64| -> Result<[f32; 4], FormatError> {
-        let found = constant(stage, node, name, budget)?;
+        let found = constant(stage, linear.node, name, budget)?;
         Ok(found.and_then(|found| found.value.tuple::<4>()).unwrap_or([default; 4]).map(|x| x as f32))
     };
     let (scale, bias) = (four("scale", 1.0)?, four("bias", 0.0)?);
     let picked = texture.channel.map(|channel| channel as usize);
-    texture.factor = match picked {
-        Some(channel) => Rgb::grey(scale[channel] * taken.factor),
-        None => Rgb::new(scale[0], scale[1], scale[2]) * taken.factor,
-    };
-    if bias == [0.0; 4] {
+    let three = |four: [f32; 4]| picked.map_or([four[0], four[1], four[2]], |channel| [four[channel]; 3]);
+    let (scale, bias) = (three(scale), three(bias));
+    let factor: [f32; 3] = std::array::from_fn(|i| scale[i] * linear.scale[i]);
+    let offset: [f32; 3] = std::array::from_fn(|i| bias[i] * linear.scale[i] + linear.offset[i]);
+    if offset == [0.0; 3] {
+        texture.factor = Rgb::from_array(factor) * taken.factor;
         return Ok(());
     }
-    let offset = picked.map_or([bias[0], bias[1], bias[2]], |channel| [bias[channel]; 3]);
     texture.factor = Rgb::grey(taken.factor);
-    let scale = picked.map_or([scale[0], scale[1], scale[2]], |channel| [scale[channel]; 3]);
     bake(draft, texture, |texel| {
-        let all: [f32; 3] = std::array::from_fn(|i| texel.to_array()[i] * scale[i] + offset[i]);
+        let all: [f32; 3] = std::array::from_fn(|i| texel.to_array()[i] * factor[i] + offset[i]);
         Rgb::from_array(all)
     })
 }
@@ -216,56 +193,4 @@ fn wrapping(mode: Option<Found>) -> Wrap {
         Some("mirror") => Wrap::Mirror,
         _ => Wrap::Repeat,
     }
-}
-
-/// Where the texture coordinates of a node come from.
-fn placing(draft: &mut Draft, node: u32, name: &str) -> Result<Placing, FormatError> {
-    let stage = draft.stage;
-    let budget = &mut draft.reading.budget;
-    let mut placing = Placing { name: "st".into(), transform: None };
-    let mut next = input(stage, node, name, budget)?;
-    for _ in 0..MAX_CHAIN {
-        let Input::Node(node, _) = next else { break };
-        let id = kind(stage, node, budget)?;
-        let id = id.strip_prefix("ND_").unwrap_or(&id);
-        if id.starts_with("UsdTransform2d") {
-            placing.transform = Some(transform(draft, node)?);
-            return Ok(Placing { name: placing_name(draft, node)?, ..placing });
-        }
-        for key in ["varname", "geomprop"] {
-            let found = constant(stage, node, key, budget)?;
-            if let Some(found) = found.as_ref().and_then(|found| found.value.text()) {
-                placing.name = found.clone();
-            }
-        }
-        next = input(stage, node, "in", budget)?;
-    }
-    Ok(placing)
-}
-
-/// The primvar that a node which moves texture coordinates gets.
-fn placing_name(draft: &mut Draft, node: u32) -> Result<Text, FormatError> {
-    let budget = &mut draft.reading.budget;
-    if let Input::Node(reader, _) = input(draft.stage, node, "in", budget)? {
-        let found = constant(draft.stage, reader, "varname", budget)?;
-        if let Some(name) = found.as_ref().and_then(|found| found.value.text()) {
-            return Ok(name.clone());
-        }
-    }
-    Ok("st".into())
-}
-
-/// Scaled, turned counter-clockwise and moved, with v upwards; ours are with v downwards.
-fn transform(draft: &mut Draft, node: u32) -> Result<UvTransform, FormatError> {
-    let stage = draft.stage;
-    let budget = &mut draft.reading.budget;
-    let turn = constant(stage, node, "rotation", budget)?.and_then(|found| found.value.number());
-    let mut pair = |name: &str, default: f64| -> Result<[f32; 2], FormatError> {
-        let found = constant(stage, node, name, budget)?;
-        Ok(found.and_then(|found| found.value.tuple::<2>()).unwrap_or([default; 2]).map(|x| x as f32))
-    };
-    let ([sx, sy], [x, y]) = (pair("scale", 1.0)?, pair("translation", 0.0)?);
-    let (sin, cos) = sin_cos((turn.unwrap_or(0.0) as f32).to_radians());
-    let [a, b, c, d] = [cos * sx, -sin * sy, sin * sx, cos * sy];
-    Ok(UvTransform::from_array([a, -c, -b, d, b + x, 1.0 - d - y]))
 }

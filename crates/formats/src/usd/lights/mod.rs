@@ -1,21 +1,24 @@
 //! Lights of `UsdLux`, whose units are those of radiance.
 
+mod dome;
+mod inputs;
+mod shaping;
+
 use super::context::Context;
 use super::meshes::name_of;
 use super::stage::Stage;
 use crate::FormatError;
-use crate::reading::Texels;
-use bilux_math::transcendental::{acos_f64, atan2_f64, powf_f64, sin_cos_f64, sin_f64};
+use bilux_math::transcendental::{powf_f64, sin_cos_f64, sin_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::wavelength::black_body_of_peak_one;
-use bilux_scene::{Mesh, Object, Spec, Texture, Value};
+use bilux_scene::{Mesh, Object, Spec};
+use inputs::{colour, number};
+use shaping::Shaping;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Vertices around a disc or a cylinder.
 const AROUND: u32 = 64;
-/// Rows of an environment map that has to be turned.
-const MAX_ROWS: usize = 2048;
 
 /// True for types of prims that are lights.
 pub(super) fn is_light(kind: &str) -> bool {
@@ -34,6 +37,8 @@ struct Light<'a> {
     /// Radiance before it is divided by an area.
     radiance: Rgb,
     is_normalized: bool,
+    /// What makes it emit less in some directions.
+    shaping: Option<Shaping>,
 }
 
 /// Adds the light of a prim.
@@ -53,15 +58,6 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
         radiance = radiance * body * (1.0 / body.luminance().max(f32::MIN_POSITIVE));
     }
     let is_normalized = number(stage, prim, "normalize", 0.0, context)? != 0.0;
-    let cone = number(stage, prim, "shaping:cone:angle", 180.0, context)?;
-    let is_point = number(stage, prim, "treatAsPoint", 0.0, context)? != 0.0;
-    if cone < 90.0 && !(&*kind == "SphereLight" && is_point) {
-        context.sink.oddities.not_shown("cones of lights (shaping)", || stage.at(prim));
-    }
-    let profile = stage.text(prim, "inputs:shaping:ies:file", &mut context.reading.budget)?;
-    if profile.is_some_and(|file| !file.is_empty()) {
-        context.sink.oddities.not_shown("IES profiles of lights", || stage.at(prim));
-    }
     if !stage.targets(prim, "light:filters").is_empty() {
         context.sink.oddities.not_shown("filters of lights", || stage.at(prim));
     }
@@ -74,7 +70,11 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     if radiance.is_black() {
         return Ok(());
     }
-    let light = Light { stage, prim, name: name_of(stage, prim), world, radiance, is_normalized };
+    let shaping = match &*kind {
+        "DistantLight" | "DomeLight" | "DomeLight_1" => None,
+        _ => Shaping::read(stage, prim, context)?,
+    };
+    let light = Light { stage, prim, name: name_of(stage, prim), world, radiance, is_normalized, shaping };
     if world.determinant() == 0.0 || !world.is_finite() {
         context.sink.oddities.note("a light has a scale of zero: left out", || stage.at(prim));
         return Ok(());
@@ -87,32 +87,6 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
         "CylinderLight" => light.cylinder(context),
         _ => light.dome(context),
     }
-}
-
-/// A number of a light, by its name now or by that in older files.
-fn number(
-    stage: &Stage,
-    prim: u32,
-    name: &str,
-    unstated: f64,
-    context: &mut Context,
-) -> Result<f64, FormatError> {
-    let budget = &mut context.reading.budget;
-    let found = match stage.number(prim, &format!("inputs:{name}"), budget)? {
-        Some(found) => Some(found),
-        None => stage.number(prim, name, budget)?,
-    };
-    Ok(found.unwrap_or(unstated))
-}
-
-fn colour(stage: &Stage, prim: u32, context: &mut Context) -> Result<Rgb, FormatError> {
-    let budget = &mut context.reading.budget;
-    let found = match stage.value(prim, "inputs:color", budget)? {
-        Some(found) => Some(found),
-        None => stage.value(prim, "color", budget)?,
-    };
-    let rgb = found.and_then(|value| value.tuple::<3>()).unwrap_or([1.0; 3]);
-    Ok(Rgb::from_array(rgb.map(|c| if c.is_finite() { c.max(0.0) as f32 } else { 0.0 })))
 }
 
 impl Light<'_> {
@@ -130,6 +104,23 @@ impl Light<'_> {
 
     fn push(&self, spec: Spec, context: &mut Context) {
         context.sink.scene.lights.push(Spec { span: self.stage.at(self.prim), ..spec });
+    }
+
+    /// Adds it as a light without extent if something shapes it, given the projected area by direction; false if nothing does.
+    fn shaped(&self, radiance: Rgb, area: impl Fn(DVec3) -> f64, context: &mut Context) -> bool {
+        let Some(shaping) = &self.shaping else { return false };
+        let what = "the extent of lights that are shaped (cones, focus, profiles): they are points";
+        context.sink.oddities.not_shown(what, || self.stage.at(self.prim));
+        let Some((distribution, peak)) = shaping.intensities(self.name, area) else { return true };
+        let spec = Spec::new(self.name, "luminaire")
+            .with("position", self.world.w_axis.truncate().as_vec3())
+            .with("direction", self.axis(DVec3::NEG_Z).normalize().as_vec3())
+            .with("c0", self.axis(DVec3::X).normalize().as_vec3())
+            .with("flux", Rgb::grey(distribution.lumens() as f32))
+            .with("scale", radiance * peak as f32)
+            .with("distribution", Arc::new(distribution));
+        self.push(spec, context);
+        true
     }
 
     /// The radiance of a disc in the sky.
@@ -153,6 +144,12 @@ impl Light<'_> {
         let is_point = self.number("treatAsPoint", 0.0, context)? != 0.0;
         let centre = self.world.w_axis.truncate().as_vec3();
         let radiance = self.divided(4.0 * PI * radius * radius);
+        let is_spot = (radius <= 0.0 || is_point) && self.shaping.as_ref().is_none_or(Shaping::is_cone);
+        if !is_spot
+            && self.shaped(radiance, |_| if radius > 0.0 { PI * radius * radius } else { 1.0 }, context)
+        {
+            return Ok(());
+        }
         if radius <= 0.0 || is_point {
             let area = if radius > 0.0 { PI * radius * radius } else { 1.0 };
             let intensity = radiance * area as f32;
@@ -184,6 +181,9 @@ impl Light<'_> {
             return Ok(());
         }
         self.note_texture(context)?;
+        if self.shaped(self.divided(area), |d| area * -d.z, context) {
+            return Ok(());
+        }
         let spec = Spec::new(self.name, "rect")
             .with("position", self.world.w_axis.truncate().as_vec3())
             .with("edge_u", u.as_vec3())
@@ -206,6 +206,10 @@ impl Light<'_> {
     fn disk(&self, context: &mut Context) -> Result<(), FormatError> {
         let radius = self.number("radius", 0.5, context)?;
         let (u, v) = (self.axis(DVec3::X) * radius, self.axis(DVec3::NEG_Y) * radius);
+        let area = PI * u.cross(v).length();
+        if area > 0.0 && self.shaped(self.divided(area), |d| area * -d.z, context) {
+            return Ok(());
+        }
         let middle = self.world.w_axis.truncate();
         let rim = |i: u32| {
             let (sin, cos) = sin_cos_f64(f64::from(i) / f64::from(AROUND) * TAU);
@@ -216,7 +220,7 @@ impl Light<'_> {
             triangles: (0..AROUND).map(|i| [0, 1 + i, 1 + (i + 1) % AROUND]).collect(),
             ..Mesh::default()
         };
-        self.emitter(mesh, PI * u.cross(v).length(), context);
+        self.emitter(mesh, area, context);
         Ok(())
     }
 
@@ -224,6 +228,14 @@ impl Light<'_> {
     fn cylinder(&self, context: &mut Context) -> Result<(), FormatError> {
         let radius = self.number("radius", 0.5, context)?;
         let half = 0.5 * self.number("length", 1.0, context)?;
+        let (around, along) =
+            (self.axis(DVec3::Y).length() * radius * TAU, self.axis(DVec3::X).length() * 2.0 * half);
+        let area = around * along;
+        // What is seen of it from the side is a rectangle.
+        let seen = |d: DVec3| area / PI * (1.0 - d.x * d.x).max(0.0).sqrt();
+        if area > 0.0 && self.shaped(self.divided(area), seen, context) {
+            return Ok(());
+        }
         let mut mesh = Mesh::default();
         for i in 0..AROUND {
             let (sin, cos) = sin_cos_f64(f64::from(i) / f64::from(AROUND) * TAU);
@@ -236,8 +248,7 @@ impl Light<'_> {
             let is_mirrored = self.world.determinant() < 0.0;
             mesh.triangles.extend(sides.map(|[a, b, c]| if is_mirrored { [a, b, c] } else { [a, c, b] }));
         }
-        let around = self.axis(DVec3::Y).length() * radius * TAU;
-        self.emitter(mesh, around * self.axis(DVec3::X).length() * 2.0 * half, context);
+        self.emitter(mesh, area, context);
         Ok(())
     }
 
@@ -252,87 +263,5 @@ impl Light<'_> {
         let material = scene.add_material(material);
         let mesh = Mesh { name: self.name.to_owned(), ..mesh };
         scene.objects.push(Object::new(self.name, Arc::new(mesh), material));
-    }
-
-    fn dome(&self, context: &mut Context) -> Result<(), FormatError> {
-        let stage = self.stage;
-        let budget = &mut context.reading.budget;
-        let found = match stage.found(self.prim, "inputs:texture:file", budget)? {
-            Some(found) => Some(found),
-            None => stage.found(self.prim, "texture:file", budget)?,
-        };
-        let file = found.as_ref().and_then(|found| Some((found.layer, found.value.text()?.clone())));
-        let mut radiance = Value::from(self.radiance);
-        let mut scale = Rgb::WHITE;
-        if let Some((layer, name)) = file.filter(|(_, name)| !name.is_empty()) {
-            let folder = stage.layers[layer as usize].folder.clone();
-            let at = stage.at(self.prim);
-            match context.reading.texture(folder.as_deref(), &name, Texels::Colours, &at) {
-                Ok(texture) => {
-                    let turned = self.turned(&texture, context)?;
-                    context.sink.scene.textures.push(Arc::new(turned));
-                    radiance = Value::Texture(context.sink.scene.textures.len() - 1);
-                    scale = self.radiance;
-                }
-                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-                Err(error) => context.sink.oddities.note(&error.without_place(), || at),
-            }
-        }
-        let spec =
-            Spec::new(self.name, "environment").with("radiance", radiance).with("scale", Value::from(scale));
-        self.push(spec, context);
-        Ok(())
-    }
-
-    /// The map as Bilux has it, with its middle towards -z: that of a dome is towards its +z.
-    fn turned(&self, picture: &Texture, context: &mut Context) -> Result<Texture, FormatError> {
-        if !picture.image.is_whole() {
-            return Ok(picture.clone());
-        }
-        let (across, rows) = (picture.width(), picture.height());
-        let height = rows.clamp(16, MAX_ROWS);
-        let width = 2 * height;
-        context.reading.budget.take_bytes((width * height * size_of::<Rgb>()) as u64, &picture.name)?;
-        let to_light = self.world.inverse();
-        let mut texels = Vec::with_capacity(width * height);
-        for row in 0..height {
-            let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / height as f64);
-            for column in 0..width {
-                let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / width as f64 - 0.5));
-                let d = to_light.transform_vector3(DVec3::new(r * sin, y, -r * cos)).normalize_or(DVec3::Z);
-                let [u, v] = place(d);
-                texels.push(looked_up(picture, u * across as f64 - 0.5, v * rows as f64 - 0.5));
-            }
-        }
-        Ok(Texture::new(&picture.name, width, height, texels, true))
-    }
-}
-
-/// The place of a direction on a map of latitudes: the middle is +z, a quarter from the left +x, the upper edge +y. [OpenUSD]
-fn place(d: DVec3) -> [f64; 2] {
-    let u = (atan2_f64(d.z, d.x) + 0.5 * PI) / TAU;
-    [u - u.floor(), acos_f64(d.y.clamp(-1.0, 1.0)) / PI]
-}
-
-fn looked_up(picture: &Texture, x: f64, y: f64) -> Rgb {
-    let (width, height) = (picture.width() as i64, picture.height() as i64);
-    let (x0, y0) = (x.floor(), y.floor());
-    let (fx, fy) = ((x - x0) as f32, (y - y0) as f32);
-    let texel = |dx: i64, dy: i64| {
-        let (x, y) = ((x0 as i64 + dx).rem_euclid(width), (y0 as i64 + dy).clamp(0, height - 1));
-        picture.texel(x as usize, y as usize)
-    };
-    texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_middle_of_a_map_is_towards_z_and_x_is_left_of_it() {
-        assert_eq!(place(DVec3::Z), [0.5, 0.5]);
-        assert_eq!(place(DVec3::X), [0.25, 0.5]);
-        assert_eq!(place(DVec3::Y)[1], 0.0);
     }
 }
