@@ -6,14 +6,24 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// A zip file of these members, by name, as they are: each at a multiple of 64 bytes, so that programs can map them into
-/// memory, as USDZ demands. No member has a date.
+/// How members are stored.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Members {
+    /// As they are, each at a multiple of 64 bytes, so that programs can map them into memory, as USDZ demands.
+    Aligned,
+    Deflated,
+}
+
+/// A zip file of these members, by name. No member has a date.
 ///
 /// # Errors
 /// If it would be larger than four gigabytes.
-pub(crate) fn zipped(members: &[(String, Vec<u8>)]) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn zipped(members: &[(String, Vec<u8>)], how: Members) -> Result<Vec<u8>, FormatError> {
     let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
-    let options = options.compression_method(CompressionMethod::Stored).with_alignment(64);
+    let options = match how {
+        Members::Aligned => options.compression_method(CompressionMethod::Stored).with_alignment(64),
+        Members::Deflated => options.compression_method(CompressionMethod::Deflated),
+    };
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let mut add = |name: &str, bytes: &[u8]| {
         zip.start_file(name, options)?;
@@ -38,7 +48,7 @@ mod tests {
     fn aligned_members_begin_at_multiples_of_64() {
         let members: Vec<(String, Vec<u8>)> =
             (1..5).map(|i| ("n".repeat(i), vec![i as u8 + 200; 17 * i])).collect();
-        let bytes = zipped(&members).unwrap();
+        let bytes = zipped(&members, Members::Aligned).unwrap();
         for (_, data) in members {
             let start = bytes.windows(data.len()).position(|window| window == data).unwrap();
             assert_eq!(start % 64, 0, "{start}");

@@ -50,3 +50,17 @@ fn mitsuba_renders_the_same_cornell_boxes() {
     assert!(agrees(&["--spp", "64", "--integrators", "path,bdpt,vcm"]));
     assert!(!agrees(&["--spp", "64", "--integrators", "path", "--brighten", "1.05"]), "a bug of 5% passes");
 }
+
+#[test]
+fn mitsuba_renders_what_is_written_for_it() {
+    if !has_mitsuba() {
+        return;
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/written.py");
+    let agrees = |options: &[&str]| {
+        let status = python().args([script, env!("CARGO_BIN_EXE_bilux")]).args(options).status();
+        status.unwrap().success()
+    };
+    assert!(agrees(&[]));
+    assert!(!agrees(&["--brighten", "1.05"]), "a bug of 5% passes");
+}

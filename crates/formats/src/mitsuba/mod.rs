@@ -17,6 +17,7 @@ mod transforms;
 mod upgrade;
 mod values;
 mod variables;
+mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
@@ -49,7 +50,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
-    write: None,
+    write: Some(write::write),
 };
 
 /// True if its outermost element is a scene with a version.

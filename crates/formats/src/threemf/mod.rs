@@ -22,6 +22,7 @@ mod pieces;
 mod resources;
 mod slicers;
 mod values;
+mod write;
 mod xml;
 
 use crate::FormatError;
@@ -43,7 +44,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: package::is_package,
     up: UpHint::Is(Axis::Z),
     read: Some(ReadFormat::Packed(read)),
-    write: None,
+    write: Some(write::write),
 };
 
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {

@@ -39,6 +39,7 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
         "emission_scale" => ("emission", Value::Texture(0)),
         "emission_sides" => ("emission", Value::Number(2.0)),
         "rotation" => ("radiance", Value::Texture(0)),
+        "density" => ("scattering", Value::Number(2.0)),
         "edge" => ("reflectance", Value::Number(0.5)),
         "scattering_anisotropy" => ("scattering", Value::Number(2.0)),
         "k" => ("eta", Value::Number(2.0)),
@@ -144,7 +145,7 @@ fn assert_warned<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, add: AddSpec
 #[test]
 fn unsupported_material_parameters_give_warnings() {
     let rows = MATERIALS.iter().map(|row| &row.entry).filter(|entry| entry.name != "mix");
-    assert_warned(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj", "usda"]);
+    assert_warned(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj", "usda", "xml"]);
 }
 
 #[test]
@@ -153,5 +154,5 @@ fn unsupported_light_parameters_give_warnings() {
         scene.lights.push(light);
         scene.add_material(Spec::new("m", "diffuse"))
     };
-    assert_warned(LIGHTS.iter().map(|row| &row.entry), add, &["toml", "glb", "pbrt", "usda"]);
+    assert_warned(LIGHTS.iter().map(|row| &row.entry), add, &["toml", "glb", "pbrt", "usda", "xml"]);
 }

@@ -45,6 +45,13 @@ pub(super) fn rough_plastic(maker: &mut Maker, plugin: &Plugin) -> Result<Option
     Ok(Some(spec))
 }
 
+/// The factor on the colour of a base below a rough boundary whose microfacets are distributed by GGX, from Mitsuba to here.
+pub(in crate::mitsuba) fn rough_base_factor(alpha: f32, index: f32) -> f32 {
+    let here = 1.0 - Albedo::new(&Ggx::new(alpha), index).mean();
+    let there = RoughBoundary::new(Facets::Ggx, alpha, index);
+    there.passed * there.passed / (index * index) / here / (1.0 - there.reflected_inside)
+}
+
 /// A diffuse base whose colour accounts for what the boundary reflects back inside: of its own colour each time that
 /// happens if it is not linear, otherwise without a change of colour.
 fn below_boundary(

@@ -1,6 +1,7 @@
 //! Materials of surfaces; the table is [`BSDFS`].
 
 pub(super) use adapters::black;
+pub(super) use layered::rough_base_factor;
 
 mod adapters;
 mod layered;

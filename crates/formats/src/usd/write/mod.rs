@@ -16,7 +16,7 @@ mod textures;
 use crate::FormatError;
 use crate::text::whole_file;
 use crate::writing::Writing;
-use crate::zipped::zipped;
+use crate::zipped::{Members, zipped};
 use bilux_scene::{Mesh, SceneBuilder};
 use document::Document;
 use std::collections::HashMap;
@@ -37,7 +37,7 @@ pub(super) fn write_package(scene: &SceneBuilder, writing: &mut Writing) -> Resu
     let layer = layer(scene, writing)?;
     let mut members = vec![(format!("{}.usda", writing.stem), layer)];
     members.extend(writing.take_beside());
-    writing.main = zipped(&members)?;
+    writing.main = zipped(&members, Members::Aligned)?;
     Ok(())
 }
 
