@@ -50,6 +50,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
         },
         "$defs": {
             "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None),
+            "displacement": displacement(),
             "density": rows(DENSITIES.iter().map(|r| &r.entry).collect(), &[("place", place_of_voxels())], None),
         },
     })
@@ -220,13 +221,6 @@ fn model() -> Value {
 fn common_of_models() -> Vec<(&'static str, Value)> {
     let words = json!({ "type": "array", "items": { "enum": ["lights", "cameras"] } });
     let renamed = json!({ "type": "object", "additionalProperties": { "type": "string" } });
-    let displacement = json!({
-        "type": "object",
-        "description": DISPLACEMENT.summary,
-        "additionalProperties": false,
-        "properties": properties(DISPLACEMENT.parameters),
-        "required": ["map"],
-    });
     vec![
         ("name", described("string", "its name")),
         ("material", described("string", "the name of the material for the whole model")),
@@ -240,9 +234,19 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
                 "description": "which rays see it: all, all but those of the camera, or none",
             }),
         ),
-        ("displacement", displacement),
+        ("displacement", json!({ "$ref": "#/$defs/displacement" })),
         ("with", words),
     ]
+}
+
+fn displacement() -> Value {
+    json!({
+        "type": "object",
+        "description": DISPLACEMENT.summary,
+        "additionalProperties": false,
+        "properties": properties(DISPLACEMENT.parameters),
+        "required": ["map"],
+    })
 }
 
 /// `[[replace]]`: replaces materials of models.
