@@ -58,6 +58,8 @@ struct Vertex {
 struct Part<'p> {
     polygons: &'p Polygons,
     uvs: &'p [Option<Primvar>; 2],
+    /// Corners of one point are one vertex.
+    is_by_point: bool,
     mesh: Mesh,
     /// The vertex that was made before this one of the same point.
     before: Vec<u32>,
@@ -77,7 +79,8 @@ impl Polygons {
         welder: &mut Welder,
     ) -> (Mesh, bool) {
         welder.part += 1;
-        let mut part = Part { polygons: self, uvs, mesh: Mesh::default(), before: Vec::new() };
+        let is_by_point = self.is_by_point(uvs);
+        let mut part = Part { polygons: self, uvs, is_by_point, mesh: Mesh::default(), before: Vec::new() };
         let mut triangulator = Triangulator::default();
         let (mut vertices, mut is_fine) = (Vec::new(), true);
         for face in faces.filter(|face| !self.is_hole.get(*face).is_some_and(|hole| *hole)) {
@@ -91,6 +94,10 @@ impl Polygons {
                 vertices.push(part.vertex(place, welder));
             }
             let Mesh { positions, triangles, .. } = &mut part.mesh;
+            if let [a, b, c] = vertices[..] {
+                triangles.push(if self.is_left_handed { [a, c, b] } else { [a, b, c] });
+                continue;
+            }
             let points = vertices.iter().map(|&vertex| positions[vertex as usize]);
             is_fine &= triangulator
                 .triangulate(points, |t| {
@@ -100,6 +107,12 @@ impl Polygons {
                 .is_some();
         }
         (part.mesh, is_fine)
+    }
+
+    /// True if nothing differs between the corners of a point.
+    fn is_by_point(&self, uvs: &[Option<Primvar>; 2]) -> bool {
+        let others = [&self.normals, &self.colours, &self.opacities].into_iter().chain(uvs);
+        self.computed.is_none() && others.flatten().all(Primvar::is_by_point)
     }
 
     fn normal(&self, place: Place) -> Vec3 {
@@ -112,6 +125,10 @@ impl Polygons {
 
 impl Part<'_> {
     fn vertex(&mut self, place: Place, welder: &mut Welder) -> u32 {
+        let (made_in, made) = welder.last[place.vertex];
+        if self.is_by_point && made_in == welder.part {
+            return made;
+        }
         let [uv, uv2] =
             [0, 1].map(|set| self.uvs[set].as_ref().map_or(Vec2::ZERO, |uv| uv.at::<2>(place).into()));
         let polygons = self.polygons;

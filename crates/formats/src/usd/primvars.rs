@@ -60,6 +60,11 @@ impl Primvar {
         Ok(Some(Primvar { values, indices, interpolation }))
     }
 
+    /// True if all corners of a point have one value.
+    pub(super) fn is_by_point(&self) -> bool {
+        matches!(self.interpolation, Interpolation::Constant | Interpolation::Vertex)
+    }
+
     /// The index of a place's value; `None` if there is none.
     #[inline]
     pub(super) fn index(&self, place: Place) -> Option<usize> {
