@@ -50,7 +50,9 @@ fn skew(degrees: f64, from: DVec3, to: DVec3) -> Option<DMat4> {
     let (near, far) = (from.dot(across), from.dot(along));
     let (sin, cos) = sin_cos_f64(degrees.to_radians());
     let (x, y) = (near * cos - far * sin, near * sin + far * cos);
-    let shift = Some(y / x - far / near).filter(|shift| x > 0.0 && shift.is_finite())?;
+    // A turn onto the first axis would shift points infinitely far.
+    let is_possible = x > 1e-9 * from.length();
+    let shift = Some(y / x - far / near).filter(|shift| is_possible && shift.is_finite())?;
     let column = |axis: DVec3| (axis + along * (shift * axis.dot(across))).extend(0.0);
     Some(DMat4::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z), DVec3::ZERO.extend(1.0)))
 }
