@@ -1,6 +1,6 @@
 //! Displaces surfaces, on triangles as fine as the map and a picture of the scene need.
 
-use crate::displacement::{Displacement, moved, tessellated};
+use crate::displacement::{Displacement, Moved, moved, tessellated};
 use crate::reading::Reading;
 use crate::views::Views;
 use bilux_math::Aabb;
@@ -23,11 +23,12 @@ impl Reading<'_> {
             return;
         }
         let views = Views::of(scene, Aabb::EMPTY);
+        let moved = moved_objects(scene, &pending);
         for (what, map) in pending {
             let mut by_mesh: HashMap<*const Mesh, Vec<usize>> = HashMap::new();
             let mut meshes = Vec::new();
-            for (index, object) in scene.objects.iter().enumerate().filter(|(i, object)| what.is(*i, object))
-            {
+            for &index in moved.get(&what).into_iter().flatten() {
+                let object = &scene.objects[index];
                 let objects = by_mesh.entry(Arc::as_ptr(&object.mesh)).or_insert_with(|| {
                     meshes.push(object.mesh.clone());
                     Vec::new()
@@ -64,6 +65,9 @@ impl Reading<'_> {
         if map.uvs(mesh).is_empty() {
             return Err("the mesh has no texture coordinates");
         }
+        if self.budget.take_bytes(mesh.size(), file).is_err() {
+            return Err("it would take more memory than is allowed");
+        }
         let bounds = Aabb::of_points(mesh.positions.iter().copied());
         let pixels = objects.iter().map(|&index| views.pixel_on(&scene.objects[index], &bounds));
         let pixel = pixels.fold(f32::INFINITY, f32::min);
@@ -76,4 +80,17 @@ impl Reading<'_> {
         }
         Ok(moved(fine, map))
     }
+}
+
+/// The objects that each map moves, so that many maps of many objects take no longer than there are of both.
+fn moved_objects(scene: &SceneBuilder, pending: &[(Moved, Displacement)]) -> HashMap<Moved, Vec<usize>> {
+    let mut found: HashMap<Moved, Vec<usize>> = pending.iter().map(|(what, _)| (*what, Vec::new())).collect();
+    for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| !o.mesh.triangles.is_empty()) {
+        for what in [Moved::Material(object.material), Moved::Object(index)] {
+            if let Some(objects) = found.get_mut(&what) {
+                objects.push(index);
+            }
+        }
+    }
+    found
 }

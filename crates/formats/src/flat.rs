@@ -1,7 +1,10 @@
 //! Meshes that a scale of zero along one axis makes flat.
 
-use bilux_math::{DMat4, DVec3};
+use crate::FormatError;
+use crate::budget::Budget;
+use bilux_math::{DMat4, DVec3, Motion, Transform};
 use bilux_scene::Mesh;
+use std::sync::Arc;
 
 /// The number of dimensions that an affine map leaves: 3 for one that can be inverted, and 1 also for one that is not
 /// finite.
@@ -30,6 +33,25 @@ pub(crate) fn flattened(mesh: &Mesh, world: &DMat4) -> Mesh {
     let place = |p: &bilux_math::Vec3| world.transform_point3(DVec3::from(*p)).as_vec3();
     let positions = mesh.positions.iter().map(place).collect();
     Mesh { positions, normals: Vec::new(), tangents: Vec::new(), ..mesh.clone() }
+}
+
+/// A mesh and where it is: as it is, or in world space if that makes it flat. `None` if nothing is left to see.
+pub(crate) fn placed(
+    mesh: &Arc<Mesh>,
+    world: &DMat4,
+    budget: &mut Budget,
+    file: &str,
+) -> Result<Option<(Arc<Mesh>, Motion)>, FormatError> {
+    if let Some(transform) = Transform::from_matrix(*world) {
+        let motion = Motion::still(transform);
+        budget.take_bytes(motion.heap_bytes() as u64, file)?;
+        return Ok(Some((mesh.clone(), motion)));
+    }
+    if rank(world) != 2 {
+        return Ok(None);
+    }
+    budget.take_bytes(mesh.size(), file)?;
+    Ok(Some((Arc::new(flattened(mesh, world)), Motion::REST)))
 }
 
 #[cfg(test)]

@@ -11,6 +11,22 @@ use std::sync::Arc;
 /// The most attributes of an element: each one is compared with those before it.
 const MAX_ATTRIBUTES: usize = 1000;
 
+/// Text to write within an attribute.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 /// A file as a tree of elements.
 pub(crate) struct Xml<'a> {
     document: Document<'a>,

@@ -11,13 +11,11 @@ use crate::flat;
 use crate::polygon_mesh::{Part, Workshop, parts};
 use crate::reading::Reading;
 use crate::sink::Sink;
-use bilux_math::motion::Motion;
-use bilux_math::{DMat4, Transform};
+use bilux_math::DMat4;
 use bilux_scene::Object;
 use roxmltree::NodeId;
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::sync::Arc;
 
 /// The meshes that have been read, and the materials that they are of.
 #[derive(Default)]
@@ -81,26 +79,18 @@ impl<'d> Meshes<'d> {
         sink: &mut Sink,
     ) -> Result<(), FormatError> {
         let name = node.label();
-        let motion = Transform::from_matrix(*world).map(Motion::still);
-        let each = size_of::<[Object; 2]>() + name.len() + motion.as_ref().map_or(0, Motion::heap_bytes);
+        let each = size_of::<[Object; 2]>() + name.len();
         reading.budget.take_bytes((each * made.parts.len()) as u64, node.file())?;
         let bindings = Bindings::of(instance, posed.document, &mut sink.oddities);
         for part in &made.parts {
             let worn = bindings.worn(&made.symbols[part.material], posed.document);
             let material = self.materials.index(worn, posed, reading, sink)?;
-            let mesh = match &motion {
-                Some(_) => part.mesh.clone(),
-                None if flat::rank(world) == 2 => {
-                    reading.budget.take_bytes(part.mesh.size(), node.file())?;
-                    Arc::new(flat::flattened(&part.mesh, world))
-                }
-                None => {
-                    sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
-                    continue;
-                }
+            let Some((mesh, motion)) = flat::placed(&part.mesh, world, &mut reading.budget, node.file())?
+            else {
+                sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                continue;
             };
             let object = Object::new(&name, mesh, material);
-            let motion = motion.clone().unwrap_or(Motion::REST);
             sink.scene.objects.push(Object { motion, ..object });
         }
         Ok(())

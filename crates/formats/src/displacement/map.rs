@@ -1,10 +1,10 @@
 //! Displacement maps.
 
 use bilux_math::Vec2;
-use bilux_scene::{Mesh, Object, Span, Texture};
+use bilux_scene::{Mesh, Span, Texture};
 
 /// The surfaces that a map moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Moved {
     /// Those with this material.
     Material(usize),
@@ -33,15 +33,6 @@ pub(crate) struct Displacement {
     /// The value that leaves points where they are.
     pub(crate) middle: f32,
     pub(crate) at: Span,
-}
-
-impl Moved {
-    pub(crate) fn is(self, index: usize, object: &Object) -> bool {
-        match self {
-            Moved::Material(material) => object.material == material && !object.mesh.triangles.is_empty(),
-            Moved::Object(object) => object == index,
-        }
-    }
 }
 
 impl Displacement {

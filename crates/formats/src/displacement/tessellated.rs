@@ -33,7 +33,7 @@ pub(crate) fn tessellated(
         let middles: HashMap<Edge, u32> = long.iter().copied().zip(first..).collect();
         let pieces = |corners| 1 + edges(corners).iter().filter(|edge| middles.contains_key(*edge)).count();
         let triangles: usize = fine.triangles.iter().map(pieces).sum();
-        let bytes = long.len() as u64 * 96 + triangles as u64 * 24;
+        let bytes = long.len() as u64 * 192 + triangles as u64 * 24;
         if triangles > most || budget.take_bytes(bytes, file).is_err() {
             return (fine, false);
         }

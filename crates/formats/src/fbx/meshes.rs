@@ -12,8 +12,7 @@ use crate::flat;
 use crate::polygon_mesh::{Part, Workshop, parts};
 use crate::reading::Reading;
 use crate::sink::Sink;
-use bilux_math::motion::Motion;
-use bilux_math::{DMat4, Transform};
+use bilux_math::DMat4;
 use bilux_scene::Object;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -79,26 +78,18 @@ impl<'d> Meshes<'d> {
         let document = posed.document;
         let node = document.object(placed.model).node;
         let name = display_name(document.object(placed.model).name);
-        let motion = Transform::from_matrix(*world).map(Motion::still);
-        let each = size_of::<[Object; 2]>() + name.len() + motion.as_ref().map_or(0, Motion::heap_bytes);
+        let each = size_of::<[Object; 2]>() + name.len();
         reading.budget.take_bytes((each * parts.len()) as u64, document.file())?;
         let choice = self.choice(geometry, placed.model, document);
         for part in parts {
             let worn = choice.worn(part.material);
             let material = self.materials.index(worn, posed, reading, sink)?;
-            let mesh = match &motion {
-                Some(_) => part.mesh.clone(),
-                None if flat::rank(world) == 2 => {
-                    reading.budget.take_bytes(part.mesh.size(), document.file())?;
-                    Arc::new(flat::flattened(&part.mesh, world))
-                }
-                None => {
-                    sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
-                    continue;
-                }
+            let Some((mesh, motion)) = flat::placed(&part.mesh, world, &mut reading.budget, document.file())?
+            else {
+                sink.oddities.remark("a node with a scale of zero is not shown", || node.at());
+                continue;
             };
             let object = Object::new(&name, mesh, material);
-            let motion = motion.clone().unwrap_or(Motion::REST);
             sink.scene.objects.push(Object { motion, ..object });
         }
         Ok(())

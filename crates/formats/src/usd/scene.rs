@@ -15,9 +15,8 @@ use crate::displacement::Moved;
 use crate::reading::{Reading, plain_material};
 use crate::sink::Sink;
 use crate::{FormatError, flat};
-use bilux_math::motion::Motion;
-use bilux_math::{DMat4, Rgb, Transform};
-use bilux_scene::{Mesh, Object};
+use bilux_math::{DMat4, Rgb};
+use bilux_scene::Object;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -231,7 +230,9 @@ impl<'r, 'o> Scene<'r, 'o> {
         let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len();
         self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
         for part in parts {
-            let Some((mesh, motion)) = placed(&part.mesh, world) else {
+            let budget = &mut self.context.reading.budget;
+            let placed = flat::placed(&part.mesh, world, budget, &stage.layers[0].name)?;
+            let Some((mesh, motion)) = placed else {
                 let what = "a prim is scaled to a line or a point, or its place is not finite: left out";
                 self.context.sink.oddities.note(what, || stage.at(prim));
                 continue;
@@ -272,7 +273,9 @@ impl<'r, 'o> Scene<'r, 'o> {
                 let whole = world * object.motion.at(0.0).matrix().as_dmat4();
                 let bytes = size_of::<[Object; 2]>() + object.name.len();
                 self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
-                if let Some((mesh, motion)) = placed(&object.mesh, &whole) {
+                let budget = &mut self.context.reading.budget;
+                let placed = flat::placed(&object.mesh, &whole, budget, &stage.layers[0].name)?;
+                if let Some((mesh, motion)) = placed {
                     self.context.sink.scene.objects.push(Object { mesh, motion, ..object.clone() });
                 }
             }
@@ -374,12 +377,4 @@ impl<'r, 'o> Scene<'r, 'o> {
         });
         Ok(Worn { index, uses_colours, uses_opacities, ..Worn::default() })
     }
-}
-
-/// A mesh at a place: one that a scale of zero makes flat is a mesh of its own.
-fn placed(mesh: &Arc<Mesh>, world: &DMat4) -> Option<(Arc<Mesh>, Motion)> {
-    if let Some(transform) = Transform::from_matrix(*world) {
-        return Some((mesh.clone(), Motion::still(transform)));
-    }
-    (flat::rank(world) == 2).then(|| (Arc::new(flat::flattened(mesh, world)), Motion::REST))
 }

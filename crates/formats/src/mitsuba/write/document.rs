@@ -1,6 +1,7 @@
 //! A scene file under construction, and the words that it is made of.
 
 use crate::writing::UnusedNames;
+use crate::xml::escaped;
 use bilux_math::{Mat4, Rgb, Vec3};
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashMap;
@@ -127,20 +128,4 @@ impl<'s> Document<'s> {
 /// Numbers as text that parses back to the same values.
 pub(super) fn numbers(list: &[f32]) -> String {
     list.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
-}
-
-/// Text within an attribute.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
 }

@@ -1,11 +1,12 @@
 //! Materials: base materials with the colours that displays show, colours of corners, and textures.
 
 use super::meshes::Welded;
-use super::model::{Look, Model, Properties, escaped};
+use super::model::{Look, Model, Properties};
 use crate::FormatError;
 use crate::colours::encoded;
 use crate::values::{MaterialSupport, colour, nearest_principled, number, texture};
 use crate::writing::Writing;
+use crate::xml::escaped;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::texture::{Filter, Wrap};
 use bilux_scene::{Mesh, Spec, Texture};

@@ -7,6 +7,7 @@ mod model;
 use crate::FormatError;
 use crate::bake::warn_of_scene;
 use crate::writing::Writing;
+use crate::xml::escaped;
 use crate::zipped::{Members, zipped};
 use bilux_scene::{Object, SceneBuilder, Visibility};
 use model::Model;
@@ -53,7 +54,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
 
 fn relationships(kind: &str, targets: &[String]) -> Vec<u8> {
     let one = |(i, target): (usize, &String)| {
-        let target = model::escaped(target);
+        let target = escaped(target);
         format!("<Relationship Target=\"{target}\" Id=\"rel{i}\" Type=\"{kind}\"/>")
     };
     let all: String = targets.iter().enumerate().map(one).collect();

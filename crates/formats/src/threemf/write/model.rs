@@ -4,6 +4,7 @@ use super::meshes::Welded;
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::writing::Writing;
+use crate::xml::escaped;
 use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Axis, Mesh, Object, SceneBuilder, Texture, UpHint};
 use std::collections::HashMap;
@@ -167,20 +168,4 @@ fn upwards(up: Axis) -> DMat4 {
     };
     DMat4::from_cols(x.extend(0.0), z.cross(x).extend(0.0), z.extend(0.0), bilux_math::glam::DVec4::W)
         .transpose()
-}
-
-/// Text within an attribute.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
 }
