@@ -71,7 +71,7 @@ impl Native<'_, '_> {
             spec.parameters.set_at(key, plain_value(key, value)?, at.clone());
         }
         let kind = Some(DISPLACEMENT.parameters[0].kind);
-        let Some(texture) = self.texture("map", kind, Texels::Colours, texture, part)? else {
+        let Some(texture) = self.texture("displacement", kind, Texels::Colours, texture, part)? else {
             return Ok(None);
         };
         // The picture is given above, and has no value to check.

@@ -270,6 +270,17 @@ fn skins_follow_their_joints_by_sid_and_by_id() {
         {
             assert!(near(*found, expected), "{kind}: {found} {expected:?}");
         }
+        // The shapes of a morph are not where the bones have moved the mesh.
+        let morph = format!(
+            "</controller><controller id='m'><morph source='#c'>{}{}<targets><input semantic='MORPH_TARGET' source='#t'/><input \
+             semantic='MORPH_WEIGHT' source='#mw'/></targets></morph></controller></library_controllers>",
+            source("t", "IDREF_array", "g", 1),
+            source("mw", "float_array", "0.5", 1),
+        );
+        let libraries = libraries.replace("</controller></library_controllers>", &morph);
+        let scene = scene(&file("", &libraries, &nodes.replace("url='#c'", "url='#m'")));
+        assert!(warnings(&scene).contains("morphs of meshes that bones have moved"), "{}", warnings(&scene));
+        assert!(near(corners(&scene)[0], [10., 100., 0.]));
     }
 }
 

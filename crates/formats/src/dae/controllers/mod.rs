@@ -48,7 +48,10 @@ pub(super) fn shaped<'d>(
     let Some(mesh) = geometry::read(current, document, workshop)? else { return Ok(None) };
     let mut shaped = Shaped { mesh, is_in_world: false };
     for controller in chain.into_iter().rev() {
-        if controller.name() == "morph" {
+        if controller.name() == "morph" && shaped.is_in_world {
+            // Its shapes are where the mesh was before its bones moved it.
+            workshop.oddities.not_shown("morphs of meshes that bones have moved", || controller.at());
+        } else if controller.name() == "morph" {
             morph::blend(controller, &mut shaped.mesh.polygons, posed, workshop)?;
         } else {
             skin::bend(controller, instance, &mut shaped.mesh.polygons, placed, posed, graph, workshop)?;

@@ -26,7 +26,8 @@ use std::sync::Arc;
 pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     if writing.extension == "usdc" {
         let message = "crate files are not written: write .usda, which is text, or .usdz instead";
-        return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
+        let name = format!("{}.usdc", writing.stem);
+        return Err(FormatError::malformed(message, whole_file(&name.into())));
     }
     writing.main = layer(scene, writing)?;
     Ok(())
