@@ -1,8 +1,8 @@
 //! The transforms of nodes, with all their pivots and offsets. [Autodesk FBX SDK, "Computing transformation matrices"]
 
 use super::document::Properties;
-use bilux_math::transcendental::sin_cos_f64;
-use bilux_math::{DMat3, DMat4, DVec3};
+use bilux_math::transcendental::{atan2_f64, sin_cos_f64};
+use bilux_math::{DMat3, DMat4, DVec2, DVec3};
 
 /// The order in which rotations about the axes are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,24 @@ impl RotationOrder {
     pub(super) fn matrix(self, degrees: DVec3) -> DMat3 {
         self.0.iter().fold(DMat3::IDENTITY, |sum, &axis| about(axis, degrees[axis]) * sum)
     }
+
+    /// The angles in degrees about x, y and z of a rotation. Where the second one makes the first and the last turn about the same
+    /// axis, the last is zero.
+    pub(super) fn angles(self, rotation: &DMat3) -> DVec3 {
+        let [i, j, k] = self.0;
+        let side = if (i + 1) % 3 == j { 1.0 } else { -1.0 };
+        let entry = |row: usize, column: usize| rotation.col(column)[row];
+        let flat = DVec2::new(entry(i, i), entry(j, i)).length();
+        let mut angles = DVec3::ZERO;
+        angles[j] = atan2_f64(-side * entry(k, i), flat);
+        if flat > 1e-9 {
+            angles[i] = atan2_f64(side * entry(k, j), entry(k, k));
+            angles[k] = atan2_f64(side * entry(j, i), entry(i, i));
+        } else {
+            angles[i] = atan2_f64(-side * entry(j, k), entry(j, j));
+        }
+        angles * 1f64.to_degrees()
+    }
 }
 
 /// The rotation about an axis, exact for quarter turns.
@@ -55,7 +73,7 @@ fn about(axis: usize, degrees: f64) -> DMat3 {
 /// How the scale of a parent is inherited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Inheritance {
-    /// The rotations of all come before the scales of all.
+    /// The scales of all are multiplied by axis, and come before their rotations.
     RotationsFirst,
     /// Each node's transform is in the space of its parent's.
     Plain,
@@ -104,36 +122,39 @@ impl Local {
 #[derive(Clone, Copy)]
 pub(super) struct Inherited {
     pub(super) matrix: DMat4,
-    rotation: DMat3,
-    /// The node's own scale.
+    /// Without `scale`, and without translation.
+    unscaled: DMat3,
+    /// The node's own scale by the one that it has inherited by axis.
     scale: DVec3,
+    inherited_scale: DVec3,
 }
 
 impl Inherited {
     /// That of the scene, whose axes and unit are those of the file.
     pub(super) fn root() -> Inherited {
-        Inherited { matrix: DMat4::IDENTITY, rotation: DMat3::IDENTITY, scale: DVec3::ONE }
+        Inherited {
+            matrix: DMat4::IDENTITY,
+            unscaled: DMat3::IDENTITY,
+            scale: DVec3::ONE,
+            inherited_scale: DVec3::ONE,
+        }
     }
 
     /// That of a child.
     pub(super) fn child(&self, local: &Local) -> Inherited {
-        let rotation = self.rotation * local.rotation;
-        let whole = self.matrix * local.matrix;
-        let matrix = match local.inheritance {
-            Inheritance::Plain => whole,
-            inheritance => {
-                let mut scaled = self.rotation.transpose() * DMat3::from_mat4(self.matrix);
-                if inheritance == Inheritance::WithoutParentScale {
-                    let inverse = |x: f64| if x == 0.0 { 0.0 } else { x.recip() };
-                    scaled *= DMat3::from_diagonal(DVec3::from_array(self.scale.to_array().map(inverse)));
-                }
-                let linear = rotation * scaled * DMat3::from_diagonal(local.scale);
-                let mut matrix = DMat4::from_mat3(linear);
-                matrix.w_axis = whole.w_axis;
-                matrix
-            }
+        let mut matrix = self.matrix * local.matrix;
+        let (above, inherited_scale) = match local.inheritance {
+            Inheritance::Plain => (DMat3::from_mat4(self.matrix), DVec3::ONE),
+            Inheritance::RotationsFirst => (self.unscaled, self.scale),
+            Inheritance::WithoutParentScale => (self.unscaled, self.inherited_scale),
         };
-        Inherited { matrix, rotation, scale: local.scale }
+        let (unscaled, scale) = (above * local.rotation, local.scale * inherited_scale);
+        if local.inheritance != Inheritance::Plain {
+            let place = matrix.w_axis;
+            matrix = DMat4::from_mat3(unscaled * DMat3::from_diagonal(scale));
+            matrix.w_axis = place;
+        }
+        Inherited { matrix, unscaled, scale, inherited_scale }
     }
 }
 
@@ -143,4 +164,22 @@ pub(super) fn geometric(properties: &Properties) -> DMat4 {
     DMat4::from_translation(vector("GeometricTranslation", DVec3::ZERO))
         * DMat4::from_mat3(RotationOrder::XYZ.matrix(vector("GeometricRotation", DVec3::ZERO)))
         * DMat4::from_scale(vector("GeometricScaling", DVec3::ONE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_those_that_a_rotation_was_made_of() {
+        for order in (0..6).map(RotationOrder::numbered) {
+            for angles in
+                [DVec3::new(10.0, -60.0, 130.0), DVec3::new(-170.0, 20.0, -45.0), DVec3::splat(90.0)]
+            {
+                let rotation = order.matrix(angles);
+                let again = order.matrix(order.angles(&rotation));
+                assert!(rotation.abs_diff_eq(again, 1e-12), "{order:?} {angles}");
+            }
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Curves: keys in time with values and slopes.
 
+use super::key::{Interpolation, Key, Rule, Tangent};
+use super::tangents;
 use crate::FormatError;
 use crate::between_keys::{THIRD, bezier, parameter};
 use crate::budget::Budget;
@@ -9,32 +11,13 @@ use crate::fbx::tree::{Node, Value};
 const CONSTANT: i64 = 0x2;
 const CUBIC: i64 = 0x8;
 const CONSTANT_NEXT: i64 = 0x100;
+const SHAPED: i64 = 0x200;
+const STATED: i64 = 0x400;
+const CLAMPED: i64 = 0x1000;
+const STRAIGHT: i64 = 0x2000;
+const BETWEEN: i64 = 0x4000;
 const WEIGHTED_RIGHT: u32 = 0x100_0000;
 const WEIGHTED_NEXT_LEFT: u32 = 0x200_0000;
-
-/// How values run from a key to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Interpolation {
-    /// The value of the key, or of the next.
-    Constant {
-        is_next: bool,
-    },
-    Linear,
-    /// Slopes per second at both ends, and the parts of the interval that their tangents reach.
-    Cubic {
-        slopes: [f64; 2],
-        weights: [f64; 2],
-    },
-}
-
-/// A key.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Key {
-    /// In units of time of the file.
-    pub(super) time: f64,
-    pub(super) value: f64,
-    pub(super) interpolation: Interpolation,
-}
 
 /// What a curve does before its first key or after its last.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +65,7 @@ impl Curve {
             last = if is_later { key.time } else { last };
             is_later
         });
+        tangents::solve(&mut keys, ticks);
         let [before, after] =
             ["Pre-Extrapolation", "Post-Extrapolation"].map(|name| Extrapolation::of(node, name));
         Curve { keys, before, after, ticks }
@@ -135,7 +119,7 @@ impl Curve {
             Interpolation::Constant { is_next: false } => key.value,
             Interpolation::Constant { is_next: true } => after.value,
             Interpolation::Linear => key.value + (after.value - key.value) * part,
-            Interpolation::Cubic { slopes, weights } => {
+            Interpolation::Cubic { slopes, weights, .. } => {
                 let reach = |i: usize| weights[i] * span / self.ticks * slopes[i];
                 let points = [key.value, key.value + reach(0), after.value - reach(1), after.value];
                 bezier(points, parameter(weights, part))
@@ -205,10 +189,23 @@ fn interpolation(flags: i64, data: &[f32]) -> Interpolation {
     if flags & CUBIC == 0 {
         return Interpolation::Linear;
     }
+    let [first, second, third] = [data[0], data[1], data[2]].map(f64::from);
+    let is_shaped = flags & SHAPED != 0;
+    let rule = Rule {
+        is_clamped: flags & CLAMPED != 0,
+        stays_between: flags & BETWEEN != 0,
+        is_straight: flags & STRAIGHT != 0,
+    };
+    let tangent = match () {
+        () if is_shaped => Tangent::Shaped([first, second, third]),
+        () if flags & STATED != 0 => Tangent::Stated,
+        () => Tangent::Automatic(rule),
+    };
     // Weights are two decimal fractions in the bits of a float.
     let (bits, flags) = (data[2].to_bits(), flags as u32);
     let weight = |is_given: bool, part: u32| if is_given { f64::from(part & 0xffff) / 1e4 } else { THIRD };
     let weights =
         [weight(flags & WEIGHTED_RIGHT != 0, bits), weight(flags & WEIGHTED_NEXT_LEFT != 0, bits >> 16)];
-    Interpolation::Cubic { slopes: [data[0], data[1]].map(f64::from), weights }
+    let slopes = if is_shaped { [0.0; 2] } else { [first, second] };
+    Interpolation::Cubic { slopes, weights, tangent }
 }

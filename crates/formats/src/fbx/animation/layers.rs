@@ -3,11 +3,14 @@
 use super::clip::Clip;
 use super::curve::Curve;
 use crate::FormatError;
+use crate::between_keys::slerp;
 use crate::budget::Budget;
 use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
+use crate::fbx::transform::RotationOrder;
 use crate::oddities::Oddities;
-use bilux_math::DVec3;
+use bilux_math::glam::DQuat;
 use bilux_math::transcendental::powf_f64;
+use bilux_math::{DMat3, DVec3};
 use std::collections::HashMap;
 
 /// The name and the times of a stack.
@@ -84,7 +87,8 @@ pub(super) fn play<'d>(
                     }
                 };
                 budget.release(budget.spent() - spent);
-                let combined = combined(blend, property, below, own, weight, &properties);
+                let order = RotationOrder::of(target);
+                let combined = combined(blend, property, below, own, weight, &properties, order);
                 budget.take::<(Index, &[u8], DVec3, [usize; 4])>(1, document.file())?;
                 animated.entry(link.target).or_default().insert(property, combined);
             }
@@ -133,7 +137,7 @@ fn values(
     Ok(values)
 }
 
-/// What a layer makes of the values below it.
+/// What a layer makes of the values below it. Rotations are by angle only if it says so.
 fn combined(
     blend: Blend,
     property: &[u8],
@@ -141,7 +145,16 @@ fn combined(
     own: DVec3,
     weight: f64,
     layer: &Properties,
+    order: RotationOrder,
 ) -> DVec3 {
+    let turns = property == b"Lcl Rotation" && layer.integer("RotationAccumulationMode").unwrap_or(0) == 0;
+    let quaternion = |degrees: DVec3| DQuat::from_mat3(&order.matrix(degrees)).to_array();
+    let part = |from: DQuat, to: DVec3| {
+        let part = slerp(&from.to_array(), &quaternion(to), weight);
+        DQuat::from_array([part[0], part[1], part[2], part[3]])
+    };
+    let from = || DQuat::from_array(quaternion(below));
+    let angles = |rotation: DQuat| order.angles(&DMat3::from_quat(rotation));
     let multiplies = property == b"Lcl Scaling" && layer.integer("ScaleAccumulationMode").unwrap_or(0) == 0;
     let power = |values: DVec3, exponent: f64| {
         DVec3::from_array(values.to_array().map(|x| powf_f64(x.abs(), exponent) * x.signum()))
@@ -149,6 +162,8 @@ fn combined(
     match blend {
         Blend::Replace => own,
         Blend::Add if multiplies => below * power(own, weight),
+        Blend::Add if turns => angles(from() * part(DQuat::IDENTITY, own)),
+        Blend::Override if turns && weight < 1.0 => angles(part(from(), own)),
         Blend::Add => below + own * weight,
         Blend::Override if multiplies => power(below, 1.0 - weight) * power(own, weight),
         Blend::Override => below * (1.0 - weight) + own * weight,

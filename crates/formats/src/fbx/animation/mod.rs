@@ -2,8 +2,10 @@
 
 mod clip;
 mod curve;
+mod key;
 mod layers;
 mod takes;
+mod tangents;
 
 use super::document::{Animated, Document, Index};
 use crate::FormatError;

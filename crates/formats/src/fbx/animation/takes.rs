@@ -1,7 +1,8 @@
 //! Animation before version 7: takes, which list channels below the names of objects.
 
 use super::clip::Clip;
-use super::curve::{Curve, Interpolation, Key};
+use super::curve::Curve;
+use super::key::{Interpolation, Key, Rule, Tangent};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::fbx::document::{Animated, Document, Index, Properties, display_name};
@@ -134,7 +135,7 @@ fn letter(value: Value) -> Option<u8> {
     }
 }
 
-/// The slopes and weights of a cubic key. Automatic slopes are those of straight lines.
+/// The slopes and weights of a cubic key. The kinds other than stated slopes are not documented, and taken as automatic.
 fn cubic<'d>(values: &mut impl Iterator<Item = Value<'d>>, version: i64) -> Option<Interpolation> {
     let mut slopes = None;
     let kind = values.next().and_then(letter)?;
@@ -169,5 +170,6 @@ fn cubic<'d>(values: &mut impl Iterator<Item = Value<'d>>, version: i64) -> Opti
             _ => return None,
         }
     }
-    Some(slopes.map_or(Interpolation::Linear, |slopes| Interpolation::Cubic { slopes, weights }))
+    let tangent = if slopes.is_some() { Tangent::Stated } else { Tangent::Automatic(Rule::USUAL) };
+    Some(Interpolation::Cubic { slopes: slopes.unwrap_or_default(), weights, tangent })
 }

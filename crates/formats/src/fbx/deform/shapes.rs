@@ -15,6 +15,8 @@ pub(super) struct Channel<'d> {
     pub(super) percent: f64,
     /// The list of the percentages at which each shape is reached.
     full: Option<Node<'d>>,
+    /// The list of how much each offset of the only shape counts, in percent.
+    of_offsets: Option<Node<'d>>,
     shapes: Vec<Node<'d>>,
 }
 
@@ -29,7 +31,12 @@ pub(super) fn channels<'d>(deformer: Index, posed: &Posed<'d>) -> Vec<Channel<'d
             let percent = posed.properties(channel).number("DeformPercent").or(stated).unwrap_or(0.0);
             let shapes = document.sources_of_class(channel, "Geometry");
             let shapes = shapes.map(|shape| document.object(shape).node).collect();
-            Channel { percent, full: node.child("FullWeights"), shapes }
+            let (full, of_offsets) = match node.child("FullWeights") {
+                // Blender has no shapes in between, and writes the weights of its vertices here.
+                list if document.settings.is_of_blender => (None, list),
+                list => (list, None),
+            };
+            Channel { percent, full, of_offsets, shapes }
         })
         .collect()
 }
@@ -44,7 +51,7 @@ pub(super) fn old_channels<'d>(mesh: Index, posed: &Posed<'d>) -> Vec<Channel<'d
     let channel = |shape: Node<'d>| {
         let name = shape.value(0)?.text()?;
         let percent = properties.number(std::str::from_utf8(name).ok()?).unwrap_or(0.0);
-        Some(Channel { percent, full: None, shapes: vec![shape] })
+        Some(Channel { percent, full: None, of_offsets: None, shapes: vec![shape] })
     };
     node.children_named("Shape").filter_map(channel).collect()
 }
@@ -74,12 +81,17 @@ impl Channel<'_> {
             let indices: Vec<i32> =
                 shape.child("Indexes").map_or(Ok(Vec::new()), |list| list.numbers(workshop.budget))?;
             let (moved, turned) = (list("Vertices", workshop)?, list("Normals", workshop)?);
-            let offset = |offset: &[f32; 3]| Vec3::from(*offset) * weight as f32;
-            for (&index, by) in indices.iter().zip(moved.as_chunks::<3>().0) {
+            let own: Vec<f32> =
+                self.of_offsets.map_or(Ok(Vec::new()), |list| list.numbers(workshop.budget))?;
+            let own = if own.len() == indices.len() { own } else { Vec::new() };
+            let offset = |number: usize, offset: &[f32; 3]| {
+                Vec3::from(*offset) * weight as f32 * own.get(number).map_or(1.0, |percent| percent / 100.0)
+            };
+            for (number, (&index, by)) in indices.iter().zip(moved.as_chunks::<3>().0).enumerate() {
                 let position =
                     usize::try_from(index).ok().and_then(|index| geometry.positions.get_mut(index));
                 match position {
-                    Some(position) => *position += offset(by),
+                    Some(position) => *position += offset(number, by),
                     None => {
                         let what = "a blend shape moves a vertex that the mesh does not have";
                         workshop.oddities.note(what, || shape.at());
@@ -91,9 +103,9 @@ impl Channel<'_> {
                     workshop.budget.take_bytes(12 * geometry.positions.len() as u64, shape.file())?;
                     turns.resize(geometry.positions.len(), Vec3::ZERO);
                 }
-                for (&index, by) in indices.iter().zip(turned.as_chunks::<3>().0) {
+                for (number, (&index, by)) in indices.iter().zip(turned.as_chunks::<3>().0).enumerate() {
                     let slot = usize::try_from(index).ok().and_then(|index| turns.get_mut(index));
-                    slot.into_iter().for_each(|slot| *slot += offset(by));
+                    slot.into_iter().for_each(|slot| *slot += offset(number, by));
                 }
             }
         }

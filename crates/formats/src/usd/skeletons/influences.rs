@@ -3,7 +3,7 @@
 use super::binding::{Binding, INDICES, JOINTS, SHAPE, WEIGHTS};
 use super::skeleton::Pose;
 use crate::FormatError;
-use crate::deformation::Blends;
+use crate::deformation::{Blends, DualBlends, DualJoint};
 use crate::usd::stage::Stage;
 use crate::usd::transforms;
 use crate::usd::value::{Array, Text, Value};
@@ -23,6 +23,8 @@ pub(super) struct Influences {
     joints: Vec<Option<DMat4>>,
     /// Where the points are when they are bound.
     shape: DMat4,
+    /// Blends dual quaternions, not matrices.
+    is_dual: bool,
 }
 
 impl Influences {
@@ -71,7 +73,9 @@ impl Influences {
             None => None,
         };
         let shape = shape.unwrap_or(DMat4::IDENTITY);
-        Ok(Some(Influences { indices, weights, each, is_rigid, joints, shape }))
+        let method = stage.text(prim, "primvars:skel:skinningMethod", budget)?;
+        let is_dual = method.is_some_and(|method| &*method == "dualQuaternion");
+        Ok(Some(Influences { indices, weights, each, is_rigid, joints, shape, is_dual }))
     }
 
     /// How all points move from the space of the prim to that of the skeleton, if they move alike.
@@ -88,15 +92,35 @@ impl Influences {
         (each > 0 && each.checked_mul(points) == Some(count)).then(|| self.blended(points, each))?
     }
 
+    /// The size of what it takes to move points.
+    pub(super) fn bytes(&self, points: usize) -> u64 {
+        if self.is_dual { DualBlends::bytes(points) } else { Blends::bytes(points) }
+    }
+
     fn blended(&self, points: usize, each: usize) -> Option<Vec<DMat4>> {
-        let mut blends = Blends::new(points);
-        for at in 0..points * each {
-            let joint = self.joints.get(self.indices.numbers.at(at) as usize).copied().flatten();
-            if let Some(joint) = joint {
-                blends.add(at / each, &joint, self.weights.numbers.at(at));
+        let weights = || {
+            let joint = |at| self.indices.numbers.at(at) as usize;
+            (0..points * each).map(move |at| (at / each, joint(at), self.weights.numbers.at(at)))
+        };
+        let mut matrices = if self.is_dual {
+            let motion = |joint: &Option<DMat4>| joint.as_ref().map(DualJoint::of);
+            let joints: Vec<Option<DualJoint>> = self.joints.iter().map(motion).collect();
+            let mut blends = DualBlends::new(points);
+            for (point, joint, weight) in weights() {
+                if let Some(Some(joint)) = joints.get(joint) {
+                    blends.add(point, joint, weight);
+                }
             }
-        }
-        let mut matrices = blends.matrices(|_| DMat4::IDENTITY);
+            blends.matrices(|_| DMat4::IDENTITY)
+        } else {
+            let mut blends = Blends::new(points);
+            for (point, joint, weight) in weights() {
+                if let Some(Some(joint)) = self.joints.get(joint) {
+                    blends.add(point, joint, weight);
+                }
+            }
+            blends.matrices(|_| DMat4::IDENTITY)
+        };
         matrices.iter_mut().for_each(|matrix| *matrix *= self.shape);
         Some(matrices)
     }

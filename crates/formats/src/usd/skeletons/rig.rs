@@ -5,7 +5,7 @@ use super::blend_shapes;
 use super::influences::Influences;
 use super::skeleton::Pose;
 use crate::FormatError;
-use crate::deformation::{Blends, are_mirrored, move_points, turned};
+use crate::deformation::{are_mirrored, move_points, turned};
 use crate::normals::CornerNormals;
 use crate::reading::Reading;
 use crate::sink::Sink;
@@ -49,11 +49,6 @@ impl Rig {
         let shapes = blend_shapes::used(stage, prim, pose, budget)?;
         if influences.is_none() && shapes.is_empty() {
             return Ok(None);
-        }
-        let method = stage.text(prim, "primvars:skel:skinningMethod", budget)?;
-        if method.is_some_and(|method| &*method == "dualQuaternion") {
-            let what = "skins that blend dual quaternions are blended linearly";
-            oddities.note(what, || stage.at(prim));
         }
         let skeleton = binding.skeleton.unwrap_or(binding.root);
         let world = match transforms::below(stage, skeleton, binding.root, budget)? {
@@ -103,7 +98,7 @@ impl Rig {
         let Some(influences) = self.influences.as_ref().filter(|all| all.rigid().is_none()) else {
             return Ok(bent);
         };
-        budget.take_bytes(Blends::bytes(points.len()), &stage.layers[0].name)?;
+        budget.take_bytes(influences.bytes(points.len()), &stage.layers[0].name)?;
         match influences.of_points(points.len()) {
             Some(matrices) => {
                 move_points(points, &matrices);

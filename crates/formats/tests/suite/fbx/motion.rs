@@ -3,6 +3,10 @@
 use super::*;
 
 const SECOND: i64 = 46_186_158_000;
+/// Flags of cubic keys: slopes that the file states, or that are chosen, by shape or by the keys around them.
+const STATED: i32 = 0x8 | 0x400;
+const SHAPED: i32 = 0x8 | 0x200;
+const STRAIGHT: i32 = 0x8 | 0x100 | 0x2000;
 
 /// A curve through keys at whole seconds, with the flags of all keys and the data of their tangents.
 fn curve(id: i64, values: Vec<f32>, flags: i32, data: [f32; 4]) -> N {
@@ -58,8 +62,8 @@ fn curves_move_nodes_from_the_beginning_of_their_animation() {
     assert_eq!([0.0, 0.5, 1.0, 9.0].map(|t| place(4, flat, t)), [1.0, 3.0, 5.0, 5.0], "lines");
     assert_eq!([0.5, 1.0].map(|t| place(2, flat, t)), [1.0, 5.0], "steps");
     // 1 + 4 (3 t² - 2 t³) at a quarter, and with a slope of 8 at the beginning t (1 - t)² · 8 more.
-    assert!((place(8, flat, 0.25) - 1.625).abs() < 1e-5);
-    assert!((place(8, [8.0, 0.0, 0.0, 0.0], 0.25) - 1.625 - 8.0 * 0.25 * 0.5625).abs() < 1e-5);
+    assert!((place(STATED, flat, 0.25) - 1.625).abs() < 1e-5);
+    assert!((place(STATED, [8.0, 0.0, 0.0, 0.0], 0.25) - 1.625 - 8.0 * 0.25 * 0.5625).abs() < 1e-5);
     let nodes = animated(placed(vec![]), 2, "Lcl Translation", "d|X", curve(23, vec![1.0, 5.0], 4, flat));
     let scene = at_time(&nodes, 0.0, Some("walk")).unwrap();
     let animation = &scene.inventory.animations[0];
@@ -67,6 +71,31 @@ fn curves_move_nodes_from_the_beginning_of_their_animation() {
     assert!(
         at_time(&nodes, 0.0, Some("run")).unwrap_err().to_string().contains("there is no animation 'run'")
     );
+}
+
+/// Keys at 0, 3 and 6: the middle one is on the line, so that all curves that know it have its slope, 3.
+#[test]
+fn slopes_that_the_file_does_not_state_come_from_the_keys_around() {
+    let place = |values: &[f32], flags: i32, data: [f32; 4], time: f32| {
+        let curve = curve(23, values.to_vec(), flags, data);
+        let nodes = animated(placed(vec![]), 2, "Lcl Translation", "d|X", curve);
+        at(&at_time(&nodes, time, None).unwrap().objects[0], [0.0; 3]).x
+    };
+    // Straight up to the neighbours; held between them, the ends are flat: at a half 3 / 2 - 3 / 8.
+    let line = [0.0, 3.0, 6.0];
+    for flags in [STRAIGHT, 0x8 | 0x100, SHAPED] {
+        assert!((place(&line, flags, [0.0; 4], 0.5) - 1.5).abs() < 1e-5, "{flags:x}");
+    }
+    assert!((place(&line, STRAIGHT | 0x4000, [0.0; 4], 0.5) - 1.125).abs() < 1e-5);
+    // A key at the top of a hill is flat if held between its neighbours, and a clamped one is next to its like.
+    let hill = [0.0, 2.0, 1.0];
+    let flat_after_line = |slope: f32| 1.0 + slope / 8.0;
+    assert!((place(&hill, STRAIGHT, [0.0; 4], 0.5) - flat_after_line(2.0 - 0.5)).abs() < 1e-5);
+    assert!((place(&hill, STRAIGHT | 0x4000, [0.0; 4], 0.5) - flat_after_line(0.0)).abs() < 1e-5);
+    let step = [0.0, 2.0, 2.0];
+    assert!((place(&step, STRAIGHT | 0x1000, [0.0; 4], 0.5) - flat_after_line(2.0)).abs() < 1e-5);
+    // Full tension is a rest at every key.
+    assert!((place(&hill, SHAPED, [1.0, 0.0, 0.0, 0.0], 0.25) - 2.0 * 0.15625).abs() < 1e-5);
 }
 
 /// The quad's upper vertices follow a bone that is turned a quarter about x.
