@@ -72,6 +72,37 @@ pub(super) fn names<'d>(
     Ok((array.words().collect(), kind == "IDREF_array"))
 }
 
+/// The most words in a name with spaces.
+const MAX_WORDS: usize = 8;
+
+/// Names like those of `names`, for a list that has more words than it states names: 3ds Max writes names with spaces in them. The
+/// longest row of words that is known is one name.
+pub(super) fn names_with_spaces<'d>(
+    source: Element<'d>,
+    document: &Document<'d>,
+    budget: &mut Budget,
+    is_known: impl Fn(&str) -> bool,
+) -> Result<Vec<&'d str>, FormatError> {
+    let (words, _) = names(source, document, budget)?;
+    let array = array(source, document, &["Name_array", "IDREF_array", "SIDREF_array"]);
+    let stated = array.and_then(|(array, _)| array.attribute("count")?.trim().parse::<usize>().ok());
+    let text = array.map(|(array, _)| array.text()).unwrap_or_default();
+    if stated.is_none_or(|stated| stated >= words.len())
+        || text.split_ascii_whitespace().count() != words.len()
+    {
+        return Ok(words);
+    }
+    let place = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
+    let (mut names, mut rest) = (Vec::new(), &words[..]);
+    while let Some(first) = rest.first() {
+        let row = |length: &usize| &text[place(first)..place(rest[*length - 1]) + rest[*length - 1].len()];
+        let length = (1..=rest.len().min(MAX_WORDS)).rev().find(|length| is_known(row(length))).unwrap_or(1);
+        names.push(row(&length));
+        rest = &rest[length..];
+    }
+    Ok(names)
+}
+
 /// An input of a primitive, a sampler or a controller.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'d> {

@@ -111,7 +111,8 @@ impl PartReader<'_, '_> {
         let Some(element) = self.xml.current() else { return Ok(GroupKind::Colours(Vec::new())) };
         let (id, indices) = (element.need_id("matid")?, element.indices("matindices")?);
         let group = match self.model.resources.get(&(self.part, id)) {
-            Some(&Resource::Group(group)) => Some(&self.model.groups[group].kind),
+            // It is registered itself already, but not in the list yet.
+            Some(&Resource::Group(group)) => self.model.groups.get(group).map(|group| &group.kind),
             _ => None,
         };
         let Some(GroupKind::Bases(bases)) = group else {

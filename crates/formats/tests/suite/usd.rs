@@ -278,6 +278,28 @@ fn preview_surfaces_become_principled_and_bindings_are_inherited() {
     );
 }
 
+/// [UsdPreviewSurface, `UsdUVTexture`: the fallback is used where the texture cannot be read.]
+#[test]
+fn a_texture_that_is_missing_has_the_colour_that_the_file_states_for_it() {
+    let file = |fallback: &str, output: &str| {
+        format!(
+            "def Material \"m\" {{ token outputs:surface.connect = </m/s.outputs:surface>\n def Shader \"s\" {{ uniform token info:id \
+             = \"UsdPreviewSurface\"\n color3f inputs:diffuseColor.connect = </m/t.outputs:{output}>\n token outputs:surface }}\n def \
+             Shader \"t\" {{ uniform token info:id = \"UsdUVTexture\"\n asset inputs:file = @./gone.png@\n {fallback}\n }} }}\n\
+             def Cube \"c\" {{ rel material:binding = </m> }}"
+        )
+    };
+    let stated = "float4 inputs:fallback = (0.25, 0.5, 0.75, 1)";
+    for (output, colour) in [("rgb", [0.25, 0.5, 0.75]), ("b", [0.75; 3])] {
+        let scene = text(&file(stated, output));
+        let found = scene.materials[scene.objects[0].material].colour("base_color");
+        assert_eq!(found.map(|found| found.to_array()), Some(colour), "{output}");
+        assert!(warnings(&scene).contains("gone.png"), "{}", warnings(&scene));
+    }
+    let scene = text(&file("", "rgb"));
+    assert_eq!(scene.textures.len(), 1, "without one it is the checker of what is missing");
+}
+
 #[test]
 fn subsets_collections_and_stronger_bindings_choose_materials() {
     let material = |name: &str, green: f32| {

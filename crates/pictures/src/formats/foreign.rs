@@ -66,8 +66,12 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     other("an FBX scene", "give it a name that ends in .fbx", |b| {
         b.starts_with(b"Kaydara FBX Binary") || b.starts_with(b"; FBX ")
     }),
-    scene("a USD scene", |b| b.starts_with(b"#usda ") || b.starts_with(b"PXR-USDC")),
-    scene("a USDZ scene", |b| is_zip_of(b, &[b".usdc", b".usda", b".usd"])),
+    other("a USD scene", "give it a name that ends in .usd", |b| {
+        b.starts_with(b"#usda ") || b.starts_with(b"PXR-USDC")
+    }),
+    other("a USDZ scene", "give it a name that ends in .usdz", |b| {
+        is_zip_of(b, &[b".usdc", b".usda", b".usd"])
+    }),
     other("a 3MF model", "give it a name that ends in .3mf", |b| {
         is_zip_of(b, &[b"[Content_Types].xml", b"3D/", b"_rels/"])
     }),
@@ -75,7 +79,7 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     other("a COLLADA scene", "give it a name that ends in .dae", |b| has_root(b, b"<COLLADA")),
     scene("an X3D scene", |b| has_root(b, b"<X3D")),
     scene("an AMF model", |b| has_root(b, b"<amf")),
-    scene("a Mitsuba scene", |b| has_root(b, b"<scene")),
+    other("a Mitsuba scene", "give it a name that ends in .xml", |b| has_root(b, b"<scene")),
     scene("a VRML scene", |b| b.starts_with(b"#VRML")),
     scene("a STEP model of a CAD program", |b| b.starts_with(b"ISO-10303-21")),
     scene("a 3D Studio scene (3DS)", |b| b.starts_with(b"MM") && b.get(6..8) == Some(b"\x02\0")),

@@ -1,7 +1,7 @@
 //! Skins: each vertex follows several joints, by weights.
 
 use crate::FormatError;
-use crate::dae::data::{Table, input, inputs, names};
+use crate::dae::data::{Table, input, inputs, names_with_spaces};
 use crate::dae::element::Element;
 use crate::dae::graph::{Graph, Placed};
 use crate::dae::posed::Posed;
@@ -33,10 +33,9 @@ pub(super) fn bend<'d>(
     let joints = skin.child("joints").map(|joints| inputs(joints, document)).unwrap_or_default();
     let joints = match input(&joints, "JOINT") {
         Some(source) => {
-            let (names, _) = names(source, document, workshop.budget)?;
+            let places = places(source, skin, instance, placed, posed, graph, workshop)?;
             let bind = input(&joints, "INV_BIND_MATRIX");
             let bind = bind.map(|bind| Table::<f64>::read(bind, document, workshop.budget)).transpose()?;
-            let places = places(&names, skin, instance, placed, posed, graph, workshop)?;
             let inverse = |i: usize| bind.as_ref().and_then(|bind| matrix(bind.row(i)?));
             let whole = |(i, place): (usize, &Option<DMat4>)| {
                 place.map_or(still, |place| place * inverse(i).unwrap_or(DMat4::IDENTITY) * shape)
@@ -111,7 +110,7 @@ fn add_weights(
 /// Where each joint is; `None` for one that is missing. A name is a sid in the skeletons of the instance, or else anywhere in the scene,
 /// or an id, or even just a name.
 fn places<'d>(
-    names: &[&'d str],
+    source: Element<'d>,
     skin: Element<'d>,
     instance: Element<'d>,
     placed: &Placed<'d>,
@@ -138,6 +137,7 @@ fn places<'d>(
     for attribute in ["sid", "id", "name"] {
         graph.nodes.iter().for_each(|placed| learn(placed.node.attribute(attribute), placed.node));
     }
+    let names = names_with_spaces(source, document, workshop.budget, |name| known.contains_key(name))?;
     let places: Vec<Option<DMat4>> = names.iter().map(|name| known.get(name).copied()).collect();
     if places.contains(&None) {
         let what = "a joint of a skin is not in the scene; its vertices stay on their node";

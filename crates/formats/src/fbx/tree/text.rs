@@ -22,7 +22,7 @@ pub(super) fn version(tree: &Tree) -> Result<u32, FormatError> {
     let heading = || {
         let line = tree.places.bytes().split(|byte| matches!(byte, b'\n' | b'\r')).next()?;
         let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).strip_prefix(b"; FBX ")?;
-        let digits = |text: &[u8]| std::str::from_utf8(text).ok()?.parse::<i64>().ok();
+        let digits = |text: &[u8]| std::str::from_utf8(text).ok()?.parse::<u16>().ok().map(i64::from);
         let mut parts = line.split(|byte| !byte.is_ascii_digit());
         Some(digits(parts.next()?)? * 1000 + digits(parts.next()?)? * 100)
     };

@@ -47,7 +47,7 @@ pub(super) fn painted(
     if name.starts_with("UsdPrimvarReader") || name.starts_with("geom") {
         return vertex_colours(draft, linear.node, name);
     }
-    Ok(picture(draft, &linear, taken, name.starts_with("UsdUVTexture"))?.map(Painted::Texture))
+    picture(draft, &linear, taken, name.starts_with("UsdUVTexture"))
 }
 
 /// The colours of vertices in place of a texture: the material is then white, and the mesh has the colours.
@@ -74,7 +74,7 @@ fn picture(
     linear: &Linear,
     taken: Taken,
     is_preview: bool,
-) -> Result<Option<Texture>, FormatError> {
+) -> Result<Option<Painted>, FormatError> {
     let (stage, node) = (draft.stage, linear.node);
     let budget = &mut draft.reading.budget;
     let Some(file) = constant(stage, node, "file", budget)? else { return Ok(None) };
@@ -95,7 +95,17 @@ fn picture(
         "a" | "outa" => Some(Channel::A),
         _ => None,
     };
-    let Some(mut texture) = loaded(draft, node, &file, is_raw)? else { return Ok(None) };
+    let mut texture = match loaded(draft, node, &file, is_raw)? {
+        Ok(Some(texture)) => texture,
+        Ok(None) => return Ok(None),
+        Err(name) => {
+            let key = if is_preview { "fallback" } else { "default" };
+            match constant(stage, node, key, &mut draft.reading.budget)? {
+                Some(stated) => return Ok(instead(&stated, channel, linear, taken)),
+                None => Texture::missing(&name),
+            }
+        }
+    };
     let keys = if is_preview { ["wrapS", "wrapT"] } else { ["uaddressmode", "vaddressmode"] };
     for (wrap, key) in texture.wrap.iter_mut().zip(keys) {
         *wrap = wrapping(constant(stage, node, key, &mut draft.reading.budget)?);
@@ -112,7 +122,18 @@ fn picture(
     texture.channel = channel.or(linear.channel);
     texture.threshold = taken.threshold;
     change(draft, linear, &mut texture, taken)?;
-    Ok(Some(texture))
+    Ok(Some(Painted::Texture(texture)))
+}
+
+/// The colour that a node states for a picture that cannot be read [UsdPreviewSurface, `fallback`; MaterialX, `default`].
+fn instead(stated: &Found, channel: Option<Channel>, linear: &Linear, taken: Taken) -> Option<Painted> {
+    let value = &stated.value;
+    let opaque = |[r, g, b]: [f64; 3]| [r, g, b, 1.0];
+    let four = value.tuple::<4>().or_else(|| value.tuple::<3>().map(opaque));
+    let four = four.or_else(|| value.number().map(|grey| opaque([grey; 3])))?.map(|x| x as f32);
+    let three = channel.map_or([four[0], four[1], four[2]], |channel| [four[channel as usize]; 3]);
+    let colour = std::array::from_fn(|i| three[i] * linear.scale[i] + linear.offset[i]);
+    Some(Painted::Constant(Rgb::from_array(colour) * taken.factor))
 }
 
 /// Applies the scale and the bias of a node, and what further nodes do: as a factor where that is enough, otherwise in a copy of the
@@ -167,8 +188,14 @@ pub(super) fn bake(
 }
 
 /// The picture in a file; a placeholder, with a warning, if it cannot be read.
-fn loaded(draft: &mut Draft, node: u32, file: &Found, is_raw: bool) -> Result<Option<Texture>, FormatError> {
-    let Some(name) = file.value.text().filter(|name| !name.is_empty()) else { return Ok(None) };
+/// The picture; `Err` with its name, and a note, if it cannot be read.
+fn loaded(
+    draft: &mut Draft,
+    node: u32,
+    file: &Found,
+    is_raw: bool,
+) -> Result<Result<Option<Texture>, String>, FormatError> {
+    let Some(name) = file.value.text().filter(|name| !name.is_empty()) else { return Ok(Ok(None)) };
     let mut name = name.to_string();
     if name.contains("<UDIM>") {
         name = name.replace("<UDIM>", "1001");
@@ -178,11 +205,11 @@ fn loaded(draft: &mut Draft, node: u32, file: &Found, is_raw: bool) -> Result<Op
     let folder = draft.stage.layers[file.layer as usize].folder.clone();
     let meaning = if is_raw { Meaning::Numbers(None) } else { Meaning::Colours };
     match draft.reading.texture(folder.as_deref(), &name, meaning, &at) {
-        Ok(texture) => Ok(Some(Texture { channel: None, ..Texture::clone(&texture) })),
+        Ok(texture) => Ok(Ok(Some(Texture { channel: None, ..Texture::clone(&texture) }))),
         Err(error @ FormatError::TooLarge { .. }) => Err(error),
         Err(error) => {
             draft.sink.oddities.note(&error.without_place(), || at);
-            Ok(Some(Texture::missing(&name)))
+            Ok(Err(name))
         }
     }
 }
