@@ -22,6 +22,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     dae::ENTRY,
     pbrt::ENTRY,
     usd::ENTRY,
+    usd::CRATE,
     usd::PACKAGE,
     mitsuba::ENTRY,
     obj::ENTRY,

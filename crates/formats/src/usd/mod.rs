@@ -4,6 +4,7 @@ mod cameras;
 mod composition;
 mod context;
 mod instancer;
+mod labels;
 mod layer;
 mod lights;
 mod list_op;
@@ -56,12 +57,27 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         source: "OpenUSD",
         parameters: &[],
     },
-    extensions: &["usd", "usda", "usdc"],
+    extensions: &["usd", "usda"],
     capabilities: CAPABILITIES,
-    sniff: |bytes| bytes.starts_with(usdc::MAGIC) || usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)),
+    sniff: |bytes| usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)),
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Binary(read::read)),
     write: Some(write::write),
+};
+
+pub(crate) const CRATE: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usdc",
+        summary: "OpenUSD: the same scenes as crate files, which are smaller than text and read only as far as needed",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usdc"],
+    capabilities: CAPABILITIES,
+    sniff: |bytes| bytes.starts_with(usdc::MAGIC),
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Binary(read::read)),
+    write: None,
 };
 
 pub(crate) const PACKAGE: SceneFormatEntry = SceneFormatEntry {

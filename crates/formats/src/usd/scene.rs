@@ -10,7 +10,7 @@ use super::stage::Stage;
 use super::subdivision::Subdivision;
 use super::transforms;
 use super::value::Text;
-use super::{cameras, lights, refined, shapes, strokes};
+use super::{cameras, labels, lights, refined, shapes, strokes};
 use crate::displacement::Moved;
 use crate::reading::{Reading, plain_material};
 use crate::sink::Sink;
@@ -26,6 +26,7 @@ struct State {
     world: DMat4,
     is_visible: bool,
     purpose: Option<Text>,
+    category: Text,
     binding: Option<Binding>,
 }
 
@@ -57,7 +58,13 @@ impl<'r, 'o> Scene<'r, 'o> {
 
     /// Adds all prims, as they are at the time of the stage.
     pub(super) fn add_all(&mut self, stage: &Stage) -> Result<(), FormatError> {
-        let state = State { world: DMat4::IDENTITY, is_visible: true, purpose: None, binding: None };
+        let state = State {
+            world: DMat4::IDENTITY,
+            is_visible: true,
+            purpose: None,
+            category: Text::default(),
+            binding: None,
+        };
         self.children(stage, 0, &state)
     }
 
@@ -91,7 +98,7 @@ impl<'r, 'o> Scene<'r, 'o> {
                 let rig = self.rig(stage, prim, &state)?;
                 let parts = self.parts(stage, prim, rig.as_ref())?;
                 let world = rig.map_or(state.world, |rig| rig.place(&state.world));
-                self.place(stage, prim, &parts, &world)?;
+                self.place(stage, prim, &parts, &world, &state.category)?;
             }
             "Camera" => cameras::add(stage, prim, &state.world, &mut self.context)?,
             kind if lights::is_light(kind) && state.is_visible => {
@@ -116,8 +123,9 @@ impl<'r, 'o> Scene<'r, 'o> {
             Some(purpose) => Some(purpose.clone()),
             None => stage.text(prim, "purpose", budget)?.filter(|purpose| &**purpose != "default"),
         };
+        let category = labels::category(stage, prim, budget)?.unwrap_or_else(|| above.category.clone());
         let binding = Binding::of(stage, prim, &world, above.binding);
-        Ok(State { world, is_visible: above.is_visible && !hides, purpose, binding })
+        Ok(State { world, is_visible: above.is_visible && !hides, purpose, category, binding })
     }
 
     /// What deforms a prim.
@@ -225,9 +233,16 @@ impl<'r, 'o> Scene<'r, 'o> {
     }
 
     /// Adds the parts of a prim.
-    fn place(&mut self, stage: &Stage, prim: u32, parts: &[Part], world: &DMat4) -> Result<(), FormatError> {
+    fn place(
+        &mut self,
+        stage: &Stage,
+        prim: u32,
+        parts: &[Part],
+        world: &DMat4,
+        category: &Text,
+    ) -> Result<(), FormatError> {
         let name = name_of(stage, prim);
-        let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len();
+        let bytes = (size_of::<[Object; 2]>() + name.len() + category.len()) * parts.len();
         self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
         for part in parts {
             let budget = &mut self.context.reading.budget;
@@ -237,7 +252,9 @@ impl<'r, 'o> Scene<'r, 'o> {
                 self.context.sink.oddities.note(what, || stage.at(prim));
                 continue;
             };
-            self.context.sink.scene.objects.push(Object { motion, ..Object::new(name, mesh, part.material) });
+            let object =
+                Object { motion, category: category.to_string(), ..Object::new(name, mesh, part.material) };
+            self.context.sink.scene.objects.push(object);
         }
         Ok(())
     }
@@ -258,7 +275,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let mut made: HashMap<u32, Vec<Object>> = HashMap::new();
         for &prototype in &copies.prototypes {
             let objects = std::mem::take(&mut self.context.sink.scene.objects);
-            let state = State { world: DMat4::IDENTITY, purpose: None, binding: None, ..*state };
+            let state = State { world: DMat4::IDENTITY, purpose: None, binding: None, ..state.clone() };
             if prototype != 0 {
                 self.prim(stage, prototype, &state)?;
             }
@@ -271,7 +288,7 @@ impl<'r, 'o> Scene<'r, 'o> {
             let world = state.world * place;
             for object in made.get(&prototype).into_iter().flatten() {
                 let whole = world * object.motion.at(0.0).matrix().as_dmat4();
-                let bytes = size_of::<[Object; 2]>() + object.name.len();
+                let bytes = size_of::<[Object; 2]>() + object.name.len() + object.category.len();
                 self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
                 let budget = &mut self.context.reading.budget;
                 let placed = flat::placed(&object.mesh, &whole, budget, &stage.layers[0].name)?;

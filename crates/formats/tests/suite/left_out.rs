@@ -125,7 +125,11 @@ fn lost(entry: &Entry, add: AddSpec, format: &str) -> Vec<String> {
             let of = message.split('\'').nth(1).unwrap_or_default();
             let stem = of.strip_suffix("weight").or(of.strip_suffix("scale"));
             let is_fog = entry.name == "interface" && message.contains("fog and smoke");
+            // Gloss has other names where materials are converted.
+            let is_gloss =
+                of.starts_with("specular_") && ["ks", "exponent", "roughness"].contains(&parameter.name);
             is_fog
+                || is_gloss
                 || [parameter.name, entry.name].contains(&of)
                 || stem.is_some_and(|stem| !stem.is_empty() && parameter.name.starts_with(stem))
         };
@@ -145,7 +149,7 @@ fn assert_warned<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, add: AddSpec
 #[test]
 fn unsupported_material_parameters_give_warnings() {
     let rows = MATERIALS.iter().map(|row| &row.entry).filter(|entry| entry.name != "mix");
-    assert_warned(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj", "usda", "xml"]);
+    assert_warned(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj", "usda", "xml", "3mf"]);
 }
 
 #[test]

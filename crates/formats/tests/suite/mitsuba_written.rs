@@ -21,7 +21,7 @@ fn there(scene: &SceneBuilder) -> (SceneBuilder, String, Vec<String>) {
 }
 
 fn dressed(spec: Spec) -> SceneBuilder {
-    let mut scene = SceneBuilder::default();
+    let mut scene = SceneBuilder { describes_all_light: true, ..SceneBuilder::default() };
     let material = scene.add_material(spec);
     scene.objects.push(Object::new("a <b>", Arc::new(quad()), material));
     scene
@@ -135,4 +135,13 @@ fn shared_meshes_are_groups_and_cameras_keep_their_lens() {
     // Mitsuba counts the edges of a path.
     assert!(text.contains("<integer name=\"max_depth\" value=\"8\"/>"), "{text}");
     assert_eq!(back.settings.find("max_depth").unwrap().0, &Value::Integer(7));
+}
+
+/// Viewers light what has no light; Mitsuba does not.
+#[test]
+fn a_scene_without_light_is_named() {
+    let dark = SceneBuilder { describes_all_light: false, ..dressed(Spec::new("m", "diffuse")) };
+    assert_eq!(there(&dark).2, ["the scene has no light, and Mitsuba adds none: it is black there"]);
+    let glowing = dressed(Spec::new("m", "diffuse").with("emission", 1.0));
+    assert!(there(&SceneBuilder { describes_all_light: false, ..glowing }).2.is_empty());
 }

@@ -8,7 +8,9 @@ use std::path::Path;
 
 /// A file of the fuzzers' corpus.
 fn seed(name: &str) -> Vec<u8> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/scene_usd").join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(format!("../../fuzz/corpus/scene_{}", if name.ends_with("usdc") { "usdc" } else { "usd" }))
+        .join(name);
     std::fs::read(path).unwrap()
 }
 

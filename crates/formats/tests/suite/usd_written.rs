@@ -316,7 +316,7 @@ fn packages_are_as_their_specification_says() {
     assert_eq!(names, ["a.usda", "a-texture-1.png"]);
     let error =
         write(&folder.path().join("a.usdc"), &scene, &WriteOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("write .usda"), "{error}");
+    assert!(error.contains("usda, usdz") && !error.contains("usdc,"), "{error}");
 }
 
 #[test]
@@ -336,4 +336,23 @@ fn points_and_lines_keep_their_widths() {
     assert_eq!(back.objects[0].mesh.point_widths, [0.25; 2]);
     let tube = back.objects[1].mesh.bounds().extent();
     assert!((tube.yz().max_element() - 0.125).abs() < 0.02 && tube.x == 4.0, "{tube}");
+}
+
+/// As labels of the taxonomy `category`; nearer ones count more than those further up.
+#[test]
+fn categories_are_labels() {
+    let mut scene = dressed(Spec::new("m", "diffuse"), quad());
+    scene.objects[0].category = "chair".into();
+    let text = text_of(&scene);
+    assert!(text.contains("[\"MaterialBindingAPI\", \"SemanticsLabelsAPI:category\"]"), "{text}");
+    let (back, said) = there(&scene, "a.usdz");
+    assert_eq!((back.objects[0].category.as_str(), said.len()), ("chair", 0));
+    let square = "int[] faceVertexCounts = [3]\nint[] faceVertexIndices = [0, 1, 2]\npoint3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]";
+    let text = format!(
+        "#usda 1.0\ndef Xform \"room\" {{\ntoken[] semantics:labels:kind = [\"room\"]\ndef Mesh \"a\" {{\n{square}\n}}\n\
+         def Mesh \"b\" {{\ntoken[] semantics:labels:category = [\"table\", \"desk\"]\n{square}\n}}\n}}\n"
+    );
+    let read = crate::read_text("usd", text).unwrap();
+    let of: Vec<&str> = read.objects.iter().map(|object| object.category.as_str()).collect();
+    assert_eq!(of, ["room", "table"]);
 }

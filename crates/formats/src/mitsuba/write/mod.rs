@@ -36,6 +36,10 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         document.object(object, is_shared, writing)?;
     }
     document.close("scene");
+    let emits = document.looks.values().any(|look| look.emission.is_some());
+    if scene.lights.is_empty() && !emits && !scene.describes_all_light && !scene.objects.is_empty() {
+        writing.warn("the scene has no light, and Mitsuba adds none: it is black there");
+    }
     writing.main = document.out.into_bytes();
     Ok(())
 }

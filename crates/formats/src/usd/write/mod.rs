@@ -14,7 +14,6 @@ mod text;
 mod textures;
 
 use crate::FormatError;
-use crate::text::whole_file;
 use crate::writing::Writing;
 use crate::zipped::{Members, zipped};
 use bilux_scene::{Mesh, SceneBuilder};
@@ -24,11 +23,6 @@ use std::sync::Arc;
 
 /// Writes a layer.
 pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
-    if writing.extension == "usdc" {
-        let message = "crate files are not written: write .usda, which is text, or .usdz instead";
-        let name = format!("{}.usdc", writing.stem);
-        return Err(FormatError::malformed(message, whole_file(&name.into())));
-    }
     writing.main = layer(scene, writing)?;
     Ok(())
 }

@@ -11,8 +11,9 @@ use bilux_math::{Motion, Rgb};
 use bilux_scene::{Mesh, Object, Visibility};
 use std::sync::Arc;
 
-/// The schema of prims with a material.
-const BINDING: &str = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
+/// The schema of prims with a material, and that of prims with a label.
+const BINDING: &str = "MaterialBindingAPI";
+const LABELS: &str = "SemanticsLabelsAPI:category";
 
 impl Document<'_> {
     /// Writes an object, which shares its mesh and its material with others if `is_shared`.
@@ -31,10 +32,9 @@ impl Document<'_> {
         let look = self.look(object.material, !object.mesh.vertex_kd.is_empty(), writing)?;
         let wanted = name_of(object);
         let name = self.names.unused(wanted, "object");
-        let mut metadata = Vec::new();
-        if !look.path.is_empty() {
-            metadata.push(BINDING.to_owned());
-        }
+        let has = [(BINDING, !look.path.is_empty()), (LABELS, !object.category.is_empty())];
+        let applied = has.into_iter().filter(|(_, is_there)| *is_there).map(|(schema, _)| schema);
+        let mut metadata = schemas(&applied.collect::<Vec<_>>());
         if name != wanted && !wanted.is_empty() {
             metadata.push(format!("displayName = {}", quoted(wanted)));
         }
@@ -63,6 +63,9 @@ impl Document<'_> {
     fn own(&mut self, object: &Object, look: &Look, text: &mut Text, writing: &mut Writing) {
         if !look.path.is_empty() {
             text.line(&format!("rel material:binding = <{}>", look.path));
+        }
+        if !object.category.is_empty() {
+            text.line(&format!("token[] semantics:labels:category = [{}]", quoted(&object.category)));
         }
         match object.visibility {
             Visibility::Full => {}
@@ -117,7 +120,7 @@ impl Document<'_> {
     pub(super) fn bare(&mut self, wanted: &str, mesh: &Mesh, look: &Look) {
         let name = self.names.unused(wanted, "object");
         let mut text = std::mem::replace(&mut self.prims, Text::at_depth(1));
-        text.open(&format!("def Mesh \"{name}\""), &[BINDING.to_owned()]);
+        text.open(&format!("def Mesh \"{name}\""), &schemas(&[BINDING]));
         text.line(&format!("rel material:binding = <{}>", look.path));
         triangles(mesh, look, &mut text);
         text.close();
@@ -128,6 +131,12 @@ impl Document<'_> {
     pub(super) fn material_path(name: &str) -> String {
         format!("/{ROOT}/{MATERIALS}/{name}")
     }
+}
+
+/// The metadata of a prim with these schemas.
+fn schemas(applied: &[&str]) -> Vec<String> {
+    let list: Vec<String> = applied.iter().map(|schema| quoted(schema)).collect();
+    if list.is_empty() { Vec::new() } else { vec![format!("prepend apiSchemas = [{}]", list.join(", "))] }
 }
 
 type WritePart = fn(&Document, &Mesh, &Look, &mut Text);
