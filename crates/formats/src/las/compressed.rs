@@ -103,24 +103,19 @@ fn check_sizes(bytes: &[u8], header: &Header, record: &[u8], vlr: &LazVlr) -> Op
         _ => 0,
     };
     let layers: usize = vlr.items().iter().map(layers).sum();
-    let mut largest = 0u64;
-    if layers > 0 {
-        let mut from = Cursor::new(bytes);
-        from.set_position(header.points as u64);
-        let table = guarded_decoding(|| laz::laszip::ChunkTable::read_from(&mut from, vlr).ok()).flatten()?;
-        let mut start = header.points + 8;
-        for chunk in &table {
-            let sizes = start + header.record + 4;
-            let end = start
-                .checked_add(usize::try_from(chunk.byte_count).ok()?)
-                .filter(|&end| end <= bytes.len())?;
-            let total: u64 = (0..layers).map(|layer| u64::from(u32_at(bytes, sizes + 4 * layer))).sum();
-            if total > (end - start) as u64 {
-                return None;
-            }
-            largest = largest.max(total);
-            start = end;
+    let (mut largest, mut start, mut left) = (0u64, header.points + 8, header.count);
+    // The decompressor goes from chunk to chunk by these sizes, whatever the table says.
+    while layers > 0 && left > 0 {
+        let counted = start.checked_add(header.record)?;
+        let sizes = bytes.get(counted + 4..)?.get(..4 * layers)?;
+        let total: u64 = (0..layers).map(|layer| u64::from(u32_at(sizes, 4 * layer))).sum();
+        start = usize::try_from(total).ok()?.checked_add(counted + 4 + 4 * layers)?;
+        if start > bytes.len() {
+            return None;
         }
+        largest = largest.max(total);
+        let held = if vlr.uses_variable_size_chunks() { u32_at(bytes, counted) } else { vlr.chunk_size() };
+        left = left.saturating_sub(u64::from(held).max(1));
     }
     Some(16 * chunks as u64 + 2 * largest)
 }

@@ -131,6 +131,7 @@ fn las_has_positions_and_colours_in_all_of_its_formats() {
         ("broken_compressed.laz", "the record that says how they are compressed is missing"),
         ("broken_cut_off.laz", "they are damaged, or the file was cut off"),
         ("broken_chunk_count.laz", "they are damaged, or the file was cut off"),
+        ("broken_layers.laz", "they are damaged, or the file was cut off"),
         ("broken_cut_off.las", "3 points of 26 bytes from byte 227 on, but there are bytes for only 1"),
         ("broken_count.las", "was cut off"),
         ("broken_format.las", "format 20, but only 0 to 10 exist"),
