@@ -42,26 +42,24 @@ fn quick(word: &[u8]) -> Option<f32> {
         [b'+', rest @ ..] => (false, rest),
         _ => (false, word),
     };
-    // 18 digits cannot overflow.
+    // 19 digits cannot overflow.
     if rest.len() > 19 {
         return None;
     }
-    let (mut mantissa, mut digits, mut power, mut after_point) = (0u64, 0, 0i32, false);
-    while let [first, tail @ ..] = rest {
-        match first {
-            b'0'..=b'9' => {
-                mantissa = mantissa * 10 + u64::from(first - b'0');
-                digits += 1;
-                power -= i32::from(after_point);
-            }
-            b'.' if !after_point => after_point = true,
-            b'e' | b'E' => {
-                power += small_integer(tail)?;
-                break;
-            }
-            _ => return None,
-        }
-        rest = tail;
+    let mut mantissa = 0;
+    let mut digits = leading_digits(rest, &mut mantissa);
+    rest = &rest[digits..];
+    let mut power = 0;
+    if let [b'.', tail @ ..] = rest {
+        let places = leading_digits(tail, &mut mantissa);
+        rest = &tail[places..];
+        digits += places;
+        power = -(places as i32);
+    }
+    match rest {
+        [] => {}
+        [b'e' | b'E', exponent @ ..] => power += small_integer(exponent)?,
+        _ => return None,
     }
     if digits == 0 || digits > 18 || mantissa >= 1 << 53 {
         return None;
@@ -72,6 +70,19 @@ fn quick(word: &[u8]) -> Option<f32> {
     let normal = value == 0.0 || (value >= f64::from(f32::MIN_POSITIVE) && value <= f64::from(f32::MAX));
     let narrow = value as f32;
     (normal && !between).then_some(if negative { -narrow } else { narrow })
+}
+
+/// Appends the digits at the beginning of a text to a number; returns how many they are.
+#[inline(always)]
+fn leading_digits(text: &[u8], number: &mut u64) -> usize {
+    for (count, byte) in text.iter().enumerate() {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return count;
+        }
+        *number = *number * 10 + u64::from(digit);
+    }
+    text.len()
 }
 
 /// An exponent of up to four digits.

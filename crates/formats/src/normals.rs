@@ -17,7 +17,7 @@ pub(crate) struct Faces<'a> {
     /// The position index of each corner, face after face; must be within `positions`.
     pub(crate) corners: Vec<u32>,
     /// The end of each face's corners; empty if all faces are triangles.
-    pub(crate) ends: Vec<u32>,
+    pub(crate) ends: &'a [u32],
     /// The smoothing of each face; a single entry if all faces share it.
     pub(crate) smoothing: Vec<Smoothing>,
 }
@@ -28,6 +28,15 @@ pub(crate) struct CornerNormals {
     pub(crate) normals: Vec<Vec3>,
     /// For each corner, its index into the normals.
     pub(crate) of_corner: Vec<u32>,
+    /// The position of each normal, which no two positions share.
+    pub(crate) position_of: Vec<u32>,
+}
+
+impl CornerNormals {
+    /// The position of each corner: those that the faces had, which need not be kept meanwhile.
+    pub(crate) fn corners(&self) -> impl ExactSizeIterator<Item = u32> {
+        self.of_corner.iter().map(|&normal| self.position_of[normal as usize])
+    }
 }
 
 /// At positions with more faces than this all are averaged: comparing every pair would take too long.
@@ -53,6 +62,8 @@ struct Crease {
 #[derive(Default)]
 struct PositionNormals {
     normals: Vec<Vec3>,
+    /// The position of each normal.
+    positions: Vec<u32>,
     indices: Vec<u32>,
     any_smooth: bool,
 }
@@ -71,16 +82,21 @@ impl Faces<'_> {
         self.normals_and_whether_needed(crease_angle).0
     }
 
-    fn normals_and_whether_needed(mut self, crease_angle: f32) -> (CornerNormals, bool) {
+    /// The same, and whether they are needed.
+    pub(crate) fn normals_and_whether_needed(mut self, crease_angle: f32) -> (CornerNormals, bool) {
         let angle = crease_angle.clamp(0.0, 180.0).to_radians();
         let crease = Crease { whole: cos(angle), half: cos(0.5 * angle) };
         let face_of = self.face_of();
         let facing = self.facing();
         let around = CornersByPosition::of(&self.corners, self.positions.len());
-        let mut all = CornerNormals { normals: Vec::new(), of_corner: std::mem::take(&mut self.corners) };
+        let count = self.positions.len();
+        let mut all = CornerNormals {
+            normals: Vec::with_capacity(count),
+            of_corner: std::mem::take(&mut self.corners),
+            position_of: Vec::with_capacity(count),
+        };
         let mut any_smooth = false;
         // Works in batches, to hold few intermediate results.
-        let count = self.positions.len();
         let batch = PIECE * rayon::current_num_threads();
         for start in (0..count).step_by(batch) {
             let pieces = (start..(start + batch).min(count)).into_par_iter().step_by(PIECE);
@@ -96,6 +112,7 @@ impl Faces<'_> {
                         });
                         here.extend(faces);
                         self.add_position(&here, &facing, &crease, &mut found);
+                        found.positions.resize(found.normals.len(), position as u32);
                     }
                     found
                 })
@@ -107,6 +124,7 @@ impl Faces<'_> {
                     all.of_corner[corner as usize] = first + index;
                 }
                 all.normals.extend(found.normals);
+                all.position_of.extend(found.positions);
                 any_smooth |= found.any_smooth;
             }
         }
@@ -261,7 +279,7 @@ mod tests {
         let far = Vec3::new(-c, 0.0, s);
         let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, far, far + Vec3::Y];
         let corners = vec![0u32, 1, 2, 3, 4, 0, 3, 5];
-        Faces { positions: &positions, corners, ends: vec![4, 8], smoothing: smoothing.to_vec() }
+        Faces { positions: &positions, corners, ends: &[4, 8], smoothing: smoothing.to_vec() }
             .corner_normals(40.0)
             .map(|found| found.of_corner.iter().map(|&i| found.normals[i as usize]).collect())
     }
@@ -281,6 +299,22 @@ mod tests {
     }
 
     #[test]
+    fn corners_are_found_again_by_their_normals() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let corners = vec![0u32, 1, 2, 3, 1, 0, 2, 1, 3];
+        for angle in [0.0, 180.0] {
+            let faces = Faces {
+                positions: &positions,
+                corners: corners.clone(),
+                ends: &[],
+                smoothing: vec![BY_ANGLE],
+            };
+            let (found, _) = faces.normals_and_whether_needed(angle);
+            assert_eq!(found.corners().collect::<Vec<_>>(), corners);
+        }
+    }
+
+    #[test]
     fn normals_are_the_same_on_any_number_of_threads() {
         let n = 200u32;
         let height = |x: u32, y: u32| 0.3 * f32::from((x * 7919 + y * 104_729) as u8) / 255.0;
@@ -294,9 +328,9 @@ mod tests {
                 true => quads.flat_map(|[a, b, c, d]| [a, b, c, a, c, d]).collect(),
                 false => quads.flatten().collect(),
             };
-            let ends =
+            let ends: Vec<u32> =
                 (0..if as_triangles { 0 } else { corners.len() as u32 / 4 }).map(|i| 4 * i + 4).collect();
-            let faces = Faces { positions: &positions, corners, ends, smoothing: vec![BY_ANGLE] };
+            let faces = Faces { positions: &positions, corners, ends: &ends, smoothing: vec![BY_ANGLE] };
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| faces.all_corner_normals(30.0))
         };

@@ -174,7 +174,7 @@ fn add_normals(
         }));
     }
     let faces =
-        Faces { positions: &indexed.positions, corners, ends, smoothing: indexed.smoothing_of_each() };
+        Faces { positions: &indexed.positions, corners, ends: &ends, smoothing: indexed.smoothing_of_each() };
     let found = if mixed { Some(faces.all_corner_normals(angle)) } else { faces.corner_normals(angle) };
     let Some(found) = found else { return Ok(()) };
     let given = indexed.normals.len() as u32;

@@ -38,13 +38,16 @@ impl PolygonMesh {
         let corners = self.polygons.corners.len();
         let needed = 24 * corners + 28 * self.polygons.len() + 24 * self.positions.len();
         workshop.budget.take_bytes(needed as u64, file)?;
+        let smoothing = self.smoothing_of_faces();
         let faces = Faces {
             positions: &self.positions,
-            corners: self.polygons.corners.clone(),
-            ends: self.polygons.ends.clone(),
-            smoothing: self.smoothing_of_faces(),
+            corners: std::mem::take(&mut self.polygons.corners),
+            ends: &self.polygons.ends,
+            smoothing,
         };
-        if let Some(found) = faces.corner_normals(workshop.crease_angle) {
+        let (found, are_needed) = faces.normals_and_whether_needed(workshop.crease_angle);
+        self.polygons.corners = found.corners().collect();
+        if are_needed {
             let indices = found.of_corner.into_iter().map(|index| index as i32).collect();
             self.normals = Layer::indexed(found.normals, indices, Mapping::ByCorner);
         }

@@ -57,7 +57,12 @@ impl<'x> Iterator for Attributes<'x> {
 /// A number that is not negative.
 #[inline]
 pub(super) fn integer(text: &str) -> Option<u32> {
-    let digits = text.trim_ascii().as_bytes();
+    digits(text.trim_ascii().as_bytes())
+}
+
+/// The same without blanks around it.
+#[inline]
+pub(super) fn digits(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 10 {
         return None;
     }

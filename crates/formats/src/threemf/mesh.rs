@@ -6,18 +6,10 @@ use super::mesh_data::{MeshData, TriangleProperties};
 use super::model::{Model, Property, Resource};
 use super::namespaces::Namespace;
 use super::part::PartReader;
+use super::quick::{self, Triangle};
 use super::xml::{Element, Level};
 use crate::FormatError;
 use bilux_math::Vec3;
-
-/// The attributes of a triangle.
-#[derive(Default)]
-struct Triangle<'x> {
-    corners: [Option<u32>; 3],
-    group: Option<u32>,
-    properties: [Option<u32>; 3],
-    paint: &'x str,
-}
 
 impl PartReader<'_, '_> {
     pub(super) fn mesh(
@@ -54,7 +46,18 @@ impl PartReader<'_, '_> {
 
     fn vertices(&mut self, level: Level, mesh: &mut MeshData) -> Result<(), FormatError> {
         let file = self.file.clone();
-        while let Some(element) = self.xml.child(level)? {
+        loop {
+            let known = mesh.positions.len();
+            self.xml.skim(level, |bytes| {
+                let mut at = 0;
+                while let Some((position, length)) = quick::vertex(&bytes[at..]) {
+                    mesh.positions.push(position);
+                    at += length;
+                }
+                at
+            })?;
+            self.reading.budget.take::<Vec3>(mesh.positions.len() - known, &file)?;
+            let Some(element) = self.xml.child(level)? else { return Ok(()) };
             if element.name != "vertex" {
                 continue;
             }
@@ -81,7 +84,6 @@ impl PartReader<'_, '_> {
             self.reading.budget.take::<Vec3>(1, &file)?;
             mesh.positions.push(position);
         }
-        Ok(())
     }
 
     fn triangles(
@@ -94,12 +96,28 @@ impl PartReader<'_, '_> {
         let count = mesh.positions.len() as u32;
         // The group of the last triangle: most have that of the one before.
         let mut last: Option<(u32, u32)> = None;
-        while let Some(element) = self.xml.child(level)? {
+        loop {
+            let known = [mesh.triangles.len(), mesh.properties.len()];
+            let model = &*self.model;
+            self.xml.skim(level, |bytes| {
+                let mut at = 0;
+                while let Some((triangle, length)) = quick::triangle(&bytes[at..])
+                    && let Some(corners) = triangle.sound_corners(count)
+                    && let Some(properties) = triangle.known_properties(last, of_object, model)
+                {
+                    mesh.add(corners, properties);
+                    at += length;
+                }
+                at
+            })?;
+            self.reading.budget.take::<[u32; 3]>(mesh.triangles.len() - known[0], &file)?;
+            self.reading.budget.take::<TriangleProperties>(mesh.properties.len() - known[1], &file)?;
+            let Some(element) = self.xml.child(level)? else { break };
             if element.name != "triangle" {
                 continue;
             }
-            let Triangle { corners, group, properties, paint } = triangle(&element)?;
-            let [Some(a), Some(b), Some(c)] = corners else {
+            let triangle = triangle(&element)?;
+            let [Some(a), Some(b), Some(c)] = triangle.corners else {
                 return Err(element.error("a triangle needs v1, v2 and v3"));
             };
             if let Some(&far) = [a, b, c].iter().find(|&&vertex| vertex >= count) {
@@ -112,35 +130,32 @@ impl PartReader<'_, '_> {
                 self.oddities.note("a triangle has two corners at the same vertex, so it has no area", || at);
             }
             self.reading.budget.take::<[u32; 3]>(1, &file)?;
-            if group.is_some() || properties[0].is_some() {
-                let known = match (group, last) {
-                    (Some(id), Some((known, own))) if id == known => Some(own),
-                    (Some(id), _) => {
-                        let own = find_group(&element, self.model, self.part, id)?;
-                        last = Some((id, own));
-                        Some(own)
+            let mut properties = None;
+            if triangle.has_properties() {
+                match (triangle.group, of_object) {
+                    (Some(id), _) if last.is_none_or(|(known, _)| id != known) => {
+                        last = Some((id, find_group(&element, self.model, self.part, id)?));
                     }
-                    (None, _) => of_object.map(|own| own.group as u32),
-                };
-                if known.is_none() {
-                    let at = element.at();
-                    let what =
-                        "a triangle has properties (p1), but neither it nor its object says of what (pid)";
-                    self.oddities.note(what, || at);
+                    (None, None) => {
+                        let at = element.at();
+                        let what = "a triangle has properties (p1), but neither it nor its object says of what (pid)";
+                        self.oddities.note(what, || at);
+                    }
+                    _ => {}
                 }
-                if let Some(group) = known {
-                    let corners = indices(&element, properties, group, of_object, self.model)?;
+                if let Some(group) = triangle.group_of(last, of_object) {
+                    let corners = triangle.indices(group, of_object, self.model);
+                    let corners = corners.map_err(|message| element.error(message))?;
                     let before = if mesh.properties.is_empty() { mesh.triangles.len() } else { 0 };
                     self.reading.budget.take::<TriangleProperties>(before + 1, &file)?;
-                    mesh.properties.resize(mesh.triangles.len(), TriangleProperties::OF_OBJECT);
-                    mesh.properties.push(TriangleProperties { group, corners });
+                    properties = Some(TriangleProperties { group, corners });
                 }
             }
-            if !paint.is_empty() {
-                self.reading.budget.take_bytes((paint.len() + 32) as u64, &file)?;
-                mesh.paint.push((mesh.triangles.len() as u32, paint.into()));
+            if !triangle.paint.is_empty() {
+                self.reading.budget.take_bytes((triangle.paint.len() + 32) as u64, &file)?;
+                mesh.paint.push((mesh.triangles.len() as u32, triangle.paint.into()));
             }
-            mesh.triangles.push([a, b, c]);
+            mesh.add([a, b, c], properties);
         }
         if !mesh.properties.is_empty() {
             self.reading
@@ -152,24 +167,62 @@ impl PartReader<'_, '_> {
     }
 }
 
+impl Triangle<'_> {
+    /// True if it says which entries of a group its corners have.
+    fn has_properties(&self) -> bool {
+        self.group.is_some() || self.properties[0].is_some()
+    }
+
+    /// Its group: its own, which was found last, or that of the object.
+    fn group_of(&self, last: Option<(u32, u32)>, of_object: Option<Property>) -> Option<u32> {
+        match self.group {
+            Some(id) => last.filter(|(known, _)| *known == id).map(|(_, group)| group),
+            None => of_object.map(|own| own.group as u32),
+        }
+    }
+
+    /// Its properties, if nothing is to be said of them and their group is known: `Some(None)` if it has none.
+    fn known_properties(
+        &self,
+        last: Option<(u32, u32)>,
+        of_object: Option<Property>,
+        model: &Model,
+    ) -> Option<Option<TriangleProperties>> {
+        if !self.has_properties() {
+            return Some(None);
+        }
+        let group = self.group_of(last, of_object)?;
+        let corners = self.indices(group, of_object, model).ok()?;
+        Some(Some(TriangleProperties { group, corners }))
+    }
+
+    /// The entries of the group for the three corners: those that are not given are that of the first, or of the object.
+    ///
+    /// # Errors
+    /// The message for one that the group does not have.
+    fn indices(&self, group: u32, of_object: Option<Property>, model: &Model) -> Result<[u32; 3], String> {
+        let length = model.groups[group as usize].len();
+        let of_object = of_object.filter(|own| own.group == group as usize).map_or(0, |own| own.index);
+        let first = self.properties[0].unwrap_or(of_object);
+        let corners = [first, self.properties[1].unwrap_or(first), self.properties[2].unwrap_or(first)];
+        match corners.iter().find(|&&index| index as usize >= length) {
+            None => Ok(corners),
+            Some(far) => Err(format!(
+                "this triangle refers to property {far}, but its group has {length}, counted from 0"
+            )),
+        }
+    }
+}
+
 fn triangle<'x>(element: &Element<'x>) -> Result<Triangle<'x>, FormatError> {
     let mut triangle = Triangle::default();
     for attribute in element.attributes() {
         let (key, value) = attribute.map_err(|_| element.no_attributes())?;
-        let slot = match key {
-            "v1" => &mut triangle.corners[0],
-            "v2" => &mut triangle.corners[1],
-            "v3" => &mut triangle.corners[2],
-            "pid" => &mut triangle.group,
-            "p1" => &mut triangle.properties[0],
-            "p2" => &mut triangle.properties[1],
-            "p3" => &mut triangle.properties[2],
-            key => {
-                if key == "paint_color" || key.ends_with("mmu_segmentation") {
-                    triangle.paint = value;
-                }
-                continue;
+        let Some(slot) = triangle.slot(key.as_bytes()) else {
+            if key == "paint_color" || key.ends_with("mmu_segmentation") {
+                triangle.paint = value;
             }
+            continue;
         };
         *slot = Some(integer(value).ok_or_else(|| element.wrong(key, value, "a whole number from 0 on"))?);
     }
@@ -184,28 +237,6 @@ fn find_group(element: &Element, model: &Model, part: usize, id: u32) -> Result<
             let message = format!(
                 "this triangle has pid={id}, but no group of properties with this id comes before it"
             );
-            Err(element.error(message))
-        }
-    }
-}
-
-/// The entries of the group for the three corners: those that are not given are that of the first, or of the object.
-fn indices(
-    element: &Element,
-    given: [Option<u32>; 3],
-    group: u32,
-    of_object: Option<Property>,
-    model: &Model,
-) -> Result<[u32; 3], FormatError> {
-    let length = model.groups[group as usize].len();
-    let of_object = of_object.filter(|own| own.group == group as usize).map_or(0, |own| own.index);
-    let first = given[0].unwrap_or(of_object);
-    let corners = [first, given[1].unwrap_or(first), given[2].unwrap_or(first)];
-    match corners.iter().find(|&&index| index as usize >= length) {
-        None => Ok(corners),
-        Some(far) => {
-            let message =
-                format!("this triangle refers to property {far}, but its group has {length}, counted from 0");
             Err(element.error(message))
         }
     }

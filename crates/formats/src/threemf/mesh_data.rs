@@ -15,6 +15,18 @@ pub(super) struct MeshData {
     pub(super) lattice: Option<Lattice>,
 }
 
+impl MeshData {
+    /// Adds a triangle, and what makes the list of properties as long as that of the triangles before it.
+    #[inline]
+    pub(super) fn add(&mut self, corners: [u32; 3], properties: Option<TriangleProperties>) {
+        if let Some(own) = properties {
+            self.properties.resize(self.triangles.len(), TriangleProperties::OF_OBJECT);
+            self.properties.push(own);
+        }
+        self.triangles.push(corners);
+    }
+}
+
 /// The properties of a triangle's corners; of a group [`NONE`], those of the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TriangleProperties {

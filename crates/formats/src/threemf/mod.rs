@@ -19,6 +19,7 @@ mod package;
 mod part;
 mod pictures;
 mod pieces;
+mod quick;
 mod resources;
 mod slicers;
 mod values;

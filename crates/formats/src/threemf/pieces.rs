@@ -65,16 +65,18 @@ impl Whole<'_> {
         }
     }
 
-    /// The whole mesh as one piece.
-    fn piece(&self, data: MeshData) -> Piece {
+    /// The whole mesh as one piece, with a vertex for each position, or for each normal of a position.
+    fn piece(&self, mut data: MeshData, normals: Option<CornerNormals>) -> Piece {
         let own = self.of_object();
         let look = self.look(&own, 0);
         let paint = look.paint(self.model, own.corners[0]);
+        let normals = normals.map_or_else(Vec::new, |normals| by_normal(&mut data, &normals));
         let count = data.positions.len();
         let mesh = Mesh {
             name: self.name.to_owned(),
             positions: data.positions,
             triangles: data.triangles,
+            normals,
             uvs: vec_of(paint.uv, count),
             vertex_kd: vec_of(paint.colour, count),
             ..Mesh::default()
@@ -99,12 +101,13 @@ pub(super) fn pieces(
     if data.triangles.is_empty() {
         return Ok(pieces);
     }
-    let normals = normals(reading, file, &data)?;
+    let normals = normals(reading, file, &mut data)?;
     let is_painted = whole.has_filaments && !data.paint.is_empty();
     let has_volumes = whole.settings.is_some_and(|settings| !settings.volumes.is_empty());
-    if data.properties.is_empty() && !is_painted && !has_volumes && normals.is_none() {
-        reading.budget.take_bytes((data.positions.len() * size_of::<(Rgb, Vec2)>()) as u64, file)?;
-        pieces.push(whole.piece(data));
+    if data.properties.is_empty() && !is_painted && !has_volumes {
+        let count = normals.as_ref().map_or(data.positions.len(), |normals| normals.normals.len());
+        reading.budget.take_bytes((count * size_of::<([Vec3; 2], Rgb, Vec2, u32)>()) as u64, file)?;
+        pieces.push(whole.piece(data, normals));
         return Ok(pieces);
     }
     let mut welder = Welder::new(reading, file, whole.model, data.positions.len(), normals.is_some())?;
@@ -150,22 +153,47 @@ pub(super) fn pieces(
     Ok(pieces)
 }
 
+/// Makes a vertex of each normal, in the order of the triangles, and returns the normals in this order. Positions share no normals.
+fn by_normal(data: &mut MeshData, normals: &CornerNormals) -> Vec<Vec3> {
+    let count = normals.normals.len();
+    let mut vertex_of = vec![NONE; count];
+    let (mut positions, mut turned) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for (corner, &normal) in data.triangles.as_flattened_mut().iter_mut().zip(&normals.of_corner) {
+        let vertex = &mut vertex_of[normal as usize];
+        if *vertex == NONE {
+            *vertex = positions.len() as u32;
+            positions.push(data.positions[*corner as usize]);
+            turned.push(normals.normals[normal as usize]);
+        }
+        *corner = *vertex;
+    }
+    data.positions = positions;
+    turned
+}
+
 /// The same value for each of some vertices, if there is one.
 fn vec_of<T: Copy>(value: Option<T>, count: usize) -> Vec<T> {
     value.map_or_else(Vec::new, |value| vec![value; count])
 }
 
 /// The normals at corners by the crease angle; `None` if the mesh is flat everywhere.
-fn normals(reading: &mut Reading, file: &str, data: &MeshData) -> Result<Option<CornerNormals>, FormatError> {
+fn normals(
+    reading: &mut Reading,
+    file: &str,
+    data: &mut MeshData,
+) -> Result<Option<CornerNormals>, FormatError> {
     let angle = reading.crease_angle;
     if angle <= 0.0 {
         return Ok(None);
     }
     let needed = 24 * 3 * data.triangles.len() + 24 * (data.triangles.len() + data.positions.len());
     reading.budget.take_bytes(needed as u64, file)?;
-    let corners = data.triangles.iter().flatten().copied().collect();
-    let faces = Faces { positions: &data.positions, corners, ends: Vec::new(), smoothing: vec![BY_ANGLE] };
-    let found = faces.corner_normals(angle);
+    let corners = std::mem::take(&mut data.triangles).into_flattened();
+    let faces = Faces { positions: &data.positions, corners, ends: &[], smoothing: vec![BY_ANGLE] };
+    let (found, are_needed) = faces.normals_and_whether_needed(angle);
+    let corners_of = |of: &[u32; 3]| of.map(|normal| found.position_of[normal as usize]);
+    data.triangles = found.of_corner.as_chunks::<3>().0.iter().map(corners_of).collect();
+    let found = are_needed.then_some(found);
     let held = found.as_ref().map_or(0, |found| 4 * found.of_corner.len() + 12 * found.normals.len());
     reading.budget.release(needed.saturating_sub(held) as u64);
     Ok(found)

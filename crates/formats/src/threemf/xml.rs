@@ -135,6 +135,26 @@ impl Xml {
         }
     }
 
+    /// Lets `take` read elements without content at a level, from bytes that need not hold the last one as a whole; it returns the
+    /// length of those that it has read. The next [`Xml::child`] is what follows.
+    pub(super) fn skim(
+        &mut self,
+        level: Level,
+        take: impl FnOnce(&[u8]) -> usize,
+    ) -> Result<(), FormatError> {
+        if self.depth != level.0 || self.depth >= MAX_DEPTH {
+            return Ok(());
+        }
+        let counted = self.reader.get_mut();
+        counted.begin_token();
+        let length = match counted.fill_buf() {
+            Ok(bytes) => take(bytes),
+            Err(error) => return Err(self.damaged(&error.to_string())),
+        };
+        self.reader.get_mut().consume(length);
+        Ok(())
+    }
+
     /// Takes the element in the buffer as the current one.
     fn opened(&mut self, is_empty: bool) -> Option<Element<'_>> {
         let (line, column) = self.reader.get_mut().place();
@@ -329,7 +349,9 @@ impl BufRead for Counted {
     #[inline]
     fn consume(&mut self, count: usize) {
         let consumed = &self.from.buffer()[..count];
-        let lines = consumed.iter().filter(|&&byte| byte == b'\n').count();
+        // In pieces whose sums fit a byte, many are counted at once.
+        let in_piece = |piece: &[u8]| piece.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>();
+        let lines: usize = consumed.chunks(255).map(|piece| usize::from(in_piece(piece))).sum();
         if lines > 0 {
             self.line = self.line.saturating_add(lines as u32);
             let last = consumed.iter().rposition(|&byte| byte == b'\n').unwrap_or(0);

@@ -74,7 +74,7 @@ pub(super) struct Property {
 
 /// A file.
 #[derive(Default)]
-pub(super) struct Layer {
+pub(super) struct Layer<'a> {
     /// For messages.
     pub(super) name: Text,
     /// Where relative names begin; `None` if the bytes came from no file.
@@ -84,10 +84,10 @@ pub(super) struct Layer {
     /// By parent and name.
     pub(super) by_name: HashMap<(u32, Text), u32>,
     /// What packed values are read from.
-    pub(super) packed: Option<Box<dyn Unpack>>,
+    pub(super) packed: Option<Box<dyn Unpack + 'a>>,
 }
 
-impl Layer {
+impl Layer<'_> {
     pub(super) fn root(&self) -> &PrimSpec {
         &self.prims[0]
     }

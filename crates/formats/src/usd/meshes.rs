@@ -5,7 +5,7 @@ use super::polygons::{Polygons, Welder};
 use super::primvars::{Interpolation, Primvar};
 use super::stage::Stage;
 use super::subdivision::{Scheme, Subdivision};
-use super::value::{Array, Text};
+use super::value::{Array, Numbers, Text};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::normals::{BY_ANGLE, Faces};
@@ -40,27 +40,12 @@ pub(super) fn polygons(
     let (Some(counts), Some(indices)) = (counts, indices) else { return Ok(None) };
     let file = stage.layers[0].name.clone();
     budget.take_bytes(8 * (counts.len() + indices.len()) as u64, &file)?;
-    let (mut corners, mut ends) = (Vec::with_capacity(indices.len()), Vec::with_capacity(counts.len()));
     let mut is_hole = Vec::new();
-    let (mut next, mut is_whole) = (0, true);
-    for face in 0..counts.len() {
-        let count = counts.numbers.at(face).max(0.0) as usize;
-        let end = next + count;
-        if end > indices.len() {
-            is_whole = false;
-            break;
-        }
-        let vertex = |i: usize| indices.numbers.at(i);
-        let is_sound = (next..end).all(|i| (0.0..points.len() as f64).contains(&vertex(i)));
-        if !is_sound {
-            is_whole = false;
-            is_hole.resize(counts.len(), false);
-            is_hole[face] = true;
-        }
-        corners.extend((next..end).map(|i| if is_sound { vertex(i) as u32 } else { 0 }));
-        ends.push(corners.len() as u32);
-        next = end;
-    }
+    let (corners, ends, is_whole) = match sound_faces(&counts, indices, points.len()) {
+        Ok((corners, ends)) => (corners, ends, true),
+        Err(indices) => faces(&counts, &indices, points.len(), &mut is_hole),
+    };
+    drop(counts);
     if !is_whole {
         let what = "a mesh has faces with vertices that it does not have: these faces are left out";
         scene.sink.oddities.note(what, || stage.at(prim));
@@ -80,6 +65,68 @@ pub(super) fn polygons(
         colours: None,
         opacities: None,
     }))
+}
+
+/// The corners of faces and their ends, if all faces have vertices that are there; otherwise gives the indices back.
+fn sound_faces(
+    counts: &Array,
+    indices: Arc<Array>,
+    points: usize,
+) -> Result<(Vec<u32>, Vec<u32>), Arc<Array>> {
+    let (Numbers::Integers(sizes), Numbers::Integers(list)) = (&counts.numbers, &indices.numbers) else {
+        return Err(indices);
+    };
+    let is_there = |&index: &i32| index >= 0 && (index as usize) < points;
+    if counts.width != 1 || indices.width != 1 || !list.iter().all(is_there) {
+        return Err(indices);
+    }
+    let mut end = 0;
+    let next = |&size: &i32| {
+        end += size.max(0) as usize;
+        end as u32
+    };
+    let ends = sizes.iter().map(next).collect();
+    if end > list.len() {
+        return Err(indices);
+    }
+    // What no one else holds becomes the corners without a copy.
+    let mut corners: Vec<u32> = match Arc::try_unwrap(indices).map(|array| array.numbers) {
+        Ok(Numbers::Integers(list)) => list.into_iter().map(|index| index as u32).collect(),
+        Ok(_) => Vec::new(),
+        Err(shared) => (0..shared.len()).map(|i| shared.numbers.at(i) as u32).collect(),
+    };
+    corners.truncate(end);
+    Ok((corners, ends))
+}
+
+/// The same of any faces; those with vertices that are not there become holes, and make the answer false.
+fn faces(
+    counts: &Array,
+    indices: &Array,
+    points: usize,
+    is_hole: &mut Vec<bool>,
+) -> (Vec<u32>, Vec<u32>, bool) {
+    let (mut corners, mut ends) = (Vec::with_capacity(indices.len()), Vec::with_capacity(counts.len()));
+    let (mut next, mut is_whole) = (0, true);
+    for face in 0..counts.len() {
+        let count = counts.numbers.at(face).max(0.0) as usize;
+        let end = next + count;
+        if end > indices.len() {
+            is_whole = false;
+            break;
+        }
+        let vertex = |i: usize| indices.numbers.at(i);
+        let is_sound = (next..end).all(|i| (0.0..points as f64).contains(&vertex(i)));
+        if !is_sound {
+            is_whole = false;
+            is_hole.resize(counts.len(), false);
+            is_hole[face] = true;
+        }
+        corners.extend((next..end).map(|i| if is_sound { vertex(i) as u32 } else { 0 }));
+        ends.push(corners.len() as u32);
+        next = end;
+    }
+    (corners, ends, is_whole)
 }
 
 /// Marks faces that are holes.
@@ -126,11 +173,13 @@ pub(super) fn add_normals(
     budget.take_bytes(needed as u64, &stage.layers[0].name)?;
     let faces = Faces {
         positions: &polygons.points,
-        corners: polygons.corners.clone(),
-        ends: polygons.ends.clone(),
+        corners: std::mem::take(&mut polygons.corners),
+        ends: &polygons.ends,
         smoothing: vec![BY_ANGLE],
     };
-    polygons.computed = faces.corner_normals(angle);
+    let (found, are_needed) = faces.normals_and_whether_needed(angle);
+    polygons.corners = found.corners().collect();
+    polygons.computed = are_needed.then_some(found);
     if polygons.is_left_handed
         && let Some(found) = &mut polygons.computed
     {
@@ -164,16 +213,21 @@ pub(super) fn parts(
     let corners = polygons.corners.len() as u64;
     // Vertices with all their attributes, triangles, and what finds vertices again.
     scene.reading.budget.take_bytes(corners * 64 + 8 * polygons.points.len() as u64, &file)?;
-    let mut welder = Welder::new(polygons.points.len());
+    let mut welder = None;
     let faces = polygons.ends.len();
+    let is_only = subsets.is_empty();
     let mut is_taken = vec![false; if subsets.is_empty() { 0 } else { faces }];
     let mut all = Vec::new();
     let mut add = |faces: &mut dyn Iterator<Item = usize>, worn: &Worn, scene: &mut Context| {
-        let uvs = uvs(stage, prim, worn, scene)?;
+        let mut uvs = uvs(stage, prim, worn, scene)?;
         let (colours, opacities) = (polygons.colours.take(), polygons.opacities.take());
         polygons.colours = colours.clone().filter(|_| worn.uses_colours);
         polygons.opacities = opacities.clone().filter(|_| worn.uses_opacities);
-        let (mut mesh, is_fine) = polygons.part(faces, &uvs, &mut welder);
+        let triangles = if is_only { polygons.take_triangles(&mut uvs) } else { None };
+        let (mut mesh, is_fine) = triangles.map(|mesh| (mesh, true)).unwrap_or_else(|| {
+            let welder = welder.get_or_insert_with(|| Welder::new(polygons.points.len()));
+            polygons.part(faces, &uvs, welder, is_only)
+        });
         (polygons.colours, polygons.opacities) = (colours, opacities);
         if !is_fine {
             let what = "a face has so many corners that it was treated as convex";
@@ -199,7 +253,7 @@ pub(super) fn parts(
 }
 
 /// The last name of a prim's path.
-pub(super) fn name_of(stage: &Stage, prim: u32) -> &str {
+pub(super) fn name_of<'s>(stage: &'s Stage, prim: u32) -> &'s str {
     stage.prim(prim).path.rsplit('/').next().unwrap_or_default()
 }
 
@@ -230,5 +284,10 @@ pub(super) fn uvs(
 
 /// The vertices of a mesh.
 pub(super) fn points(array: &Array) -> Vec<Vec3> {
-    (0..array.len()).map(|i| Vec3::from(array.floats::<3>(i))).collect()
+    match &array.numbers {
+        Numbers::Floats(list) if array.width == 3 => {
+            list.as_chunks::<3>().0.iter().map(|&point| Vec3::from(point)).collect()
+        }
+        _ => (0..array.len()).map(|i| Vec3::from(array.floats::<3>(i))).collect(),
+    }
 }

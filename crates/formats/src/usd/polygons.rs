@@ -71,16 +71,57 @@ impl Polygons {
         start..self.ends[face] as usize
     }
 
-    /// The triangles of some faces; false, too, if some polygon was too large to be triangulated well.
+    /// All of it as one mesh, whose vertices are the points in use, in the order of the faces. It gives up its lists one by one, so that
+    /// little is held twice. `None` if there are faces other than triangles, or points with more than one vertex.
+    pub(super) fn take_triangles(&mut self, uvs: &mut [Option<Primvar>; 2]) -> Option<Mesh> {
+        let all_triangles = 3 * self.ends.len() == self.corners.len()
+            && self.ends.iter().enumerate().all(|(face, &end)| end as usize == 3 * face + 3);
+        if !all_triangles || !self.is_hole.is_empty() || !self.is_by_point(uvs) {
+            return None;
+        }
+        let mut vertex_of = vec![NONE; self.points.len()];
+        let mut used = Vec::with_capacity(self.points.len());
+        for corner in &mut self.corners {
+            let vertex = &mut vertex_of[*corner as usize];
+            if *vertex == NONE {
+                *vertex = used.len() as u32;
+                used.push(*corner);
+            }
+            *corner = *vertex;
+        }
+        drop(vertex_of);
+        let points = std::mem::take(&mut self.points);
+        let positions = used.iter().map(|&point| points[point as usize]).collect();
+        drop(points);
+        let [uv, uv2] = uvs;
+        let mut mesh = Mesh {
+            positions,
+            normals: values(self.normals.take(), &used, Vec3::from),
+            uvs: values(uv.take(), &used, Vec2::from),
+            uvs2: values(uv2.take(), &used, Vec2::from),
+            vertex_kd: values(self.colours.take(), &used, Rgb::from_array),
+            vertex_opacity: values(self.opacities.take(), &used, |[opacity]| opacity),
+            ..Mesh::default()
+        };
+        let corners = std::mem::take(&mut self.corners);
+        let is_left_handed = self.is_left_handed;
+        let turned = |&[a, b, c]: &[u32; 3]| if is_left_handed { [a, c, b] } else { [a, b, c] };
+        mesh.triangles = corners.as_chunks::<3>().0.iter().map(turned).collect();
+        Some(mesh)
+    }
+
+    /// The triangles of some faces, or of all; false, too, if some polygon was too large to be triangulated well.
     pub(super) fn part(
         &self,
         faces: impl Iterator<Item = usize>,
         uvs: &[Option<Primvar>; 2],
         welder: &mut Welder,
+        is_all: bool,
     ) -> (Mesh, bool) {
         welder.part += 1;
         let is_by_point = self.is_by_point(uvs);
-        let mut part = Part { polygons: self, uvs, is_by_point, mesh: Mesh::default(), before: Vec::new() };
+        let mesh = if is_all { self.with_capacity(uvs) } else { Mesh::default() };
+        let mut part = Part { polygons: self, uvs, is_by_point, mesh, before: Vec::new() };
         let mut triangulator = Triangulator::default();
         let (mut vertices, mut is_fine) = (Vec::new(), true);
         for face in faces.filter(|face| !self.is_hole.get(*face).is_some_and(|hole| *hole)) {
@@ -106,7 +147,28 @@ impl Polygons {
                 })
                 .is_some();
         }
-        (part.mesh, is_fine)
+        let mut mesh = part.mesh;
+        mesh.positions.shrink_to_fit();
+        mesh.normals.shrink_to_fit();
+        mesh.uvs.shrink_to_fit();
+        mesh.uvs2.shrink_to_fit();
+        mesh.triangles.shrink_to_fit();
+        (mesh, is_fine)
+    }
+
+    /// An empty mesh with room for all triangles, and for as many vertices as there are points or computed normals.
+    fn with_capacity(&self, uvs: &[Option<Primvar>; 2]) -> Mesh {
+        let vertices = self.computed.as_ref().map_or(self.points.len(), |found| found.normals.len());
+        let has_normals = self.normals.is_some() || self.computed.is_some();
+        let or_none = |is_there: bool| if is_there { vertices } else { 0 };
+        Mesh {
+            positions: Vec::with_capacity(vertices),
+            normals: Vec::with_capacity(or_none(has_normals)),
+            uvs: Vec::with_capacity(or_none(uvs[0].is_some())),
+            uvs2: Vec::with_capacity(or_none(uvs[1].is_some())),
+            triangles: Vec::with_capacity(self.corners.len().saturating_sub(2 * self.ends.len())),
+            ..Mesh::default()
+        }
     }
 
     /// True if nothing differs between the corners of a point.
@@ -121,6 +183,13 @@ impl Polygons {
         }
         self.normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals.at::<3>(place)))
     }
+}
+
+/// What some points have of an attribute; nothing if there is none.
+fn values<T, const N: usize>(primvar: Option<Primvar>, points: &[u32], of: impl Fn([f32; N]) -> T) -> Vec<T> {
+    let Some(primvar) = primvar else { return Vec::new() };
+    let place = |&point: &u32| Place { corner: 0, vertex: point as usize, face: 0 };
+    points.iter().map(|point| of(primvar.at::<N>(place(point)))).collect()
 }
 
 impl Part<'_> {
@@ -150,7 +219,9 @@ impl Part<'_> {
         }
         let index = self.mesh.positions.len() as u32;
         *slot = (welder.part, index);
-        self.before.push(last);
+        if !self.is_by_point {
+            self.before.push(last);
+        }
         self.push(place, &vertex);
         index
     }

@@ -12,8 +12,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Everything that the layers say, composed.
-pub(super) struct Stage {
-    pub(super) layers: Vec<Layer>,
+pub(super) struct Stage<'a> {
+    pub(super) layers: Vec<Layer<'a>>,
     pub(super) prims: Vec<Prim>,
     by_path: HashMap<Text, u32>,
     /// The time code that is shown.
@@ -29,8 +29,8 @@ pub(super) struct Found {
     pub(super) layer: u32,
 }
 
-impl Stage {
-    pub(super) fn new(layers: Vec<Layer>, prims: Vec<Prim>) -> Stage {
+impl<'a> Stage<'a> {
+    pub(super) fn new(layers: Vec<Layer<'a>>, prims: Vec<Prim>) -> Stage<'a> {
         let by_path = prims.iter().enumerate().map(|(i, prim)| (prim.path.clone(), i as u32)).collect();
         Stage { layers, prims, by_path, time: 0.0, animation: None }
     }

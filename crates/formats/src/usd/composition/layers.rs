@@ -8,6 +8,7 @@ use crate::usd::layer::Layer;
 use crate::usd::value::{TimeOffset, Value};
 use crate::usd::{mtlx, usda, usdc};
 use bilux_scene::Span;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -19,10 +20,10 @@ pub(in crate::usd) struct Stack {
 }
 
 /// All layers of a read.
-pub(in crate::usd) struct Layers<'r, 'o> {
+pub(in crate::usd) struct Layers<'r, 'o, 'b> {
     pub(in crate::usd) reading: &'r mut Reading<'o>,
     pub(in crate::usd) oddities: Oddities,
-    pub(in crate::usd) all: Vec<Layer>,
+    pub(in crate::usd) all: Vec<Layer<'b>>,
     pub(super) stacks: Vec<Stack>,
     /// By file: its layer, or that it could not be read.
     opened: HashMap<PathBuf, Option<u32>>,
@@ -36,14 +37,14 @@ const MAX_STACKED: usize = 32;
 /// Layers in a stack: sublayers can be listed many times.
 const MAX_LAYERS: usize = 4096;
 
-impl<'r, 'o> Layers<'r, 'o> {
+impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
     /// Reads the first layer from bytes.
     pub(in crate::usd) fn new(
         reading: &'r mut Reading<'o>,
-        bytes: &[u8],
+        bytes: &'b [u8],
         name: &Arc<str>,
         folder: Option<&Path>,
-    ) -> Result<Layers<'r, 'o>, FormatError> {
+    ) -> Result<Layers<'r, 'o, 'b>, FormatError> {
         let mut layers = Layers {
             opened: reading.open.iter().map(|path| (path.clone(), Some(0))).collect(),
             reading,
@@ -53,27 +54,27 @@ impl<'r, 'o> Layers<'r, 'o> {
             stack_of: HashMap::new(),
             places: [0; 2],
         };
-        layers.reading.budget.take_bytes(bytes.len() as u64, name)?;
-        let layer = layers.parsed(bytes.to_vec(), name, folder.map(Path::to_owned))?;
+        let layer = layers.parsed(Cow::Borrowed(bytes), name, folder.map(Path::to_owned))?;
         layers.all.push(layer);
         layers.stack(0)?;
         Ok(layers)
     }
 
-    /// A layer from bytes that count as held.
+    /// A layer from bytes that count as held; those that it owns are released where the layer does not need them.
     fn parsed(
         &mut self,
-        bytes: Vec<u8>,
+        bytes: Cow<'b, [u8]>,
         name: &Arc<str>,
         folder: Option<PathBuf>,
-    ) -> Result<Layer, FormatError> {
+    ) -> Result<Layer<'b>, FormatError> {
         let budget = &mut self.reading.budget;
+        let owned = if let Cow::Owned(bytes) = &bytes { bytes.len() as u64 } else { 0 };
         if bytes.starts_with(usdc::MAGIC) {
             return usdc::read(bytes, name, folder, budget);
         }
         if mtlx::is_document(&bytes) {
             let layer = mtlx::read(&bytes, name, folder, budget)?;
-            budget.release(bytes.len() as u64);
+            budget.release(owned);
             return Ok(layer);
         }
         if !usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)) {
@@ -81,7 +82,7 @@ impl<'r, 'o> Layers<'r, 'o> {
             return Err(FormatError::malformed("this is not a layer of USD, in text or in a crate file", at));
         }
         let layer = usda::read(&bytes, name, folder, budget)?;
-        budget.release(bytes.len() as u64);
+        budget.release(owned);
         Ok(layer)
     }
 
@@ -148,7 +149,7 @@ impl<'r, 'o> Layers<'r, 'o> {
         Ok(index)
     }
 
-    fn loaded(&mut self, path: &Path) -> Result<Layer, FormatError> {
+    fn loaded(&mut self, path: &Path) -> Result<Layer<'b>, FormatError> {
         let mut path = path.to_owned();
         let mut name: Arc<str> = path.display().to_string().into();
         if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("usdz")) {
@@ -156,7 +157,7 @@ impl<'r, 'o> Layers<'r, 'o> {
             name = path.display().to_string().into();
         }
         let bytes = self.reading.load(&path)?;
-        self.parsed(bytes, &name, path.parent().map(Path::to_owned))
+        self.parsed(Cow::Owned(bytes), &name, path.parent().map(Path::to_owned))
     }
 
     /// The stack of a layer and its sublayers.

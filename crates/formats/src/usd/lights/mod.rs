@@ -30,7 +30,7 @@ const KINDS: [&str; 7] =
 
 /// A light that is being read.
 struct Light<'a> {
-    stage: &'a Stage,
+    stage: &'a Stage<'a>,
     prim: u32,
     name: &'a str,
     world: &'a DMat4,

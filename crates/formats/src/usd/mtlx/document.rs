@@ -26,7 +26,7 @@ pub(in crate::usd) fn read(
     name: &Arc<str>,
     folder: Option<PathBuf>,
     budget: &mut Budget,
-) -> Result<Layer, FormatError> {
+) -> Result<Layer<'static>, FormatError> {
     let text = std::str::from_utf8(bytes)
         .map_err(|_| FormatError::malformed("this document is not in UTF-8", whole_file(name)))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// A layer while the materials of a document are added to it.
 pub(super) struct Nodes<'d> {
-    pub(super) layer: Layer,
+    pub(super) layer: Layer<'static>,
     pub(super) xml: &'d Xml<'d>,
     /// The outermost elements.
     top: Named<'d>,
@@ -51,7 +51,7 @@ fn named<'d>(parent: Node<'d, 'd>) -> Named<'d> {
 const MAX_CHAIN: usize = 16;
 
 impl<'d> Nodes<'d> {
-    pub(super) fn new(layer: Layer, xml: &'d Xml<'d>) -> Nodes<'d> {
+    pub(super) fn new(layer: Layer<'static>, xml: &'d Xml<'d>) -> Nodes<'d> {
         let inner = xml.root().children().filter(|element| element.has_tag_name("nodegraph"));
         let inner = inner.map(|graph| (graph.range().start, named(graph))).collect();
         Nodes { layer, xml, top: named(xml.root()), inner }

@@ -27,7 +27,7 @@ pub(in crate::usd) struct Shaded {
 /// Parameters of `principled`, and where they come from.
 pub(super) struct Draft<'a, 'o> {
     pub(super) shaded: Shaded,
-    pub(super) stage: &'a Stage,
+    pub(super) stage: &'a Stage<'a>,
     pub(super) shader: u32,
     pub(super) reading: &'a mut Reading<'o>,
     pub(super) sink: &'a mut Sink,

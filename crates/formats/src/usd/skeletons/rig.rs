@@ -140,7 +140,7 @@ impl Bent {
             }
         }
         let of_corner = (0..corners as u32).collect();
-        polygons.computed = Some(CornerNormals { normals: all, of_corner });
+        polygons.computed = Some(CornerNormals { normals: all, of_corner, position_of: Vec::new() });
         Ok(())
     }
 }

@@ -22,7 +22,7 @@ pub(in crate::usd) fn read(
     name: &Arc<str>,
     folder: Option<PathBuf>,
     budget: &mut Budget,
-) -> Result<Layer, FormatError> {
+) -> Result<Layer<'static>, FormatError> {
     let mut lexer = Lexer::new(bytes, name);
     let mut layer =
         Layer { name: name.clone(), folder, prims: vec![PrimSpec::default()], ..Layer::default() };
@@ -36,7 +36,7 @@ pub(in crate::usd) fn read(
 
 struct Parser<'a, 'b> {
     lexer: Lexer<'a>,
-    layer: Layer,
+    layer: Layer<'static>,
     budget: &'b mut Budget,
 }
 

@@ -48,7 +48,7 @@ pub(super) fn integers(
     let encoded = encoded(bytes, count, 4, budget)?;
     budget.take_bytes(4 * count as u64, bytes.name)?;
     let mut out = Vec::with_capacity(count);
-    let decoded = decode::<4, 1, 2>(&encoded, count, |value| out.push(value as i32));
+    let decoded = decode::<4, 1, 2>(&encoded, count, |values| out.extend(values.iter().map(|&x| x as i32)));
     budget.release(encoded.len() as u64);
     decoded.ok_or_else(|| bytes.error("packed integers end too early"))?;
     Ok(out)
@@ -63,7 +63,7 @@ pub(super) fn long_integers(
     let encoded = encoded(bytes, count, 8, budget)?;
     budget.take_bytes(8 * count as u64, bytes.name)?;
     let mut out = Vec::with_capacity(count);
-    let decoded = decode::<8, 2, 4>(&encoded, count, |value| out.push(value));
+    let decoded = decode::<8, 2, 4>(&encoded, count, |values| out.extend_from_slice(values));
     budget.release(encoded.len() as u64);
     decoded.ok_or_else(|| bytes.error("packed integers end too early"))?;
     Ok(out)
@@ -86,44 +86,43 @@ fn encoded(bytes: &mut Bytes, count: usize, width: u64, budget: &mut Budget) -> 
 }
 
 /// Integers of `WIDTH` bytes: the commonest difference, two bits for each that choose it or a difference of `SMALL`,
-/// `MEDIUM` or all bytes, and then these differences.
+/// `MEDIUM` or all bytes, and then these differences. Passes on up to four at a time.
 fn decode<const WIDTH: usize, const SMALL: usize, const MEDIUM: usize>(
     encoded: &[u8],
     count: usize,
-    mut push: impl FnMut(i64),
+    mut push: impl FnMut(&[i64]),
 ) -> Option<()> {
     let (common, rest) = encoded.split_at_checked(WIDTH)?;
     let (codes, mut rest) = rest.split_at_checked(count.div_ceil(4))?;
-    let common = signed(common);
+    let common = difference(common, WIDTH);
+    let sizes = [0, SMALL, MEDIUM, WIDTH];
     let mut value = 0i64;
-    for i in 0..count {
-        let size = match codes[i / 4] >> (2 * (i % 4)) & 3 {
-            0 => {
-                value = value.wrapping_add(common);
-                push(value);
-                continue;
-            }
-            1 => SMALL,
-            2 => MEDIUM,
-            _ => WIDTH,
-        };
-        let (difference, after) = rest.split_at_checked(size)?;
-        rest = after;
-        value = value.wrapping_add(signed(difference));
-        push(value);
+    let mut four = [0; 4];
+    for (i, &codes) in codes.iter().enumerate() {
+        let length = (count - 4 * i).min(4);
+        for (k, slot) in four[..length].iter_mut().enumerate() {
+            let code = usize::from(codes >> (2 * k) & 3);
+            let size = sizes[code];
+            let own = difference(rest, size);
+            rest = rest.get(size..)?;
+            value = value.wrapping_add(if code == 0 { common } else { own });
+            *slot = value;
+        }
+        push(&four[..length]);
     }
     Some(())
 }
 
+/// The signed number in the first bytes.
 #[inline(always)]
-fn signed(bytes: &[u8]) -> i64 {
-    match *bytes {
-        [a] => i64::from(a as i8),
-        [a, b] => i64::from(i16::from_le_bytes([a, b])),
-        [a, b, c, d] => i64::from(i32::from_le_bytes([a, b, c, d])),
-        [a, b, c, d, e, f, g, h] => i64::from_le_bytes([a, b, c, d, e, f, g, h]),
-        _ => 0,
-    }
+fn difference(bytes: &[u8], size: usize) -> i64 {
+    let word = match bytes.first_chunk() {
+        Some(word) => u64::from_le_bytes(*word),
+        // Near the end there are fewer than eight.
+        None => bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte)),
+    };
+    let above = (64 - 8 * size as u32).min(63);
+    ((word << above) as i64) >> above
 }
 
 #[cfg(test)]
@@ -138,8 +137,20 @@ mod tests {
         encoded.push(123);
         encoded.extend((-1000i16).to_le_bytes());
         let mut out = Vec::new();
-        assert_eq!(decode::<4, 1, 2>(&encoded, 4, |value| out.push(value)), Some(()));
+        assert_eq!(decode::<4, 1, 2>(&encoded, 4, |values| out.extend_from_slice(values)), Some(()));
         assert_eq!(out, [123, 124, 125, -875]);
         assert_eq!(decode::<4, 1, 2>(&encoded[..7], 4, |_| ()), None);
+    }
+
+    #[test]
+    fn integers_of_eight_bytes_may_have_all_of_them() {
+        let mut encoded = (-3i64).to_le_bytes().to_vec();
+        encoded.extend([0b11_10_01_00, 0b01]);
+        encoded.extend([(-2i16).to_le_bytes().as_slice(), &70_000i32.to_le_bytes()].concat());
+        encoded.extend([i64::MIN.to_le_bytes().as_slice(), &1i16.to_le_bytes()].concat());
+        let mut out = Vec::new();
+        assert_eq!(decode::<8, 2, 4>(&encoded, 5, |values| out.extend_from_slice(values)), Some(()));
+        let last = 69_995i64.wrapping_add(i64::MIN);
+        assert_eq!(out, [-3, -5, 69_995, last, last + 1]);
     }
 }

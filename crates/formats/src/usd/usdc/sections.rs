@@ -6,11 +6,12 @@ use super::paths::Paths;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::usd::value::Text;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A crate file in memory, whose values are read where they are used.
-pub(super) struct Crate {
-    pub(super) bytes: Vec<u8>,
+pub(super) struct Crate<'b> {
+    pub(super) bytes: Cow<'b, [u8]>,
     pub(super) name: Arc<str>,
     /// Minor version: 4 and later can be read.
     pub(super) version: u8,
@@ -41,11 +42,11 @@ const OLDEST: u8 = 4;
 /// The newest whose parts are known.
 const NEWEST: u8 = 14;
 
-pub(super) fn open(
-    all: Vec<u8>,
+pub(super) fn open<'b>(
+    all: Cow<'b, [u8]>,
     name: &Arc<str>,
     budget: &mut Budget,
-) -> Result<(Crate, Specs), FormatError> {
+) -> Result<(Crate<'b>, Specs), FormatError> {
     let head = Bytes { all: &all, at: 0, name };
     let mut version = head.moved(8)?;
     let [major, minor, patch] = [version.u8()?, version.u8()?, version.u8()?];

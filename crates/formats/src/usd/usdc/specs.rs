@@ -6,6 +6,7 @@ use crate::FormatError;
 use crate::budget::Budget;
 use crate::usd::layer::{Layer, PRIM_BYTES, PROPERTY_BYTES, PrimSpec, Property, Specifier};
 use crate::usd::value::{Text, Value};
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -21,12 +22,12 @@ const ORDERS: [&str; 5] =
     ["primChildren", "properties", "variantSetChildren", "variantChildren", "variantSetNames"];
 
 /// Reads a crate file.
-pub(in crate::usd) fn read(
-    bytes: Vec<u8>,
+pub(in crate::usd) fn read<'b>(
+    bytes: Cow<'b, [u8]>,
     name: &Arc<str>,
     folder: Option<PathBuf>,
     budget: &mut Budget,
-) -> Result<Layer, FormatError> {
+) -> Result<Layer<'b>, FormatError> {
     let (file, specs) = open(bytes, name, budget)?;
     let mut builder = Builder {
         layer: Layer { name: name.clone(), folder, prims: vec![PrimSpec::default()], ..Layer::default() },
@@ -58,15 +59,15 @@ const FIELD_BYTES: u64 = 16;
 /// A path without a prim so far.
 const NONE: u32 = u32::MAX;
 
-struct Builder<'a> {
-    layer: Layer,
-    file: &'a Crate,
+struct Builder<'a, 'b> {
+    layer: Layer<'b>,
+    file: &'a Crate<'b>,
     /// The prim of each path.
     prims: Vec<u32>,
     budget: &'a mut Budget,
 }
 
-impl Builder<'_> {
+impl Builder<'_, '_> {
     /// The prim of a path, with all above it.
     fn prim(&mut self, index: u32) -> Result<u32, FormatError> {
         let mut chain = Vec::new();

@@ -20,13 +20,13 @@ const LEAST_COMPRESSED: usize = 16;
 /// Values may hold values.
 const MAX_NESTED: usize = 16;
 
-impl Unpack for Crate {
+impl Unpack for Crate<'_> {
     fn unpack(&self, packed: u64, budget: &mut Budget) -> Result<Value, FormatError> {
         self.value(packed, budget, 0)
     }
 }
 
-impl Crate {
+impl Crate<'_> {
     fn at(&self, offset: u64) -> Result<Bytes<'_>, FormatError> {
         Bytes { all: &self.bytes, at: 0, name: &self.name }.moved(offset)
     }
