@@ -182,7 +182,7 @@ mod tests {
         let files = make(folder.path(), 100_000, 1000).unwrap();
         let options = Options { files: files.clone(), repeats: 1, read: ReadOptions::default() };
         let report = run(&options, &|_| {}).unwrap();
-        assert_eq!(report.rows.len(), 4);
+        assert_eq!(report.rows.len(), 6);
         for (row, file) in report.rows.iter().zip(&files) {
             assert!(row["decoded_megabytes"].as_f64().unwrap() > 0.01, "{row}");
             assert!(row["megabytes_per_second"].as_f64().unwrap() > 0.0, "{row}");
@@ -190,7 +190,7 @@ mod tests {
         }
         let instances = report.rows.last().unwrap();
         assert_eq!(instances["objects"], 1000, "{instances}");
-        for row in &report.rows[..3] {
+        for row in &report.rows[..4] {
             let size = row["megabytes"].as_f64().unwrap();
             assert!((0.05..0.3).contains(&size), "asked for a tenth of a megabyte: {row}");
         }

@@ -10,10 +10,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The formats, and the bytes per vertex in each, including its two triangles.
-const FORMATS: [(&str, f64); 3] = [("glb", 56.0), ("obj", 222.0), ("ply", 58.0)];
+/// The formats, and the bytes per vertex in each, including its two triangles; of 3MF, before they are packed.
+const FORMATS: [(&str, f64); 5] =
+    [("glb", 56.0), ("obj", 222.0), ("ply", 58.0), ("usda", 125.0), ("3mf", 149.0)];
 
-/// Writes a GLB, an OBJ and a PLY of about `bytes` bytes each, and a GLB with this many instances; returns their paths.
+/// Writes a GLB, an OBJ, a PLY, a USDA and a 3MF of about `bytes` bytes each, the last one before it is packed, and a GLB with this many
+/// instances; returns their paths.
 ///
 /// # Errors
 /// If a file cannot be written.

@@ -59,6 +59,12 @@ impl Polygons {
         if polygon == 0 { 0 } else { self.ends[polygon - 1] as usize }
     }
 
+    /// The corners of a polygon.
+    #[inline]
+    pub(crate) fn range(&self, polygon: usize) -> std::ops::Range<usize> {
+        self.start(polygon)..self.ends[polygon] as usize
+    }
+
     /// Whether a polygon is drawn.
     pub(crate) fn is_drawn(&self, polygon: usize) -> bool {
         self.left_out.is_empty() || self.left_out.binary_search(&(polygon as u32)).is_err()

@@ -1,5 +1,6 @@
 //! Makes triangles of polygons. Corners at one control point that have the same attributes share a vertex.
 
+use super::layer::Layer;
 use super::mesh::PolygonMesh;
 use super::workshop::Workshop;
 use crate::FormatError;
@@ -34,23 +35,23 @@ pub(crate) fn parts(
     workshop.budget.take_bytes(12 * (geometry.polygons.len() + geometry.positions.len()) as u64, file)?;
     let mut of_material: BTreeMap<i32, Vec<u32>> = BTreeMap::new();
     if let &[only] = materials {
-        of_material.insert(only, (0..geometry.polygons.len() as u32).collect());
+        of_material.insert(only, Vec::new());
     } else {
         for (polygon, &material) in materials.iter().enumerate() {
             of_material.entry(material).or_default().push(polygon as u32);
         }
     }
-    let mut welder = Welder {
-        geometry: &geometry,
-        first: vec![NONE; geometry.positions.len()],
-        next: Vec::new(),
-        mesh: Mesh::default(),
-        has_uvs: false,
-    };
+    let (polygons, first) = (geometry.polygons.len(), vec![NONE; geometry.positions.len()]);
+    let mut welder = Welder { geometry, first, made: Vec::new(), has_uvs: false };
     let mut parts = Vec::new();
-    for (material, polygons) in of_material {
+    let mut left = of_material.len();
+    for (material, list) in of_material {
+        left -= 1;
         workshop.budget.take::<(Part, Mesh)>(1, file)?;
-        let mesh = welder.part(&polygons, workshop, file)?;
+        let mesh = match &list[..] {
+            [] => welder.part(0..polygons, true, workshop, file)?,
+            list => welder.part(list.iter().map(|&polygon| polygon as usize), left == 0, workshop, file)?,
+        };
         if !mesh.triangles.is_empty() {
             parts.push(Part { mesh: Arc::new(mesh), material: material as usize });
         }
@@ -59,14 +60,23 @@ pub(crate) fn parts(
 }
 
 /// Makes one part after the other.
-struct Welder<'g> {
-    geometry: &'g PolygonMesh,
-    /// The first vertex at each control point.
+struct Welder {
+    geometry: PolygonMesh,
+    /// The last vertex at each control point.
     first: Vec<u32>,
-    /// For each vertex the next one at the same control point.
-    next: Vec<u32>,
-    mesh: Mesh,
+    /// The vertices of the part.
+    made: Vec<Made>,
     has_uvs: bool,
+}
+
+/// A vertex, by the corner that it was made of.
+#[derive(Clone, Copy)]
+struct Made {
+    corner: u32,
+    polygon: u32,
+    position: u32,
+    /// The vertex that was made before at the same control point.
+    next: u32,
 }
 
 /// What a corner has besides its position.
@@ -77,24 +87,67 @@ struct Attributes {
     colour: Rgb,
 }
 
-impl Welder<'_> {
-    fn part(&mut self, polygons: &[u32], workshop: &mut Workshop, file: &str) -> Result<Mesh, FormatError> {
-        let geometry = self.geometry;
-        let mut triangulator = Triangulator::default();
-        let mut corners = Vec::new();
-        for &polygon in polygons {
-            let polygon = polygon as usize;
-            if !geometry.polygons.is_drawn(polygon) {
+impl Welder {
+    /// The mesh of some polygons, whose corners become vertices of it; of the last ones it gives up the lists one by one, so that little is
+    /// held twice.
+    fn part(
+        &mut self,
+        polygons: impl Iterator<Item = usize> + Clone,
+        is_last: bool,
+        workshop: &mut Workshop,
+        file: &str,
+    ) -> Result<Mesh, FormatError> {
+        for polygon in polygons.clone() {
+            if !self.geometry.polygons.is_drawn(polygon) {
                 continue;
             }
-            let (start, end) = (geometry.polygons.start(polygon), geometry.polygons.ends[polygon] as usize);
-            corners.clear();
-            let made = self.next.len();
-            corners.extend((start..end).map(|corner| self.vertex(corner, polygon)));
-            workshop.budget.take::<Vertex>(self.next.len() - made, file)?;
+            let corners = self.geometry.polygons.range(polygon);
+            let made = self.made.len();
+            for corner in corners.clone() {
+                self.geometry.polygons.corners[corner] = self.vertex(corner, polygon);
+            }
+            workshop.budget.take::<Vertex>(self.made.len() - made, file)?;
             workshop.budget.take::<[u32; 3]>(corners.len() - 2, file)?;
-            let (positions, triangles) = (&self.mesh.positions, &mut self.mesh.triangles);
-            let exact = match corners[..] {
+        }
+        let made = std::mem::take(&mut self.made);
+        made.iter().for_each(|made| self.first[made.position as usize] = NONE);
+        if is_last {
+            self.first = Vec::new();
+        }
+        let geometry = &mut self.geometry;
+        let mut mesh = Mesh { name: geometry.name.clone(), ..Mesh::default() };
+        mesh.positions = made.iter().map(|made| geometry.positions[made.position as usize]).collect();
+        if is_last {
+            geometry.positions = Vec::new();
+        }
+        mesh.normals = of_vertices(&mut geometry.normals, &made, Vec3::ZERO, is_last);
+        let [uvs, uvs2] = &mut geometry.uvs;
+        mesh.uvs = of_vertices(uvs, &made, Vec2::ZERO, is_last);
+        if !std::mem::take(&mut self.has_uvs) {
+            mesh.uvs = Vec::new();
+        }
+        mesh.uvs2 = of_vertices(uvs2, &made, Vec2::ZERO, is_last);
+        mesh.vertex_kd = of_vertices(&mut geometry.colours, &made, Rgb::WHITE, is_last);
+        drop(made);
+        mesh.triangles = self.triangles(polygons, &mesh.positions, workshop);
+        Ok(mesh)
+    }
+
+    /// The triangles of polygons whose corners are vertices.
+    fn triangles(
+        &self,
+        polygons: impl Iterator<Item = usize> + Clone,
+        positions: &[Vec3],
+        workshop: &mut Workshop,
+    ) -> Vec<[u32; 3]> {
+        let geometry = &self.geometry;
+        let drawn = polygons.filter(|&polygon| geometry.polygons.is_drawn(polygon));
+        let count = drawn.clone().map(|polygon| geometry.polygons.range(polygon).len() - 2).sum();
+        let mut triangles = Vec::with_capacity(count);
+        let mut triangulator = Triangulator::default();
+        for polygon in drawn {
+            let corners = &geometry.polygons.corners[geometry.polygons.range(polygon)];
+            let exact = match *corners {
                 [a, b, c] => {
                     triangles.push([a, b, c]);
                     Some(())
@@ -109,79 +162,55 @@ impl Welder<'_> {
                 workshop.oddities.note(what, bilux_scene::Span::default);
             }
         }
-        // Only the control points of this part have vertices.
-        for &polygon in polygons {
-            let range =
-                geometry.polygons.start(polygon as usize)..geometry.polygons.ends[polygon as usize] as usize;
-            geometry.polygons.corners[range]
-                .iter()
-                .for_each(|&position| self.first[position as usize] = NONE);
-        }
-        self.next.clear();
-        let mut mesh = std::mem::take(&mut self.mesh);
-        mesh.name.clone_from(&geometry.name);
-        if !std::mem::take(&mut self.has_uvs) {
-            mesh.uvs = Vec::new();
-        }
         if geometry.is_mirrored {
-            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
-        mesh.positions.shrink_to_fit();
-        mesh.normals.shrink_to_fit();
-        mesh.uvs.shrink_to_fit();
-        mesh.uvs2.shrink_to_fit();
-        mesh.vertex_kd.shrink_to_fit();
-        mesh.triangles.shrink_to_fit();
-        Ok(mesh)
+        triangles.shrink_to_fit();
+        triangles
     }
 
     /// The vertex of a corner, made if it is new.
     #[inline]
     fn vertex(&mut self, corner: usize, polygon: usize) -> u32 {
-        let geometry = self.geometry;
-        let position = geometry.polygons.corners[corner];
-        let at = position as usize;
-        let uv = geometry.uvs[0].at(corner, polygon, at);
-        let attributes = Attributes {
-            normal: geometry.normals.at(corner, polygon, at).unwrap_or(Vec3::ZERO),
-            uvs: [uv.unwrap_or(Vec2::ZERO), geometry.uvs[1].at(corner, polygon, at).unwrap_or(Vec2::ZERO)],
-            colour: geometry.colours.at(corner, polygon, at).unwrap_or(Rgb::WHITE),
-        };
-        self.has_uvs |= uv.is_some();
-        let mut known = self.first[at];
+        let position = self.geometry.polygons.corners[corner];
+        let attributes = self.attributes(corner, polygon, position as usize);
+        self.has_uvs = self.has_uvs || self.geometry.uvs[0].at(corner, polygon, position as usize).is_some();
+        let first = self.first[position as usize];
+        let mut known = first;
         for _ in 0..MAX_CHAIN {
-            if known == NONE {
-                break;
-            }
-            if self.attributes(known as usize) == attributes {
+            let Some(made) = self.made.get(known as usize) else { break };
+            if self.attributes(made.corner as usize, made.polygon as usize, position as usize) == attributes {
                 return known;
             }
-            known = self.next[known as usize];
+            known = made.next;
         }
-        let vertex = self.next.len() as u32;
-        self.next.push(std::mem::replace(&mut self.first[at], vertex));
-        let mesh = &mut self.mesh;
-        mesh.positions.push(geometry.positions[at]);
-        fn push_if<T>(is_there: bool, list: &mut Vec<T>, item: T) {
-            if is_there {
-                list.push(item);
-            }
-        }
-        push_if(!geometry.normals.is_empty(), &mut mesh.normals, attributes.normal);
-        push_if(!geometry.uvs[0].is_empty(), &mut mesh.uvs, attributes.uvs[0]);
-        push_if(!geometry.uvs[1].is_empty(), &mut mesh.uvs2, attributes.uvs[1]);
-        push_if(!geometry.colours.is_empty(), &mut mesh.vertex_kd, attributes.colour);
+        let vertex = self.made.len() as u32;
+        self.made.push(Made { corner: corner as u32, polygon: polygon as u32, position, next: first });
+        self.first[position as usize] = vertex;
         vertex
     }
 
-    /// What a vertex has.
+    /// What a corner of a polygon at a control point has.
     #[inline]
-    fn attributes(&self, vertex: usize) -> Attributes {
-        let mesh = &self.mesh;
+    fn attributes(&self, corner: usize, polygon: usize, position: usize) -> Attributes {
+        let geometry = &self.geometry;
         Attributes {
-            normal: mesh.normals.get(vertex).copied().unwrap_or(Vec3::ZERO),
-            uvs: [&mesh.uvs, &mesh.uvs2].map(|uvs| uvs.get(vertex).copied().unwrap_or(Vec2::ZERO)),
-            colour: mesh.vertex_kd.get(vertex).copied().unwrap_or(Rgb::WHITE),
+            normal: geometry.normals.at(corner, polygon, position).unwrap_or(Vec3::ZERO),
+            uvs: [0, 1].map(|set| geometry.uvs[set].at(corner, polygon, position).unwrap_or(Vec2::ZERO)),
+            colour: geometry.colours.at(corner, polygon, position).unwrap_or(Rgb::WHITE),
         }
     }
+}
+
+/// What vertices have of a layer, which is given up if they are the last ones.
+fn of_vertices<T: Copy>(layer: &mut Layer<T>, made: &[Made], missing: T, is_last: bool) -> Vec<T> {
+    if layer.is_empty() {
+        return Vec::new();
+    }
+    let of = |made: &Made| layer.at(made.corner as usize, made.polygon as usize, made.position as usize);
+    let values = made.iter().map(|made| of(made).unwrap_or(missing)).collect();
+    if is_last {
+        *layer = Layer::default();
+    }
+    values
 }

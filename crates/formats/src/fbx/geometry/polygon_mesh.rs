@@ -1,5 +1,6 @@
 //! A mesh as the file has it.
 
+use super::layers::Surface;
 use super::{layers, polygons};
 use crate::FormatError;
 use crate::fbx::tree::Node;
@@ -17,11 +18,12 @@ pub(in crate::fbx) fn read(
     let (Some(vertices), Some(indices)) = (node.child("Vertices"), node.child("PolygonVertexIndex")) else {
         return Ok(None);
     };
-    let numbers: Vec<f32> = vertices.numbers(workshop.budget)?;
-    workshop.budget.take_bytes(4 * numbers.len() as u64, node.file())?;
-    let positions: Vec<Vec3> = numbers.as_chunks::<3>().0.iter().copied().map(Vec3::from).collect();
-    workshop.budget.release(4 * numbers.len() as u64);
-    drop(numbers);
+    let count = vertices.most_numbers()? / 3;
+    workshop.budget.take_bytes((count * size_of::<Vec3>()) as u64, node.file())?;
+    let mut positions = Vec::with_capacity(count);
+    vertices.each_number(|some: &[f32]| {
+        positions.extend(some.as_chunks::<3>().0.iter().copied().map(Vec3::from));
+    })?;
     if positions.iter().any(|p| !p.is_finite()) {
         let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
         workshop.oddities.note(what, || vertices.at());
@@ -30,25 +32,26 @@ pub(in crate::fbx) fn read(
     if polygons.len() == 0 {
         return Ok(None);
     }
+    let surface = Surface { corners: &polygons.corners, positions: positions.len() };
     let mut sets = layers::nodes(node, "LayerElementUV").into_iter();
     let mut uvs = |is_wanted: bool| match sets.next().filter(|_| is_wanted) {
-        Some(layer) => layers::read(layer, "UV", "UVIndex", |[u, v]: [f32; 2]| Vec2::new(u, v), workshop),
+        Some(layer) => layers::read(layer, "UV", "UVIndex", Vec2::from_array, surface, workshop),
         None => Ok(Layer::default()),
     };
     let uvs = [uvs(true)?, uvs(has_second_uvs)?];
     let first = |element: &str| layers::nodes(node, element).into_iter().next();
     let normals = match first("LayerElementNormal") {
-        Some(layer) => layers::read(layer, "Normals", "NormalsIndex", |n: [f32; 3]| Vec3::from(n), workshop)?,
+        Some(layer) => layers::read(layer, "Normals", "NormalsIndex", Vec3::from_array, surface, workshop)?,
         None => Layer::default(),
     };
     let integers = |element: &str, list: &'static str, workshop: &mut Workshop| match first(element) {
-        Some(layer) => layers::read(layer, list, "", |[number]: [i32; 1]| number, workshop),
+        Some(layer) => layers::read(layer, list, "", |[number]: [i32; 1]| number, surface, workshop),
         None => Ok(Layer::default()),
     };
     let materials = integers("LayerElementMaterial", "Materials", workshop)?;
     let smoothing = integers("LayerElementSmoothing", "Smoothing", workshop)?;
     let colours = match first("LayerElementColor") {
-        Some(layer) => colours(layer, workshop)?,
+        Some(layer) => colours(layer, surface, workshop)?,
         None => Layer::default(),
     };
     Ok(Some(PolygonMesh {
@@ -65,8 +68,8 @@ pub(in crate::fbx) fn read(
 }
 
 /// The colours of a layer.
-fn colours(layer: Node, workshop: &mut Workshop) -> Result<Layer<Rgb>, FormatError> {
+fn colours(layer: Node, surface: Surface, workshop: &mut Workshop) -> Result<Layer<Rgb>, FormatError> {
     let rgb = |[r, g, b, _]: [f32; 4]| Rgb::new(r, g, b);
-    let colours = layers::read(layer, "Colors", "ColorIndex", rgb, workshop)?;
+    let colours = layers::read(layer, "Colors", "ColorIndex", rgb, surface, workshop)?;
     Ok(reflectances(colours, workshop, || layer.at()))
 }

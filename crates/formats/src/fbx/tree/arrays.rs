@@ -1,7 +1,5 @@
 //! Arrays of numbers in binary files, packed by zlib or not.
 
-use crate::FormatError;
-use crate::budget::Budget;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
@@ -11,6 +9,8 @@ pub(in crate::fbx) trait Number: Copy {
     fn of(number: f64) -> Self;
     /// The same of an integer.
     fn of_integer(integer: i64) -> Self;
+    /// True for the same bits.
+    fn is(self, other: Self) -> bool;
 }
 
 macro_rules! numbers {
@@ -23,6 +23,10 @@ macro_rules! numbers {
             #[inline]
             fn of_integer(integer: i64) -> $kind {
                 integer as $kind
+            }
+            #[inline]
+            fn is(self, other: $kind) -> bool {
+                self.to_ne_bytes() == other.to_ne_bytes()
             }
         }
     )*};
@@ -37,6 +41,10 @@ impl Number for i32 {
     #[inline]
     fn of_integer(integer: i64) -> i32 {
         integer.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+    }
+    #[inline]
+    fn is(self, other: i32) -> bool {
+        self == other
     }
 }
 
@@ -86,47 +94,50 @@ pub(in crate::fbx) struct PackedArray<'a> {
 /// No byte of zlib's stands for more bytes than this: a code of two bits for 258 of them.
 const LARGEST_RATIO: u64 = 1032;
 
-/// Bytes that are unpacked at a time; a multiple of the size of every element.
-const CHUNK: usize = 1 << 15;
+/// Bytes that are unpacked at a time; whole tuples of up to four elements, whatever their size.
+const CHUNK: usize = 96 * 340;
 
 impl PackedArray<'_> {
-    /// Its numbers. `fault` makes the error of what is wrong with them, in this file.
-    pub(super) fn decode<T: Number>(
-        &self,
-        file: &str,
-        fault: impl Fn(String) -> FormatError,
-        budget: &mut Budget,
-    ) -> Result<Vec<T>, FormatError> {
-        let (count, stated) = (self.count as usize, u64::from(self.count) * self.elements.size() as u64);
+    /// How many numbers there are, unless the bytes cannot hold so many.
+    pub(super) fn count(&self) -> Result<usize, String> {
         let most = if self.is_packed {
             LARGEST_RATIO * (1 + self.bytes.len() as u64)
         } else {
             self.bytes.len() as u64
         };
-        if stated > most {
-            let message =
-                format!("{count} numbers are stated, which these {} bytes cannot hold", self.bytes.len());
-            return Err(fault(message));
+        if u64::from(self.count) * self.elements.size() as u64 > most {
+            let (count, bytes) = (self.count, self.bytes.len());
+            return Err(format!("{count} numbers are stated, which these {bytes} bytes cannot hold"));
         }
-        budget.take_bytes((count * size_of::<T>()) as u64, file)?;
-        let mut numbers = Vec::with_capacity(count);
+        Ok(self.count as usize)
+    }
+
+    /// Passes on its numbers, some thousands at a time: whole tuples, but for the last.
+    pub(super) fn each<T: Number>(&self, mut take: impl FnMut(&[T])) -> Result<(), String> {
+        let mut left = self.count()? * self.elements.size();
+        let mut numbers = Vec::with_capacity(CHUNK / self.elements.size());
         if !self.is_packed {
-            self.append(self.bytes, &mut numbers);
-            return Ok(numbers);
+            for part in self.bytes.chunks(CHUNK) {
+                numbers.clear();
+                self.append(part, &mut numbers);
+                take(&numbers);
+            }
+            return Ok(());
         }
-        let (mut stream, mut left) = (ZlibDecoder::new(self.bytes), stated as usize);
+        let mut stream = ZlibDecoder::new(self.bytes);
         let mut chunk = [0u8; CHUNK];
         while left > 0 {
             let part = &mut chunk[..left.min(CHUNK)];
-            stream.read_exact(part).map_err(|_| {
-                let message =
-                    format!("the packed numbers are damaged, or fewer than the {count} that are stated");
-                fault(message)
-            })?;
+            let damaged = |_| {
+                format!("the packed numbers are damaged, or fewer than the {} that are stated", self.count)
+            };
+            stream.read_exact(part).map_err(damaged)?;
             left -= part.len();
+            numbers.clear();
             self.append(part, &mut numbers);
+            take(&numbers);
         }
-        Ok(numbers)
+        Ok(())
     }
 
     fn append<T: Number>(&self, bytes: &[u8], to: &mut Vec<T>) {

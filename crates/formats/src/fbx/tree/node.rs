@@ -86,24 +86,52 @@ impl<'d> Node<'d> {
 
     /// All of its values as numbers: an array, or a list.
     pub(in crate::fbx) fn numbers<T: Number>(&self, budget: &mut Budget) -> Result<Vec<T>, FormatError> {
-        let values = match self.value(0) {
-            Some(Value::Array(array)) => {
-                return array.decode(self.file(), |message| self.error(message), budget);
-            }
-            // In text the numbers of an array are a node of their own.
-            Some(Value::Length) => self.child("a").map_or(self.values(), |list| list.values()),
-            _ => self.values(),
-        };
-        let count = values.most();
+        let count = self.most_numbers()?;
         budget.take_bytes((count * size_of::<T>()) as u64, self.file())?;
         let mut numbers = Vec::with_capacity(count);
-        for value in values {
-            match value.number() {
-                Some(number) => numbers.push(T::of(number)),
-                None => return Err(self.error("there are numbers here, and among them something else")),
+        self.each_number(|some| numbers.extend_from_slice(some))?;
+        Ok(numbers)
+    }
+
+    /// At least as many as it has numbers.
+    pub(in crate::fbx) fn most_numbers(&self) -> Result<usize, FormatError> {
+        match self.value(0) {
+            Some(Value::Array(array)) => array.count().map_err(|message| self.error(message)),
+            _ => Ok(self.listed().most()),
+        }
+    }
+
+    /// Passes on its numbers, some of them at a time: whole tuples of up to four, but for the last.
+    pub(in crate::fbx) fn each_number<T: Number>(
+        &self,
+        mut take: impl FnMut(&[T]),
+    ) -> Result<(), FormatError> {
+        /// A multiple of all widths of tuples.
+        const SOME: usize = 12 * 64;
+        if let Some(Value::Array(array)) = self.value(0) {
+            return array.each(take).map_err(|message| self.error(message));
+        }
+        let mut numbers = Vec::with_capacity(SOME);
+        for value in self.listed() {
+            let number = value
+                .number()
+                .ok_or_else(|| self.error("there are numbers here, and among them something else"))?;
+            numbers.push(T::of(number));
+            if numbers.len() == SOME {
+                take(&numbers);
+                numbers.clear();
             }
         }
-        Ok(numbers)
+        take(&numbers);
+        Ok(())
+    }
+
+    /// Its values; in text the numbers of an array are a node of their own.
+    fn listed(&self) -> Values<'d> {
+        match self.value(0) {
+            Some(Value::Length) => self.child("a").map_or(self.values(), |list| list.values()),
+            _ => self.values(),
+        }
     }
 
     /// True in a binary file.
