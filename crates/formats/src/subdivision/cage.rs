@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// The polygons that control a subdivision surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Cage {
-    scheme: Scheme,
+    pub(super) scheme: Scheme,
     pub(super) values: Vec<Value>,
     pub(super) has_colours: bool,
     /// The point of each corner, polygon after polygon.
@@ -17,16 +17,39 @@ pub(crate) struct Cage {
     pub(super) ends: Vec<u32>,
     /// Texture coordinates of each corner, or none. They are not smoothed.
     pub(super) uvs: Vec<Vec2>,
+    /// Values of corners that are smoothed between their own seams.
+    pub(super) layers: Vec<Layer>,
     /// The group of each polygon, which the polygons made of it share.
     pub(super) groups: Vec<u32>,
     /// How many levels an edge stays sharp, by its points.
     creases: HashMap<[u32; 2], f64>,
     /// The same of points.
-    corner_sharpness: HashMap<u32, f64>,
+    pub(super) corner_sharpness: HashMap<u32, f64>,
     /// True if a point of a single polygon is a corner.
-    sharp_corners: bool,
+    pub(super) sharp_corners: bool,
     /// The weight of each neighbour in where a point of a crease ends up.
     border_side: f64,
+}
+
+/// More are not kept for one cage.
+pub(super) const LAYER_LIMIT: usize = 4;
+
+/// What of a mesh the values are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Attribute {
+    Uv,
+    SecondUv,
+    Colour,
+    Opacity,
+}
+
+/// Values of the corners of a cage, which are the points of a cage of their own.
+#[derive(Clone, Debug)]
+pub(super) struct Layer {
+    pub(super) attribute: Attribute,
+    pub(super) cage: Cage,
+    /// True for the groups that have it.
+    pub(super) groups: Vec<bool>,
 }
 
 impl Cage {
@@ -40,6 +63,7 @@ impl Cage {
             corners: Vec::new(),
             ends: Vec::new(),
             uvs: Vec::new(),
+            layers: Vec::new(),
             groups: Vec::new(),
             creases: HashMap::new(),
             corner_sharpness: HashMap::new(),
@@ -126,7 +150,7 @@ impl Cage {
     /// The memory that the next level takes in bytes, with what is needed to make it.
     pub(crate) fn bytes_of_next(&self) -> u64 {
         // Four corners for each corner: a point, a colour, an edge in a hash table, texture coordinates.
-        self.corners.len() as u64 * 4 * 120
+        self.corners.len() as u64 * 4 * 120 * (1 + self.layers.len() as u64)
     }
 
     pub(super) fn edges(&self) -> Edges {
@@ -200,15 +224,19 @@ impl Cage {
 
     /// The same surface with about four times as many polygons.
     pub(crate) fn refined(&self) -> Cage {
-        let edges = self.edges();
+        self.refined_by(&self.edges(), self.scheme)
+    }
+
+    /// The same, with the edges of its polygons, which are divided as those of a scheme.
+    fn refined_by(&self, edges: &Edges, division: Scheme) -> Cage {
         let middles = self.middles();
-        let rings = self.rings(&edges, &middles);
+        let rings = self.rings(edges, &middles);
         let mut values: Vec<Value> =
             self.values.iter().zip(&rings).map(|(&own, ring)| ring.moved(self.scheme, own)).collect();
         let first_edge = values.len() as u32;
-        values.extend(edges.all.iter().map(|edge| self.edge_point(edge, &edges, &middles)));
+        values.extend(edges.all.iter().map(|edge| self.edge_point(edge, edges, &middles)));
         let first_face = values.len() as u32;
-        if self.scheme != Scheme::Loop {
+        if division != Scheme::Loop {
             values.extend_from_slice(&middles);
         }
         let mut next = Cage {
@@ -216,14 +244,15 @@ impl Cage {
             corners: Vec::with_capacity(self.corners.len() * 4),
             ends: Vec::with_capacity(self.corners.len()),
             uvs: Vec::with_capacity(self.uvs.len() * 4),
+            layers: self.layers.iter().map(|layer| layer.refined_by(edges, division)).collect(),
             groups: Vec::with_capacity(self.corners.len()),
             creases: HashMap::new(),
             corner_sharpness: less(&self.corner_sharpness),
             ..*self
         };
         for (number, face) in self.polygons().enumerate() {
-            let part = Part { cage: self, edges: &edges, face, group: self.groups[number], first_edge };
-            match self.scheme {
+            let part = Part { cage: self, edges, face, group: self.groups[number], first_edge };
+            match division {
                 Scheme::Loop => part.into_triangles(&mut next),
                 _ => part.into_squares(first_face + number as u32, &mut next),
             }
@@ -266,15 +295,32 @@ impl Cage {
     /// The places of all points on the surface itself. Polygons other than squares have to be refined first; until then
     /// their points stay where they are.
     pub(super) fn limit(&self) -> Vec<Value> {
+        self.limit_by(&self.edges())
+    }
+
+    /// The same, with the edges of its polygons.
+    fn limit_by(&self, edges: &Edges) -> Vec<Value> {
         if self.scheme == Scheme::CatmullClark && self.polygons().any(|face| face.len() != 4) {
             return self.values.clone();
         }
-        let rings = self.rings(&self.edges(), &self.middles());
+        let rings = self.rings(edges, &self.middles());
         self.values
             .iter()
             .zip(&rings)
             .map(|(&own, ring)| ring.limit(self.scheme, own, self.border_side))
             .collect()
+    }
+}
+
+impl Layer {
+    fn refined_by(&self, edges: &Edges, division: Scheme) -> Layer {
+        let cage = self.cage.refined_by(&edges.of_layer(&self.cage.corners), division);
+        Layer { cage, groups: self.groups.clone(), attribute: self.attribute }
+    }
+
+    /// Its values on the surface, with the edges of the surface.
+    pub(super) fn limit(&self, edges: &Edges) -> Vec<Value> {
+        self.cage.limit_by(&edges.of_layer(&self.cage.corners))
     }
 }
 

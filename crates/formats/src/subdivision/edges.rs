@@ -60,4 +60,30 @@ impl Edges {
         }
         edges
     }
+
+    /// The same edges between other points of the corners: where the two polygons of an edge have different ones, it
+    /// becomes two.
+    pub(super) fn of_layer(&self, corners: &[u32]) -> Edges {
+        let mut edges = Edges {
+            all: Vec::with_capacity(self.all.len()),
+            of_corner: Vec::with_capacity(corners.len()),
+            next: self.next.clone(),
+        };
+        for (corner, &from) in (0u32..).zip(corners) {
+            let to = corners[self.next[corner as usize] as usize];
+            let [first, second] = self.all[self.of_corner[corner as usize] as usize].corners;
+            if corner == second && first < second {
+                let number = edges.of_corner[first as usize];
+                let edge: &mut Edge = &mut edges.all[number as usize];
+                if Edge::key(edge.ends[0], edge.ends[1]) == Edge::key(from, to) {
+                    (edge.corners[1], edge.polygons) = (corner, 2);
+                    edges.of_corner.push(number);
+                    continue;
+                }
+            }
+            edges.of_corner.push(edges.all.len() as u32);
+            edges.all.push(Edge { ends: [from, to], corners: [corner; 2], polygons: 1 });
+        }
+        edges
+    }
 }

@@ -1,6 +1,6 @@
 //! A refined cage as triangles with normals.
 
-use super::cage::Cage;
+use super::cage::{Attribute, Cage, LAYER_LIMIT};
 use super::edges::Edges;
 use super::rules::Value;
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
@@ -14,6 +14,7 @@ impl Cage {
         let edges = self.edges();
         let fans = self.fans(&edges);
         let normals = self.normals(&limit, &fans);
+        let layers: Vec<Vec<Value>> = self.layers.iter().map(|layer| layer.limit(&edges)).collect();
         let mut makers: Vec<Maker> = (0..groups).map(|_| Maker::default()).collect();
         let mut start = 0;
         for (&end, &group) in self.ends.iter().zip(&self.groups) {
@@ -22,10 +23,20 @@ impl Cage {
                 .map(|corner| {
                     let (point, fan) = (self.corners[corner as usize], fans[corner as usize]);
                     let uv = self.uvs.get(corner as usize).copied();
-                    maker.vertex(point, fan, uv, || {
+                    let has =
+                        |i: usize| self.layers.get(i).filter(|l| l.groups.get(group as usize) == Some(&true));
+                    let own = std::array::from_fn(|i| has(i).map(|l| l.cage.corners[corner as usize]));
+                    maker.vertex(Key { point, fan, own }, uv, |mesh| {
                         let Value { position, colour } = limit[point as usize];
-                        let colour = self.has_colours.then_some(colour);
-                        (position, normals[fan as usize], colour)
+                        mesh.positions.push(position.as_vec3());
+                        let normal = normals[fan as usize].try_normalize();
+                        mesh.normals.push(normal.map_or(Vec3::Z, |normal| normal.as_vec3()));
+                        if self.has_colours {
+                            mesh.vertex_kd.push(Rgb::from_array(colour.as_vec3().to_array()));
+                        }
+                        for (i, at) in own.iter().enumerate().filter_map(|(i, at)| Some((i, (*at)?))) {
+                            add(mesh, self.layers[i].attribute, layers[i][at as usize].position.as_vec3());
+                        }
                     })
                 })
                 .collect();
@@ -83,30 +94,39 @@ fn join(of_corner: &mut [u32], a: u32, b: u32) {
     of_corner[a.max(b) as usize] = a.min(b);
 }
 
+/// Adds what a vertex has.
+fn add(mesh: &mut Mesh, attribute: Attribute, value: Vec3) {
+    match attribute {
+        Attribute::Uv => mesh.uvs.push(value.truncate()),
+        Attribute::SecondUv => mesh.uvs2.push(value.truncate()),
+        Attribute::Colour => mesh.vertex_kd.push(Rgb::from_array(value.max(Vec3::ZERO).to_array())),
+        Attribute::Opacity => mesh.vertex_opacity.push(value.x.clamp(0.0, 1.0)),
+    }
+}
+
+/// What tells vertices apart: their points in the surface and in its layers, and their side of sharp edges.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key {
+    point: u32,
+    fan: u32,
+    own: [Option<u32>; LAYER_LIMIT],
+}
+
 /// A mesh under construction.
 #[derive(Default)]
 struct Maker {
     mesh: Mesh,
-    /// Vertices by point, fan and the bits of the texture coordinates.
-    known: HashMap<(u32, u32, [u32; 2]), u32>,
+    /// Vertices, also by the bits of texture coordinates that are not smoothed.
+    known: HashMap<(Key, [u32; 2]), u32>,
 }
 
 impl Maker {
-    fn vertex(
-        &mut self,
-        point: u32,
-        fan: u32,
-        uv: Option<Vec2>,
-        of: impl FnOnce() -> (DVec3, DVec3, Option<DVec3>),
-    ) -> u32 {
+    fn vertex(&mut self, key: Key, uv: Option<Vec2>, make: impl FnOnce(&mut Mesh)) -> u32 {
         let bits = uv.unwrap_or_default().to_array().map(f32::to_bits);
         let mesh = &mut self.mesh;
-        *self.known.entry((point, fan, bits)).or_insert_with(|| {
-            let (position, normal, colour) = of();
-            mesh.positions.push(position.as_vec3());
-            mesh.normals.push(normal.try_normalize().map_or(Vec3::Z, |normal| normal.as_vec3()));
+        *self.known.entry((key, bits)).or_insert_with(|| {
+            make(mesh);
             mesh.uvs.extend(uv);
-            mesh.vertex_kd.extend(colour.map(|c| Rgb::from_array(c.as_vec3().to_array())));
             mesh.positions.len() as u32 - 1
         })
     }

@@ -2,10 +2,12 @@
 
 mod cage;
 mod edges;
+mod layers;
 mod meshes;
 mod pending;
 mod rules;
 
-pub(crate) use cage::Cage;
+pub(crate) use cage::{Attribute, Cage};
+pub(crate) use layers::Linear;
 pub(crate) use pending::PendingCage;
 pub use rules::Scheme;

@@ -11,8 +11,9 @@ use std::sync::Arc;
 pub(super) enum Interpolation {
     Constant,
     Uniform,
-    /// Of vertices, also where it is called varying.
     Vertex,
+    /// Of vertices, and linear between them where a surface is smooth.
+    Varying,
     FaceVarying,
 }
 
@@ -49,7 +50,8 @@ impl Primvar {
         let interpolation = match stated.as_ref().and_then(Value::text).map(|text| &**text) {
             Some("constant") => Interpolation::Constant,
             Some("uniform") => Interpolation::Uniform,
-            Some("vertex" | "varying") => Interpolation::Vertex,
+            Some("vertex") => Interpolation::Vertex,
+            Some("varying") => Interpolation::Varying,
             Some("faceVarying") => Interpolation::FaceVarying,
             _ => unstated,
         };
@@ -62,7 +64,7 @@ impl Primvar {
 
     /// True if all corners of a point have one value.
     pub(super) fn is_by_point(&self) -> bool {
-        matches!(self.interpolation, Interpolation::Constant | Interpolation::Vertex)
+        matches!(self.interpolation, Interpolation::Constant | Interpolation::Vertex | Interpolation::Varying)
     }
 
     /// The index of a place's value; `None` if there is none.
@@ -71,7 +73,7 @@ impl Primvar {
         let number = match self.interpolation {
             Interpolation::Constant => 0,
             Interpolation::Uniform => place.face,
-            Interpolation::Vertex => place.vertex,
+            Interpolation::Vertex | Interpolation::Varying => place.vertex,
             Interpolation::FaceVarying => place.corner,
         };
         let index = match &self.indices {

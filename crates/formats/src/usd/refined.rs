@@ -3,19 +3,18 @@
 use super::context::{Context, Worn};
 use super::meshes::{Part, Subset, name_of, uvs};
 use super::polygons::Polygons;
-use super::primvars::{Interpolation, Place};
+use super::primvars::{Interpolation, Place, Primvar};
 use super::stage::Stage;
 use super::subdivision::Subdivision;
 use crate::FormatError;
-use crate::subdivision::{Cage, PendingCage};
-use bilux_math::{Rgb, Vec2};
+use crate::subdivision::{Attribute, Cage, Linear, PendingCage, Scheme};
+use bilux_math::Vec3;
 
 /// From this sharpness on, an edge is as sharp as it can be. [OpenUSD, UsdGeomMesh]
 const SHARPEST: f32 = 10.0;
 
 /// The parts of a subdivision surface, one for each subset and one for all other faces; they are refined when the whole
-/// scene is known. `None` if the surface has what only polygons have here: normals of its own, a second set of texture
-/// coordinates, or colours and opacities that change from face to face.
+/// scene is known. `None` if the mesh is no such surface, or has normals of its own, which only polygons can have.
 pub(super) fn parts(
     stage: &Stage,
     prim: u32,
@@ -25,28 +24,15 @@ pub(super) fn parts(
     rest: &Worn,
     scene: &mut Context,
 ) -> Result<Option<Vec<Part>>, FormatError> {
-    let Some(scheme) = subdivision.scheme.refined() else { return Ok(None) };
-    let of_vertices = |interpolation| interpolation == Interpolation::Vertex;
-    let is_plain = !polygons.has_normals
-        && polygons.opacities.is_none()
-        && polygons.colours.as_ref().is_none_or(|colours| of_vertices(colours.interpolation))
-        && subsets.iter().map(|subset| &subset.worn).chain([rest]).all(|worn| worn.uvs[1].is_none());
-    if !is_plain {
+    let Some(scheme) = subdivision.scheme.refined().filter(|_| !polygons.has_normals) else {
         return Ok(None);
-    }
+    };
     let worn: Vec<&Worn> = subsets.iter().map(|subset| &subset.worn).chain([rest]).collect();
     let file = stage.layers[0].name.clone();
-    let bytes = polygons.points.len() * 48 + polygons.corners.len() * 16 + polygons.ends.len() * 12;
+    let bytes = polygons.points.len() * 48 + polygons.corners.len() * 200 + polygons.ends.len() * 12;
     scene.reading.budget.take_bytes(bytes as u64, &file)?;
-    let mut cage = Cage::new(scheme, &polygons.points);
-    if let Some(colours) = &polygons.colours {
-        let colour = |vertex| Rgb::from_array(colours.at::<3>(Place { corner: 0, vertex, face: 0 }));
-        cage.set_colours(&(0..polygons.points.len()).map(colour).collect::<Vec<_>>());
-    }
-    let coordinates = worn.iter().map(|worn| uvs(stage, prim, worn, scene)).collect::<Result<Vec<_>, _>>()?;
-    let has_uvs = coordinates.iter().any(|[first, _]| first.is_some());
+    let mut surface = Surface { cage: Cage::new(scheme, &polygons.points), places: Vec::new() };
     let groups = groups(polygons, subsets);
-    let (mut points, mut places) = (Vec::new(), Vec::new());
     for (face, &group) in groups.iter().enumerate() {
         let mut corners: Vec<usize> = polygons.face(face).collect();
         if corners.len() < 3 || polygons.is_hole.get(face).is_some_and(|hole| *hole) {
@@ -55,26 +41,105 @@ pub(super) fn parts(
         if polygons.is_left_handed {
             corners.reverse();
         }
-        points.clear();
-        points.extend(corners.iter().map(|&corner| polygons.corners[corner]));
-        places.clear();
-        if has_uvs {
-            let primvar = &coordinates[group as usize][0];
-            places.extend(corners.iter().map(|&corner| {
-                let place = Place { corner, vertex: polygons.corners[corner] as usize, face };
-                primvar.as_ref().map_or(Vec2::ZERO, |uv| uv.at::<2>(place).into())
-            }));
+        let place = |&corner: &usize| Place { corner, vertex: polygons.corners[corner] as usize, face };
+        let places: Vec<Place> = corners.iter().map(place).collect();
+        match scheme {
+            Scheme::Loop => {
+                (2..places.len()).for_each(|i| surface.add(&[places[0], places[i - 1], places[i]], group))
+            }
+            _ => surface.add(&places, group),
         }
-        cage.add_face(&points, &places, group);
     }
-    sharpen(&mut cage, subdivision);
+    sharpen(&mut surface.cage, subdivision);
+    let coordinates = worn.iter().map(|worn| uvs(stage, prim, worn, scene)).collect::<Result<Vec<_>, _>>()?;
+    for (set, attribute) in [Attribute::Uv, Attribute::SecondUv].into_iter().enumerate() {
+        surface.add_uvs(attribute, &coordinates, set, subdivision.linear);
+    }
+    let users = |uses: fn(&Worn) -> bool| worn.iter().map(|worn| uses(worn)).collect::<Vec<_>>();
+    if let Some(colours) = &polygons.colours {
+        surface.add_primvar(Attribute::Colour, colours, subdivision.linear, users(|worn| worn.uses_colours));
+    }
+    if let Some(opacities) = &polygons.opacities {
+        surface.add_primvar(
+            Attribute::Opacity,
+            opacities,
+            subdivision.linear,
+            users(|worn| worn.uses_opacities),
+        );
+    }
     let name = name_of(stage, prim).to_owned();
-    let pending = PendingCage::new(cage, worn.iter().map(|_| name.clone()), stage.at(prim));
+    let pending = PendingCage::new(surface.cage, worn.iter().map(|_| name.clone()), stage.at(prim));
     let part =
         |(group, worn): (usize, &&Worn)| Part { mesh: pending.mesh(group).clone(), material: worn.index };
     let parts = worn.iter().enumerate().map(part).collect();
     scene.reading.cages.push(pending);
     Ok(Some(parts))
+}
+
+/// A cage, and the place on the mesh of each of its corners.
+struct Surface {
+    cage: Cage,
+    places: Vec<Place>,
+}
+
+impl Surface {
+    fn add(&mut self, places: &[Place], group: u32) {
+        let points: Vec<u32> = places.iter().map(|place| place.vertex as u32).collect();
+        self.cage.add_face(&points, &[], group);
+        self.places.extend_from_slice(places);
+    }
+
+    /// Adds a set of texture coordinates. Groups that are placed by different primvars have them one after the other.
+    fn add_uvs(
+        &mut self,
+        attribute: Attribute,
+        coordinates: &[[Option<Primvar>; 2]],
+        set: usize,
+        linear: Linear,
+    ) {
+        let mut waiting: Vec<usize> =
+            (0..coordinates.len()).filter(|group| coordinates[*group][set].is_some()).collect();
+        while let Some(&first) = waiting.first() {
+            let Some(primvar) = &coordinates[first][set] else { break };
+            let is_same = |group: &usize| {
+                let other = coordinates[*group][set].as_ref();
+                other.is_some_and(|other| {
+                    std::sync::Arc::ptr_eq(&other.values, &primvar.values) || other.values == primvar.values
+                })
+            };
+            let users = (0..coordinates.len()).map(|group| is_same(&group)).collect();
+            self.add_primvar(attribute, primvar, linear, users);
+            waiting.retain(|group| !is_same(group));
+        }
+    }
+
+    /// Adds a primvar for the groups that use it.
+    fn add_primvar(&mut self, attribute: Attribute, primvar: &Primvar, linear: Linear, users: Vec<bool>) {
+        if !users.contains(&true) {
+            return;
+        }
+        let value = |corner: usize| {
+            let place = self.places[corner];
+            if attribute == Attribute::Opacity {
+                return Vec3::splat(primvar.index(place).map_or(1.0, |_| primvar.at::<1>(place)[0]));
+            }
+            Vec3::from(primvar.at::<3>(place))
+        };
+        let number =
+            |corner: usize| primvar.index(self.places[corner]).map_or(u32::MAX, |index| index as u32);
+        match primvar.interpolation {
+            Interpolation::Vertex => self.cage.add_layer_of_points(attribute, false, users, value),
+            Interpolation::Varying => self.cage.add_layer_of_points(attribute, true, users, value),
+            Interpolation::FaceVarying => {
+                self.cage.add_layer(attribute, linear, users, |corner| (number(corner), value(corner)));
+            }
+            // The polygons made of a face have its value.
+            Interpolation::Uniform | Interpolation::Constant => {
+                let face = |corner: usize| (self.places[corner].face as u32, value(corner));
+                self.cage.add_layer(attribute, Linear::All, users, face);
+            }
+        }
+    }
 }
 
 /// The group of each face: the first subset that has it, or that of all others.

@@ -4,6 +4,7 @@ use super::stage::Stage;
 use super::value::Array;
 use crate::FormatError;
 use crate::budget::Budget;
+use crate::subdivision::Linear;
 use std::sync::Arc;
 
 /// How a mesh is subdivided.
@@ -28,6 +29,8 @@ pub(super) struct Subdivision {
     pub(super) crease_sharpnesses: Option<Arc<Array>>,
     pub(super) corner_indices: Option<Arc<Array>>,
     pub(super) corner_sharpnesses: Option<Arc<Array>>,
+    /// Where values of corners are linear.
+    pub(super) linear: Linear,
     /// Corners of the border are rounded.
     pub(super) rounds_corners: bool,
 }
@@ -52,6 +55,14 @@ impl Subdivision {
             _ => Scheme::CatmullClark,
         };
         let border = stage.text(prim, "interpolateBoundary", budget)?;
+        let linear = match stage.text(prim, "faceVaryingLinearInterpolation", budget)?.as_deref() {
+            Some("none") => Linear::None,
+            Some("cornersOnly") => Linear::Corners,
+            Some("cornersPlus2") => Linear::Darts,
+            Some("boundaries") => Linear::Borders,
+            Some("all") => Linear::All,
+            _ => Linear::Junctions,
+        };
         let mut list = |name: &str| -> Result<Option<Arc<Array>>, FormatError> {
             Ok(stage.array(prim, name, budget)?.filter(|list| list.len() > 0))
         };
@@ -62,6 +73,7 @@ impl Subdivision {
             crease_sharpnesses: list("creaseSharpnesses")?,
             corner_indices: list("cornerIndices")?,
             corner_sharpnesses: list("cornerSharpnesses")?,
+            linear,
             rounds_corners: border.as_deref() == Some("edgeOnly"),
         })
     }

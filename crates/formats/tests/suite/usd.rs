@@ -427,3 +427,33 @@ fn cameras_have_the_field_of_view_of_their_film() {
     // A focal length of 2 units through half of a diameter of 1 unit, and a quarter of the film to the right.
     assert_eq!([of("aperture"), of("focus"), of("principal_x"), of("frame")], [0.5, 7.0, 0.25, 1.0]);
 }
+
+/// A cube that becomes round, with colours of faces, and coordinates of corners that are their places on each face.
+#[test]
+fn values_of_faces_and_corners_stay_with_their_faces_on_smooth_surfaces() {
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let list = |items: Vec<String>| items.join(", ");
+    let points = list((0..8).map(|i| format!("({}, {}, {})", i & 1, i >> 1 & 1, i >> 2)).collect());
+    let indices = list(faces.iter().flatten().map(|i| i.to_string()).collect());
+    let colours = list((0..6).map(|i| format!("({}, 0, 1)", f64::from(i) / 8.0)).collect());
+    let uvs = list((0..6).map(|_| "(0, 0), (1, 0), (1, 1), (0, 1)".to_owned()).collect());
+    let text = |rule: &str| {
+        format!(
+            "#usda 1.0\ndef Mesh \"cube\" {{\nint[] faceVertexCounts = [4, 4, 4, 4, 4, 4]\nint[] faceVertexIndices = [{indices}]\n\
+             point3f[] points = [{points}]\ncolor3f[] primvars:displayColor = [{colours}] (interpolation = \"uniform\")\n\
+             texCoord2f[] primvars:st = [{uvs}] (interpolation = \"faceVarying\")\nuniform token faceVaryingLinearInterpolation = \
+             \"{rule}\"\n}}\n"
+        )
+    };
+    for (rule, least) in [("cornersPlus1", 0.0f32), ("none", 0.05)] {
+        let scene = read_text("usd", text(rule)).unwrap();
+        let mesh = &scene.objects[0].mesh;
+        assert!(scene.notes.is_empty() && mesh.triangles.len() > 100, "{:?}", scene.notes);
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|i| mesh.vertex_kd[i as usize].r);
+            assert!(a == b && b == c && (a * 8.0).fract() == 0.0, "{a} {b} {c}");
+        }
+        let reach = mesh.uvs.iter().fold(1.0f32, |least, uv| least.min(uv.x + uv.y));
+        assert!((reach - least).abs() < 1e-6 || rule == "none" && reach > least, "{rule}: {reach}");
+    }
+}
