@@ -27,3 +27,27 @@ pub(crate) fn has_alpha(texture: &Texture) -> bool {
         Texels::Formula(_) => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Rgb;
+    use bilux_scene::texture::Image;
+    use std::sync::Arc;
+
+    /// A picture with an alpha is as opaque as that; one without is as opaque as it is bright, unless it is the picture of the
+    /// colours, as on a paper box whose exporter calls every material transparent.
+    #[test]
+    fn the_picture_of_the_colours_is_opaque_unless_it_has_an_alpha() {
+        let picture = |alpha: f32| {
+            let texels = Texels::Floats { colours: vec![Rgb::grey(0.2); 2], alpha: vec![1.0, alpha] };
+            Texture::of("box", Arc::new(Image { width: 2, height: 1, texels }), false)
+        };
+        let channel =
+            |alpha, is_of_colours| opacity(picture(alpha), is_of_colours).map(|t| t.channel.unwrap());
+        assert_eq!(channel(0.5, true), Some(Channel::A));
+        assert_eq!(channel(0.5, false), Some(Channel::A));
+        assert_eq!(channel(1.0, false), Some(Channel::G));
+        assert_eq!(channel(1.0, true), None);
+    }
+}

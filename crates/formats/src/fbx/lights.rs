@@ -1,10 +1,10 @@
 //! Lights, which shine along the -y axis of their node.
 //!
 //! The format has no photometric units. An intensity of 100 lights a white surface that faces the lamp to white, in the
-//! programs that it comes from: an irradiance of π. Blender writes watts times 100 instead.
+//! programs that it comes from: an irradiance of π. Blender writes watts times 100 instead, since 2.80.
 
 use super::attributes::{self, Attribute};
-use super::document::{Properties, display_name};
+use super::document::{Properties, Settings, display_name};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use crate::sink::Sink;
@@ -28,7 +28,9 @@ struct Lamp<'p> {
     intensity: f64,
     decay: i64,
     unit: f64,
-    is_of_blender: bool,
+    /// The distance in metres up to which quadratic decay does not set in.
+    reach: f64,
+    is_in_watts: bool,
     radius: f32,
     properties: &'p Properties<'p, 'p>,
 }
@@ -57,7 +59,7 @@ pub(super) fn place(
         sink.oddities.note("a light's node has a scale of zero: left out", || at);
         return;
     };
-    let is_of_blender = document.settings.is_of_blender;
+    let Settings { is_of_blender, lamps_have_reach, unit, .. } = document.settings;
     let [r, g, b] = properties.vector("Color").unwrap_or(DVec3::ONE).to_array().map(|c| c.max(0.0) as f32);
     let colour = Rgb::new(r, g, b);
     let lamp = Lamp {
@@ -68,8 +70,9 @@ pub(super) fn place(
         colour: if is_of_blender { colour } else { colour.map(srgb_decode) },
         intensity,
         decay: properties.integer("DecayType").unwrap_or(NONE),
-        unit: document.settings.unit,
-        is_of_blender,
+        unit,
+        reach: if lamps_have_reach { number("DecayStart", 30.0).max(1e-6) * unit } else { unit },
+        is_in_watts: is_of_blender && !lamps_have_reach,
         radius,
         properties: &properties,
     };
@@ -88,7 +91,7 @@ pub(super) fn place(
 
 impl Lamp<'_> {
     fn directional(&self) -> Spec {
-        let irradiance = if self.is_of_blender { self.intensity } else { PI * self.intensity };
+        let irradiance = if self.is_in_watts { self.intensity } else { PI * self.intensity };
         Spec::new(&self.name, "directional")
             .with("direction", self.forward.as_vec3())
             .with("irradiance", self.colour * irradiance as f32)
@@ -97,13 +100,13 @@ impl Lamp<'_> {
     /// Its intensity in W/sr. Light that does not become weaker with the square of the distance is as bright as stated in
     /// the middle of the scene.
     fn power(&self, middle: DVec3, sink: &mut Sink) -> Rgb {
-        if self.is_of_blender {
+        if self.is_in_watts {
             return self.colour * (self.intensity / (4.0 * PI)) as f32;
         }
         let metres = (middle - self.position).length().max(1e-6);
         let units = metres / self.unit;
         if self.decay == 2 {
-            return self.colour * (PI * self.intensity * self.unit * self.unit) as f32;
+            return self.colour * (PI * self.intensity * self.reach * self.reach).min(1e12) as f32;
         }
         let what = "a light without quadratic decay has it here, and is as bright as stated in the middle of the scene";
         sink.oddities.note(what, || self.at.clone());
@@ -153,7 +156,7 @@ impl Lamp<'_> {
         }
         // Its front is where the first edge times the second points.
         let (u, v) = if u.cross(v).dot(self.forward) >= 0.0 { (u, v) } else { (v, u) };
-        let radiance = match self.is_of_blender {
+        let radiance = match self.is_in_watts {
             true => self.colour * (self.intensity / (PI * area)) as f32,
             false => self.power(middle, sink) * (1.0 / area) as f32,
         };

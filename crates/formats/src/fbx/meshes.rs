@@ -6,12 +6,14 @@ use super::geometry::{self, layers_named};
 use super::graph::{Graph, Placed};
 use super::materials::{Materials, Worn};
 use super::posed::Posed;
+use super::subdivision;
 use super::tree::{Node, Value};
 use crate::FormatError;
 use crate::flat;
 use crate::polygon_mesh::{Part, Workshop, parts};
 use crate::reading::Reading;
 use crate::sink::Sink;
+use crate::subdivision::{Cage, PendingCage};
 use bilux_math::DMat4;
 use bilux_scene::Object;
 use std::collections::{HashMap, HashSet};
@@ -128,6 +130,13 @@ impl<'d> Meshes<'d> {
         let made = match geometry::read(object.node, display_name(object.name), has_second, &mut workshop)? {
             Some(mut geometry) => {
                 deformers.apply(&mut geometry, placed, posed, graph, &mut workshop)?;
+                if subdivision::is_smooth(object.node) {
+                    if !reading.options.whole_movement {
+                        let (cage, materials) = subdivision::cage(object.node, &geometry, &mut workshop)?;
+                        return Ok(waiting(cage, materials, &geometry.name, object.node, reading));
+                    }
+                    workshop.oddities.not_shown("subdivision of meshes that move", || object.node.at());
+                }
                 geometry.add_normals(&mut workshop, document.file())?;
                 parts(geometry, &mut workshop, document.file())?
             }
@@ -138,14 +147,21 @@ impl<'d> Meshes<'d> {
                 Vec::new()
             }
         };
-        if object.node.child_value("Smoothness").and_then(Value::integer).is_some_and(|kind| kind > 0) {
-            workshop.oddities.not_shown("subdivision of meshes", || object.node.at());
-        }
         // What is left of all that was needed meanwhile.
         let kept: u64 = made.iter().map(|part| part.mesh.size() + size_of::<Part>() as u64).sum();
         reading.budget.release((reading.budget.spent() - spent).saturating_sub(kept));
         Ok(made)
     }
+}
+
+/// The parts of a mesh whose cage is refined when the whole scene is known.
+fn waiting(cage: Cage, materials: Vec<usize>, name: &str, node: Node, reading: &mut Reading) -> Vec<Part> {
+    let pending = PendingCage::new(cage, materials.iter().map(|_| name.to_owned()), node.at());
+    let parts = materials.into_iter().enumerate();
+    let parts = parts.map(|(group, material)| Part { mesh: pending.mesh(group).clone(), material });
+    let parts = parts.collect();
+    reading.cages.push(pending);
+    parts
 }
 
 /// The materials of a node, and before version 7 its textures.

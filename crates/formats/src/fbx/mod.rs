@@ -12,6 +12,7 @@ mod materials;
 mod meshes;
 mod posed;
 mod reader;
+mod subdivision;
 mod transform;
 mod tree;
 

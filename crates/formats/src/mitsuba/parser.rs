@@ -325,7 +325,7 @@ impl Parser<'_, '_> {
                 let text = child.attribute(name);
                 text.map(|text| variables.borrow_mut().replaced(text, &|| place.clone())).transpose()
             };
-            match step(word, &attribute, &at)? {
+            match step(word, &attribute, file.version.is_old(), &at)? {
                 Some(step) => matrix = step * matrix,
                 None => {
                     let known = ["translate", "rotate", "scale", "matrix", "lookat"];

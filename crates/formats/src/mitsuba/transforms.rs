@@ -4,7 +4,8 @@ use super::values::{numbers, numbers_of};
 use crate::FormatError;
 use crate::placement::{look_at, rotation};
 use bilux_math::motion::{Motion, MotionKey};
-use bilux_math::{DMat4, DVec3, Transform};
+use bilux_math::transcendental::sin_cos_f64;
+use bilux_math::{DMat3, DMat4, DVec3, Transform};
 use bilux_scene::Span;
 
 /// A transform at one time or at several, in order of time.
@@ -52,10 +53,11 @@ impl Default for Placement {
     }
 }
 
-/// The matrix of a step; `attribute` gives the attributes of its element.
+/// The matrix of a step; `attribute` gives the attributes of its element. Before version 2 the axis of a rotation is normalised.
 pub(super) fn step(
     word: &str,
     attribute: &dyn Fn(&str) -> Result<Option<String>, FormatError>,
+    is_old: bool,
     at: &Span,
 ) -> Result<Option<DMat4>, FormatError> {
     let vector = |default: f64| triple(attribute, default, at);
@@ -68,7 +70,9 @@ pub(super) fn step(
         "scale" => DMat4::from_scale(vector(1.0)?),
         "rotate" => {
             let angle = attribute("angle")?.map(|text| numbers_of::<1>(&text, "angle", at)).transpose()?;
-            match rotation(angle.map_or(0.0, |[angle]| angle), vector(0.0)?) {
+            let (angle, axis) = (angle.map_or(0.0, |[angle]| angle), vector(0.0)?);
+            match rotation(angle, axis) {
+                Some(_) if !is_old && (axis.length() - 1.0).abs() > 1e-4 => about(axis, angle),
                 Some(matrix) => matrix,
                 None => return fail("this rotation has no axis: give x, y or z"),
             }
@@ -95,6 +99,13 @@ pub(super) fn step(
         _ => return Ok(None),
     };
     if matrix.is_finite() { Ok(Some(matrix)) } else { fail("this transform overflows") }
+}
+
+/// What Mitsuba's formula for a rotation gives for an axis that is not of length 1: it also scales and skews.
+fn about(axis: DVec3, degrees: f64) -> DMat4 {
+    let (sin, cos) = sin_cos_f64((degrees % 360.0).to_radians());
+    let column = |e: DVec3| e * cos + axis * (axis.dot(e) * (1.0 - cos)) + axis.cross(e) * sin;
+    DMat4::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)))
 }
 
 /// x, y and z as attributes of their own, or as one value, which may be a single number.

@@ -87,7 +87,7 @@ impl PolygonMesh {
     }
 
     /// The number of the material of each polygon; a single one if all have the same.
-    pub(super) fn materials_of_faces(&self) -> Vec<i32> {
+    pub(crate) fn materials_of_faces(&self) -> Vec<i32> {
         let of = |face: usize| {
             let (first, corner) =
                 (self.polygons.start(face), self.polygons.corners.get(self.polygons.start(face)));

@@ -299,6 +299,27 @@ fn what_cannot_be_read_says_where_and_why() {
     let said = warnings(&odd);
     assert!(said.contains("'radios' of the shape 'sphere' is not used; did you mean 'radius'?"), "{said}");
     assert!(said.contains("more than the picture shows: the shape 'sdfgrid'"), "{said}");
+    let grey =
+        scene("<shape type=\"sphere\"><bsdf type=\"difuse\"><float name=\"x\" value=\"1\"/></bsdf></shape>");
+    assert_eq!(grey.materials[grey.objects[0].material].number("reflectance"), Some(0.5));
+    let what = "a material is grey: there is no type 'difuse' of bsdf; did you mean 'diffuse'?";
+    assert!(warnings(&grey).contains(what), "{}", warnings(&grey));
+}
+
+/// The numbers are those of `ScalarTransform4f().rotate([0, 1, 1], 15)` of Mitsuba 3.9.1; version 0.5 has a quarter turn about the diagonal.
+#[test]
+fn axes_of_rotations_are_not_normalised_since_version_2() {
+    let along_x = |version: &str, angle: f32| {
+        let text = format!(
+            "<scene version=\"{version}\"><shape type=\"cube\"><transform name=\"to_world\"><rotate y=\"1\" z=\"1\" angle=\"{angle}\"/></transform></shape></scene>"
+        );
+        let text = if version == "0.5.0" { text.replace("to_world", "toWorld") } else { text };
+        let scene = read_bytes(text.as_bytes(), "", None, "a.xml", &ReadOptions::default()).unwrap();
+        scene.objects[0].motion.at(0.0).vector(Vec3::X)
+    };
+    let near = |a: Vec3, b: [f32; 3]| assert!((a - Vec3::from(b)).length() < 1e-6, "{a}");
+    near(along_x("3.0.0", 15.0), [0.965_925_8, 0.258_819_04, -0.258_819_04]);
+    near(along_x("0.5.0", 90.0), [0.0, 0.5f32.sqrt(), -0.5f32.sqrt()]);
 }
 
 #[test]

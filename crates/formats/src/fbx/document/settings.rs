@@ -22,6 +22,8 @@ pub(in crate::fbx) struct Settings {
     pub(in crate::fbx) creator: String,
     /// True for files that Blender wrote: its colours are linear.
     pub(in crate::fbx) is_of_blender: bool,
+    /// Its lamps are as bright as stated up to a distance, and are not in watts: those of Blender before 2.80.
+    pub(in crate::fbx) lamps_have_reach: bool,
 }
 
 impl Settings {
@@ -39,7 +41,8 @@ impl Settings {
             to_world,
             unit,
             ticks: ticks(root),
-            is_of_blender: creators(root).any(|creator| creator.starts_with(b"Blender")),
+            is_of_blender: creators(root).any(is_blender),
+            lamps_have_reach: creators(root).any(|creator| is_blender(creator) && is_before_280(creator)),
             creator,
         }
     }
@@ -65,6 +68,19 @@ fn ticks(root: Node) -> f64 {
         Some(definition) if definition != 127 && version.is_some_and(|version| version >= 1004) => NEW_TICKS,
         _ => TICKS,
     }
+}
+
+fn is_blender(creator: &[u8]) -> bool {
+    creator.starts_with(b"Blender")
+}
+
+/// True if the version in a name like `Blender (stable FBX IO) - 2.76 (sub 0) - 3.6.2` is one before 2.80.
+fn is_before_280(creator: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(creator);
+    let version = text.split(" - ").nth(1).unwrap_or_default();
+    let mut numbers = version.split(|c: char| !c.is_ascii_digit()).map(|number| number.parse::<u32>().ok());
+    let version = numbers.next().flatten().zip(numbers.next().flatten());
+    version.is_some_and(|version| version < (2, 80))
 }
 
 /// What the file says of the program that wrote it, in two places.

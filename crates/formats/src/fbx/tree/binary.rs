@@ -22,6 +22,12 @@ pub(super) struct Header {
 impl Header {
     pub(super) fn read(bytes: &[u8], places: &Places) -> Result<Header, FormatError> {
         let Some(header) = bytes.get(..HEADER) else { return Err(cut_off(places, bytes.len())) };
+        // Before the mark there is a zero.
+        if header[20] == b' ' {
+            let message = "the zeros in this file were replaced by spaces, by a program that took it for text: it is damaged, copy it \
+                           again in binary mode";
+            return Err(FormatError::malformed(message, places.whole()));
+        }
         let version = [header[23], header[24], header[25], header[26]];
         let is_big_endian = header[22] == 1;
         let version = if is_big_endian { u32::from_be_bytes(version) } else { u32::from_le_bytes(version) };

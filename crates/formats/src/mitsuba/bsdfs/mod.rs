@@ -57,7 +57,15 @@ const BSDFS: &[(&str, Make)] = &[
 
 /// The material of a plugin; `None` for a boundary that is invisible.
 pub(super) fn material(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Option<Spec>, FormatError> {
-    let make = row(plugin, BSDFS)?;
+    let make = match row(plugin, BSDFS) {
+        Ok(make) => *make,
+        Err(error) => {
+            let (said, place) = (error.to_string(), format!("{}: ", plugin.at));
+            let what = format!("a material is grey: {}", said.strip_prefix(&place).unwrap_or(&said));
+            maker.note(&what, &plugin.at);
+            plain::grey
+        }
+    };
     let made = maker.within(plugin, |maker| make(maker, plugin))?;
     plugin.report_unused(&mut maker.oddities);
     Ok(made.map(|spec| {

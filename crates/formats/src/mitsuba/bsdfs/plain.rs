@@ -46,6 +46,11 @@ pub(super) fn filter(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>,
 /// What cannot be described here: grey.
 pub(super) fn not_shown(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     maker.not_shown(plugin);
+    grey(maker, plugin)
+}
+
+/// A grey that uses no property.
+pub(super) fn grey(_: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     plugin.properties.iter().for_each(|property| property.used.set(true));
     Ok(Some(Spec::new("", "diffuse").with("reflectance", 0.5f32)))
 }

@@ -61,6 +61,14 @@ fn arrays_that_lie_are_refused_before_memory_is_taken() {
     assert!(zipped(&[0; 1 << 16]).len() < 200);
 }
 
+/// As version control does to binary files that it takes for text.
+#[test]
+fn zeros_that_became_spaces_are_named() {
+    let bytes: Vec<u8> =
+        binary(7400, true, &placed(vec![])).iter().map(|&byte| if byte == 0 { b' ' } else { byte }).collect();
+    assert!(refused(&bytes).contains("the zeros in this file were replaced by spaces"));
+}
+
 #[test]
 fn a_million_nested_nodes_are_refused() {
     let text = format!("; FBX 7.4.0 project file\n{}", "a: {".repeat(1_000_000));

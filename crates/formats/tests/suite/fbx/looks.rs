@@ -122,6 +122,15 @@ fn lights_shine_down_their_node_as_bright_as_their_programs_show_them() {
         ("point", Some(Rgb::new(2.0 * PI, 0.0, 0.0)))
     );
     assert_eq!(point.vector("position"), Some(Vec3::new(0.0, 0.0, 5.0)));
+    // Blender's are in watts since 2.80; before, they are as bright as stated up to a distance.
+    for (creator, expected) in [("2.76 (sub 0) - 3.6.2", PI * 400.0), ("4.4.1 - 5.13.0", 1.0 / (4.0 * PI))] {
+        let list = vec![p("Intensity", &[100.0]), p("DecayType", &[2.0]), p("DecayStart", &[20.0])];
+        let attribute = object("NodeAttribute", 6, "", "Light", vec![properties(list)]);
+        let mut nodes = with(vec![attribute, model(7, "lamp", vec![])], vec![link(6, 7, ""), link(7, 0, "")]);
+        nodes.push(n("Creator", vec![text(&format!("Blender (stable FBX IO) - {creator}"))], vec![]));
+        let found = read_all(&nodes).lights[0].colour("intensity").unwrap().r;
+        assert!((found / expected - 1.0).abs() < 1e-5, "{creator}: {found}");
+    }
     // The middle of the quad is at (0.5, 1, 0), so the distance² is 26.25.
     let constant = light(0.0, vec![]).colour("intensity").unwrap().r;
     assert!((constant - 2.0 * PI * 26.25).abs() < 1e-3, "{constant}");

@@ -120,3 +120,40 @@ fn arrays_may_be_of_any_type() {
     mesh.children[1].values = vec![V::Longs(vec![0, 1, 2, -4])];
     assert_eq!(read_all(&nodes).objects[0].mesh, read_all(&placed(vec![])).objects[0].mesh);
 }
+
+/// The corner of a cube whose edges are two long ends at a half: (9 v + 4 Σ neighbours + Σ diagonals) / 24. With all edges sharp, the
+/// cube stays as it is.
+#[test]
+fn subdivision_surfaces_are_smooth_but_for_creases() {
+    let cube = |smoothness: i32, crease: f64| {
+        let corners =
+            (0..8).flat_map(|i| [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 })).collect();
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let indices = faces.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, !*d]).collect();
+        let creases = n("EdgeCrease", vec![V::Doubles(vec![crease; 24])], vec![]);
+        let mesh = object(
+            "Geometry",
+            1,
+            "cube",
+            "Mesh",
+            vec![
+                n("Smoothness", vec![V::Int(smoothness)], vec![]),
+                n("Vertices", vec![V::Doubles(corners)], vec![]),
+                n("PolygonVertexIndex", vec![V::Ints(indices)], vec![]),
+                n("Edges", vec![V::Ints((0..24).collect())], vec![]),
+                n("LayerElementEdgeCrease", vec![V::Int(0)], vec![creases]),
+            ],
+        );
+        let list = vec![p("UnitScaleFactor", &[100.0])];
+        let scene =
+            read_all(&file(list, vec![mesh, model(2, "node", vec![])], vec![link(1, 2, ""), link(2, 0, "")]));
+        let positions = &scene.objects[0].mesh.positions;
+        let furthest = positions.iter().copied().max_by(|a, b| a.element_sum().total_cmp(&b.element_sum()));
+        (furthest.unwrap(), scene.objects[0].mesh.triangles.len())
+    };
+    assert_eq!(cube(0, 0.0), (Vec3::ONE, 12));
+    let (corner, triangles) = cube(2, 0.0);
+    near(corner, [0.5; 3]);
+    assert!(triangles > 1000);
+    near(cube(1, 1.0).0, [1.0; 3]);
+}
