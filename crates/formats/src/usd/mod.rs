@@ -59,7 +59,8 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["usd", "usda"],
     capabilities: CAPABILITIES,
-    sniff: |bytes| usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)),
+    // A file of this name may also be a crate file.
+    sniff: |bytes| usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)) || bytes.starts_with(usdc::MAGIC),
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Binary(read::read)),
     write: Some(write::write),
