@@ -103,9 +103,16 @@ fn check_sizes(bytes: &[u8], header: &Header, record: &[u8], vlr: &LazVlr) -> Op
         _ => 0,
     };
     let layers: usize = vlr.items().iter().map(layers).sum();
+    if layers == 0 {
+        return Some(16 * chunks as u64);
+    }
+    let mut from = Cursor::new(bytes);
+    from.set_position(header.points as u64);
+    let table = guarded_decoding(|| laz::laszip::ChunkTable::read_from(&mut from, vlr).ok()).flatten()?;
+    let mut counts = (&table).into_iter().map(|chunk| chunk.point_count);
+    // The decompressor goes from chunk to chunk by the sizes of the layers, whatever sizes the table states.
     let (mut largest, mut start, mut left) = (0u64, header.points + 8, header.count);
-    // The decompressor goes from chunk to chunk by these sizes, whatever the table says.
-    while layers > 0 && left > 0 {
+    while left > 0 {
         let counted = start.checked_add(header.record)?;
         let sizes = bytes.get(counted + 4..)?.get(..4 * layers)?;
         let total: u64 = (0..layers).map(|layer| u64::from(u32_at(sizes, 4 * layer))).sum();
@@ -114,8 +121,13 @@ fn check_sizes(bytes: &[u8], header: &Header, record: &[u8], vlr: &LazVlr) -> Op
             return None;
         }
         largest = largest.max(total);
-        let held = if vlr.uses_variable_size_chunks() { u32_at(bytes, counted) } else { vlr.chunk_size() };
-        left = left.saturating_sub(u64::from(held).max(1));
+        let held = if vlr.uses_variable_size_chunks() {
+            // It may go by either of the two counts.
+            u64::from(u32_at(bytes, counted)).min(counts.next()?)
+        } else {
+            u64::from(vlr.chunk_size())
+        };
+        left = left.saturating_sub(held.max(1));
     }
     Some(16 * chunks as u64 + 2 * largest)
 }
