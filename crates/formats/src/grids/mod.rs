@@ -10,7 +10,7 @@ mod vol;
 
 pub(crate) use bytes::Bytes;
 pub(crate) use file::file_of;
-pub(crate) use model::ENTRY;
+pub(crate) use model::{ENTRY, box_of};
 pub(crate) use sparse::{LeafMask, LeafValues, Placed, Sparse};
 
 use crate::budget::Budget;

@@ -101,7 +101,7 @@ pub(crate) fn densest_way(grid: &Grid) -> f32 {
 }
 
 /// A box with its faces outwards.
-fn box_of(bounds: &Aabb, to_object: &Transform) -> Mesh {
+pub(crate) fn box_of(bounds: &Aabb, to_object: &Transform) -> Mesh {
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let corner = |i: usize| {

@@ -120,10 +120,21 @@ impl Layer<'_> {
         next
     }
 
+    /// The prim with an absolute path.
+    pub(super) fn named(&self, path: &str) -> Option<u32> {
+        let mut names = path.strip_prefix('/')?.split('/').filter(|name| !name.is_empty());
+        names.try_fold(0, |prim, name| self.by_name.get(&(prim, name.into())).copied())
+    }
+
     /// Where a prim is.
     pub(super) fn at(&self, prim: u32) -> Span {
         let (line, column) = self.prims[prim as usize].at;
         Span { file: self.name.clone(), line, column }
+    }
+
+    /// A finite number of the layer's metadata.
+    pub(super) fn root_number(&self, key: &str) -> Option<f64> {
+        self.root().fields.number(key).filter(|x| x.is_finite())
     }
 
     /// The time codes in a second.

@@ -26,6 +26,8 @@ mod transforms;
 mod usda;
 mod usdc;
 mod value;
+mod volumes;
+mod wearing;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
@@ -46,6 +48,7 @@ const CAPABILITIES: &[&str] = &[
     "moved textures",
     "cameras",
     "lights",
+    "grids",
     "animation",
     "variants",
 ];

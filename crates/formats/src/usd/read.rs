@@ -1,6 +1,7 @@
 //! From bytes to a scene.
 
 use super::composition::{Layers, compose};
+use super::layer::Layer;
 use super::scene::Scene;
 use super::skeletons;
 use super::stage::Stage;
@@ -16,12 +17,16 @@ const MOMENTS: u32 = 8;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut layers = Layers::new(reading, source.bytes, source.name, source.folder)?;
+    let (moments, length) = moments(&layers.all[0], layers.reading.options.time);
+    let needed = if layers.reading.options.whole_movement { moments.len() } else { 1 };
+    layers.moments = moments[..needed].to_vec();
     let (prims, variants) = compose(&mut layers)?;
     let mut sink = Sink::for_bare_files();
     sink.oddities = std::mem::take(&mut layers.oddities);
     let mut stage = Stage::new(layers.all, prims);
     check_variant(reading, &variants, &stage)?;
-    let (moments, seconds) = times(&stage, reading.options.time);
+    let moves = (0..stage.prims.len() as u32).any(|prim| stage.varies(prim));
+    let seconds = if moves { length } else { 0.0 };
     stage.time = moments[0];
     let (animations, chosen) = skeletons::playing(&stage, seconds, reading.options.animation.as_deref())?;
     stage.animation = chosen;
@@ -61,21 +66,23 @@ fn movement(reading: &mut Reading, mut stage: Stage, moments: &[f64]) -> Result<
     Ok(all)
 }
 
-/// The time code that is shown, those of the whole animation, and how long that is, in seconds.
-fn times(stage: &Stage, time: f32) -> (Vec<f64>, f32) {
-    let rate = stage.layers[0].time_codes_per_second();
-    let start = stage.root_number("startTimeCode");
-    let end = stage.root_number("endTimeCode");
-    let first = start.unwrap_or(0.0);
-    let moves = || (0..stage.prims.len() as u32).any(|prim| stage.varies(prim));
-    let seconds = match end {
-        Some(end) if end > first && moves() => ((end - first) / rate) as f32,
+/// The time code that is shown, those of the whole animation if there is one, and how long that is, in seconds.
+fn moments(root: &Layer, time: f32) -> (Vec<f64>, f32) {
+    let rate = if stands_still(root) { 0.0 } else { root.time_codes_per_second() };
+    let first = root.root_number("startTimeCode").unwrap_or(0.0);
+    let seconds = match root.root_number("endTimeCode") {
+        Some(end) if end > first && rate > 0.0 => ((end - first) / rate) as f32,
         _ => 0.0,
     };
     let mut moments = vec![first + f64::from(time) * rate];
     let moment = |i: u32| first + f64::from(seconds) * rate * f64::from(i) / f64::from(MOMENTS);
     moments.extend((0..=MOMENTS).map(moment));
     (moments, seconds)
+}
+
+/// True if no time code is ever reached: OpenUSD then shows all times as the first.
+fn stands_still(root: &Layer) -> bool {
+    root.root_number("timeCodesPerSecond") == Some(0.0)
 }
 
 /// Refuses a variant that no prim has.
@@ -97,6 +104,9 @@ fn check_variant(reading: &Reading, known: &[String], stage: &Stage) -> Result<(
 fn describe(stage: &Stage, sink: &mut Sink) {
     let fields = &stage.layers[0].root().fields;
     sink.scene.up = UpHint::Is(if stage.is_z_up() { Axis::Z } else { Axis::Y });
+    if stands_still(&stage.layers[0]) {
+        sink.oddities.note("timeCodesPerSecond is 0: nothing moves", || stage.layers[0].at(0));
+    }
     let unit = fields.number("metersPerUnit");
     // Centimetres are what files without a unit are in.
     sink.scene.unit = unit.unwrap_or(0.01);

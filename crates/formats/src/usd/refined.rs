@@ -14,7 +14,7 @@ use bilux_math::Vec3;
 const SHARPEST: f32 = 10.0;
 
 /// The parts of a subdivision surface, one for each subset and one for all other faces; they are refined when the whole
-/// scene is known. `None` if the mesh is no such surface, or has normals of its own, which only polygons can have.
+/// scene is known. `None` if the mesh is no such surface, or does not say so while it has normals, which only polygons have.
 pub(super) fn parts(
     stage: &Stage,
     prim: u32,
@@ -24,9 +24,13 @@ pub(super) fn parts(
     rest: &Worn,
     scene: &mut Context,
 ) -> Result<Option<Vec<Part>>, FormatError> {
-    let Some(scheme) = subdivision.scheme.refined().filter(|_| !polygons.has_normals) else {
+    let is_meant = !polygons.has_normals || subdivision.is_stated || subdivision.has_creases();
+    let Some(scheme) = subdivision.scheme.refined().filter(|_| is_meant) else {
         return Ok(None);
     };
+    if polygons.has_normals {
+        scene.sink.oddities.not_used("normals of subdivision surfaces", || stage.at(prim));
+    }
     let worn: Vec<&Worn> = subsets.iter().map(|subset| &subset.worn).chain([rest]).collect();
     let file = stage.layers[0].name.clone();
     let bytes = polygons.points.len() * 48 + polygons.corners.len() * 200 + polygons.ends.len() * 12;

@@ -4,18 +4,17 @@ use super::context::{Context, Worn};
 use super::instancer::Copies;
 use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
 use super::primvars::{Interpolation, Primvar};
-use super::shading::{self, Shaded};
+use super::shading;
 use super::skeletons::{Bent, Binding, Pose, Rig};
 use super::stage::Stage;
 use super::subdivision::Subdivision;
 use super::transforms;
 use super::value::Text;
 use super::{cameras, labels, lights, refined, shapes, strokes};
-use crate::displacement::Moved;
-use crate::reading::{Reading, plain_material};
+use crate::reading::Reading;
 use crate::sink::Sink;
 use crate::{FormatError, flat};
-use bilux_math::{DMat4, Rgb};
+use bilux_math::DMat4;
 use bilux_scene::Object;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -36,17 +35,17 @@ type Key = (Vec<[u64; 4]>, Worn, Vec<usize>, Vec<[u64; 4]>);
 /// A scene while prims are added to it.
 pub(super) struct Scene<'r, 'o> {
     pub(super) context: Context<'r, 'o>,
-    meshes: HashMap<Key, Arc<[Part]>>,
+    pub(super) meshes: HashMap<Key, Arc<[Part]>>,
     /// Of surfaces without a material, by their colours and opacities.
-    plain: HashMap<([u32; 3], u32, bool), usize>,
+    pub(super) plain: HashMap<([u32; 3], u32, bool), usize>,
     /// What prims `Material` are, if something that can be read.
-    materials: HashMap<u32, Option<Worn>>,
+    pub(super) materials: HashMap<u32, Option<Worn>>,
     /// The same by all that is said of them.
-    alike: HashMap<Vec<[u32; 2]>, Option<Worn>>,
+    pub(super) alike: HashMap<Vec<[u32; 2]>, Option<Worn>>,
     /// Skeletons.
     poses: HashMap<u32, Arc<Pose>>,
     /// The prims above the current one.
-    lineage: Vec<u32>,
+    pub(super) lineage: Vec<u32>,
 }
 
 impl<'r, 'o> Scene<'r, 'o> {
@@ -100,11 +99,15 @@ impl<'r, 'o> Scene<'r, 'o> {
                 let world = rig.map_or(state.world, |rig| rig.place(&state.world));
                 self.place(stage, prim, &parts, &world, &state.category)?;
             }
+            "Volume" if is_shown => {
+                let parts = self.volume(stage, prim)?;
+                self.place(stage, prim, &parts, &state.world, &state.category)?;
+            }
             "Camera" => cameras::add(stage, prim, &state.world, &mut self.context)?,
             kind if lights::is_light(kind) && state.is_visible => {
                 lights::add(stage, prim, &state.world, &mut self.context)?;
             }
-            "NurbsPatch" | "TetMesh" | "Volume" | "HermiteCurves" if is_shown => {
+            "NurbsPatch" | "TetMesh" | "HermiteCurves" if is_shown => {
                 let what = format!("prims of type {}", stage.prim(prim).type_name);
                 self.context.sink.oddities.not_shown(&what, || stage.at(prim));
             }
@@ -313,85 +316,5 @@ impl<'r, 'o> Scene<'r, 'o> {
         }
         self.lineage.pop();
         Ok(subsets)
-    }
-
-    /// What a surface wears: what it is bound to, or else its own colour.
-    fn worn(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
-        let Some(material) = shading::bound(stage, prim, &self.lineage) else {
-            return self.plain(stage, prim);
-        };
-        if let Some(known) = self.materials.get(&material) {
-            return known.clone().map_or_else(|| self.plain(stage, prim), Ok);
-        }
-        // Copies of a material have the same opinions.
-        let said = self.said_below(stage, material);
-        if let Some(known) = self.alike.get(&said).cloned() {
-            self.materials.insert(material, known.clone());
-            return known.map_or_else(|| self.plain(stage, prim), Ok);
-        }
-        let Context { reading, sink } = &mut self.context;
-        let shaded = shading::material(stage, material, reading, sink)?;
-        let worn =
-            shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction, displacement }| {
-                let index = sink.scene.add_material(spec);
-                reading.displacements.extend(displacement.map(|map| (Moved::Material(index), map)));
-                Worn { index, uvs, uses_colours, uses_opacities, has_direction }
-            });
-        self.materials.insert(material, worn.clone());
-        self.alike.insert(said, worn.clone());
-        worn.map_or_else(|| self.plain(stage, prim), Ok)
-    }
-
-    /// All opinions about a prim and those below it.
-    fn said_below(&self, stage: &Stage, prim: u32) -> Vec<[u32; 2]> {
-        let (mut all, mut waiting) = (Vec::new(), vec![prim]);
-        while let Some(prim) = waiting.pop() {
-            all.extend(stage.prim(prim).opinions.iter().map(|o| [o.layer, o.prim]));
-            waiting.extend(&stage.prim(prim).children);
-        }
-        all
-    }
-
-    /// The material of a surface with nothing but a colour and an opacity.
-    fn plain(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
-        let budget = &mut self.context.reading.budget;
-        let lineage = std::iter::once(&prim).chain(self.lineage.iter().rev());
-        let constant = Interpolation::Constant;
-        let mut found = [None, None];
-        for (slot, name) in found.iter_mut().zip(["primvars:displayColor", "primvars:displayOpacity"]) {
-            for &at in lineage.clone() {
-                let primvar = Primvar::read(stage, at, name, constant, budget)?;
-                // Of those above it, only what is the same everywhere counts.
-                *slot = primvar.filter(|p| at == prim || p.interpolation == constant);
-                if slot.is_some() {
-                    break;
-                }
-            }
-        }
-        let varies =
-            |primvar: &Option<Primvar>| primvar.as_ref().is_some_and(|p| p.interpolation != constant);
-        let (uses_colours, uses_opacities) = (varies(&found[0]), varies(&found[1]));
-        let colour = match &found[0] {
-            Some(colour) if !uses_colours => Some(colour.values.floats::<3>(0)),
-            _ => None,
-        };
-        let opacity = match &found[1] {
-            Some(opacity) if !uses_opacities => opacity.values.floats::<1>(0)[0].clamp(0.0, 1.0),
-            _ => 1.0,
-        };
-        let key = (colour.unwrap_or([-1.0; 3]).map(f32::to_bits), opacity.to_bits(), uses_colours);
-        let scene = &mut self.context.sink.scene;
-        let index = *self.plain.entry(key).or_insert_with(|| {
-            let mut spec = plain_material(uses_colours, false);
-            if let Some(colour) = colour {
-                "displayColor".clone_into(&mut spec.name);
-                spec.parameters.set("kd", Rgb::from_array(colour).clamp(0.0, 1.0));
-            }
-            if opacity < 1.0 {
-                spec.parameters.set("opacity", opacity);
-            }
-            scene.add_material(spec)
-        });
-        Ok(Worn { index, uses_colours, uses_opacities, ..Worn::default() })
     }
 }

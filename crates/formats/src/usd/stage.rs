@@ -1,6 +1,6 @@
 //! The composed prims and their values at a time.
 
-use super::composition::{Opinion, Prim};
+use super::composition::{Clipped, Opinion, Prim};
 use super::layer::{Layer, PrimSpec, Property};
 use super::list_op::ListOp;
 use super::value::{Array, Numbers, Text, Value};
@@ -51,9 +51,11 @@ impl<'a> Stage<'a> {
 
     /// What all layers say about a prim: equal for prims that are alike.
     pub(super) fn said(&self, prim: u32) -> impl Iterator<Item = [u64; 4]> {
-        self.prim(prim).opinions.iter().map(|o| {
+        let Prim { opinions, clips, .. } = self.prim(prim);
+        let own = opinions.iter().map(|o| {
             [u64::from(o.layer), u64::from(o.prim), o.offset.offset.to_bits(), o.offset.scale.to_bits()]
-        })
+        });
+        own.chain(clips.iter().map(|clipped| [u64::MAX, u64::from(clipped.set.number), 0, 0]))
     }
 
     /// True if some layer says something about a property.
@@ -104,8 +106,17 @@ impl<'a> Stage<'a> {
         name: &str,
         budget: &mut Budget,
     ) -> Result<Option<Found>, FormatError> {
-        for (opinion, property) in self.properties(prim, name) {
+        let Prim { opinions, clips, .. } = self.prim(prim);
+        let mut clips = clips.iter().peekable();
+        for (i, opinion) in opinions.iter().enumerate() {
+            while let Some(clipped) = clips.next_if(|clipped| clipped.stronger <= i) {
+                if let Some(found) = self.in_clip(clipped, name, budget)? {
+                    return Ok((found.value != Value::Blocked).then_some(found));
+                }
+            }
             let layer = opinion.layer;
+            let named = |property: &&Property| &*property.name == name;
+            let Some(property) = self.spec(opinion).properties.iter().find(named) else { continue };
             if let Some(samples) = &property.samples {
                 let time = opinion.offset.inverse(self.time);
                 if let Some(value) = self.sampled(layer, samples, time, holds_turns(name), budget)? {
@@ -117,7 +128,61 @@ impl<'a> Stage<'a> {
                 return Ok((value != Value::Blocked).then_some(Found { value, layer }));
             }
         }
+        for clipped in clips {
+            if let Some(found) = self.in_clip(clipped, name, budget)? {
+                return Ok((found.value != Value::Blocked).then_some(found));
+            }
+        }
         Ok(None)
+    }
+
+    /// The value of an attribute in the clip of the time; where it has none, what the manifest says, if that has the attribute.
+    fn in_clip(
+        &self,
+        clipped: &Clipped,
+        name: &str,
+        budget: &mut Budget,
+    ) -> Result<Option<Found>, FormatError> {
+        let property = |layer: u32| {
+            let file = &self.layers[layer as usize];
+            let prim = file.named(&clipped.path)?;
+            file.prims[prim as usize].properties.iter().find(|property| &*property.name == name)
+        };
+        let stated = match clipped.set.manifest.map(|layer| (layer, property(layer))) {
+            Some((_, None)) => return Ok(None),
+            Some((layer, Some(property))) => Some((layer, property)),
+            None => None,
+        };
+        if let Some(turn) = clipped.set.at(self.time) {
+            let samples = |layer: u32| property(layer).and_then(|property| property.samples.as_ref());
+            let value = |layer: u32, time: f64, budget: &mut Budget| match samples(layer) {
+                Some(samples) => self.sampled(layer, samples, time, holds_turns(name), budget),
+                None => Ok(None),
+            };
+            let [before, after] = match samples(turn.layer) {
+                Some(samples) => self.around(turn.layer, samples, turn.time, budget)?,
+                None => [None; 2],
+            };
+            let layer = turn.layer;
+            let across = turn.next.zip(turn.across(before, after));
+            if let Some(((next, start), (from, part))) = across
+                && let Some(first) = value(layer, from, budget)?
+                && let Some(last) = value(next, start, budget)?
+            {
+                let file = &self.layers[layer as usize].name;
+                let value = mixed(first, &last, part, (holds_turns(name), budget), file)?;
+                return Ok(Some(Found { value, layer }));
+            }
+            if let Some(value) = value(layer, turn.time, budget)? {
+                return Ok(Some(Found { value, layer }));
+            }
+        }
+        let Some((layer, property)) = stated else { return Ok(None) };
+        let value = match &property.value {
+            Some(value) => self.unpacked(layer, value, budget)?,
+            None => Value::Blocked,
+        };
+        Ok(Some(Found { value, layer }))
     }
 
     pub(super) fn value(
@@ -180,11 +245,20 @@ impl<'a> Stage<'a> {
         let Some((last, after)) = after.filter(|_| time > *first) else { return Ok(Some(before)) };
         let after = self.unpacked(layer, after, budget)?;
         let part = (time - first) / (last - first);
-        let value = between(&before, &after, part, budget, &self.layers[layer as usize].name)?;
-        match value {
-            Some(value) if are_turns => Ok(Some(turned(&before, &after, part, value))),
-            value => Ok(Some(value.unwrap_or(before))),
-        }
+        mixed(before, &after, part, (are_turns, budget), &self.layers[layer as usize].name).map(Some)
+    }
+
+    /// The times of the samples before and after one, or at it.
+    fn around(
+        &self,
+        layer: u32,
+        samples: &Value,
+        time: f64,
+        budget: &mut Budget,
+    ) -> Result<[Option<f64>; 2], FormatError> {
+        let Value::Samples(list) = self.unpacked(layer, samples, budget)? else { return Ok([None; 2]) };
+        let next = list.partition_point(|(at, _)| *at <= time);
+        Ok([next.checked_sub(1), Some(next)].map(|i| i.and_then(|i| list.get(i)).map(|(at, _)| *at)))
     }
 
     /// The targets of a relationship, or the connections of an attribute, as paths on the stage.
@@ -209,15 +283,11 @@ impl<'a> Stage<'a> {
         axis.is_some_and(|axis| axis.eq_ignore_ascii_case("z"))
     }
 
-    /// The end of the samples of the first layer's time, if something in the stage moves.
-    pub(super) fn root_number(&self, key: &str) -> Option<f64> {
-        self.layers[0].root().fields.number(key).filter(|x| x.is_finite())
-    }
-
     /// True if an attribute of a prim has samples.
     pub(super) fn varies(&self, prim: u32) -> bool {
-        let opinions = self.prim(prim).opinions.iter();
-        opinions.flat_map(|o| &self.spec(o).properties).any(|property| property.samples.is_some())
+        let Prim { opinions, clips, .. } = self.prim(prim);
+        let has_samples = |property: &Property| property.samples.is_some();
+        !clips.is_empty() || opinions.iter().flat_map(|o| &self.spec(o).properties).any(has_samples)
     }
 }
 
@@ -248,6 +318,20 @@ fn turned(a: &Value, b: &Value, part: f64, linear: Value) -> Value {
         }
         (_, _, linear) => linear,
     }
+}
+
+/// The value between two; the first one where there is none.
+fn mixed(
+    before: Value,
+    after: &Value,
+    part: f64,
+    (are_turns, budget): (bool, &mut Budget),
+    file: &str,
+) -> Result<Value, FormatError> {
+    Ok(match between(&before, after, part, budget, file)? {
+        Some(value) if are_turns => turned(&before, after, part, value),
+        value => value.unwrap_or(before),
+    })
 }
 
 /// The value between two: `None` where the first one holds until the next.

@@ -21,6 +21,8 @@ pub(super) enum Scheme {
 #[derive(Clone, Debug)]
 pub(super) struct Subdivision {
     pub(super) scheme: Scheme,
+    /// The file says so itself: exporters of polygons with normals forget to.
+    pub(super) is_stated: bool,
     /// Vertices of creases, those of one crease after those of another.
     pub(super) crease_indices: Option<Arc<Array>>,
     /// Vertices in each crease.
@@ -48,7 +50,8 @@ impl Scheme {
 
 impl Subdivision {
     pub(super) fn read(stage: &Stage, prim: u32, budget: &mut Budget) -> Result<Subdivision, FormatError> {
-        let scheme = match stage.text(prim, "subdivisionScheme", budget)?.as_deref() {
+        let stated = stage.text(prim, "subdivisionScheme", budget)?;
+        let scheme = match stated.as_deref() {
             Some("none") => Scheme::None,
             Some("loop") => Scheme::Loop,
             Some("bilinear") => Scheme::Bilinear,
@@ -68,6 +71,7 @@ impl Subdivision {
         };
         Ok(Subdivision {
             scheme,
+            is_stated: stated.is_some(),
             crease_indices: list("creaseIndices")?,
             crease_lengths: list("creaseLengths")?,
             crease_sharpnesses: list("creaseSharpnesses")?,

@@ -53,9 +53,11 @@ mod threemf;
 mod threemf_written;
 mod tolerance;
 mod usd;
+mod usd_clips;
 mod usd_materialx;
 mod usd_skeletons;
 mod usd_truth;
+mod usd_volumes;
 mod usd_written;
 mod wrong_files;
 

@@ -115,10 +115,18 @@ fn meshes_of_usd_are_refined_by_their_schemes_and_creases() {
         assert!(outward, "{lines}");
         assert_eq!(warnings(&scene), "", "{lines}");
     }
-    let flat = [
-        "uniform token subdivisionScheme = \"none\"",
-        "normal3f[] normals = [(0, 0, 1)] (interpolation = \"constant\")",
-    ];
+    // Normals count where nothing else says that the mesh is a subdivision surface: exporters of polygons forget to say `none`.
+    let normals = "normal3f[] normals = [(0, 0, 1)] (interpolation = \"constant\")";
+    for lines in [
+        format!("{normals}\nuniform token subdivisionScheme = \"catmullClark\""),
+        format!("{normals}\nint[] cornerIndices = [0]\nfloat[] cornerSharpnesses = [0]"),
+    ] {
+        let scene = usd(&lines);
+        assert!((size(&scene) - round).abs().max_element() < 1e-6, "{lines}: {:?}", size(&scene));
+        assert_eq!(warnings(&scene), "", "{lines}");
+        assert!(scene.notes.iter().any(|note| note.message.contains("normals of subdivision surfaces")));
+    }
+    let flat = ["uniform token subdivisionScheme = \"none\"", normals];
     for lines in flat {
         assert_eq!(
             (size(&usd(lines)).to_array(), usd(lines).objects[0].mesh.triangles.len()),

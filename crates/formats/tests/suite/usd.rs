@@ -102,6 +102,19 @@ fn sublayers_and_references_shift_and_stretch_time() {
     let fast = format!("(timeCodesPerSecond = 48)\n{ball}");
     let top = "(startTimeCode = 10)\ndef \"r\" (payload = @b.usda@</s>) {}";
     assert_eq!(radius(&[("a.usda", top), ("b.usda", &fast)]), 20.0);
+    // Names with @, in the three ways in which they are written.
+    for (name, stated) in
+        [("b@.usda", "@@@b@.usda@@@"), ("b@@@.usda", "@@@b\\@@@.usda@@@"), ("b.usda@@", "@@@b.usda@@@@@")]
+    {
+        let top = format!("(startTimeCode = 10 subLayers = [{stated}])");
+        assert_eq!(radius(&[("a.usda", &top), (name, ball)]), 10.0, "{name}");
+    }
+    // Without time codes in a second, all times are the first. [OpenUSD 25]
+    let stopped = format!("#usda 1.0\n(timeCodesPerSecond = 0 startTimeCode = 10 endTimeCode = 20)\n{ball}");
+    let options = ReadOptions { time: 0.25, ..ReadOptions::default() };
+    let scene = bilux_formats::read_bytes(stopped.as_bytes(), "usda", None, "a.usda", &options).unwrap();
+    assert_eq!(widths(&scene)[0].1 / 2.0, 10.0);
+    assert!(warnings(&scene).contains("timeCodesPerSecond is 0") && !scene.inventory.moves());
 }
 
 #[test]

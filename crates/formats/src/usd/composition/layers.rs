@@ -30,6 +30,10 @@ pub(in crate::usd) struct Layers<'r, 'o, 'b> {
     stack_of: HashMap<u32, u32>,
     /// The places that were brought in for the current prim, and for all.
     pub(super) places: [usize; 2],
+    /// The times of the stage for which clips are opened.
+    pub(in crate::usd) moments: Vec<f64>,
+    /// Sets of clips so far.
+    pub(super) clip_sets: u32,
 }
 
 /// Sublayers of sublayers.
@@ -53,6 +57,8 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
             stacks: Vec::new(),
             stack_of: HashMap::new(),
             places: [0; 2],
+            moments: Vec::new(),
+            clip_sets: 0,
         };
         let layer = layers.parsed(Cow::Borrowed(bytes), name, folder.map(Path::to_owned))?;
         layers.all.push(layer);
@@ -121,6 +127,14 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
                 self.left_out(&error, at);
                 Ok(None)
             }
+        }
+    }
+
+    /// A value that a layer may still hold packed.
+    pub(super) fn unpacked(&mut self, layer: u32, value: Value) -> Result<Value, FormatError> {
+        match (&value, &self.all[layer as usize].packed) {
+            (Value::Packed(packed), Some(file)) => file.unpack(*packed, &mut self.reading.budget),
+            _ => Ok(value),
         }
     }
 

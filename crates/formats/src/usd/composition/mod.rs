@@ -1,6 +1,7 @@
 //! Composition: from layers that refer to each other to one tree of prims.
 
 mod arcs;
+mod clips;
 mod expand;
 mod layers;
 mod node;
@@ -8,6 +9,7 @@ mod packages;
 mod prims;
 mod variants;
 
+pub(super) use clips::Clipped;
 pub(super) use layers::Layers;
 pub(super) use node::Opinion;
 pub(super) use packages::root_of_package;

@@ -1,5 +1,6 @@
 //! The prims of a stage.
 
+use super::clips::{self, Clipped};
 use super::expand::{choose, expand};
 use super::layers::Layers;
 use super::node::{Node, Opinion};
@@ -17,6 +18,8 @@ pub(in crate::usd) struct Prim {
     pub(in crate::usd) opinions: Vec<Opinion>,
     /// Indices of prims.
     pub(in crate::usd) children: Vec<u32>,
+    /// Values that are weaker than some of them, the strongest first.
+    pub(in crate::usd) clips: Vec<Clipped>,
     /// False for classes and for what is only overridden.
     pub(in crate::usd) is_defined: bool,
 }
@@ -32,6 +35,7 @@ pub(in crate::usd) fn compose(layers: &mut Layers) -> Result<(Vec<Prim>, Vec<Str
         path: Text::from(""),
         type_name: Text::default(),
         opinions: root.opinions(),
+        clips: Vec::new(),
         children: Vec::new(),
         is_defined: true,
     });
@@ -81,18 +85,12 @@ impl Composer {
             if field("instanceable") == Some(true) && child.children.iter().any(|arc| !arc.specs.is_empty()) {
                 child.as_instance();
             }
-            let has = |key: &str| {
-                let spec = |o: &Opinion| &layers.all[o.layer as usize].prims[o.prim as usize];
-                opinions.iter().any(|o| spec(o).fields.find(key).is_some())
-            };
-            if has("clips") {
-                let at = layers.all[0].at(0);
-                layers.oddities.not_shown("value clips", || at);
-            }
+            let clips = clips::of(&child, &opinions, &self.prims[parent as usize].clips, layers)?;
+            layers.reading.budget.take::<[Clipped; 2]>(clips.len(), &layers.all[0].name)?;
             let is_defined = self.prims[parent as usize].is_defined && is_defined(&opinions, layers);
             let type_name = type_name(&opinions, layers);
             let path = child.site.path.as_str().into();
-            self.prims.push(Prim { path, type_name, opinions, children: Vec::new(), is_defined });
+            self.prims.push(Prim { path, type_name, opinions, clips, children: Vec::new(), is_defined });
             self.prims[parent as usize].children.push(index);
             self.children(index, &child, depth + 1, layers)?;
         }

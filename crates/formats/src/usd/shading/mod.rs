@@ -10,7 +10,9 @@ mod placing;
 mod preview;
 mod setting;
 mod textures;
+mod volumes;
 
 pub(super) use bindings::{bound, subset_faces};
 pub(super) use draft::Shaded;
 pub(super) use materials::material;
+pub(super) use volumes::{Filling, filling};

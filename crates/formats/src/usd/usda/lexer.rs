@@ -161,12 +161,25 @@ impl<'a> Lexer<'a> {
         Ok(if text.contains('\\') { Cow::Owned(unescaped(&text)) } else { text })
     }
 
-    /// The name of a file, between `@` or `@@@`.
+    /// The name of a file, between `@` or `@@@`; within the latter, `\@@@` is `@@@`, and two more at the end belong to the name.
     pub(super) fn asset(&mut self) -> Result<Cow<'a, str>, FormatError> {
         self.skip();
-        let rest = &self.bytes[self.at..];
-        let mark: &[u8] = if rest.starts_with(b"@@@") { b"@@@" } else { b"@" };
-        self.between(mark, "the name of a file, between @ and @")
+        let Some(body) = self.bytes[self.at..].strip_prefix(b"@@@") else {
+            return self.between(b"@", "the name of a file, between @ and @");
+        };
+        let mut end = 0;
+        loop {
+            match body.get(end..).unwrap_or_default() {
+                [] => return Err(self.error("the name of a file, between @@@ and @@@ has no end")),
+                [b'\\', b'@', b'@', b'@', ..] => end += 4,
+                [b'@', b'@', b'@', ..] => break,
+                _ => end += 1,
+            }
+        }
+        end += body[end + 3..].iter().take(2).take_while(|byte| **byte == b'@').count();
+        self.at += end + 6;
+        let name = String::from_utf8_lossy(&body[..end]);
+        Ok(if name.contains("\\@@@") { Cow::Owned(name.replace("\\@@@", "@@@")) } else { name })
     }
 
     /// A path between `<` and `>`.
