@@ -46,7 +46,7 @@ impl<'d> Meshes<'d> {
     ) -> Result<(), FormatError> {
         let document = posed.document;
         for geometry in geometries(document, placed.model) {
-            let deformers = Deformers::of(geometry, posed);
+            let deformers = Deformers::of(geometry, posed, reading, &mut sink.oddities)?;
             // What bones move is in world space, wherever its node is.
             let world = if deformers.has_skin() { DMat4::IDENTITY } else { placed.world * placed.geometric };
             let parts = match self.parts.get(&geometry).filter(|_| deformers.is_empty()) {
@@ -54,6 +54,7 @@ impl<'d> Meshes<'d> {
                 None => {
                     let made = self.make(geometry, &deformers, placed, posed, graph, reading, sink)?;
                     let made = Arc::new(made);
+                    reading.budget.release(deformers.bytes());
                     if deformers.is_empty() {
                         self.parts.insert(geometry, made.clone());
                     }

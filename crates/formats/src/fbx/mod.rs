@@ -2,6 +2,7 @@
 
 mod animation;
 mod attributes;
+mod caches;
 mod cameras;
 mod deform;
 mod document;

@@ -4,6 +4,7 @@
 mod layer;
 mod mesh;
 mod polygons;
+mod renewed;
 mod weld;
 mod workshop;
 

@@ -21,6 +21,8 @@ use std::collections::HashMap;
 pub(super) struct Pose<'d> {
     pub(super) animated: HashMap<Index, Animated<'d>>,
     pub(super) animations: Vec<Animation>,
+    /// The time in seconds on the clock of the file, on which animations may begin later than at 0.
+    pub(super) seconds: f64,
 }
 
 impl<'d> Pose<'d> {
@@ -48,15 +50,17 @@ impl<'d> Pose<'d> {
                 names.iter().position(|name| Some(name) == active.as_ref()).unwrap_or(0)
             }
         };
-        let mut pose = Pose::default();
+        let mut pose = Pose { seconds: f64::from(time), ..Pose::default() };
         if let Some(clip) = clips.get(chosen) {
             let ticks = clip.begin as f64 + f64::from(time) * document.settings.ticks;
+            pose.seconds = ticks / document.settings.ticks;
             match stacks.get(chosen) {
                 Some(&stack) => layers::play(document, stack, ticks, &mut pose.animated, budget, oddities)?,
                 None => takes::play(document, takes[chosen], ticks, &mut pose.animated, budget, oddities)?,
             }
         }
-        let does_play = !pose.animated.is_empty();
+        let is_cache = |index| document.object(index).kind == b"VertexCacheDeformer";
+        let does_play = !pose.animated.is_empty() || document.indices().any(is_cache);
         for (number, clip) in clips.into_iter().enumerate() {
             let seconds =
                 (clip.end.saturating_sub(clip.begin) as f64 / document.settings.ticks).max(0.0) as f32;

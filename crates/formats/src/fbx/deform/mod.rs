@@ -1,27 +1,37 @@
-//! What deforms meshes: blend shapes, and skins on bones.
+//! What deforms meshes: blend shapes, and skins on bones; or a cache in place of both.
 
 mod shapes;
 mod skin;
 
+use super::caches::Cached;
 use super::document::{Document, Index, display_name};
-
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use crate::FormatError;
-use crate::polygon_mesh::{PolygonMesh, Workshop};
+use crate::oddities::Oddities;
+use crate::polygon_mesh::{Layer, Mapping, PolygonMesh, Workshop};
+use crate::reading::Reading;
 
 /// The deformers of a mesh.
 pub(super) struct Deformers<'d> {
     skins: Vec<Index>,
-    /// Files with the positions of points over time, which are not read.
-    caches: Vec<Index>,
+    cached: Option<Cached>,
     shapes: Vec<shapes::Channel<'d>>,
 }
 
 impl<'d> Deformers<'d> {
     /// Those of a mesh.
-    pub(super) fn of(geometry: Index, posed: &Posed<'d>) -> Deformers<'d> {
+    pub(super) fn of(
+        geometry: Index,
+        posed: &Posed<'d>,
+        reading: &mut Reading,
+        oddities: &mut Oddities,
+    ) -> Result<Deformers<'d>, FormatError> {
         let document = posed.document;
+        let cached = Cached::read(geometry, posed, reading, oddities)?;
+        if cached.is_some() {
+            return Ok(Deformers { skins: Vec::new(), shapes: Vec::new(), cached });
+        }
         let of_kind = |kind: &'static [u8]| {
             let deformers = document.sources_of_class(geometry, "Deformer");
             deformers.filter(move |&index| document.object(index).kind == kind)
@@ -30,15 +40,16 @@ impl<'d> Deformers<'d> {
             of_kind(b"BlendShape").flat_map(|shape| shapes::channels(shape, posed)).collect();
         channels.extend(shapes::old_channels(geometry, posed));
         channels.retain(|channel| channel.percent != 0.0);
-        Deformers {
-            skins: of_kind(b"Skin").collect(),
-            caches: of_kind(b"VertexCacheDeformer").collect(),
-            shapes: channels,
-        }
+        Ok(Deformers { skins: of_kind(b"Skin").collect(), shapes: channels, cached })
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.skins.is_empty() && self.shapes.is_empty()
+        self.skins.is_empty() && self.shapes.is_empty() && self.cached.is_none()
+    }
+
+    /// The memory of what is cached.
+    pub(super) fn bytes(&self) -> u64 {
+        self.cached.as_ref().map_or(0, Cached::bytes)
     }
 
     /// True if a skin moves the mesh to world space.
@@ -55,9 +66,8 @@ impl<'d> Deformers<'d> {
         graph: &Graph,
         workshop: &mut Workshop,
     ) -> Result<(), FormatError> {
-        for &cache in &self.caches {
-            let at = posed.document.object(cache).node;
-            workshop.oddities.not_shown("caches of points", || at.at());
+        if let Some(cached) = &self.cached {
+            return put(cached, geometry, workshop, posed.document.file());
         }
         let mut turns = Vec::new();
         for channel in &self.shapes {
@@ -78,6 +88,25 @@ impl<'d> Deformers<'d> {
         }
         Ok(())
     }
+}
+
+/// Puts a mesh where its cache says.
+fn put(
+    cached: &Cached,
+    geometry: &mut PolygonMesh,
+    workshop: &mut Workshop,
+    file: &str,
+) -> Result<(), FormatError> {
+    geometry.positions.iter_mut().zip(&cached.positions).for_each(|(to, from)| *to = *from);
+    let count = cached.normals.len();
+    if count == 0 {
+        return geometry.renew_normals(workshop, file);
+    }
+    workshop.budget.take_bytes(size_of_val(&cached.normals[..]) as u64, file)?;
+    let is_of_points = count == geometry.positions.len() && count != geometry.polygons.corners.len();
+    let mapping = if is_of_points { Mapping::ByPosition } else { Mapping::ByCorner };
+    geometry.normals = Layer::indexed(cached.normals.clone(), Vec::new(), mapping);
+    Ok(())
 }
 
 /// The names of the skins of a document.

@@ -18,6 +18,7 @@ pub(in crate::fbx) struct Settings {
     pub(in crate::fbx) unit: f64,
     /// Units of time per second.
     pub(in crate::fbx) ticks: f64,
+    pub(in crate::fbx) frames_per_second: f64,
     /// The program that wrote the file; may be empty.
     pub(in crate::fbx) creator: String,
     /// True for files that Blender wrote: its colours are linear.
@@ -41,6 +42,7 @@ impl Settings {
             to_world,
             unit,
             ticks: ticks(root),
+            frames_per_second: frames_per_second(&properties),
             is_of_blender: creators(root).any(is_blender),
             lamps_have_reach: creators(root).any(|creator| is_blender(creator) && is_before_280(creator)),
             creator,
@@ -67,6 +69,29 @@ fn ticks(root: Node) -> f64 {
     match definition.and_then(Value::integer) {
         Some(definition) if definition != 127 && version.is_some_and(|version| version >= 1004) => NEW_TICKS,
         _ => TICKS,
+    }
+}
+
+/// By the number of the SDK's `FbxTime::EMode`.
+fn frames_per_second(properties: &Properties) -> f64 {
+    const NTSC: f64 = 1000.0 / 1001.0;
+    match properties.integer("TimeMode").unwrap_or(0) {
+        1 => 120.0,
+        2 => 100.0,
+        3 => 60.0,
+        4 => 50.0,
+        5 => 48.0,
+        8 | 9 => 30.0 * NTSC,
+        10 => 25.0,
+        11 => 24.0,
+        12 => 1000.0,
+        13 => 24.0 * NTSC,
+        14 => properties.number("CustomFrameRate").filter(|rate| *rate > 0.0).unwrap_or(30.0),
+        15 => 96.0,
+        16 => 72.0,
+        17 => 60.0 * NTSC,
+        18 => 120.0 * NTSC,
+        _ => 30.0,
     }
 }
 

@@ -1,6 +1,7 @@
 //! FBX files, made here by a small writer.
 
 mod broken;
+mod caches;
 mod looks;
 mod meshes;
 mod motion;
