@@ -5,8 +5,8 @@ use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
 use crate::writing::Writing;
 use crate::{
-    FormatError, asc, dae, e57, fbx, gltf, grids, las, mitsuba, native, obj, off, packed, pbrt, ply, stl,
-    threemf, usd, xyz,
+    FormatError, asc, dae, e57, fbx, gltf, grids, las, mitsuba, native, obj, off, packed, pbrt, ply, step,
+    stl, threemf, usd, xyz,
 };
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
@@ -29,6 +29,7 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     ply::ENTRY,
     stl::ENTRY,
     off::ENTRY,
+    step::ENTRY,
     las::ENTRY,
     e57::ENTRY,
     xyz::ENTRY,
@@ -127,10 +128,8 @@ pub(crate) fn extension(path: &Path) -> Option<String> {
 }
 
 /// Extensions of scene formats that other programs read.
-const FOREIGN: &[&str] = &[
-    "3ds", "abc", "blend", "c4d", "iges", "igs", "lwo", "ma", "max", "mb", "skp", "step", "stp", "vrm",
-    "wrl", "x3d",
-];
+const FOREIGN: &[&str] =
+    &["3ds", "abc", "blend", "c4d", "iges", "igs", "lwo", "ma", "max", "mb", "skp", "vrm", "wrl", "x3d"];
 
 pub(crate) fn unknown(
     path: &Path,

@@ -71,6 +71,7 @@ mod sharing;
 mod sink;
 mod spectra;
 mod spellings;
+mod step;
 mod stl;
 mod strokes;
 mod subdivision;

@@ -17,7 +17,6 @@ const FILES: &[(&[u8], &str, bool)] = &[
     (b"<?xml version=\"1.0\"?>\n<svg xmlns=\"a\">", "SVG", true),
     (b"%PDF-1.7\n", "PDF", true),
     (b"BLENDER-v400", "Blender", false),
-    (b"ISO-10303-21;\nHEADER;", "STEP", false),
     (b"MM\x40\0\0\0\x02\0\x0a\0\0\0", "3D Studio", false),
     (b"#VRML V2.0 utf8\n", "VRML", false),
     (b"Ogawa\xff\0\x01", "Alembic", false),

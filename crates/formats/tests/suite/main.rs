@@ -47,6 +47,8 @@ mod ply_types;
 mod public_reports;
 mod round_trips;
 mod shared_files;
+mod step;
+mod step_truth;
 mod stl;
 mod subdivision;
 mod threemf;

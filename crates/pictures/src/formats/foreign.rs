@@ -81,7 +81,7 @@ pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
     scene("an AMF model", |b| has_root(b, b"<amf")),
     other("a Mitsuba scene", "give it a name that ends in .xml", |b| has_root(b, b"<scene")),
     scene("a VRML scene", |b| b.starts_with(b"#VRML")),
-    scene("a STEP model of a CAD program", |b| b.starts_with(b"ISO-10303-21")),
+    other("a STEP model", "give it a name that ends in .step", |b| b.starts_with(b"ISO-10303-21")),
     scene("a 3D Studio scene (3DS)", |b| b.starts_with(b"MM") && b.get(6..8) == Some(b"\x02\0")),
     scene("an Alembic scene", |b| b.starts_with(b"Ogawa")),
     scene("a LightWave object", |b| {

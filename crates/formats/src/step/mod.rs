@@ -1,0 +1,37 @@
+//! STEP, what people who design parts exchange: solids with curved faces, in assemblies. See `docs/formats/step.md`.
+//!
+//! [ISO 10303-21], [ISO 10303-42]
+
+mod curves;
+mod part21;
+mod pieces;
+mod scene;
+mod structure;
+mod surfaces;
+mod tessellated;
+mod tessellation;
+
+use crate::FormatError;
+use crate::formats::{ReadFormat, SceneFormatEntry};
+use crate::reading::{Reading, Source};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, SceneBuilder, UpHint};
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "step",
+        summary: "STEP: parts and assemblies of CAD programs, tessellated",
+        source: "ISO 10303-21",
+        parameters: &[],
+    },
+    extensions: &["step", "stp", "p21"],
+    capabilities: &["curved faces", "triangles", "objects", "instances", "materials"],
+    up: UpHint::Usually(Axis::Z),
+    sniff: |bytes| bytes.trim_ascii_start().starts_with(b"ISO-10303-21"),
+    read: Some(ReadFormat::Whole(read)),
+    write: None,
+};
+
+fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    scene::scene(reading, source)
+}

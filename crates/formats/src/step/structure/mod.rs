@@ -1,0 +1,7 @@
+//! What the instances of a file mean: placements, units, styles, and the tree of products.
+
+pub(super) mod axes;
+pub(super) mod placements;
+pub(super) mod products;
+pub(super) mod styles;
+pub(super) mod units;
