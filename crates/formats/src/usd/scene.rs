@@ -3,7 +3,7 @@
 use super::context::{Context, Worn};
 use super::instancer::Copies;
 use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
-use super::primvars::{Interpolation, Primvar};
+use super::primvars::Primvar;
 use super::shading;
 use super::skeletons::{Bent, Binding, Pose, Rig};
 use super::stage::Stage;
@@ -14,7 +14,7 @@ use super::{cameras, labels, lights, refined, shapes, strokes};
 use crate::reading::Reading;
 use crate::sink::Sink;
 use crate::{FormatError, flat};
-use bilux_math::DMat4;
+use bilux_math::{DMat4, Rgb};
 use bilux_scene::Object;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -160,9 +160,15 @@ impl<'r, 'o> Scene<'r, 'o> {
         let is_mesh = &*stage.prim(prim).type_name == "Mesh";
         let subsets = if is_mesh { self.subsets(stage, prim)? } else { Vec::new() };
         let rig = rig.filter(|rig| !rig.is_rigid());
-        let bent_by = rig.map_or(Vec::new(), |rig| rig.said(stage));
+        let mut by_others = rig.map_or(Vec::new(), |rig| rig.said(stage));
         let of_subsets = subsets.iter().map(|subset| subset.worn.index).collect();
-        let key = (stage.said(prim).collect(), rest.clone(), of_subsets, bent_by);
+        // Copies below other prims may have other colours from these.
+        if rest.uses_colours || rest.uses_opacities || subsets.iter().any(|subset| subset.worn.uses_colours) {
+            let shown = self.shown(stage, prim)?;
+            let first = |primvar: &Primvar| primvar.values.floats::<3>(0).map(|x| u64::from(x.to_bits()));
+            by_others.extend(shown.iter().flatten().map(first).map(|[r, g, b]| [r, g, b, u64::MAX]));
+        }
+        let key = (stage.said(prim).collect(), rest.clone(), of_subsets, by_others);
         if let Some(known) = self.meshes.get(&key) {
             return Ok(known.clone());
         }
@@ -205,13 +211,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let subdivision = Subdivision::read(stage, prim, &mut self.context.reading.budget)?;
         add_normals(stage, prim, &mut polygons, &subdivision, &mut self.context)?;
         bent.turn(stage, &mut polygons, self.context.reading)?;
-        let budget = &mut self.context.reading.budget;
-        let constant = Interpolation::Constant;
-        let varies = |primvar: &Primvar| primvar.interpolation != constant;
-        polygons.colours =
-            Primvar::read(stage, prim, "primvars:displayColor", constant, budget)?.filter(varies);
-        polygons.opacities =
-            Primvar::read(stage, prim, "primvars:displayOpacity", constant, budget)?.filter(varies);
+        [polygons.colours, polygons.opacities] = self.shown(stage, prim)?;
         let refined =
             refined::parts(stage, prim, &polygons, &subdivision, &subsets, rest, &mut self.context)?;
         if let Some(parts) = refined {
@@ -231,6 +231,14 @@ impl<'r, 'o> Scene<'r, 'o> {
             return Ok(None);
         }
         mesh.name = name_of(stage, prim).to_owned();
+        if mesh.vertex_kd.is_empty()
+            && worn.uses_colours
+            && let [Some(colour), _] = self.shown(stage, prim)?
+        {
+            let bytes = size_of::<Rgb>() * mesh.positions.len();
+            self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
+            mesh.vertex_kd = vec![Rgb::from_array(colour.values.floats::<3>(0)); mesh.positions.len()];
+        }
         self.context.finish_mesh(&mut mesh, worn)?;
         Ok(Some(Part { mesh: Arc::new(mesh), material: worn.index }))
     }

@@ -38,6 +38,24 @@ impl Scene<'_, '_> {
         worn.map_or_else(|| self.plain(stage, prim), Ok)
     }
 
+    /// `displayColor` and `displayOpacity` of a prim. Of those of the prims above it, only what is the same everywhere counts.
+    pub(super) fn shown(&mut self, stage: &Stage, prim: u32) -> Result<[Option<Primvar>; 2], FormatError> {
+        let budget = &mut self.context.reading.budget;
+        let lineage = std::iter::once(&prim).chain(self.lineage.iter().rev());
+        let constant = Interpolation::Constant;
+        let mut found = [None, None];
+        for (slot, name) in found.iter_mut().zip(["primvars:displayColor", "primvars:displayOpacity"]) {
+            for &at in lineage.clone() {
+                let primvar = Primvar::read(stage, at, name, constant, budget)?;
+                *slot = primvar.filter(|p| at == prim || p.interpolation == constant);
+                if slot.is_some() {
+                    break;
+                }
+            }
+        }
+        Ok(found)
+    }
+
     /// All opinions about a prim and those below it.
     fn said_below(&self, stage: &Stage, prim: u32) -> Vec<[u32; 2]> {
         let (mut all, mut waiting) = (Vec::new(), vec![prim]);
@@ -51,20 +69,8 @@ impl Scene<'_, '_> {
 
     /// The material of a surface with nothing but a colour and an opacity.
     fn plain(&mut self, stage: &Stage, prim: u32) -> Result<Worn, FormatError> {
-        let budget = &mut self.context.reading.budget;
-        let lineage = std::iter::once(&prim).chain(self.lineage.iter().rev());
         let constant = Interpolation::Constant;
-        let mut found = [None, None];
-        for (slot, name) in found.iter_mut().zip(["primvars:displayColor", "primvars:displayOpacity"]) {
-            for &at in lineage.clone() {
-                let primvar = Primvar::read(stage, at, name, constant, budget)?;
-                // Of those above it, only what is the same everywhere counts.
-                *slot = primvar.filter(|p| at == prim || p.interpolation == constant);
-                if slot.is_some() {
-                    break;
-                }
-            }
-        }
+        let found = self.shown(stage, prim)?;
         let varies =
             |primvar: &Option<Primvar>| primvar.as_ref().is_some_and(|p| p.interpolation != constant);
         let (uses_colours, uses_opacities) = (varies(&found[0]), varies(&found[1]));

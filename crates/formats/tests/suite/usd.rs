@@ -293,6 +293,26 @@ fn preview_surfaces_become_principled_and_bindings_are_inherited() {
     );
 }
 
+#[test]
+fn materials_read_the_colour_of_a_prim_or_of_one_above_it() {
+    let reader = "def Material \"m\" { token outputs:surface.connect = </m/s.outputs:surface>\n\
+         def Shader \"s\" { uniform token info:id = \"UsdPreviewSurface\"\n\
+         color3f inputs:diffuseColor.connect = </m/r.outputs:result> }\n\
+         def Shader \"r\" { uniform token info:id = \"UsdPrimvarReader_float3\"\nstring inputs:varname = \"displayColor\" } }\n";
+    let colour = |c: &str| format!("rel material:binding = </m>\ncolor3f[] primvars:displayColor = [({c})]");
+    let mesh = "def Mesh \"a\" { int[] faceVertexCounts = [3] int[] faceVertexIndices = [0, 1, 2]\n\
+                point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]\nuniform token subdivisionScheme = \"none\" }";
+    let class = format!("class \"c\" {{ {mesh} def Sphere \"s\" {{}} }}");
+    let scene = text(&format!(
+        "{reader}{class}\ndef \"x\" (inherits = </c>) {{ {} }}\ndef \"y\" (inherits = </c>) {{ {} }}",
+        colour("0.25, 0.5, 1"),
+        colour("1, 0, 0.5")
+    ));
+    let colours: Vec<[f32; 3]> = scene.objects.iter().map(|o| o.mesh.vertex_kd[0].to_array()).collect();
+    assert_eq!(colours, [[0.25, 0.5, 1.0], [0.25, 0.5, 1.0], [1.0, 0.0, 0.5], [1.0, 0.0, 0.5]]);
+    assert!(scene.objects.iter().all(|o| o.mesh.vertex_kd.len() == o.mesh.positions.len()));
+}
+
 /// [UsdPreviewSurface, `UsdUVTexture`: the fallback is used where the texture cannot be read.]
 #[test]
 fn a_texture_that_is_missing_has_the_colour_that_the_file_states_for_it() {
