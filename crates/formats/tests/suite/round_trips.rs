@@ -2,10 +2,11 @@
 //! written as sRGB.
 
 use crate::shared_files::scenes;
-use bilux_formats::{ReadOptions, WriteOptions, read, write};
-use bilux_math::Rgb;
-use bilux_scene::{Mesh, SceneBuilder};
+use bilux_formats::{ReadOptions, SCENE_FORMATS, WriteOptions, read, write};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{Axis, Mesh, Object, SceneBuilder, UpHint};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Every corner of every triangle, in order, as bits: everything that affects the image except colours.
 pub(crate) fn corners(mesh: &Mesh) -> Vec<Vec<u32>> {
@@ -132,4 +133,85 @@ fn specular_colours_come_back_from_ply() {
     let as_ply = there(&original, &folder.path().join("a.ply"));
     assert_same(&original, &there(&as_ply, &folder.path().join("a.asc")), "ks");
     assert_same_colours(&original.objects[0].mesh, &as_ply.objects[0].mesh);
+}
+
+/// What vertices can have, by the names that rows of the table of formats use.
+const ATTRIBUTES: &[&str] = &["normals", "uv", "vertex-kd"];
+
+/// Two closed meshes whose vertices have one thing more than positions.
+fn pair(attribute: &str) -> SceneBuilder {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let mut mesh = Mesh {
+        positions: corners.map(|p| p * 0.7 + 0.1).to_vec(),
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+        ..Mesh::default()
+    };
+    match attribute {
+        "normals" => mesh.normals = [-Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z].map(Vec3::normalize).to_vec(),
+        "uv" => mesh.uvs = corners.map(|p| Vec2::new(p.x + 0.25 * p.z, 0.5 * p.y)).to_vec(),
+        // Bytes of sRGB hold these exactly.
+        _ => mesh.vertex_kd = corners.map(|p| Rgb::from_array(p.to_array())).to_vec(),
+    }
+    let mut scene = SceneBuilder::default();
+    let material = scene.add_material(bilux_scene::Spec::new("m", "phong").with("kd", 1.0f32));
+    for name in ["one", "two"] {
+        let mesh = Mesh { name: name.to_owned(), ..mesh.clone() };
+        scene.objects.push(Object::new(name, Arc::new(mesh), material));
+    }
+    scene
+}
+
+/// The corners of all triangles: where they are in metres with y up, and what else they have.
+fn all_corners(scene: &SceneBuilder, attribute: &str) -> (Vec<Vec3>, Vec<Vec3>) {
+    let is_print = scene.unit == 0.001 && scene.up == UpHint::Is(Axis::Z);
+    let in_metres = |p: Vec3| if is_print { Vec3::new(p.x, p.z, -p.y) * 0.001 } else { p };
+    let (mut places, mut values) = (Vec::new(), Vec::new());
+    for Object { mesh, motion, .. } in &scene.objects {
+        let place = motion.at(0.0);
+        for i in mesh.triangles.iter().flatten().map(|&i| i as usize) {
+            places.push(in_metres(place.point(mesh.positions[i])));
+            values.extend(match attribute {
+                "normals" => mesh.normals.get(i).copied(),
+                "uv" => mesh.uvs.get(i).map(|uv| uv.extend(0.0)),
+                _ => mesh.vertex_kd.get(i).map(|kd| Vec3::from(kd.to_array())),
+            });
+        }
+    }
+    (places, values)
+}
+
+/// Whatever can be written keeps positions, and of the rest what its row of the table says, and nothing else.
+#[test]
+fn every_format_that_is_written_keeps_what_its_row_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let are_alike = |a: &[Vec3], b: &[Vec3]| {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (*a - *b).abs().max_element() < 1e-6)
+    };
+    let mut wrong = Vec::new();
+    for row in SCENE_FORMATS.iter().filter(|row| row.writes()) {
+        let has = |what: &str| row.capabilities.iter().any(|known| known == &what || known == &"models");
+        for (extension, attribute) in
+            row.extensions.iter().flat_map(|e| ATTRIBUTES.iter().map(move |a| (e, a)))
+        {
+            let original = pair(attribute);
+            let path = folder.path().join(format!("{attribute}.{extension}"));
+            write(&path, &original, &WriteOptions::default()).unwrap();
+            let back = read(&path, &ReadOptions::default()).unwrap();
+            let [(places, values), (places_back, values_back)] =
+                [&original, &back].map(|scene| all_corners(scene, attribute));
+            let what = format!("{attribute} of .{extension}");
+            if !are_alike(&places, &places_back) {
+                wrong.push(format!("positions with {what}: {places_back:?} for {places:?}"));
+            }
+            // 3MF has texture coordinates for its textures only.
+            let keeps = has(attribute) && !(row.entry.name == "3mf" && *attribute == "uv");
+            if are_alike(&values, &values_back) != keeps {
+                wrong.push(format!("{what}: {values_back:?} for {values:?}"));
+            }
+            if has("objects") && back.objects.len() != 2 {
+                wrong.push(format!("{what}: {} objects", back.objects.len()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

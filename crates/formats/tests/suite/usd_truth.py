@@ -24,14 +24,14 @@ def proxies(stage):
     return Usd.PrimRange(stage.GetPseudoRoot(), Usd.TraverseInstanceProxies(Usd.PrimDefaultPredicate))
 
 
-def sampled(stage, time):
-    """A time nearby with samples: skinning is baked at no others."""
+def sampled(stage, time, otherwise):
+    """A time nearby with samples: skinning is baked at no others. The other one where nothing is skinned."""
     for prim in proxies(stage):
         for name in ("rotations", "blendShapeWeights") if prim.GetTypeName() == "SkelAnimation" else ():
             samples = prim.GetAttribute(name).GetBracketingTimeSamples(time)
             if samples:
                 return samples[0]
-    return float(round(time))
+    return otherwise
 
 
 def bake(stage, time):
@@ -106,9 +106,10 @@ def main():
             continue
         layer = stage.GetRootLayer()
         start = layer.startTimeCode if layer.HasStartTimeCode() else 0.0
-        times = [start]
+        times = [sampled(stage, start, start)]
         if layer.HasEndTimeCode() and layer.endTimeCode > start:
-            times.append(sampled(stage, start + 0.37 * (layer.endTimeCode - start)))
+            later = start + 0.37 * (layer.endTimeCode - start)
+            times.append(sampled(stage, later, float(round(later))))
         for time in times:
             found = {}
             stage.GetSessionLayer().Clear()

@@ -116,6 +116,21 @@ fn written(folder: &Path, name: &str, text: &str) -> SceneBuilder {
     SceneBuilder { environment_unspecified: false, ..read(&path, &Default::default()).unwrap() }
 }
 
+/// `scene.usda` as OpenUSD 26.11 saves it as a crate file: the same scene to the bit.
+#[test]
+fn a_crate_file_is_the_scene_of_its_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = written(folder.path(), "scene.usda", include_str!("scene.usda"));
+    let path = folder.path().join("scene.usdc");
+    std::fs::write(&path, include_bytes!("scene.usdc")).unwrap();
+    let saved = SceneBuilder { environment_unspecified: false, ..read(&path, &Default::default()).unwrap() };
+    assert_eq!(extent(&text), extent(&saved));
+    assert!(blocks(&text, 0) == blocks(&saved, 0), "the same pictures to the bit");
+    let mut darker = saved.clone();
+    darker.lights.pop();
+    assert!(blocks(&text, 0) != blocks(&darker, 0), "without a light");
+}
+
 #[test]
 fn files_of_other_programs_are_the_same_picture() {
     let folder = tempfile::tempdir().unwrap();
