@@ -83,7 +83,9 @@ fn candidate(member: &Member) -> Option<Candidate<'_>> {
 }
 
 fn no_scene(archive: &Archive, source: &Source) -> FormatError {
-    let names: Vec<&str> = archive.members().iter().take(LISTED).map(|member| &*member.name).collect();
+    // Any characters may be in a name.
+    let quoted = archive.members().iter().take(LISTED).map(|member| format!("'{}'", member.name));
+    let names: Vec<String> = quoted.collect();
     let message = match names.as_slice() {
         [] => "this archive is empty".to_owned(),
         names => format!("no file in this archive is a scene that can be read; it has {}", names.join(", ")),
