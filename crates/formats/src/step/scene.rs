@@ -44,7 +44,8 @@ fn written_by(table: &Table) -> String {
     texts
         .iter()
         .map(|text| program(text))
-        .find(|text| text.chars().any(char::is_alphabetic))
+        // Programs that do not say what they are write this.
+        .find(|text| text.chars().any(char::is_alphabetic) && !text.eq_ignore_ascii_case("unknown"))
         .unwrap_or_default()
 }
 

@@ -1,7 +1,8 @@
 //! STEP files of others against Open CASCADE. `BILUX_STEP=FOLDER BILUX_STEP_PYTHON=INTERPRETER` names a folder of files and a Python with
-//! the package `cadquery-ocp`; without these, nothing is compared. `BILUX_STEP_ONLY=TEXT` takes only files with this in their path.
+//! the package `cadquery-ocp`; without these, nothing is compared. `BILUX_STEP_ONLY=TEXT` takes only files with this in their path,
+//! `BILUX_STEP_SAID=FILE` keeps what Open CASCADE said for the next time, and `BILUX_STEP_SHOWN=FOLDER` gets what was read, as `.glb`.
 
-use bilux_formats::{ReadOptions, read};
+use bilux_formats::{ReadOptions, WriteOptions, read, write};
 use bilux_math::DVec3;
 use bilux_scene::SceneBuilder;
 use std::collections::BTreeMap;
@@ -157,6 +158,10 @@ fn solids_measure_what_open_cascade_says() {
         };
         let seconds = start.elapsed().as_secs_f64();
         let ours = measures(&scene);
+        if let Some(folder) = std::env::var_os("BILUX_STEP_SHOWN") {
+            let name = format!("{}.glb", Path::new(file).file_stem().unwrap().display());
+            write(&Path::new(&folder).join(name), &scene, &WriteOptions::default()).unwrap();
+        }
         let name = file.rsplit('/').next().unwrap_or(file);
         if !is_read {
             println!(

@@ -47,6 +47,10 @@ impl Curve for Ellipse {
         Some(TAU / self.unit)
     }
 
+    fn circle(&self) -> Option<(DVec3, DVec3, f64)> {
+        (self.radii[0] == self.radii[1]).then_some((self.axes.origin, self.axes.z, self.radii[0]))
+    }
+
     fn parameter(&self, p: DVec3) -> f64 {
         let local = self.axes.local(p);
         atan2_f64(local.y / self.radii[1], local.x / self.radii[0]) / self.unit

@@ -19,6 +19,11 @@ pub(in crate::step) trait Curve: Send + Sync {
         Vec::new()
     }
 
+    /// The centre, the axis and the radius of a circle, or of a part of one.
+    fn circle(&self) -> Option<(DVec3, DVec3, f64)> {
+        None
+    }
+
     /// The bytes that it takes.
     fn size(&self) -> usize {
         256

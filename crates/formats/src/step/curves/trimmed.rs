@@ -25,6 +25,10 @@ impl Curve for Trimmed {
         [0.0, 1.0]
     }
 
+    fn circle(&self) -> Option<(DVec3, DVec3, f64)> {
+        self.basis.circle()
+    }
+
     fn size(&self) -> usize {
         256 + self.basis.size()
     }

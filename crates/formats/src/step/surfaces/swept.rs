@@ -109,9 +109,22 @@ impl Surface for Revolution {
 
     fn poles(&self) -> Vec<Pole> {
         let [from, to] = self.curve.range();
-        let ends = [from, to].into_iter().filter(|t| t.is_finite());
-        let all = ends.map(|at| Pole { along: 0, at, point: self.curve.point(at) });
-        all.filter(|pole| self.profile(pole.point).x <= 1e-7 * self.size).collect()
+        let off_axis = |t: f64| self.profile(self.curve.point(t)).x;
+        let ends = match from.is_finite() {
+            true => vec![from, to],
+            // A line may meet the axis anywhere.
+            false => vec![least(reach(&*self.curve, self.size), 1, |t| off_axis(t) * off_axis(t))],
+        };
+        let on_axis = ends.into_iter().filter(|&t| off_axis(t) <= 1e-7 * self.size);
+        on_axis.map(|at| Pole { along: 0, at, point: self.curve.point(at) }).collect()
+    }
+
+    /// What a circle sweeps whose centre is on the axis, and whose plane contains it.
+    fn sphere(&self) -> Option<(DVec3, f64)> {
+        const NEAR: f64 = 1e-7;
+        let (centre, axis, radius) = self.curve.circle()?;
+        let is_round = self.profile(centre).x <= NEAR * radius && axis.dot(self.axes.z).abs() <= NEAR;
+        is_round.then_some((centre, radius))
     }
 }
 

@@ -32,11 +32,19 @@ pub(super) struct Trimmed<'a> {
 impl Trimmed<'_> {
     /// Its triangles; `None` if its boundary encloses nothing.
     pub(super) fn patch(mut self, accuracy: Accuracy) -> Option<Patch> {
+        let globe = self.surface.sphere().filter(|_| !self.lines.is_empty());
+        // A swept circle may have its front inside of the sphere.
+        if let Some((centre, _)) = globe {
+            let p = *self.lines.iter().flatten().next()?;
+            let uv = self.surface.parameters(p, None);
+            let middle = uv + DVec2::new(0.0, 1e-3);
+            self.is_same ^= self.surface.normal(middle).dot(self.surface.point(middle) - centre) < 0.0;
+        }
         // From now on, the face is on the left of its lines where the surface is seen from its own front.
         if !self.is_same {
             self.lines.iter_mut().for_each(|line| line.reverse());
         }
-        let (filled, normals) = match self.surface.sphere().filter(|_| !self.lines.is_empty()) {
+        let (filled, normals) = match globe {
             Some((centre, radius)) => {
                 let filled = Globe { centre, radius, lines: &self.lines }.filled(accuracy)?;
                 let normals = filled.corners.iter().map(|corner| (corner.point - centre).normalize_or_zero());
