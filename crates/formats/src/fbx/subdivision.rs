@@ -17,6 +17,9 @@ pub(super) fn is_smooth(mesh: Node) -> bool {
     number("Smoothness").is_some_and(|kind| kind > 0) && levels != [Some(0), Some(0)]
 }
 
+/// The `BoundaryRule` for which corners of the border, points of a single polygon, are round: the SDK's `eCreaseEdge`.
+const ROUND_CORNERS: i64 = 2;
+
 /// The polygons of a mesh as a cage, and the number of the material of each of its groups.
 pub(super) fn cage(
     node: Node,
@@ -28,6 +31,9 @@ pub(super) fn cage(
         .budget
         .take_bytes((count * 64 + polygons.corners.len() * 16 + polygons.len() * 12) as u64, node.file())?;
     let mut cage = Cage::new(Scheme::CatmullClark, &geometry.positions);
+    if node.child_value("BoundaryRule").and_then(Value::integer) == Some(ROUND_CORNERS) {
+        cage.round_corners();
+    }
     let of_faces = geometry.materials_of_faces();
     let mut materials = of_faces.clone();
     materials.sort_unstable();

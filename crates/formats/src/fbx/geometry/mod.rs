@@ -1,6 +1,7 @@
 //! Meshes: polygons with layers of normals, texture coordinates, colours and materials.
 
 mod layers;
+mod nurbs;
 mod polygon_mesh;
 mod polygons;
 

@@ -1,13 +1,13 @@
 //! A mesh as the file has it.
 
 use super::layers::Surface;
-use super::{layers, polygons};
+use super::{layers, nurbs, polygons};
 use crate::FormatError;
 use crate::fbx::tree::Node;
 use crate::polygon_mesh::{Layer, PolygonMesh, Workshop, reflectances};
 use bilux_math::{Rgb, Vec2, Vec3};
 
-/// The mesh at a node of the file; `None` if it has no polygons. `has_second_uvs` tells whether a second set of texture
+/// The mesh at a node of the file, or its NURBS surface as polygons; `None` if it has neither. `has_second_uvs` tells whether a second set of texture
 /// coordinates is wanted.
 pub(in crate::fbx) fn read(
     node: Node,
@@ -15,6 +15,9 @@ pub(in crate::fbx) fn read(
     has_second_uvs: bool,
     workshop: &mut Workshop,
 ) -> Result<Option<PolygonMesh>, FormatError> {
+    if node.child("NurbsSurfaceOrder").is_some() {
+        return nurbs::read(node, name, workshop);
+    }
     let (Some(vertices), Some(indices)) = (node.child("Vertices"), node.child("PolygonVertexIndex")) else {
         return Ok(None);
     };

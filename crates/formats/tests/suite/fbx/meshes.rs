@@ -157,3 +157,18 @@ fn subdivision_surfaces_are_smooth_but_for_creases() {
     assert!(triangles > 1000);
     near(cube(1, 1.0).0, [1.0; 3]);
 }
+
+#[test]
+fn corners_of_borders_are_round_where_the_rule_says_so() {
+    let widest = |rule: i32| {
+        let mut mesh = quad(1);
+        mesh.children.push(n("Smoothness", vec![V::Int(2)], vec![]));
+        mesh.children.push(n("BoundaryRule", vec![V::Int(rule)], vec![]));
+        let list = vec![p("UnitScaleFactor", &[100.0])];
+        let nodes = file(list, vec![mesh, model(2, "node", vec![])], vec![link(1, 2, ""), link(2, 0, "")]);
+        let positions = read_all(&nodes).objects[0].mesh.positions.clone();
+        positions.iter().map(|p| p.element_sum()).fold(0.0, f32::max)
+    };
+    assert_eq!([0, 1].map(widest), [3.0; 2]);
+    assert!(widest(2) < 2.7);
+}

@@ -5,6 +5,7 @@ mod caches;
 mod looks;
 mod meshes;
 mod motion;
+mod nurbs;
 mod seeds;
 mod writer;
 

@@ -169,8 +169,7 @@ fn meshes_are_where_other_programs_put_them() {
             let triangles: usize = scene.objects.iter().map(|object| object.mesh.triangles.len()).sum();
             if 3 * triangles > 16 * truth.corners.len() {
                 // A level of a subdivision surface, and here its limit.
-                let shares = units.map(|unit| refined::share_on(&scene, &unit, path, truth.tolerance));
-                let share = shares.into_iter().fold(0.0, f64::max);
+                let share = refined::share_on(&scene, &units, path, truth.tolerance);
                 if share == 1.0 {
                     same_surface += 1;
                 } else {

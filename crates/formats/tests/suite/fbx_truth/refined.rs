@@ -21,37 +21,49 @@ pub(super) fn places(corners: impl Iterator<Item = DVec3>, size: f64) -> HashMap
     places
 }
 
-/// Of a refined surface and of what an OBJ file of a coarser level becomes in the end: the share of the places of the coarser one
-/// that the finer one has too, which is 1 if both are the same surface.
-pub(super) fn share_on(ours: &SceneBuilder, to_file: &DMat4, path: &Path, tolerance: f64) -> f64 {
+/// Of a refined surface and of what an OBJ file of a coarser level becomes in the end, as it is or refined: the share of the places
+/// of the coarser one that the finer one has too in one of some units, which is 1 if both are the same surface.
+pub(super) fn share_on(ours: &SceneBuilder, units: &[DMat4], path: &Path, tolerance: f64) -> f64 {
+    let size = tolerance * 2.0;
+    let all = |scene: &SceneBuilder, to: &DMat4| {
+        let points = scene.objects.iter().flat_map(|object| {
+            let matrix =
+                *to * DMat4::from_translation(scene.origin) * object.motion.at(0.0).matrix().as_dmat4();
+            object.mesh.positions.iter().map(move |p| matrix.transform_point3(p.as_dvec3()))
+        });
+        places(points, size)
+    };
     let mut best = 0.0f64;
     for subdivide in [None, Some(Scheme::CatmullClark)] {
-        let Ok(limit) = read(path, &ReadOptions { subdivide, max_memory: MEMORY, ..ReadOptions::default() })
-        else {
-            return 0.0;
-        };
-        let all = |scene: &SceneBuilder, to: &DMat4| {
-            let points = scene.objects.iter().flat_map(|object| {
-                let matrix =
-                    *to * DMat4::from_translation(scene.origin) * object.motion.at(0.0).matrix().as_dmat4();
-                object.mesh.positions.iter().map(move |p| matrix.transform_point3(p.as_dvec3()))
+        let options = ReadOptions { subdivide, max_memory: MEMORY, ..ReadOptions::default() };
+        let Ok(limit) = read(path, &options) else { return 0.0 };
+        let limit = all(&limit, &DMat4::IDENTITY);
+        for unit in units {
+            let ours = all(ours, unit);
+            best = best.max(match count(&ours) < count(&limit) {
+                true => share(&ours, &limit, tolerance),
+                false => share(&limit, &ours, tolerance),
             });
-            places(points, tolerance * 2.0)
-        };
-        let (mut few, mut many) = (all(ours, to_file), all(&limit, &DMat4::IDENTITY));
-        if few.len() > many.len() {
-            std::mem::swap(&mut few, &mut many);
+            if best == 1.0 {
+                return best;
+            }
         }
-        let near = |p: &DVec3| {
-            let [x, y, z] = p.to_array().map(|x| (x / (tolerance * 2.0)).floor() as i64);
-            (0..27).any(|i| {
-                let cell = [x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1];
-                many.get(&cell).is_some_and(|all| all.iter().any(|q| q.distance(*p) <= tolerance))
-            })
-        };
-        let total: usize = few.values().map(Vec::len).sum();
-        let found = few.values().flatten().filter(|p| near(p)).count();
-        best = best.max(found as f64 / total.max(1) as f64);
     }
     best
+}
+
+fn count(places: &HashMap<[i64; 3], Vec<DVec3>>) -> usize {
+    places.values().map(Vec::len).sum()
+}
+
+/// The share of some places that are among many.
+fn share(few: &HashMap<[i64; 3], Vec<DVec3>>, many: &HashMap<[i64; 3], Vec<DVec3>>, tolerance: f64) -> f64 {
+    let near = |p: &DVec3| {
+        let [x, y, z] = p.to_array().map(|x| (x / (tolerance * 2.0)).floor() as i64);
+        (0..27).any(|i| {
+            let cell = [x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1];
+            many.get(&cell).is_some_and(|all| all.iter().any(|q| q.distance(*p) <= tolerance))
+        })
+    };
+    few.values().flatten().filter(|p| near(p)).count() as f64 / count(few).max(1) as f64
 }
