@@ -193,7 +193,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
 fn pytest(testers: &Environment, file: &str) -> Command {
     let mut pytest = testers.python();
     let tests = root().join(PACKAGE).join("tests").join(file);
-    pytest.args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider"]).arg(tests);
+    pytest.args(["-m", "pytest", "-q", "-rs", "--durations=15", "-p", "no:cacheprovider"]).arg(tests);
     pytest
 }
 

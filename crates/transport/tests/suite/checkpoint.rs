@@ -108,7 +108,7 @@ fn every_integrator_goes_on_to_the_same_film() {
 fn limits_crops_ranges_variance_and_intervals_go_on_too() {
     let scene = built(&mixed());
     for (seed, name) in
-        [(102, "vcm"), (103, "auto"), (100, "path"), (101, "bdpt")][..effort(2, 4)].iter().copied()
+        [(102, "vcm"), (103, "auto"), (100, "path"), (101, "bdpt")][..effort(1, 4)].iter().copied()
     {
         let noise = Stop { noise: Some(0.4), time_limit: None };
         assert_same(&scene, name, &RenderSettings { stop: noise, ..small(4000) }, seed);

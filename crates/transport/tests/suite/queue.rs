@@ -90,7 +90,7 @@ fn queues_that_are_refilled_give_the_same() {
 
 #[test]
 fn every_built_in_scene_is_the_same() {
-    for (turn, row) in GENERATORS.iter().enumerate() {
+    for (turn, row) in GENERATORS.iter().step_by(effort(2, 1)).enumerate() {
         let spec = Spec::new("", row.entry.name);
         let mut builder = bilux_scene::generators::generate(&spec).unwrap();
         if builder.cameras.is_empty() {

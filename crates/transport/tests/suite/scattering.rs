@@ -141,7 +141,7 @@ fn light_in_fog_is_what_the_closed_form_says() {
     // Numbers from outside for the integral itself.
     assert!((airlight(0.1, 0.1, 5.0) - 0.011_375_223_08).abs() < 1e-9);
     assert!((airlight(0.5, 0.5, 5.0) - 0.004_991_425_82).abs() < 1e-9);
-    for (sigma_s, sigma_t) in [(0.1f32, 0.1f32), (0.5, 0.5), (0.1, 0.4)] {
+    for (sigma_s, sigma_t) in effort(vec![(0.1f32, 0.4f32)], vec![(0.1, 0.1), (0.5, 0.5), (0.1, 0.4)]) {
         let mut builder = SceneBuilder::default();
         let fog = medium(sigma_t - sigma_s, sigma_s);
         put(&mut builder, "fog", boxed(Vec3::new(-5.0, -9.0, -9.0), Vec3::new(5.0, 9.0, 9.0)), fog);

@@ -8,6 +8,7 @@ use bilux_scene::materials::{MATERIALS, MaterialInputs};
 use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Value};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer, the_same_from_both_ends};
 use bilux_validation::chi_square::uniforms;
+use bilux_validation::effort::effort;
 
 #[test]
 fn every_registered_bsdf_keeps_its_contract() {
@@ -67,9 +68,9 @@ fn a_turned_normal_scatters_the_same_from_both_ends() {
     let checks = ["radiance and importance agree", "weight times pdf is eval"];
     let named =
         |row: &'static BsdfEntry| (row.cases)().into_iter().map(|(case, lobe)| (row.entry.name, case, lobe));
-    for (name, case, lobe) in BSDFS.iter().flat_map(named) {
-        for n_shade in turned() {
-            let bsdf = Bsdf::of(n_shade, Vec3::Z, lobe);
+    for (i, (name, case, lobe)) in BSDFS.iter().flat_map(named).enumerate() {
+        for n_shade in &turned()[effort(i % 3..i % 3 + 1, 0..3)] {
+            let bsdf = Bsdf::of(*n_shade, Vec3::Z, lobe);
             for (check, run) in CHECKS.iter().filter(|(check, _)| checks.contains(check)) {
                 for bsdf in [bsdf, bsdf.bending()] {
                     let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });

@@ -6,6 +6,7 @@ use bilux::formats::{SCENE_FORMATS, SceneFormatEntry, WriteOptions, read, read_b
 use bilux::math::{Transform, Vec3, colour};
 use bilux::prelude::*;
 use bilux::scene::{Axis, UpHint};
+use bilux_validation::effort::effort;
 use bilux_validation::statistics::{sidak, welch};
 use std::path::Path;
 
@@ -89,7 +90,7 @@ fn blocks(scene: &SceneBuilder, first_seed: i64) -> Vec<Vec<f64>> {
         for (key, value) in [("size", "48x48"), ("integrator", "path")] {
             all.set(key, value);
         }
-        all.set("spp", Value::Integer(24));
+        all.set("spp", Value::Integer(effort(10, 24)));
         all.set("seed", Value::Integer(first_seed + seed));
         let picture = Job::new(scene, &all).unwrap().render(&Quiet).unwrap().picture().unwrap();
         let side = picture.width() / BLOCKS;
