@@ -66,13 +66,21 @@ pub(crate) struct Volume {
     pub(crate) faults: Faults,
     /// The value of all that the file does not list.
     pub(crate) background: f32,
+    /// True for the mean of the channels of a file of colours.
+    pub(crate) is_mean: bool,
 }
+
+/// The names of the channels in files of colours.
+pub(crate) const COLOURS: [&str; 3] = ["red", "green", "blue"];
 
 impl Volume {
     /// What is wrong with its numbers, a sentence for each kind.
     pub(crate) fn complaints(&self) -> Vec<String> {
         let Faults { negative, not_finite } = self.faults;
         let mut all = Vec::new();
+        if self.is_mean {
+            all.push("it has a colour for each voxel, whose mean is taken".to_owned());
+        }
         if negative > 0 {
             all.push(format!(
                 "{negative} voxels are negative, which a density cannot be, and are taken as 0"
@@ -184,7 +192,7 @@ pub(crate) fn dense(
     let grid = Grid::of_rows(&source.stem(), size, &to_file, fill);
     let (grid, faults) = grid.map_err(|error| fail(error.to_string()))?;
     let bounds = Aabb { min: Vec3::ZERO, max: Vec3::from(size.map(|side| side as f32)) };
-    Ok(Volume { grid, bounds, faults, background: 0.0 })
+    Ok(Volume { grid, bounds, faults, background: 0.0, is_mean: false })
 }
 
 impl Reading<'_> {
@@ -197,6 +205,23 @@ impl Reading<'_> {
     ) -> Result<Arc<Grid>, FormatError> {
         let found = self.grid_if_there(folder, (file, name), at)?;
         found.map_err(|message| FormatError::malformed(message, at.clone()))
+    }
+
+    /// True if a file has a colour for each voxel: then it has the grids [`COLOURS`].
+    pub(crate) fn has_colours(
+        &mut self,
+        folder: Option<&Path>,
+        file: &str,
+        at: &Span,
+    ) -> Result<bool, FormatError> {
+        let path = self.locator.locate(folder, file, at)?;
+        let bytes = self.load(&path)?;
+        let shown: Arc<str> = path.display().to_string().into();
+        let source = Source { bytes: &bytes, name: &shown, folder: None };
+        let catalogue = (format_of(&source)?.list)(&source)?;
+        let has = COLOURS.iter().all(|colour| catalogue.grids.iter().any(|grid| grid.name == *colour));
+        self.release(bytes);
+        Ok(has)
     }
 
     /// The same, or why there is no such grid in the file.

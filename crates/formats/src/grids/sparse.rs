@@ -174,7 +174,7 @@ impl Sparse {
         let grid = Grid::new(placed.name, size, &to_file, fill).map_err(|error| fail(error.to_string()))?;
         match failed {
             Some(error) => Err(error),
-            None => Ok(Some(Volume { grid, bounds, faults, background: 0.0 })),
+            None => Ok(Some(Volume { grid, bounds, faults, background: 0.0, is_mean: false })),
         }
     }
 

@@ -1,10 +1,13 @@
 //! Participating media.
 
+use super::grid_volume::GridVolume;
 use super::maker::{Maker, Meaning};
 use super::plugin::{Plugin, row};
 use crate::FormatError;
 use crate::filling::{Density, Medium};
-use bilux_math::{DMat4, Rgb};
+use crate::grids::COLOURS;
+use bilux_math::{DMat4, DVec3, Rgb};
+use bilux_scene::media::Grid;
 use std::rc::Rc;
 
 /// A medium that is the same everywhere, or one of a density that varies.
@@ -63,50 +66,57 @@ fn homogeneous(maker: &mut Maker, plugin: &Plugin) -> Result<Medium, FormatError
 fn heterogeneous(maker: &mut Maker, plugin: &Plugin) -> Result<Medium, FormatError> {
     let scale = plugin.number_or("scale", 1.0)? as f32;
     let name = if plugin.has("density") { "density" } else { "sigma_t" };
-    let albedo = match grid(maker, plugin, "albedo")? {
-        Some(grid) => {
-            maker.note("an albedo that varies is replaced by its maximum", &plugin.place("albedo"));
-            Rgb::grey(grid.grid.maximum().min(1.0))
+    let extinction = volume(maker, plugin, name)?;
+    let albedo = match volume(maker, plugin, "albedo")? {
+        Some(albedo) => {
+            maker.note("an albedo that varies is replaced by its mean", &plugin.place("albedo"));
+            albedo.mean_in(extinction.as_ref()).map(|a| a.min(1.0))
         }
         None => maker.even(plugin, "albedo", Meaning::Surface)?.unwrap_or(Rgb::grey(0.75)),
     };
-    let (extinction, density) = match grid(maker, plugin, name)? {
-        Some(density) => (Rgb::WHITE, Some(density)),
+    let (colour, density) = match extinction {
+        Some(volume) => (volume.tint(), Some(volume.density)),
         None => (maker.even(plugin, name, Meaning::Number)?.unwrap_or(Rgb::WHITE), None),
     };
     if plugin.has("emission") {
         maker.oddities.not_shown(&format!("'emission' of {}", plugin.named()), || plugin.place("emission"));
     }
-    let [absorption, scattering] = split(extinction, albedo, scale);
+    let [absorption, scattering] = split(colour, albedo, scale);
     Ok(Medium { absorption, scattering, density, ..Medium::default() })
 }
 
-/// The grid of a property, if it is one.
-fn grid(maker: &mut Maker, plugin: &Plugin, name: &'static str) -> Result<Option<Density>, FormatError> {
+/// The volume of a property, if that is a grid.
+fn volume(maker: &mut Maker, plugin: &Plugin, name: &'static str) -> Result<Option<GridVolume>, FormatError> {
     let Some(property) = plugin.find(name) else { return Ok(None) };
     let part = maker.document.part(property)?.filter(|part| part.kind == "gridvolume");
     let Some(volume) = part else { return Ok(None) };
     volume.ignore(&["filter_type", "wrap_mode", "raw", "accel"]);
     let (file, at) = volume.file()?;
     let (_, file) = maker.files().locate(file, &at, maker.reading)?;
-    let folder = maker.files().folder.as_deref();
+    let folder = maker.files().folder.clone();
     let uses_box = volume.flag("use_grid_bbox", false)?;
-    let grid = match maker.reading.grid_if_there(folder, (&file, ""), &at)? {
+    let density = match maker.reading.grid_if_there(folder.as_deref(), (&file, ""), &at)? {
         Ok(grid) => grid,
         Err(why) => {
             maker.note(&format!("{why}: it is taken as 1 everywhere"), &at);
             return Ok(None);
         }
     };
+    let mut channels = Vec::new();
+    if maker.reading.has_colours(folder.as_deref(), &file, &at)? {
+        for colour in COLOURS {
+            channels.push(maker.reading.grid(folder.as_deref(), (&file, colour), &at)?);
+        }
+    }
     let to_world = volume.placement("to_world")?.map_or(DMat4::IDENTITY, |placement| placement.start());
     // Without the box of its file, it fills the unit cube.
-    let to_world = if uses_box { to_world } else { to_world * to_unit_cube(&grid) };
+    let to_world = if uses_box { to_world } else { to_world * to_unit_cube(&density) };
     volume.report_unused(&mut maker.oddities);
-    Ok(Some(Density { grid, to_world }))
+    Ok(Some(GridVolume { density: Density { grid: density, to_world }, channels }))
 }
 
 /// From the space of a grid to the unit cube that its voxels fill.
-fn to_unit_cube(grid: &bilux_scene::media::Grid) -> DMat4 {
-    let size = bilux_math::DVec3::from(grid.size().map(|side| side.max(1) as f64));
+fn to_unit_cube(grid: &Grid) -> DMat4 {
+    let size = DVec3::from(grid.size().map(|side| side.max(1) as f64));
     DMat4::from_scale(size.recip()) * grid.to_object().matrix().as_dmat4().inverse()
 }

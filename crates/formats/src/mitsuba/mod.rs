@@ -4,6 +4,7 @@ mod bsdfs;
 mod document;
 mod emitters;
 mod film;
+mod grid_volume;
 mod maker;
 mod media;
 mod parser;

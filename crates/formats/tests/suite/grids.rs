@@ -709,7 +709,18 @@ fn vol_files_of_mitsuba_fill_their_box() {
     assert_eq!(ends, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(3.0, 5.0, 9.0)]);
     let (grid, ..) = only(&file(3, 1, &[0, 51, 102, 153, 204, 255, 0, 0, 0, 0, 0, 0]));
     assert!((grid.voxel([1, 0, 0]) - 0.2).abs() < 1e-3 && grid.voxel([1, 2, 0]) == 1.0);
-    assert!(grids(&file(1, 3, &floats))[0].grid.as_ref().unwrap_err().contains("has 3 channels"));
+    assert!(grids(&file(1, 2, &floats))[0].grid.as_ref().unwrap_err().contains("has 2 channels"));
+    // Colours: their mean, and each of them.
+    let colours: Vec<u8> = (0..36).map(|i| [4, 20, 60][i % 3] + i as u8 / 3).collect();
+    let all = grids(&file(3, 3, &colours));
+    let names: Vec<&str> = all.iter().map(|grid| &*grid.name).collect();
+    assert_eq!(names, ["mean", "red", "green", "blue"]);
+    for (grid, wanted) in all.iter().zip([28.0, 4.0, 20.0, 60.0]) {
+        let found = grid.grid.as_ref().unwrap().voxel([1, 0, 0]) * 255.0;
+        assert!((found - wanted - 1.0).abs() < 0.05, "{}: {found}", grid.name);
+    }
+    assert_eq!(all[0].warnings, ["it has a colour for each voxel, whose mean is taken"]);
+    assert!(all[1].warnings.is_empty());
     assert!(refusal(&file(4, 1, &floats)).contains("type 4"));
     assert!(refusal(&file(1, 1, &floats[1..])).contains("48 bytes are expected here, but only 47 follow"));
 }

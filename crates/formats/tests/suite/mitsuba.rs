@@ -306,6 +306,40 @@ fn what_cannot_be_read_says_where_and_why() {
     assert!(warnings(&grey).contains(what), "{}", warnings(&grey));
 }
 
+/// Two voxels along x, of one channel or of three.
+fn voxels(channels: i32, numbers: &[f32]) -> Vec<u8> {
+    let mut out = b"VOL\x03".to_vec();
+    [1, 2, 1, 1, channels].iter().for_each(|x| out.extend(x.to_le_bytes()));
+    [0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().chain(numbers).for_each(|x| out.extend(x.to_le_bytes()));
+    out
+}
+
+/// A medium has one colour: that of an extinction in colour is the mean of each channel, that of an albedo the mean where it is dense.
+#[test]
+fn volumes_in_colour_keep_their_means() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("e.vol"), voxels(3, &[1.0, 2.0, 3.0, 3.0, 2.0, 7.0])).unwrap();
+    fs::write(folder.path().join("a.vol"), voxels(1, &[0.2, 0.8])).unwrap();
+    let text = r#"<scene version="3.0.0"><shape type="cube"><bsdf type="null"/><medium type="heterogeneous" name="interior">
+        <volume type="gridvolume" name="sigma_t"><string name="filename" value="e.vol"/></volume>
+        <volume type="gridvolume" name="albedo"><string name="filename" value="a.vol"/></volume>
+        <float name="scale" value="10"/></medium></shape></scene>"#;
+    let path = folder.path().join("a.xml");
+    fs::write(&path, text).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    let spec = scene.materials.last().unwrap();
+    // The density is 2 and 4, and 3 in the mean; so an albedo of 0.2 and 0.8 is 0.6 there.
+    let (absorption, scattering) = (spec.colour("absorption").unwrap(), spec.colour("scattering").unwrap());
+    assert!(close(scattering, [4.0, 4.0, 10.0], 0.01), "{scattering:?}");
+    assert!(close(absorption, [8.0 / 3.0, 8.0 / 3.0, 20.0 / 3.0], 0.01), "{absorption:?}");
+    let said = warnings(&scene);
+    for part in
+        ["has a colour for each voxel, whose mean is taken", "an albedo that varies is replaced by its mean"]
+    {
+        assert!(said.contains(part), "{said}");
+    }
+}
+
 /// The numbers are those of `ScalarTransform4f().rotate([0, 1, 1], 15)` of Mitsuba 3.9.1; version 0.5 has a quarter turn about the diagonal.
 #[test]
 fn axes_of_rotations_are_not_normalised_since_version_2() {
