@@ -1,6 +1,6 @@
 //! The scene of a file.
 
-use super::part21::{Table, parse};
+use super::part21::{Table, Values, parse};
 use super::pieces::{Pieces, pieces};
 use super::structure::placements::{Placed, placed};
 use super::structure::styles::{Style, Styles};
@@ -26,15 +26,37 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
         builder.add(reading, shape)?;
     }
     let mut sink = builder.finished();
+    let elsewhere = part_in_another_file(&table);
     if sink.scene.objects.is_empty() {
-        let message =
-            "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid";
+        let message = match elsewhere {
+            Some((file, _)) => format!(
+                "its parts are in other files, such as '{file}', which are not read: convert these, or export the assembly into a single file"
+            ),
+            None => {
+                "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid"
+                    .to_owned()
+            }
+        };
         return Err(FormatError::malformed(message, whole_file(source.name)));
+    }
+    if let Some((file, id)) = elsewhere {
+        let what = format!("parts in other files, such as '{file}'");
+        sink.oddities.not_shown(&what, || table.span(id));
     }
     sink.scene.unit = unit;
     sink.scene.written_by = written_by(&table);
     share_trees(&mut sink.scene);
     Ok(sink.finish())
+}
+
+/// A file of STEP that this one refers to, and where.
+fn part_in_another_file(table: &Table) -> Option<(String, u64)> {
+    let is_step = |name: &str| {
+        let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        ["stp", "step", "p21"].contains(&&*ending)
+    };
+    let named = |(id, values): (u64, Values)| Some((values.text(0), id)).filter(|(name, _)| is_step(name));
+    table.all("DOCUMENT_FILE").find_map(named)
 }
 
 /// The program that wrote the file: the originating system, or else the preprocessor.

@@ -163,6 +163,19 @@ fn what_cannot_be_trimmed_is_counted_and_said_once() {
     assert!(lost.contains("1 of 7 faces"), "{lost}");
 }
 
+/// Assemblies of some programs have each part in a file of its own.
+#[test]
+fn parts_in_other_files_are_named() {
+    let other = "#9001=DOCUMENT_FILE('HEAD.STP','','',#9002,'','');\n#9003=DOCUMENT_FILE('notes.pdf','','',#9002,'','');";
+    let with = |text: &str, what: &str| text.replacen("DATA;", &format!("DATA;\n{what}"), 1);
+    let empty = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
+    assert!(refusal("step", with(empty, other)).contains("such as 'HEAD.STP'"));
+    assert!(!refusal("step", empty).contains("other files"));
+    let solid = seed("cube_hole.step");
+    assert!(warnings(&scene(&with(&solid, other))).contains("parts in other files, such as 'HEAD.STP'"));
+    assert_eq!(warnings(&scene(&solid)), "");
+}
+
 #[test]
 fn every_spelling_of_a_file_is_that_file() {
     let text = seed("cube_hole.step");

@@ -1,6 +1,6 @@
 //! Textures filtered over half a pixel: less noise, the same picture, from both ends.
 
-use crate::common::statistics::closely::{assert_like_path, assert_unlike_path};
+use crate::common::statistics::{assert_like_path, assert_unlike_path};
 use crate::common::{ball, built, diffuse, effort, floor, integrator, look, put, shoot, sky};
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3};

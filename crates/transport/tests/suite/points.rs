@@ -1,7 +1,6 @@
 //! Photons at points of dense media: behind smooth boundaries nothing else finds small lamps.
 
-use crate::common::statistics::closely::{assert_like_path, assert_unlike_path};
-use crate::common::statistics::estimate;
+use crate::common::statistics::{assert_like_path, assert_unlike_path, estimate};
 use crate::common::{ball, built, diffuse, effort, floor, look, put, shoot, sky};
 use bilux_math::Vec3;
 use bilux_scene::{SceneBuilder, Spec};

@@ -1,7 +1,6 @@
 //! Surfaces that the camera sees only from the front, and looks through from behind.
 
-use crate::common::statistics::closely::{assert_like_path, assert_unlike_path};
-use crate::common::statistics::{UNLIKELY, agreement, close_blocks as blocks};
+use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks};
 use crate::common::{
     assert_same_with_every_accelerator, ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky,
 };

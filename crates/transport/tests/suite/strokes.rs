@@ -1,7 +1,7 @@
 //! Points and lines, which rays hit as spheres and capsules, look the same from both ends. See
 //! docs/adr/0025-points-and-curves.md.
 
-use crate::common::statistics::closely::{assert_like_path, assert_unlike_path};
+use crate::common::statistics::{assert_like_path, assert_unlike_path};
 use crate::common::{built, diffuse, floor, look, put, quad, sky};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, StrokeWidths};

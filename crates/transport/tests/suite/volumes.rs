@@ -1,8 +1,10 @@
 //! Media whose density a grid gives: slabs of layers, furnaces, and the same mean by every integrator.
 
 use crate::common::media::{any, boxed, grid_in, smoke};
-use crate::common::statistics::closely::{assert_like_path, assert_like_path_in_turn, assert_unlike_path};
-use crate::common::statistics::{UNLIKELY, agreement, assert_vanishes, blocks, estimate};
+use crate::common::statistics::{
+    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
+    blocks, estimate,
+};
 use crate::common::{built, diffuse, effort, floor, look, put, shoot, sky, without_mirrors};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Quat, Rgb, Vec3};

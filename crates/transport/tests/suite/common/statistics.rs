@@ -44,24 +44,9 @@ pub fn blocks_of_depth(
     first_seed: u64,
     max_depth: u32,
 ) -> Vec<Vec<f64>> {
-    blocks_of(scene, integrator, first_seed, max_depth, effort(12, 32))
-}
-
-/// The same as [`blocks`], with as many samples in the short form as in the long one.
-pub fn close_blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) -> Vec<Vec<f64>> {
-    blocks_of(scene, integrator, first_seed, 6, 32)
-}
-
-fn blocks_of(
-    scene: &Scene,
-    integrator: &dyn PixelIntegrator,
-    first_seed: u64,
-    max_depth: u32,
-    spp: u32,
-) -> Vec<Vec<f64>> {
     let mut blocks = vec![Vec::new(); 12];
     for seed in first_seed..first_seed + 12 {
-        let settings = RenderSettings { seed, max_depth, ..RenderSettings::new(16, 16, spp) };
+        let settings = RenderSettings { seed, max_depth, ..RenderSettings::new(16, 16, 32) };
         let film = shoot(scene, integrator, &settings).film;
         let mut sums = vec![0.0; 12];
         for (i, pixel) in film.to_rgb().into_iter().enumerate() {
@@ -84,8 +69,8 @@ pub const UNLIKELY: f64 = 1e-4;
 
 /// For some of these integrators, the p-value that what it finds in a scene has the mean of what `path` finds in another.
 fn against_path<'a>(
-    blocks: Blocks,
-    [path, scene]: [&Scene; 2],
+    path: &Scene,
+    scene: &Scene,
     others: &[&'a str],
     chosen: Range<usize>,
 ) -> Vec<(&'a str, f64)> {
@@ -96,58 +81,27 @@ fn against_path<'a>(
     chosen.map(p).collect()
 }
 
-/// [`blocks`] or [`close_blocks`].
-type Blocks = fn(&Scene, &dyn PixelIntegrator, u64) -> Vec<Vec<f64>>;
-
 /// Fails where other integrators find a different mean in a scene than `path` does.
 pub fn assert_like_path(name: &str, scene: &Scene, others: &[&str]) {
-    assert_these_like_path(blocks, name, scene, others, 0..others.len());
+    assert_these_like_path(name, scene, others, 0..others.len());
 }
 
 /// The same for one of many scenes: in the short form with only one of the integrators, in turn.
 pub fn assert_like_path_in_turn(turn: usize, name: &str, scene: &Scene, others: &[&str]) {
-    assert_these_like_path(blocks, name, scene, others, in_turn(turn, others));
-}
-
-fn in_turn(turn: usize, others: &[&str]) -> Range<usize> {
     let one = turn % others.len();
-    effort(one..one + 1, 0..others.len())
+    assert_these_like_path(name, scene, others, effort(one..one + 1, 0..others.len()));
 }
 
-fn assert_these_like_path(blocks: Blocks, name: &str, scene: &Scene, others: &[&str], chosen: Range<usize>) {
-    for (other, p) in against_path(blocks, [scene, scene], others, chosen) {
+fn assert_these_like_path(name: &str, scene: &Scene, others: &[&str], chosen: Range<usize>) {
+    for (other, p) in against_path(scene, scene, others, chosen) {
         assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
     }
 }
 
 /// Fails where others find the same mean in a scene with a planted bug as `path` finds in the right one.
 pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
-    assert_these_unlike_path(blocks, right, wrong, others);
-}
-
-fn assert_these_unlike_path(blocks: Blocks, right: &Scene, wrong: &Scene, others: &[&str]) {
-    for (other, p) in against_path(blocks, [right, wrong], others, 0..others.len()) {
+    for (other, p) in against_path(right, wrong, others, 0..others.len()) {
         assert!(p < UNLIKELY, "{other} passes: p = {p}");
-    }
-}
-
-/// The same assertions with all samples in both forms, where the planted bugs are too small for fewer.
-pub mod closely {
-    use super::{Blocks, assert_these_like_path, assert_these_unlike_path, close_blocks, in_turn};
-    use bilux_scene::Scene;
-
-    const BLOCKS: Blocks = close_blocks;
-
-    pub fn assert_like_path(name: &str, scene: &Scene, others: &[&str]) {
-        assert_these_like_path(BLOCKS, name, scene, others, 0..others.len());
-    }
-
-    pub fn assert_like_path_in_turn(turn: usize, name: &str, scene: &Scene, others: &[&str]) {
-        assert_these_like_path(BLOCKS, name, scene, others, in_turn(turn, others));
-    }
-
-    pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
-        assert_these_unlike_path(BLOCKS, right, wrong, others);
     }
 }
 
