@@ -10,6 +10,7 @@ mod archive;
 mod as_metal;
 mod asc;
 mod authors;
+mod b_spline;
 mod bake;
 mod between_keys;
 mod blocks;

@@ -24,7 +24,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         source: "ISO 10303-21",
         parameters: &[],
     },
-    extensions: &["step", "stp", "p21"],
+    extensions: scene::EXTENSIONS,
     capabilities: &["curved faces", "triangles", "objects", "instances", "materials"],
     up: UpHint::Usually(Axis::Z),
     sniff: |bytes| bytes.trim_ascii_start().starts_with(b"ISO-10303-21"),

@@ -14,6 +14,9 @@ use bilux_math::Transform;
 use bilux_scene::{Object, SceneBuilder, Spec};
 use std::collections::HashMap;
 
+/// How names of STEP files end.
+pub(super) const EXTENSIONS: &[&str] = &["step", "stp", "p21"];
+
 pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut table = parse(reading, source.bytes, source.name)?;
     let mut sink = Sink::for_bare_files();
@@ -28,15 +31,7 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
     let mut sink = builder.finished();
     let elsewhere = part_in_another_file(&table);
     if sink.scene.objects.is_empty() {
-        let message = match elsewhere {
-            Some((file, _)) => format!(
-                "its parts are in other files, such as '{file}', which are not read: convert these, or export the assembly into a single file"
-            ),
-            None => {
-                "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid"
-                    .to_owned()
-            }
-        };
+        let message = nothing_to_show(&table, elsewhere.map(|(file, _)| file));
         return Err(FormatError::malformed(message, whole_file(source.name)));
     }
     if let Some((file, id)) = elsewhere {
@@ -49,11 +44,24 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
     Ok(sink.finish())
 }
 
+/// Why there is nothing to show, and what to do.
+fn nothing_to_show(table: &Table, elsewhere: Option<String>) -> String {
+    match elsewhere {
+        _ if !table.is_whole => {
+            "it has no end (END-ISO-10303-21;): it was cut off before all that can be shown; get the file again".to_owned()
+        }
+        Some(file) => format!(
+            "its parts are in other files, such as '{file}', which are not read: convert these, or export the assembly into a single file"
+        ),
+        None => "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid".to_owned(),
+    }
+}
+
 /// A file of STEP that this one refers to, and where.
 fn part_in_another_file(table: &Table) -> Option<(String, u64)> {
     let is_step = |name: &str| {
-        let ending = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-        ["stp", "step", "p21"].contains(&&*ending)
+        let ending = name.rsplit('.').next().unwrap_or_default();
+        EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(ending))
     };
     let named = |(id, values): (u64, Values)| Some((values.text(0), id)).filter(|(name, _)| is_step(name));
     table.all("DOCUMENT_FILE").find_map(named)

@@ -61,6 +61,7 @@ mod usd_skeletons;
 mod usd_truth;
 mod usd_volumes;
 mod usd_written;
+mod witness;
 mod wrong_files;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};

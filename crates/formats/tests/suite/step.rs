@@ -170,7 +170,9 @@ fn parts_in_other_files_are_named() {
     let with = |text: &str, what: &str| text.replacen("DATA;", &format!("DATA;\n{what}"), 1);
     let empty = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
     assert!(refusal("step", with(empty, other)).contains("such as 'HEAD.STP'"));
-    assert!(!refusal("step", empty).contains("other files"));
+    assert!(!refusal("step", with(empty, "#1=DIRECTION('',(0.,0.,1.));")).contains("other files"));
+    let cut = with(empty, other).replace("END-ISO-10303-21;", "");
+    assert!(refusal("step", cut).contains("it was cut off"));
     let solid = seed("cube_hole.step");
     assert!(warnings(&scene(&with(&solid, other))).contains("parts in other files, such as 'HEAD.STP'"));
     assert_eq!(warnings(&scene(&solid)), "");
@@ -196,9 +198,12 @@ fn every_spelling_of_a_file_is_that_file() {
 #[test]
 fn hostile_files_end_soon_with_an_error() {
     let head = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n";
+    let end = "ENDSEC;\nEND-ISO-10303-21;\n";
     let deep = format!("{head}#1=A({});\n", "(".repeat(1_000_000));
     assert!(refusal("step", deep).contains("no DATA section"));
-    assert!(refusal("step", format!("{head}#1=CLOSED_SHELL('',(#1,#1));\n")).contains("no solid or surface"));
+    assert!(
+        refusal("step", format!("{head}#1=CLOSED_SHELL('',(#1,#1));\n{end}")).contains("no solid or surface")
+    );
     // Each assembly has the next one twice: 2^40 parts.
     let text = seed("assembly_inches.step");
     let mut grown = text.replace("ENDSEC;\nEND-ISO", "");
@@ -214,6 +219,6 @@ fn hostile_files_end_soon_with_an_error() {
     let small = ReadOptions { max_memory: 4 << 20, ..ReadOptions::default() };
     let error = read_bytes(grown.as_bytes(), "step", None, "grown.step", &small).unwrap_err().to_string();
     assert!(error.contains("more than the 4194304 bytes"), "{error}");
-    let circle = format!("{head}#1=STYLED_ITEM('',(#1),#1);\n#2=MANIFOLD_SOLID_BREP('',#2);\n");
+    let circle = format!("{head}#1=STYLED_ITEM('',(#1),#1);\n#2=MANIFOLD_SOLID_BREP('',#2);\n{end}");
     assert!(refusal("step", circle).contains("no solid or surface"));
 }

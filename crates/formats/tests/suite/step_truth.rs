@@ -2,42 +2,13 @@
 //! the package `cadquery-ocp`; without these, nothing is compared. `BILUX_STEP_ONLY=TEXT` takes only files with this in their path,
 //! `BILUX_STEP_SAID=FILE` keeps what Open CASCADE said for the next time, and `BILUX_STEP_SHOWN=FOLDER` gets what was read, as `.glb`.
 
+use crate::witness::{files_below, said};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
 use bilux_math::DVec3;
 use bilux_scene::SceneBuilder;
 use std::collections::BTreeMap;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
 use std::time::Instant;
-
-fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        let is_step =
-            |end: &std::ffi::OsStr| ["step", "stp", "p21"].iter().any(|e| end.eq_ignore_ascii_case(e));
-        if path.is_dir() {
-            files_below(&path, found);
-        } else if path.extension().is_some_and(is_step) {
-            found.push(path);
-        }
-    }
-}
-
-/// What Open CASCADE says of files.
-fn said(files: &[PathBuf], python: &std::ffi::OsStr) -> String {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/step_truth.py");
-    let mut child = Command::new(python)
-        .arg(script)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let list: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    child.stdin.take().unwrap().write_all(list.join("\n").as_bytes()).unwrap();
-    String::from_utf8_lossy(&child.wait_with_output().unwrap().stdout).into_owned()
-}
 
 /// What a scene measures, in millimetres.
 pub(crate) struct Measures {
@@ -126,15 +97,13 @@ fn solids_measure_what_open_cascade_says() {
         return;
     };
     let only = std::env::var("BILUX_STEP_ONLY").unwrap_or_default();
-    let mut files = Vec::new();
-    files_below(Path::new(&folder), &mut files);
+    let mut files = files_below(Path::new(&folder), &["step", "stp", "p21"]);
     files.retain(|file| file.display().to_string().contains(&only));
-    files.sort();
     // What Open CASCADE says takes longer than all else, and can be kept.
     let text = match std::env::var_os("BILUX_STEP_SAID") {
         Some(kept) if Path::new(&kept).exists() => std::fs::read_to_string(kept).unwrap(),
         kept => {
-            let text = said(&files, &python);
+            let text = said("step_truth.py", &files, &python);
             kept.into_iter().for_each(|kept| std::fs::write(kept, &text).unwrap());
             text
         }

@@ -1,14 +1,13 @@
 //! Files of others against OpenUSD itself. `BILUX_USD=FOLDER BILUX_USD_PYTHON=INTERPRETER` names a folder of files and a Python with the
 //! package `usd-core`; without these, nothing is compared. `BILUX_USD_ONLY=TEXT` takes only files with this in their path.
 
+use crate::witness::{files_below, said};
 use bilux_formats::{ReadOptions, read};
 use bilux_math::DVec3;
 use bilux_scene::SceneBuilder;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
 
 /// All meshes of prims with one name.
 #[derive(Clone, Copy, Debug)]
@@ -19,35 +18,6 @@ struct Meshes {
 }
 
 const NONE: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-
-fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        let is_usd = |end: &std::ffi::OsStr| {
-            ["usd", "usda", "usdc", "usdz"].iter().any(|e| end.eq_ignore_ascii_case(e))
-        };
-        if path.is_dir() {
-            files_below(&path, found);
-        } else if path.extension().is_some_and(is_usd) {
-            found.push(path);
-        }
-    }
-}
-
-/// What OpenUSD says of files.
-fn said(files: &[PathBuf], python: &std::ffi::OsStr) -> String {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/usd_truth.py");
-    let mut child = Command::new(python)
-        .arg(script)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let list: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    child.stdin.take().unwrap().write_all(list.join("\n").as_bytes()).unwrap();
-    String::from_utf8_lossy(&child.wait_with_output().unwrap().stdout).into_owned()
-}
 
 fn ours(scene: &SceneBuilder) -> BTreeMap<String, Meshes> {
     let mut all: BTreeMap<String, Meshes> = BTreeMap::new();
@@ -107,11 +77,9 @@ fn meshes_are_where_openusd_puts_them() {
         return;
     };
     let only = std::env::var("BILUX_USD_ONLY").unwrap_or_default();
-    let mut files = Vec::new();
-    files_below(Path::new(&folder), &mut files);
+    let mut files = files_below(Path::new(&folder), &["usd", "usda", "usdc", "usdz"]);
     files.retain(|file| file.display().to_string().contains(&only));
-    files.sort();
-    let text = said(&files, &python);
+    let text = said("usd_truth.py", &files, &python);
     let (mut equal, mut different, mut refused, mut meshes) = (0, 0, 0, 0);
     let mut report = String::new();
     for section in text.split_inclusive('\n').collect::<Vec<_>>().chunk_by(|_, line| line.starts_with('O')) {

@@ -94,8 +94,8 @@ impl Chunks {
 
     /// Skips what is left of a chunk up to the next one.
     fn skip(&mut self, size: u64) -> Result<(), FormatError> {
-        let unit = if self.is_wide { 8 } else { 4 };
-        self.file.skip(size.saturating_add((unit - size % unit) % unit))
+        self.file.skip(size)?;
+        self.skip_padding(size)
     }
 
     /// Skips the bytes between a chunk of this size and the next one.

@@ -1,12 +1,11 @@
 //! What the XML file of a Maya cache says of it.
 
 use crate::FormatError;
+use crate::reading::Reading;
 use crate::xml::Xml;
 use bilux_scene::Span;
-use std::sync::Arc;
-
-use crate::reading::Reading;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The files of a cache, and its channels.
 pub(super) struct Description {

@@ -1,6 +1,7 @@
 //! NURBS surfaces as polygons. [Farin 2002]
 
 use crate::FormatError;
+use crate::b_spline::{Basis, Weights};
 use crate::fbx::tree::{Node, Value};
 use crate::polygon_mesh::{Layer, Mapping, PolygonMesh, Polygons, Workshop};
 use bilux_math::{DVec3, Vec2, Vec3};
@@ -8,8 +9,6 @@ use bilux_math::{DVec3, Vec2, Vec3};
 /// Polygons along a piece between two knots; fewer if there would be more than [`MOST`] in all.
 const STEPS: usize = 16;
 const MOST: usize = 1 << 20;
-/// Higher orders are not from any program.
-const HIGHEST_ORDER: usize = 32;
 
 /// The surface at a node of the file; `None`, with a note, if its numbers make none.
 pub(super) fn read(
@@ -36,16 +35,15 @@ pub(super) fn read(
 
 /// A surface of control points in rows.
 struct Surface {
-    bases: [Basis; 2],
+    directions: [Direction; 2],
     /// Position and weight; along u first.
     points: Vec<[f64; 4]>,
     is_flipped: bool,
 }
 
 /// One direction of a surface.
-struct Basis {
-    order: usize,
-    knots: Vec<f64>,
+struct Direction {
+    basis: Basis,
     /// Control points of the file; the curve begins again with the first if it needs more.
     points: usize,
 }
@@ -66,19 +64,19 @@ impl Surface {
         let [u, v, points] = [list("KnotVectorU")?, list("KnotVectorV")?, list("Points")?];
         let points: Vec<[f64; 4]> = points.as_chunks::<4>().0.to_vec();
         workshop.budget.take::<[f64; 4]>(points.len(), node.file())?;
-        let bases = [Basis::new(orders[0], u, counts[0]), Basis::new(orders[1], v, counts[1])];
-        let [Some(u), Some(v)] = bases else { return Ok(None) };
+        let directions = [Direction::new(orders[0], u, counts[0]), Direction::new(orders[1], v, counts[1])];
+        let [Some(u), Some(v)] = directions else { return Ok(None) };
         let is_flipped = node.child_value("FlipNormals").and_then(Value::integer) == Some(1);
         let is_whole = counts[0].checked_mul(counts[1]) == Some(points.len());
-        Ok(is_whole.then_some(Surface { bases: [u, v], points, is_flipped }))
+        Ok(is_whole.then_some(Surface { directions: [u, v], points, is_flipped }))
     }
 
-    fn at(&self, u: &Place, v: &Place) -> DVec3 {
-        let [along_u, along_v] = &self.bases;
+    fn at(&self, u: &Weights, v: &Weights) -> DVec3 {
+        let [along_u, along_v] = &self.directions;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-        for (j, of_v) in v.weights.iter().enumerate() {
+        for (j, of_v) in v.values[..=along_v.basis.degree].iter().enumerate() {
             let row = (v.first + j) % along_v.points * along_u.points;
-            for (i, of_u) in u.weights.iter().enumerate() {
+            for (i, of_u) in u.values[..=along_u.basis.degree].iter().enumerate() {
                 let [x, y, z, weight] = self.points[row + (u.first + i) % along_u.points];
                 let share = of_u * of_v * weight;
                 sum += DVec3::new(x, y, z) * share;
@@ -94,17 +92,16 @@ impl Surface {
         name: String,
         workshop: &mut Workshop,
     ) -> Result<PolygonMesh, FormatError> {
-        let pieces = self.bases.each_ref().map(Basis::pieces);
-        let all = pieces[0].len() * pieces[1].len();
+        let pieces = self.directions.each_ref().map(|direction| direction.basis.pieces());
+        let all = pieces[0] * pieces[1];
         let steps = (1..=STEPS).rev().find(|steps| all * steps * steps <= MOST).unwrap_or(1);
-        let counts = pieces.each_ref().map(|pieces| pieces.len() * steps + 1);
+        let counts = pieces.map(|pieces| pieces * steps + 1);
         let count = counts[0] * counts[1];
-        let orders = self.bases.each_ref().map(|basis| basis.order * size_of::<f64>() + size_of::<Place>());
         // For each vertex a position, coordinates, and four corners with an index and an end.
         let needed = count * (size_of::<Vec3>() + size_of::<Vec2>() + 4 * 8 + 4)
-            + orders.iter().zip(counts).map(|(bytes, count)| bytes * count).sum::<usize>();
+            + (counts[0] + counts[1]) * size_of::<Weights>();
         workshop.budget.take_bytes(needed as u64, node.file())?;
-        let [u, v] = [0, 1].map(|i| self.bases[i].places(&pieces[i], steps));
+        let [u, v] = self.directions.each_ref().map(|direction| direction.places(steps));
         let mut positions: Vec<Vec3> = Vec::with_capacity(count);
         let mut uvs: Vec<Vec2> = Vec::with_capacity(count);
         for (j, at_v) in v.iter().enumerate() {
@@ -141,54 +138,24 @@ impl Surface {
     }
 }
 
-/// A parameter of a curve: the control points that count there, from the first on, and how much.
-struct Place {
-    first: usize,
-    weights: Vec<f64>,
-}
-
-impl Basis {
-    fn new(order: usize, knots: Vec<f64>, points: usize) -> Option<Basis> {
-        let is_order = (2..=HIGHEST_ORDER).contains(&order);
-        let is_sorted = knots.iter().all(|knot| knot.is_finite()) && knots.is_sorted();
+impl Direction {
+    fn new(order: usize, knots: Vec<f64>, points: usize) -> Option<Direction> {
         let needed = knots.len().checked_sub(order)?;
         // A closed curve has its first point again at its end, and a periodic one as many as its degree.
-        let fits = needed >= order && points > 0 && (points..points.saturating_add(order)).contains(&needed);
-        let basis = Basis { order, knots, points };
-        (is_order && is_sorted && fits && !basis.pieces().is_empty()).then_some(basis)
+        let fits = points > 0 && (points..points.saturating_add(order)).contains(&needed);
+        let basis = Basis::new(order.checked_sub(1)?, knots).filter(|_| fits)?;
+        Some(Direction { basis, points })
     }
 
-    /// The intervals between knots that belong to the curve, by the number of the knot before.
-    fn pieces(&self) -> Vec<usize> {
-        let all = self.order - 1..self.knots.len() - self.order;
-        all.filter(|&i| self.knots[i] < self.knots[i + 1]).collect()
-    }
-
-    /// The parameters at which each piece is divided into so many steps.
-    fn places(&self, pieces: &[usize], steps: usize) -> Vec<Place> {
-        let within = |&piece: &usize| {
-            let [from, to] = [self.knots[piece], self.knots[piece + 1]];
-            (0..steps).map(move |i| (piece, from + (to - from) * i as f64 / steps as f64))
+    /// What counts at the parameters at which each piece is divided into so many steps.
+    fn places(&self, steps: usize) -> Vec<Weights> {
+        let ends = self.basis.ends();
+        let within = |pair: &[f64]| {
+            let [from, to] = [pair[0], pair[1]];
+            (0..steps).map(move |i| from + (to - from) * i as f64 / steps as f64)
         };
-        let end = pieces.last().map(|&piece| (piece, self.knots[piece + 1]));
-        let all = pieces.iter().flat_map(within).chain(end);
-        all.map(|(piece, t)| Place { first: piece + 1 - self.order, weights: self.weights(piece, t) })
-            .collect()
-    }
-
-    /// The B-splines that are not zero in a piece, by the recurrence of de Boor and Cox. [Farin 2002, section 8.7]
-    fn weights(&self, piece: usize, t: f64) -> Vec<f64> {
-        let mut weights = vec![1.0];
-        for degree in 1..self.order {
-            let mut next = vec![0.0; degree + 1];
-            for (i, weight) in weights.iter().enumerate() {
-                let [from, to] = [self.knots[piece + 1 + i - degree], self.knots[piece + 1 + i]];
-                next[i] += weight * (to - t) / (to - from);
-                next[i + 1] += weight * (t - from) / (to - from);
-            }
-            weights = next;
-        }
-        weights
+        let all = ends.windows(2).flat_map(within).chain(ends.last().copied());
+        all.map(|t| self.basis.at(t)).collect()
     }
 }
 

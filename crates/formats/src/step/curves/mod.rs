@@ -1,6 +1,5 @@
 //! Curves. [ISO 10303-42, 4.4]
 
-pub(super) mod basis;
 mod conic;
 mod curve;
 mod read;

@@ -1,10 +1,10 @@
 //! Curves as instances describe them.
 
-use super::basis::{Basis, weighted};
 use super::conic::{Ellipse, Hyperbola, Line, Parabola};
 use super::curve::Curve;
 use super::spline::{Polyline, Spline};
 use super::trimmed::{Composite, Trimmed};
+use crate::b_spline::{Basis, weighted};
 use crate::step::part21::{Table, Values};
 use crate::step::structure::axes::{axes, point, vector};
 use bilux_math::DVec3;
@@ -145,9 +145,12 @@ fn spline(table: &Table, id: u64) -> Option<Spline> {
     let points: Option<Vec<DVec3>> = base.references_at(at + 1).map(|id| point(table, id)).collect();
     let points = points?;
     let basis = match form.knots {
-        Some((values, at)) => {
-            Basis::new(degree, points.len(), &values.list(at + 1)?.numbers()?, &values.list(at)?.counts()?)?
-        }
+        Some((values, at)) => Basis::of_multiple(
+            degree,
+            points.len(),
+            &values.list(at + 1)?.numbers()?,
+            &values.list(at)?.counts()?,
+        )?,
         None if form.is_bezier => Basis::bezier(degree, points.len())?,
         None => Basis::uniform(degree, points.len(), form.is_clamped)?,
     };

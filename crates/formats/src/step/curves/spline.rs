@@ -1,7 +1,7 @@
 //! B-spline curves, rational or not, and polylines.
 
-use super::basis::{Basis, projected};
 use super::curve::{Curve, least};
+use crate::b_spline::{Basis, projected};
 use bilux_math::DVec3;
 use bilux_math::glam::DVec4;
 

@@ -37,6 +37,7 @@ pub(in crate::step) fn parse<'a>(
         header: Vec::new(),
         instances: HashMap::new(),
         order: Vec::new(),
+        is_whole: false,
         faults: Oddities::default(),
     };
     let mut parser = Parser {
@@ -91,7 +92,10 @@ impl Parser<'_, '_, '_> {
                         is_data = false;
                         self.skip();
                     }
-                    b"END-ISO-10303-21" => return Ok(()),
+                    b"END-ISO-10303-21" => {
+                        self.table.is_whole = true;
+                        return Ok(());
+                    }
                     _ if !is_data => match self.record(name) {
                         Ok(record) => self.table.header.push(record),
                         Err(fault) => self.fault(fault, start)?,

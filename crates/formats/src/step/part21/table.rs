@@ -33,6 +33,8 @@ pub(in crate::step) struct Table<'a> {
     pub(super) instances: HashMap<u64, Instance>,
     /// The numbers of the instances in the order of the file.
     pub(super) order: Vec<u64>,
+    /// True if the file has its end.
+    pub(in crate::step) is_whole: bool,
     /// What was wrong while it was read.
     pub(super) faults: Oddities,
 }

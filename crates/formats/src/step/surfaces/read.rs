@@ -4,7 +4,7 @@ use super::elementary::{Cone, Plane, Sphere, Torus};
 use super::spline::SplineSurface;
 use super::surface::Surface;
 use super::swept::{Extrusion, Offset, Revolution};
-use crate::step::curves::basis::{Basis, weighted};
+use crate::b_spline::{Basis, weighted};
 use crate::step::curves::{curve, spline_form};
 use crate::step::part21::Table;
 use crate::step::structure::axes::{Axes, axes, point, vector};
@@ -100,7 +100,7 @@ fn spline(table: &Table, id: u64) -> Option<SplineSurface> {
     let basis = |axis: usize| match form.knots {
         Some((values, at)) => {
             let (times, knots) = (values.list(at + axis)?.counts()?, values.list(at + 2 + axis)?.numbers()?);
-            Basis::new(degrees[axis], counts[axis], &knots, &times)
+            Basis::of_multiple(degrees[axis], counts[axis], &knots, &times)
         }
         None if form.is_bezier => Basis::bezier(degrees[axis], counts[axis]),
         None => Basis::uniform(degrees[axis], counts[axis], form.is_clamped),

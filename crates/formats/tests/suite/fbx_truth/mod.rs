@@ -8,6 +8,7 @@ mod refined;
 mod settings;
 mod skins;
 
+use crate::witness::files_below;
 use bilux_formats::{ReadOptions, read};
 use bilux_math::glam::DVec4;
 use bilux_math::{DMat4, DVec3};
@@ -16,7 +17,7 @@ use obj::{Corner, Truth, truth};
 use settings::{start, to_file};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn corners(scene: &SceneBuilder, to_file: &DMat4, truth: &Truth) -> Vec<Corner> {
     let mut corners = Vec::new();
@@ -216,18 +217,6 @@ fn meshes_are_where_other_programs_put_them() {
     );
 }
 
-/// Every file below a folder, in folders of folders.
-fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            files_below(&path, found);
-        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("fbx")) {
-            found.push(path);
-        }
-    }
-}
-
 /// `BILUX_FBX=FOLDER` reads all files below a folder: what opens, and why others are refused.
 #[test]
 fn files_of_others_open() {
@@ -235,9 +224,7 @@ fn files_of_others_open() {
         println!("skipped: BILUX_FBX does not name a folder");
         return;
     };
-    let mut files = Vec::new();
-    files_below(&folder, &mut files);
-    files.sort();
+    let files = files_below(&folder, &["fbx"]);
     let mut refused: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let (mut empty, mut slowest) = (0, (0.0, String::new()));
     for file in &files {

@@ -1,86 +1,100 @@
-//! B-spline basis functions. [Piegl 1997, chapter 2]
+//! The basis functions of B-splines, for curves and surfaces of all formats. [Piegl 1997, chapter 2]
 
 use bilux_math::DVec3;
 use bilux_math::glam::DVec4;
 
 /// The highest degree that is read; programs write up to 25.
-pub(in crate::step) const MAX_DEGREE: usize = 31;
+pub(crate) const MAX_DEGREE: usize = 31;
 
 /// Knots with multiplicities, and a degree.
 #[derive(Clone, Debug)]
-pub(in crate::step) struct Basis {
-    pub(in crate::step) degree: usize,
+pub(crate) struct Basis {
+    pub(crate) degree: usize,
     knots: Vec<f64>,
 }
 
 /// The first control point with an influence, and the values of the basis functions and their derivatives there.
-pub(in crate::step) struct Weights {
-    pub(in crate::step) first: usize,
-    pub(in crate::step) values: [f64; MAX_DEGREE + 1],
-    pub(in crate::step) slopes: [f64; MAX_DEGREE + 1],
+pub(crate) struct Weights {
+    pub(crate) first: usize,
+    pub(crate) values: [f64; MAX_DEGREE + 1],
+    pub(crate) slopes: [f64; MAX_DEGREE + 1],
 }
 
 impl Basis {
-    /// From knots and multiplicities, for a number of control points; `None` if they do not fit each other.
-    pub(in crate::step) fn new(degree: usize, count: usize, knots: &[f64], times: &[usize]) -> Option<Basis> {
-        let total = times.iter().try_fold(0usize, |sum, &n| sum.checked_add(n))?;
+    /// From all knots; `None` if they do not make a curve of this degree.
+    pub(crate) fn new(degree: usize, knots: Vec<f64>) -> Option<Basis> {
         let fits = (1..=MAX_DEGREE).contains(&degree)
-            && count > degree
+            && knots.len() >= 2 * (degree + 1)
+            && knots.is_sorted()
+            && knots.iter().all(|knot| knot.is_finite());
+        fits.then_some(Basis { degree, knots }).filter(|basis| basis.range()[0] < basis.range()[1])
+    }
+
+    /// From knots and multiplicities, for a number of control points; `None` if they do not fit each other.
+    pub(crate) fn of_multiple(degree: usize, count: usize, knots: &[f64], times: &[usize]) -> Option<Basis> {
+        let total = times.iter().try_fold(0usize, |sum, &n| sum.checked_add(n))?;
+        let fits = degree <= MAX_DEGREE
             && knots.len() == times.len()
-            && total == count + degree + 1
+            && total == count.checked_add(degree + 1)?
             && knots.windows(2).all(|pair| pair[0] < pair[1]);
         if !fits {
             return None;
         }
         let all = knots.iter().zip(times).flat_map(|(&knot, &n)| std::iter::repeat_n(knot, n)).collect();
-        Some(Basis { degree, knots: all }).filter(|basis| basis.range()[0] < basis.range()[1])
+        Basis::new(degree, all)
     }
 
     /// Equal distances between knots, with full multiplicity at the ends if it is clamped.
-    pub(in crate::step) fn uniform(degree: usize, count: usize, is_clamped: bool) -> Option<Basis> {
+    pub(crate) fn uniform(degree: usize, count: usize, is_clamped: bool) -> Option<Basis> {
         let pieces = count.checked_sub(degree).filter(|&pieces| pieces > 0)?;
         if is_clamped {
             let knots: Vec<f64> = (0..=pieces).map(|i| i as f64).collect();
             let times: Vec<usize> =
                 (0..=pieces).map(|i| if i == 0 || i == pieces { degree + 1 } else { 1 }).collect();
-            return Basis::new(degree, count, &knots, &times);
+            return Basis::of_multiple(degree, count, &knots, &times);
         }
         let knots: Vec<f64> = (0..=count + degree).map(|i| i as f64 - degree as f64).collect();
-        Basis::new(degree, count, &knots, &vec![1; knots.len()])
+        Basis::new(degree, knots)
     }
 
     /// The knots of Bézier pieces that follow each other.
-    pub(in crate::step) fn bezier(degree: usize, count: usize) -> Option<Basis> {
+    pub(crate) fn bezier(degree: usize, count: usize) -> Option<Basis> {
         let pieces = count.checked_sub(1)?.checked_div(degree)?;
         let knots: Vec<f64> = (0..=pieces).map(|i| i as f64).collect();
         let times: Vec<usize> =
             (0..=pieces).map(|i| if i == 0 || i == pieces { degree + 1 } else { degree }).collect();
-        Basis::new(degree, count, &knots, &times)
+        Basis::of_multiple(degree, count, &knots, &times)
     }
 
-    pub(in crate::step) fn range(&self) -> [f64; 2] {
+    pub(crate) fn range(&self) -> [f64; 2] {
         [self.knots[self.degree], self.knots[self.knots.len() - 1 - self.degree]]
     }
 
     /// The number of control points.
-    pub(in crate::step) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
 
     /// The number of pieces between different knots.
-    pub(in crate::step) fn pieces(&self) -> usize {
+    pub(crate) fn pieces(&self) -> usize {
         self.inner().count() + 1
     }
 
+    /// The ends of all pieces.
+    pub(crate) fn ends(&self) -> Vec<f64> {
+        let [from, to] = self.range();
+        std::iter::once(from).chain(self.inner()).chain([to]).collect()
+    }
+
     /// The different knots within the range.
-    pub(in crate::step) fn inner(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn inner(&self) -> impl Iterator<Item = f64> {
         let [from, to] = self.range();
         let pairs = self.knots.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| pair[1]);
         pairs.filter(move |&knot| knot > from && knot < to)
     }
 
     /// The functions that are not zero at a parameter, which is taken into the range.
-    pub(in crate::step) fn at(&self, t: f64) -> Weights {
+    pub(crate) fn at(&self, t: f64) -> Weights {
         let (p, knots) = (self.degree, &self.knots);
         let [from, to] = self.range();
         let t = t.clamp(from, to);
@@ -124,12 +138,12 @@ impl Basis {
 }
 
 /// A control point with its weight, as the curve in four dimensions has it.
-pub(in crate::step) fn weighted(p: DVec3, weight: f64) -> DVec4 {
+pub(crate) fn weighted(p: DVec3, weight: f64) -> DVec4 {
     (p * weight).extend(weight)
 }
 
 /// The point and the derivatives of a rational curve or surface, from those in four dimensions.
-pub(in crate::step) fn projected(point: DVec4, slope: DVec4) -> (DVec3, DVec3) {
+pub(crate) fn projected(point: DVec4, slope: DVec4) -> (DVec3, DVec3) {
     let p = point.truncate() / point.w;
     (p, (slope.truncate() - p * slope.w) / point.w)
 }
