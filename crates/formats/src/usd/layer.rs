@@ -126,6 +126,12 @@ impl Layer<'_> {
         names.try_fold(0, |prim, name| self.by_name.get(&(prim, name.into())).copied())
     }
 
+    /// What it says about a property of the prim with a path.
+    pub(super) fn property(&self, path: &str, name: &str) -> Option<&Property> {
+        let prim = &self.prims[self.named(path)? as usize];
+        prim.properties.iter().find(|property| &*property.name == name)
+    }
+
     /// Where a prim is.
     pub(super) fn at(&self, prim: u32) -> Span {
         let (line, column) = self.prims[prim as usize].at;

@@ -13,7 +13,14 @@ use bilux_math::Vec3;
 use bilux_scene::Mesh;
 use std::sync::Arc;
 
-/// A mesh with one material.
+/// The part of a mesh that has one material.
+pub(super) struct Piece {
+    pub(super) mesh: Arc<Mesh>,
+    /// Which of the subsets it is; the number of these for all other faces.
+    pub(super) group: usize,
+}
+
+/// The same with its material.
 #[derive(Clone)]
 pub(super) struct Part {
     pub(super) mesh: Arc<Mesh>,
@@ -200,15 +207,15 @@ pub(super) fn note_subdivision(stage: &Stage, prim: u32, subdivision: &Subdivisi
     }
 }
 
-/// The meshes of a mesh: one for each subset, and one for all other faces.
-pub(super) fn parts(
+/// The pieces of a mesh: one for each subset, and one for all other faces.
+pub(super) fn pieces(
     stage: &Stage,
     prim: u32,
     polygons: &mut Polygons,
     subsets: Vec<Subset>,
     rest: &Worn,
     scene: &mut Context,
-) -> Result<Vec<Part>, FormatError> {
+) -> Result<Vec<Piece>, FormatError> {
     let file = stage.layers[0].name.clone();
     let corners = polygons.corners.len() as u64;
     // Vertices with all their attributes, triangles, and what finds vertices again.
@@ -218,7 +225,8 @@ pub(super) fn parts(
     let is_only = subsets.is_empty();
     let mut is_taken = vec![false; if subsets.is_empty() { 0 } else { faces }];
     let mut all = Vec::new();
-    let mut add = |faces: &mut dyn Iterator<Item = usize>, worn: &Worn, scene: &mut Context| {
+    let others = subsets.len();
+    let mut add = |faces: &mut dyn Iterator<Item = usize>, group: usize, worn: &Worn, scene: &mut Context| {
         let mut uvs = uvs(stage, prim, worn, scene)?;
         let (colours, opacities) = (polygons.colours.take(), polygons.opacities.take());
         polygons.colours = colours.clone().filter(|_| worn.uses_colours);
@@ -236,19 +244,19 @@ pub(super) fn parts(
         if !mesh.triangles.is_empty() {
             mesh.name = name_of(stage, prim).to_string();
             scene.finish_mesh(&mut mesh, worn)?;
-            all.push(Part { mesh: Arc::new(mesh), material: worn.index });
+            all.push(Piece { mesh: Arc::new(mesh), group });
         }
         Ok::<_, FormatError>(())
     };
-    for subset in subsets {
+    for (group, subset) in subsets.into_iter().enumerate() {
         let mut own = subset.faces.into_iter().map(|face| face as usize).filter(|face| {
             // A face is drawn once.
             *face < faces && !std::mem::replace(&mut is_taken[*face], true)
         });
-        add(&mut own, &subset.worn, scene)?;
+        add(&mut own, group, &subset.worn, scene)?;
     }
-    let mut others = (0..faces).filter(|face| !is_taken.get(*face).is_some_and(|taken| *taken));
-    add(&mut others, rest, scene)?;
+    let mut rest_of_faces = (0..faces).filter(|face| !is_taken.get(*face).is_some_and(|taken| *taken));
+    add(&mut rest_of_faces, others, rest, scene)?;
     Ok(all)
 }
 

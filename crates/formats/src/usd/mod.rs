@@ -3,6 +3,7 @@
 mod cameras;
 mod composition;
 mod context;
+mod copies;
 mod instancer;
 mod labels;
 mod layer;

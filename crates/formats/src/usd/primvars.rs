@@ -33,6 +33,11 @@ pub(super) struct Place {
     pub(super) face: usize,
 }
 
+impl Place {
+    /// Of values that are constant.
+    pub(super) const ONLY: Place = Place { corner: 0, vertex: 0, face: 0 };
+}
+
 impl Primvar {
     /// A primvar of a prim, or an attribute that is one by another name.
     pub(super) fn read(

@@ -1,7 +1,7 @@
 //! Meshes that are subdivision surfaces.
 
 use super::context::{Context, Worn};
-use super::meshes::{Part, Subset, name_of, uvs};
+use super::meshes::{Piece, Subset, name_of, uvs};
 use super::polygons::Polygons;
 use super::primvars::{Interpolation, Place, Primvar};
 use super::stage::Stage;
@@ -13,9 +13,9 @@ use bilux_math::Vec3;
 /// From this sharpness on, an edge is as sharp as it can be. [OpenUSD, UsdGeomMesh]
 const SHARPEST: f32 = 10.0;
 
-/// The parts of a subdivision surface, one for each subset and one for all other faces; they are refined when the whole
+/// The pieces of a subdivision surface, one for each subset and one for all other faces; they are refined when the whole
 /// scene is known. `None` if the mesh is no such surface, or does not say so while it has normals, which only polygons have.
-pub(super) fn parts(
+pub(super) fn pieces(
     stage: &Stage,
     prim: u32,
     polygons: &Polygons,
@@ -23,7 +23,7 @@ pub(super) fn parts(
     subsets: &[Subset],
     rest: &Worn,
     scene: &mut Context,
-) -> Result<Option<Vec<Part>>, FormatError> {
+) -> Result<Option<Vec<Piece>>, FormatError> {
     let is_meant = !polygons.has_normals || subdivision.is_stated || subdivision.has_creases();
     let Some(scheme) = subdivision.scheme.refined().filter(|_| is_meant) else {
         return Ok(None);
@@ -73,11 +73,9 @@ pub(super) fn parts(
     }
     let name = name_of(stage, prim).to_owned();
     let pending = PendingCage::new(surface.cage, worn.iter().map(|_| name.clone()), stage.at(prim));
-    let part =
-        |(group, worn): (usize, &&Worn)| Part { mesh: pending.mesh(group).clone(), material: worn.index };
-    let parts = worn.iter().enumerate().map(part).collect();
+    let pieces = (0..worn.len()).map(|group| Piece { mesh: pending.mesh(group).clone(), group }).collect();
     scene.reading.cages.push(pending);
-    Ok(Some(parts))
+    Ok(Some(pieces))
 }
 
 /// A cage, and the place on the mesh of each of its corners.

@@ -1,9 +1,8 @@
 //! Converts the prims of a stage to a scene.
 
 use super::context::{Context, Worn};
-use super::instancer::Copies;
-use super::meshes::{Part, Subset, add_normals, name_of, note_subdivision, parts, points, polygons};
-use super::primvars::Primvar;
+use super::meshes::{Part, Piece, Subset, add_normals, name_of, note_subdivision, pieces, points, polygons};
+use super::primvars::{Place, Primvar};
 use super::shading;
 use super::skeletons::{Bent, Binding, Pose, Rig};
 use super::stage::Stage;
@@ -21,21 +20,26 @@ use std::sync::Arc;
 
 /// What a prim has from those above it.
 #[derive(Clone, Debug)]
-struct State {
-    world: DMat4,
-    is_visible: bool,
-    purpose: Option<Text>,
-    category: Text,
-    binding: Option<Binding>,
+pub(super) struct State {
+    pub(super) world: DMat4,
+    pub(super) is_visible: bool,
+    pub(super) purpose: Option<Text>,
+    pub(super) category: Text,
+    pub(super) binding: Option<Binding>,
 }
 
-/// What says all of a mesh: the same opinions make the same mesh.
-type Key = (Vec<[u64; 4]>, Worn, Vec<usize>, Vec<[u64; 4]>);
+/// What says all of a mesh: the same opinions make the same mesh, for materials that need the same of it.
+type Key = (Vec<[u64; 4]>, Vec<Worn>, Vec<[u64; 4]>);
+
+/// The same of a volume.
+pub(super) type VolumeKey = (Vec<[u64; 4]>, Option<u32>, Vec<[u64; 4]>);
 
 /// A scene while prims are added to it.
 pub(super) struct Scene<'r, 'o> {
     pub(super) context: Context<'r, 'o>,
-    pub(super) meshes: HashMap<Key, Arc<[Part]>>,
+    meshes: HashMap<Key, Arc<[Piece]>>,
+    /// Volumes by what says all of them, with their materials.
+    pub(super) volumes: HashMap<VolumeKey, Option<Part>>,
     /// Of surfaces without a material, by their colours and opacities.
     pub(super) plain: HashMap<([u32; 3], u32, bool), usize>,
     /// What prims `Material` are, if something that can be read.
@@ -46,13 +50,16 @@ pub(super) struct Scene<'r, 'o> {
     poses: HashMap<u32, Arc<Pose>>,
     /// The prims above the current one.
     pub(super) lineage: Vec<u32>,
+    /// Of instancers among these, the colour and the opacity of the copy that is made.
+    pub(super) looks: Vec<(u32, [Option<Primvar>; 2])>,
 }
 
 impl<'r, 'o> Scene<'r, 'o> {
     pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
-        let (meshes, plain, materials, alike, poses) = Default::default();
+        let (meshes, volumes, plain, materials, alike, poses) = Default::default();
         let context = Context { reading, sink };
-        Scene { context, meshes, plain, materials, alike, poses, lineage: Vec::new() }
+        let (lineage, looks) = Default::default();
+        Scene { context, meshes, volumes, plain, materials, alike, poses, lineage, looks }
     }
 
     /// Adds all prims, as they are at the time of the stage.
@@ -78,7 +85,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         Ok(())
     }
 
-    fn prim(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
+    pub(super) fn prim(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
         let state = self.state(stage, prim, state)?;
         let purpose = state.purpose.as_deref().unwrap_or("default");
         let is_shown = state.is_visible && matches!(purpose, "default" | "render");
@@ -100,8 +107,8 @@ impl<'r, 'o> Scene<'r, 'o> {
                 self.place(stage, prim, &parts, &world, &state.category)?;
             }
             "Volume" if is_shown => {
-                let parts = self.volume(stage, prim)?;
-                self.place(stage, prim, &parts, &state.world, &state.category)?;
+                let part = self.volume(stage, prim)?;
+                self.place(stage, prim, part.as_slice(), &state.world, &state.category)?;
             }
             "Camera" => cameras::add(stage, prim, &state.world, &mut self.context)?,
             kind if lights::is_light(kind) && state.is_visible => {
@@ -155,35 +162,39 @@ impl<'r, 'o> Scene<'r, 'o> {
     }
 
     /// The meshes of a prim, with their materials.
-    fn parts(&mut self, stage: &Stage, prim: u32, rig: Option<&Rig>) -> Result<Arc<[Part]>, FormatError> {
+    fn parts(&mut self, stage: &Stage, prim: u32, rig: Option<&Rig>) -> Result<Vec<Part>, FormatError> {
         let rest = self.worn(stage, prim)?;
         let is_mesh = &*stage.prim(prim).type_name == "Mesh";
         let subsets = if is_mesh { self.subsets(stage, prim)? } else { Vec::new() };
         let rig = rig.filter(|rig| !rig.is_rigid());
         let mut by_others = rig.map_or(Vec::new(), |rig| rig.said(stage));
-        let of_subsets = subsets.iter().map(|subset| subset.worn.index).collect();
         // Copies below other prims may have other colours from these.
-        if rest.uses_colours || rest.uses_opacities || subsets.iter().any(|subset| subset.worn.uses_colours) {
+        let worn: Vec<Worn> =
+            subsets.iter().map(|subset| subset.worn.clone()).chain([rest.clone()]).collect();
+        if worn.iter().any(|worn| worn.uses_colours || worn.uses_opacities) {
             let shown = self.shown(stage, prim)?;
-            let first = |primvar: &Primvar| primvar.values.floats::<3>(0).map(|x| u64::from(x.to_bits()));
+            let first = |primvar: &Primvar| primvar.at::<3>(Place::ONLY).map(|x| u64::from(x.to_bits()));
             by_others.extend(shown.iter().flatten().map(first).map(|[r, g, b]| [r, g, b, u64::MAX]));
         }
-        let key = (stage.said(prim).collect(), rest.clone(), of_subsets, by_others);
+        let needs = worn.iter().map(|worn| Worn { index: 0, ..worn.clone() }).collect();
+        let key = (stage.said(prim).collect(), needs, by_others);
+        let part = |piece: &Piece| Part { mesh: piece.mesh.clone(), material: worn[piece.group].index };
         if let Some(known) = self.meshes.get(&key) {
-            return Ok(known.clone());
+            return Ok(known.iter().map(part).collect());
         }
         let spent = self.context.reading.budget.spent();
-        let made: Arc<[Part]> = match is_mesh {
+        let made: Arc<[Piece]> = match is_mesh {
             true => self.polygon_parts(stage, prim, subsets, &rest, rig)?.into(),
             false => self.other_part(stage, prim, &rest)?.into_iter().collect(),
         };
         // What was read for the meshes is no longer held; they are.
         let now = self.context.reading.budget.spent();
         self.context.reading.budget.release(now.saturating_sub(spent));
-        let bytes: u64 = made.iter().map(|part| part.mesh.size()).sum();
+        let bytes: u64 = made.iter().map(|piece| piece.mesh.size()).sum();
         self.context.reading.budget.take_bytes(bytes, &stage.layers[0].name)?;
-        self.meshes.insert(key, made.clone());
-        Ok(made)
+        let parts = made.iter().map(part).collect();
+        self.meshes.insert(key, made);
+        Ok(parts)
     }
 
     fn polygon_parts(
@@ -193,7 +204,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         subsets: Vec<Subset>,
         rest: &Worn,
         rig: Option<&Rig>,
-    ) -> Result<Vec<Part>, FormatError> {
+    ) -> Result<Vec<Piece>, FormatError> {
         let Some(array) = stage.array(prim, "points", &mut self.context.reading.budget)? else {
             return Ok(Vec::new());
         };
@@ -213,15 +224,15 @@ impl<'r, 'o> Scene<'r, 'o> {
         bent.turn(stage, &mut polygons, self.context.reading)?;
         [polygons.colours, polygons.opacities] = self.shown(stage, prim)?;
         let refined =
-            refined::parts(stage, prim, &polygons, &subdivision, &subsets, rest, &mut self.context)?;
-        if let Some(parts) = refined {
-            return Ok(parts);
+            refined::pieces(stage, prim, &polygons, &subdivision, &subsets, rest, &mut self.context)?;
+        if let Some(pieces) = refined {
+            return Ok(pieces);
         }
         note_subdivision(stage, prim, &subdivision, &mut self.context);
-        parts(stage, prim, &mut polygons, subsets, rest, &mut self.context)
+        pieces(stage, prim, &mut polygons, subsets, rest, &mut self.context)
     }
 
-    fn other_part(&mut self, stage: &Stage, prim: u32, worn: &Worn) -> Result<Option<Part>, FormatError> {
+    fn other_part(&mut self, stage: &Stage, prim: u32, worn: &Worn) -> Result<Option<Piece>, FormatError> {
         let mut mesh = match &*stage.prim(prim).type_name {
             "Points" => strokes::points(stage, prim, worn, &mut self.context)?,
             "BasisCurves" | "NurbsCurves" => strokes::curves(stage, prim, worn, &mut self.context)?,
@@ -237,10 +248,10 @@ impl<'r, 'o> Scene<'r, 'o> {
         {
             let bytes = size_of::<Rgb>() * mesh.positions.len();
             self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
-            mesh.vertex_kd = vec![Rgb::from_array(colour.values.floats::<3>(0)); mesh.positions.len()];
+            mesh.vertex_kd = vec![Rgb::from_array(colour.at::<3>(Place::ONLY)); mesh.positions.len()];
         }
         self.context.finish_mesh(&mut mesh, worn)?;
-        Ok(Some(Part { mesh: Arc::new(mesh), material: worn.index }))
+        Ok(Some(Piece { mesh: Arc::new(mesh), group: 0 }))
     }
 
     /// Adds the parts of a prim.
@@ -266,47 +277,6 @@ impl<'r, 'o> Scene<'r, 'o> {
             let object =
                 Object { motion, category: category.to_string(), ..Object::new(name, mesh, part.material) };
             self.context.sink.scene.objects.push(object);
-        }
-        Ok(())
-    }
-
-    /// The copies of a `PointInstancer`.
-    fn copies(&mut self, stage: &Stage, prim: u32, state: &State) -> Result<(), FormatError> {
-        if self.lineage.contains(&prim) {
-            self.context
-                .sink
-                .oddities
-                .note("an instancer is its own prototype: left out there", || stage.at(prim));
-            return Ok(());
-        }
-        let Some(copies) = Copies::read(stage, prim, &mut self.context.reading.budget)? else {
-            return Ok(());
-        };
-        self.lineage.push(prim);
-        let mut made: HashMap<u32, Vec<Object>> = HashMap::new();
-        for &prototype in &copies.prototypes {
-            let objects = std::mem::take(&mut self.context.sink.scene.objects);
-            let state = State { world: DMat4::IDENTITY, purpose: None, binding: None, ..state.clone() };
-            if prototype != 0 {
-                self.prim(stage, prototype, &state)?;
-            }
-            let own = std::mem::replace(&mut self.context.sink.scene.objects, objects);
-            made.insert(prototype, own);
-        }
-        self.lineage.pop();
-        for i in 0..copies.len() {
-            let Some((prototype, place)) = copies.copy(i) else { continue };
-            let world = state.world * place;
-            for object in made.get(&prototype).into_iter().flatten() {
-                let whole = world * object.motion.at(0.0).matrix().as_dmat4();
-                let bytes = size_of::<[Object; 2]>() + object.name.len() + object.category.len();
-                self.context.reading.budget.take_bytes(bytes as u64, &stage.layers[0].name)?;
-                let budget = &mut self.context.reading.budget;
-                let placed = flat::placed(&object.mesh, &whole, budget, &stage.layers[0].name)?;
-                if let Some((mesh, motion)) = placed {
-                    self.context.sink.scene.objects.push(Object { mesh, motion, ..object.clone() });
-                }
-            }
         }
         Ok(())
     }

@@ -143,21 +143,22 @@ impl<'a> Stage<'a> {
         name: &str,
         budget: &mut Budget,
     ) -> Result<Option<Found>, FormatError> {
-        let property = |layer: u32| {
-            let file = &self.layers[layer as usize];
-            let prim = file.named(&clipped.path)?;
-            file.prims[prim as usize].properties.iter().find(|property| &*property.name == name)
-        };
+        let property = |layer: u32| self.layers[layer as usize].property(&clipped.path, name);
         let stated = match clipped.set.manifest.map(|layer| (layer, property(layer))) {
             Some((_, None)) => return Ok(None),
             Some((layer, Some(property))) => Some((layer, property)),
             None => None,
         };
-        if let Some(turn) = clipped.set.at(self.time) {
-            let samples = |layer: u32| property(layer).and_then(|property| property.samples.as_ref());
+        let samples = |layer: u32| property(layer).and_then(|property| property.samples.as_ref());
+        let has = |layer: u32| samples(layer).is_some();
+        // A value of the manifest is that of all clips without samples.
+        let manifest_value = stated.and_then(|(layer, property)| Some((layer, property.value.as_ref()?)));
+        let manifest_value = manifest_value.filter(|(_, value)| **value != Value::Blocked);
+        let bridges = clipped.set.bridges && manifest_value.is_none();
+        if let Some(turn) = clipped.set.at(self.time, bridges.then_some(&has)) {
             let value = |layer: u32, time: f64, budget: &mut Budget| match samples(layer) {
                 Some(samples) => self.sampled(layer, samples, time, holds_turns(name), budget),
-                None => Ok(None),
+                None => manifest_value.map(|(layer, value)| self.unpacked(layer, value, budget)).transpose(),
             };
             let [before, after] = match samples(turn.layer) {
                 Some(samples) => self.around(turn.layer, samples, turn.time, budget)?,

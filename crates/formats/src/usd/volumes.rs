@@ -1,6 +1,6 @@
 //! `Volume`: smoke, clouds and fire, whose fields are grids in other files. [OpenUSD, UsdVol]
 
-use super::context::{Context, Worn};
+use super::context::Context;
 use super::meshes::{Part, name_of};
 use super::primvars::{Interpolation, Primvar};
 use super::scene::Scene;
@@ -30,17 +30,16 @@ struct Field {
 
 impl Scene<'_, '_> {
     /// The box around a volume, filled with what its fields and its material say; none, with a note, without a density.
-    pub(super) fn volume(&mut self, stage: &Stage, prim: u32) -> Result<Arc<[Part]>, FormatError> {
+    pub(super) fn volume(&mut self, stage: &Stage, prim: u32) -> Result<Option<Part>, FormatError> {
         let fields = fields(stage, prim, &mut self.context);
         let bound = shading::bound(stage, prim, &self.lineage);
-        let material = bound.map(|material| material as usize).into_iter().collect();
         let said = fields.iter().flat_map(|field| stage.said(field.prim)).collect();
-        let key = (stage.said(prim).collect(), Worn::default(), material, said);
-        if let Some(known) = self.meshes.get(&key) {
+        let key = (stage.said(prim).collect(), bound, said);
+        if let Some(known) = self.volumes.get(&key) {
             return Ok(known.clone());
         }
-        let made: Arc<[Part]> = filled(stage, prim, &fields, bound, &mut self.context)?.into_iter().collect();
-        self.meshes.insert(key, made.clone());
+        let made = filled(stage, prim, &fields, bound, &mut self.context)?;
+        self.volumes.insert(key, made.clone());
         Ok(made)
     }
 }

@@ -1,7 +1,7 @@
 //! Which material each surface has, made once for all surfaces that have it.
 
 use super::context::{Context, Worn};
-use super::primvars::{Interpolation, Primvar};
+use super::primvars::{Interpolation, Place, Primvar};
 use super::scene::Scene;
 use super::shading::{self, Shaded};
 use super::stage::Stage;
@@ -9,6 +9,10 @@ use crate::FormatError;
 use crate::displacement::Moved;
 use crate::reading::plain_material;
 use bilux_math::Rgb;
+use bilux_scene::Spec;
+
+/// Memory of a material with a colour.
+const PLAIN_BYTES: u64 = 2 * size_of::<Spec>() as u64 + 256;
 
 impl Scene<'_, '_> {
     /// What a surface wears: what it is bound to, or else its own colour.
@@ -44,8 +48,15 @@ impl Scene<'_, '_> {
         let lineage = std::iter::once(&prim).chain(self.lineage.iter().rev());
         let constant = Interpolation::Constant;
         let mut found = [None, None];
-        for (slot, name) in found.iter_mut().zip(["primvars:displayColor", "primvars:displayOpacity"]) {
+        for (number, slot) in found.iter_mut().enumerate() {
+            let name = ["primvars:displayColor", "primvars:displayOpacity"][number];
             for &at in lineage.clone() {
+                // Copies of an instancer have their own.
+                let look = self.looks.iter().find(|(instancer, _)| *instancer == at);
+                if let Some(own) = look.and_then(|(_, look)| look[number].clone()) {
+                    *slot = Some(own);
+                    break;
+                }
                 let primvar = Primvar::read(stage, at, name, constant, budget)?;
                 *slot = primvar.filter(|p| at == prim || p.interpolation == constant);
                 if slot.is_some() {
@@ -75,26 +86,33 @@ impl Scene<'_, '_> {
             |primvar: &Option<Primvar>| primvar.as_ref().is_some_and(|p| p.interpolation != constant);
         let (uses_colours, uses_opacities) = (varies(&found[0]), varies(&found[1]));
         let colour = match &found[0] {
-            Some(colour) if !uses_colours => Some(colour.values.floats::<3>(0)),
+            Some(colour) if !uses_colours => {
+                colour.index(Place::ONLY).map(|index| colour.values.floats::<3>(index))
+            }
             _ => None,
         };
         let opacity = match &found[1] {
-            Some(opacity) if !uses_opacities => opacity.values.floats::<1>(0)[0].clamp(0.0, 1.0),
+            Some(opacity) if !uses_opacities => {
+                let index = opacity.index(Place::ONLY);
+                index.map_or(1.0, |index| opacity.values.floats::<1>(index)[0].clamp(0.0, 1.0))
+            }
             _ => 1.0,
         };
         let key = (colour.unwrap_or([-1.0; 3]).map(f32::to_bits), opacity.to_bits(), uses_colours);
-        let scene = &mut self.context.sink.scene;
-        let index = *self.plain.entry(key).or_insert_with(|| {
-            let mut spec = plain_material(uses_colours, false);
-            if let Some(colour) = colour {
-                "displayColor".clone_into(&mut spec.name);
-                spec.parameters.set("kd", Rgb::from_array(colour).clamp(0.0, 1.0));
-            }
-            if opacity < 1.0 {
-                spec.parameters.set("opacity", opacity);
-            }
-            scene.add_material(spec)
-        });
+        if let Some(&index) = self.plain.get(&key) {
+            return Ok(Worn { index, uses_colours, uses_opacities, ..Worn::default() });
+        }
+        self.context.reading.budget.take_bytes(PLAIN_BYTES, &stage.layers[0].name)?;
+        let mut spec = plain_material(uses_colours, false);
+        if let Some(colour) = colour {
+            "displayColor".clone_into(&mut spec.name);
+            spec.parameters.set("kd", Rgb::from_array(colour).clamp(0.0, 1.0));
+        }
+        if opacity < 1.0 {
+            spec.parameters.set("opacity", opacity);
+        }
+        let index = self.context.sink.scene.add_material(spec);
+        self.plain.insert(key, index);
         Ok(Worn { index, uses_colours, uses_opacities, ..Worn::default() })
     }
 }

@@ -56,6 +56,7 @@ mod threemf_written;
 mod tolerance;
 mod usd;
 mod usd_clips;
+mod usd_instancers;
 mod usd_materialx;
 mod usd_skeletons;
 mod usd_truth;

@@ -104,6 +104,81 @@ fn clips_are_weaker_than_their_own_layers_and_stronger_than_what_these_bring_in(
 }
 
 #[test]
+fn what_a_clip_lacks_comes_from_the_clips_around_it() {
+    let clip = |samples: &str| {
+        format!("def \"m\" {{ def Sphere \"s\" {{ double radius.timeSamples = {{ {samples} }} }} }}")
+    };
+    let none = "def \"m\" { def Sphere \"s\" { } }".to_owned();
+    let manifest = "def \"m\" { def Sphere \"s\" { double radius } }".to_owned();
+    let full = "def \"m\" { def Sphere \"s\" { double radius = 77 } }".to_owned();
+    let [early, middle, late] = ["0: 10, 5: 20", "20: 100, 25: 200", "31: 100, 35: 200"].map(clip);
+    let paused = [clip("3: 10, 5: 20"), none.clone(), clip("23: 100, 25: 200"), none.clone()];
+    let straight = "double2[] times = [(0, 0), (40, 40)]";
+    // By the files of the clips, which take over every 10, and the manifest.
+    for (files, times, manifest, radii_at) in [
+        (
+            [early.clone(), none.clone(), middle.clone(), none.clone()],
+            "",
+            Some(&manifest),
+            [(4.0, 18.0), (8.0, 36.0), (12.0, 172.0 / 3.0), (20.0, 100.0), (22.0, 140.0), (35.0, 200.0)],
+        ),
+        (
+            [early.clone(), none.clone(), middle.clone(), none.clone()],
+            straight,
+            None,
+            [(4.0, 18.0), (8.0, 36.0), (12.0, 172.0 / 3.0), (20.0, 100.0), (22.0, 140.0), (35.0, 200.0)],
+        ),
+        // A value of the manifest is that of all clips without samples.
+        (
+            [early.clone(), none.clone(), middle.clone(), none.clone()],
+            "",
+            Some(&full),
+            [(4.0, 18.0), (8.0, 54.2), (12.0, 81.6), (20.0, 100.0), (22.0, 140.0), (35.0, 77.0)],
+        ),
+        (
+            [none.clone(), none.clone(), middle.clone(), none.clone()],
+            "",
+            Some(&manifest),
+            [(4.0, 100.0), (8.0, 100.0), (12.0, 100.0), (20.0, 100.0), (22.0, 140.0), (35.0, 200.0)],
+        ),
+        (
+            [early.clone(), none.clone(), none.clone(), late.clone()],
+            "",
+            Some(&manifest),
+            [(4.0, 18.0), (8.0, 29.6), (12.0, 42.4), (20.0, 68.0), (22.0, 74.4), (35.0, 200.0)],
+        ),
+        (
+            paused.clone(),
+            straight,
+            Some(&manifest),
+            [(2.0, 10.0), (8.0, 36.0), (12.0, 172.0 / 3.0), (20.0, 100.0), (22.0, 100.0), (35.0, 200.0)],
+        ),
+    ] {
+        let with = if manifest.is_some() { "asset manifestAssetPath = @manifest.usda@" } else { "" };
+        let root = model(
+            "m",
+            &format!(
+                "asset[] assetPaths = [@d.0.usda@, @d.1.usda@, @d.2.usda@, @d.3.usda@] string primPath = \"/m\" \
+                 double2[] active = [(0, 0), (10, 1), (20, 2), (30, 3)] {times} {with} bool interpolateMissingClipValues = true"
+            ),
+            "",
+        );
+        let names = ["d.0.usda", "d.1.usda", "d.2.usda", "d.3.usda"];
+        let mut more: Vec<(&str, &str)> = names.into_iter().zip(files.iter().map(String::as_str)).collect();
+        more.extend(manifest.map(|text| ("manifest.usda", text.as_str())));
+        for (time, radius) in radii_at {
+            let scene = scene(time, &root, &more);
+            let found = radii(&scene, "s")[0];
+            assert!(
+                (found - radius as f32).abs() < 1e-4,
+                "{files:?} {times} at {time}: {found}, not {radius}"
+            );
+            assert_eq!(warnings(&scene), "");
+        }
+    }
+}
+
+#[test]
 fn broken_clips_are_said_and_left_out() {
     for (clips, wanted) in [
         (LISTED.to_owned(), "value clips need assetPaths with active"),
