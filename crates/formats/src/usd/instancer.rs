@@ -54,14 +54,14 @@ impl Copies {
         let indices = stage.array(prim, "protoIndices", budget)?;
         let positions = stage.array(prim, "positions", budget)?;
         let (Some(indices), Some(positions)) = (indices, positions) else { return Ok(None) };
+        let inactive = stage.numbers(prim, "inactiveIds", budget)?;
         let mut list = |name: &str| stage.array(prim, name, budget);
         let of = |list: &Array, i: usize| list.numbers.at(i).to_bits();
         let mut hidden = HashSet::new();
-        for name in ["invisibleIds", "inactiveIds"] {
-            if let Some(list) = list(name)? {
-                hidden.extend((0..list.len()).map(|i| of(&list, i)));
-            }
+        if let Some(list) = list("invisibleIds")? {
+            hidden.extend((0..list.len()).map(|i| of(&list, i)));
         }
+        hidden.extend(inactive.iter().map(|&id| (id as f64).to_bits()));
         let turns = match list("orientationsf")? {
             Some(turns) if turns.len() > 0 => Some(turns),
             _ => list("orientations")?,

@@ -8,7 +8,7 @@ use crate::FormatError;
 use crate::budget::Budget;
 use bilux_math::glam::DQuat;
 use bilux_scene::Span;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Everything that the layers say, composed.
@@ -271,6 +271,31 @@ impl<'a> Stage<'a> {
             targets.apply(&mut list);
         }
         list
+    }
+
+    /// What all layers make of a list of numbers in the metadata of a prim.
+    pub(super) fn numbers(
+        &self,
+        prim: u32,
+        key: &str,
+        budget: &mut Budget,
+    ) -> Result<HashSet<i64>, FormatError> {
+        let mut all = HashSet::new();
+        for opinion in self.prim(prim).opinions.iter().rev() {
+            let Some(stated) = self.spec(opinion).fields.find(key) else { continue };
+            let Value::Integers(change) = self.unpacked(opinion.layer, stated, budget)? else { continue };
+            let explicit = change.explicit.as_ref().map_or(0, Vec::len);
+            let count = explicit + change.prepended.len() + change.appended.len();
+            budget.take::<[i64; 4]>(count, &self.layers[0].name)?;
+            if let Some(list) = change.explicit {
+                all = list.into_iter().collect();
+            }
+            change.deleted.iter().for_each(|number| {
+                all.remove(number);
+            });
+            all.extend(change.prepended.iter().chain(&change.appended));
+        }
+        Ok(all)
     }
 
     /// Metadata of a property.

@@ -28,6 +28,8 @@ pub(super) enum Value {
     Dictionary(Vec<(Text, Value)>),
     /// A list of tokens that changes a weaker one.
     Names(ListOp<Text>),
+    /// A list of numbers that changes a weaker one.
+    Integers(ListOp<i64>),
     /// A list of paths that changes a weaker one.
     Paths(ListOp<Text>),
     /// References or payloads.

@@ -73,3 +73,36 @@ fn what_copies_do_not_show_is_said() {
     assert_eq!((scene.lights.len(), scene.objects.len()), (0, 3));
     assert!(warnings(&scene).contains("lights and cameras below a prototype"), "{}", warnings(&scene));
 }
+
+/// Prototypes need no prims above them that are defined, and copies are made inactive by lists that change weaker ones. The crate
+/// file was written by OpenUSD 26.11, whose mask of its copies is the same.
+#[test]
+fn copies_are_inactive_and_prototypes_hidden_as_openusd_has_it() {
+    let places = |scene: &SceneBuilder| {
+        let middle = |object: &Object| object.motion.at(0.0).point(object.mesh.bounds().centre()).x;
+        let mut all: Vec<f32> = scene.objects.iter().map(middle).collect();
+        all.sort_by(f32::total_cmp);
+        all
+    };
+    let instancer = |inactive: &str, name: &str, more: &str| {
+        format!(
+            "def PointInstancer \"{name}\" ({inactive}) {{ int[] protoIndices = [0, 0, 0, 0]\n rel prototypes = </o/p>\n \
+             point3f[] positions = [(1, 0, 0), (2, 0, 0), (3, 0, 0), (4, 0, 0)]\n {more} }}\n"
+        )
+    };
+    let over = "over \"o\" { def Cube \"p\" {} }\n";
+    let read = |text: String| read_text("usda", format!("#usda 1.0\n{over}{text}")).unwrap();
+    assert_eq!(places(&read(instancer("", "i", ""))), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(places(&read(instancer("inactiveIds = [1, 3]", "i", ""))), [1.0, 3.0]);
+    assert_eq!(
+        places(&read(instancer("inactiveIds = [7]", "i", "int64[] ids = [9, 8, 7, 6]"))),
+        [1.0, 2.0, 4.0]
+    );
+    let weaker = instancer("prepend inactiveIds = [0, 1]", "c", "").replace("def", "class");
+    let stronger = "def \"i\" (inherits = </c> append inactiveIds = [3] delete inactiveIds = [0]) {}";
+    assert_eq!(places(&read(weaker + stronger)), [1.0, 3.0]);
+    let crate_file = include_bytes!("../../../../fuzz/corpus/scene_usdc/instancer.usdc");
+    assert_eq!(places(&read_text("usdc", crate_file).unwrap()), [1.0, 3.0]);
+    // What is only overridden is not shown itself.
+    assert!(read(String::new()).objects.is_empty());
+}

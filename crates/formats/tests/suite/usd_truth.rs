@@ -17,6 +17,9 @@ struct Meshes {
     bounds: [DVec3; 2],
 }
 
+/// Little memory: subdivision surfaces are then coarse, which they may be here.
+const MEMORY: u64 = 100 << 20;
+
 const NONE: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
 
 fn ours(scene: &SceneBuilder) -> BTreeMap<String, Meshes> {
@@ -98,8 +101,12 @@ fn meshes_are_where_openusd_puts_them() {
             truth.insert(words[1].to_owned(), all);
         }
         meshes += truth.len();
-        let options =
-            ReadOptions { time: seconds.parse().unwrap(), allow_outside: true, ..ReadOptions::default() };
+        let options = ReadOptions {
+            time: seconds.parse().unwrap(),
+            allow_outside: true,
+            max_memory: MEMORY,
+            ..ReadOptions::default()
+        };
         let name = file.strip_prefix(&folder.to_string_lossy()[..]).unwrap_or(file);
         match read(Path::new(file), &options) {
             Err(error) => {

@@ -20,7 +20,7 @@ pub(in crate::usd) struct Prim {
     pub(in crate::usd) children: Vec<u32>,
     /// Values that are weaker than some of them, the strongest first.
     pub(in crate::usd) clips: Vec<Clipped>,
-    /// False for classes and for what is only overridden.
+    /// False for classes and for what is only overridden, whatever the prims above it are.
     pub(in crate::usd) is_defined: bool,
 }
 
@@ -87,7 +87,7 @@ impl Composer {
             }
             let clips = clips::of(&child, &opinions, &self.prims[parent as usize].clips, layers)?;
             layers.reading.budget.take::<[Clipped; 2]>(clips.len(), &layers.all[0].name)?;
-            let is_defined = self.prims[parent as usize].is_defined && is_defined(&opinions, layers);
+            let is_defined = is_defined(&opinions, layers);
             let type_name = type_name(&opinions, layers);
             let path = child.site.path.as_str().into();
             self.prims.push(Prim { path, type_name, opinions, clips, children: Vec::new(), is_defined });

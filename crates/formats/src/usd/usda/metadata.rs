@@ -79,6 +79,7 @@ fn entry(lexer: &mut Lexer, key: &str, change: Change, budget: &mut Budget) -> R
         "references" | "payload" => Value::References(change.of(references(lexer, budget)?)),
         "inherits" | "specializes" => Value::Paths(change.of(paths(lexer, budget)?)),
         "apiSchemas" | "variantSets" => Value::Names(change.of(names(lexer, budget)?)),
+        "inactiveIds" => Value::Integers(change.of(integers(lexer, budget)?)),
         "variants" => match dictionary(lexer, budget, 0)? {
             Value::Dictionary(entries) => {
                 let chosen =
@@ -105,6 +106,7 @@ fn add(
         (Some(Value::References(list)), Value::References(more)) => list.merge(more),
         (Some(Value::Paths(list)), Value::Paths(more)) => list.merge(more),
         (Some(Value::Names(list)), Value::Names(more)) => list.merge(more),
+        (Some(Value::Integers(list)), Value::Integers(more)) => list.merge(more),
         (Some(known), value) => *known = value,
         (None, Value::References(ListOp { explicit: Some(list), .. })) if key == "subLayers" => {
             budget.take::<TimeOffset>(list.len(), lexer.name)?;
@@ -152,6 +154,13 @@ pub(super) fn paths(lexer: &mut Lexer, budget: &mut Budget) -> Result<Vec<Text>,
 
 fn names(lexer: &mut Lexer, budget: &mut Budget) -> Result<Vec<Text>, FormatError> {
     several(lexer, budget, |lexer, _| Ok(lexer.string()?.into()))
+}
+
+fn integers(lexer: &mut Lexer, budget: &mut Budget) -> Result<Vec<i64>, FormatError> {
+    several(lexer, budget, |lexer, budget| {
+        let number = untyped(lexer, budget, 0)?.number();
+        number.map(|x| x as i64).ok_or_else(|| lexer.expected("a number"))
+    })
 }
 
 fn sublayers(lexer: &mut Lexer, budget: &mut Budget) -> Result<Value, FormatError> {

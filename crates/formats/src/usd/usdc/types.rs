@@ -11,6 +11,8 @@ pub(super) enum Kind {
     Dictionary,
     TokenListOp,
     StringListOp,
+    /// Of numbers of 64 bits.
+    IntegerListOp,
     PathListOp,
     ReferenceListOp,
     PayloadListOp,
@@ -92,6 +94,7 @@ impl Kind {
             33 => Kind::StringListOp,
             34 => Kind::PathListOp,
             35 => Kind::ReferenceListOp,
+            37 => Kind::IntegerListOp,
             40 => Kind::PathVector,
             41 => Kind::TokenVector,
             42..=44 => Kind::Word,

@@ -112,6 +112,7 @@ impl Crate<'_> {
             Kind::Dictionary => self.dictionary(bytes, budget, depth)?,
             Kind::TokenListOp => Value::Names(list_op(bytes, 4, |b| Ok(self.token(b.u32()?)), budget)?),
             Kind::StringListOp => Value::Names(list_op(bytes, 4, |b| Ok(self.string(b.u32()?)), budget)?),
+            Kind::IntegerListOp => Value::Integers(list_op(bytes, 8, |b| Ok(b.u64()? as i64), budget)?),
             Kind::PathListOp => Value::Paths(list_op(bytes, 4, |b| Ok(self.path(b.u32()?)), budget)?),
             Kind::ReferenceListOp => {
                 let reference = |b: &mut Bytes, budget: &mut Budget| {
