@@ -175,6 +175,13 @@ fn conventions_are_those_of_mitsuba() {
     assert!(close(gold.colour("k").unwrap(), [3.983, 2.386, 1.603], 1e-3));
     let rough = material("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.25\"/></bsdf>");
     assert_eq!(rough.number("roughness"), Some(0.5), "the square root of alpha");
+    // Beckmann's microfacets, unless the file says otherwise.
+    assert_eq!(rough.parameters.find("distribution").unwrap().0, &Value::from("beckmann"));
+    let chosen = "<string name=\"distribution\" value=\"ggx\"/>";
+    for kind in ["roughconductor", "roughdielectric"] {
+        let ggx = material(&format!("<bsdf type=\"{kind}\">{chosen}</bsdf>"));
+        assert_eq!(ggx.parameters.find("distribution"), None);
+    }
 }
 
 #[test]

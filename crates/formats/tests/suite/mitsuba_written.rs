@@ -54,7 +54,12 @@ fn materials_come_back() {
     assert_eq!((glass.number("eta"), glass.colour("absorption").unwrap().b), (Some(1.4), 0.75));
     let rough = back_of(Spec::new("m", "dielectric").with("roughness", 0.5));
     assert!((rough.number("roughness").unwrap() - 0.5).abs() < 1e-6);
+    for kind in ["conductor", "dielectric"] {
+        let beckmann = back_of(Spec::new("m", kind).with("roughness", 0.5).with("distribution", "beckmann"));
+        assert_eq!(beckmann.parameters.find("distribution").unwrap().0, &Value::from("beckmann"));
+    }
     let gold = back_of(Spec::new("m", "conductor").with("metal", "gold").with("roughness", 0.4));
+    assert_eq!(gold.parameters.find("distribution"), None);
     let [eta, _] = bilux_scene::materials::metal_indices("gold").unwrap();
     assert!((gold.colour("eta").unwrap() - eta).map(f32::abs).max_channel() < 1e-6);
     let pane = back_of(Spec::new("m", "dielectric").with("thin", true).with("opacity", 0.5));

@@ -5,6 +5,7 @@
 //! Fresnel's reflectance is split into its value at normal incidence and the share of the remainder that it gains
 //! towards grazing angles. That share hardly depends on the index, so a few indices suffice.
 
+use super::facets::Smith;
 use super::{Ggx, fresnel_dielectric};
 use bilux_math::frame::reflect;
 use bilux_math::{Vec2, Vec3};

@@ -8,8 +8,9 @@
 //! visible.
 
 use super::lobe_frame::NEARLY_FLAT;
-use super::{Bsdf, BsdfSample, Lambert, Lobe, TransportMode};
+use super::{Bsdf, BsdfSample, Conductor, Facets, Lambert, Lobe, RoughDielectric, TransportMode};
 use bilux_math::{Frame, Rgb, Vec3};
+use std::borrow::Cow;
 
 /// The maximum fraction of directions from a light that are sampled about the geometric normal.
 const MAX_FLAT: f32 = 0.25;
@@ -89,7 +90,8 @@ impl Bsdf {
     /// The density of directions from a light, of which `pdf` is that about the shading normal.
     fn with_flat(&self, pdf: f32, wo: Vec3, wi: Vec3) -> f32 {
         let (flat, share) = self.flat();
-        (1.0 - share) * pdf + share * self.pdf_of(wide, &flat, wo, wi)
+        (1.0 - share) * pdf
+            + share * self.pdf_of(|lobe, wo, wi| wide(lobe).pdf_solid_angle(wo, wi), &flat, wo, wi)
     }
 
     /// Samples a non-delta lobe, with `about` sampling one about a given frame.
@@ -107,7 +109,7 @@ impl Bsdf {
         }
         let (flat, share) = self.flat();
         if u_choice < share {
-            about(wide(lobe), &flat, u_choice / share)
+            about(&wide(lobe), &flat, u_choice / share)
         } else {
             about(lobe, &self.frame, (u_choice - share) / (1.0 - share))
         }
@@ -122,9 +124,21 @@ impl Bsdf {
     }
 }
 
-/// The lobe that is sampled about the geometric normal: a lobe that excludes directions, as Phong's does, might exclude
-/// some that are visible about a bent normal.
+/// The lobe that is sampled about the geometric normal: a lobe that excludes directions, as Phong's and those without tails
+/// do, might exclude some that are visible about a bent normal.
 #[inline]
-fn wide(lobe: &Lobe) -> &Lobe {
-    if matches!(lobe, Lobe::Phong(_)) { &DIFFUSE } else { lobe }
+fn wide(lobe: &Lobe) -> Cow<'_, Lobe> {
+    match lobe {
+        Lobe::Phong(_) => Cow::Borrowed(&DIFFUSE),
+        Lobe::Conductor(Conductor { facets: Facets::Beckmann(facets), fresnel }) => {
+            Cow::Owned(Lobe::Conductor(Conductor { facets: facets.with_tails().into(), fresnel: *fresnel }))
+        }
+        Lobe::RoughDielectric(glass @ RoughDielectric { facets: Facets::Beckmann(facets), .. }) => {
+            Cow::Owned(Lobe::RoughDielectric(RoughDielectric {
+                facets: facets.with_tails().into(),
+                ..*glass
+            }))
+        }
+        _ => Cow::Borrowed(lobe),
+    }
 }

@@ -67,7 +67,8 @@ impl CoatedDielectric {
         cover: Coating,
     ) -> CoatedDielectric {
         let (eta, dispersion) = index;
-        let glass = RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, ggx, film: None };
+        let glass =
+            RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, facets: ggx.into(), film: None };
         CoatedDielectric { glass, reflected, passed, cover }
     }
 
@@ -89,7 +90,7 @@ impl CoatedDielectric {
 
     #[inline]
     pub(super) fn is_delta(&self) -> bool {
-        !RoughDielectric::is_rough(self.glass.eta, self.glass.thin, &self.glass.ggx)
+        !RoughDielectric::is_rough(self.glass.eta, self.glass.thin, &self.glass.facets)
     }
 
     #[inline]

@@ -1,6 +1,7 @@
 //! Metal: opaque microfacets that reflect by Fresnel's equations, smooth or rough. [Walter 2007]
 
-use super::{BsdfEntry, BsdfSample, Fresnel, Ggx, Lobe, TransportMode};
+use super::facets::Smith;
+use super::{Beckmann, BsdfEntry, BsdfSample, Facets, Fresnel, Ggx, Lobe, TransportMode};
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -9,25 +10,29 @@ use bilux_math::{Rgb, Vec2, Vec3};
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "conductor",
-        summary: "conductor: Fresnel reflection, smooth or with GGX microfacets",
+        summary: "conductor: Fresnel reflection, smooth or with microfacets",
         source: "Walter 2007",
         parameters: &[],
     },
     reciprocal: true,
     lossless: false,
     cases: || {
-        let metal = |ggx| {
+        let metal = |facets: Facets| {
             let fresnel = Fresnel::Complex { eta: Rgb::new(0.21, 1.04, 1.29), k: Rgb::new(3.3, 2.6, 2.4) };
-            Lobe::Conductor(Conductor { fresnel, ggx })
+            Lobe::Conductor(Conductor { fresnel, facets })
         };
         let white =
-            |ggx| Lobe::Conductor(Conductor { fresnel: Fresnel::tinted(Rgb::WHITE, Rgb::WHITE), ggx });
+            |facets| Lobe::Conductor(Conductor { fresnel: Fresnel::tinted(Rgb::WHITE, Rgb::WHITE), facets });
         vec![
-            ("polished", metal(Ggx::SMOOTH)),
-            ("satin", metal(Ggx::new(0.1))),
-            ("white", white(Ggx::new(0.4))),
-            ("brushed", metal(Ggx::anisotropic(0.08, 0.5, 0.6))),
-            ("sandblasted", metal(Ggx::anisotropic(1.2, 1.0, -1.0))),
+            ("polished", metal(Facets::SMOOTH)),
+            ("satin", metal(Ggx::new(0.1).into())),
+            ("white", white(Ggx::new(0.4).into())),
+            ("brushed", metal(Ggx::anisotropic(0.08, 0.5, 0.6).into())),
+            ("sandblasted", metal(Ggx::anisotropic(1.2, 1.0, -1.0).into())),
+            ("satin, Beckmann", metal(Beckmann::new(0.15).into())),
+            ("white, Beckmann", white(Beckmann::new(0.5).into())),
+            ("brushed, Beckmann", metal(Beckmann::anisotropic(0.1, 0.6, 0.6).into())),
+            ("sandblasted, Beckmann", metal(Beckmann::anisotropic(1.2, 1.0, -1.0).into())),
         ]
     },
 };
@@ -37,8 +42,8 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 pub struct Conductor {
     /// The reflectance of a microfacet.
     pub fresnel: Fresnel,
-    /// The distribution of its microfacets.
-    pub ggx: Ggx,
+    /// Its microfacets.
+    pub facets: Facets,
 }
 
 impl Conductor {
@@ -49,17 +54,19 @@ impl Conductor {
 
     #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match facet_between(&self.ggx, wo, wi) {
-            Some((wo, _, m)) => self.ggx.distribution(m) * self.ggx.reflected_within_bound(wo),
+        match facet_between(self.facets.is_smooth(), wo, wi) {
+            Some((wo, _, m)) => self.facets.distribution(m) * self.facets.reflected(wo),
             None => 0.0,
         }
     }
 
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> (Rgb, f32) {
-        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (Rgb::BLACK, 0.0) };
-        let distribution = self.ggx.distribution(m);
-        let reflected = self.fresnel.at(wo.dot(m)) * (distribution * self.ggx.visible(wo, wi));
-        (reflected, distribution * self.ggx.reflected_within_bound(wo))
+        let Some((wo, wi, m)) = facet_between(self.facets.is_smooth(), wo, wi) else {
+            return (Rgb::BLACK, 0.0);
+        };
+        let distribution = self.facets.distribution(m);
+        let reflected = self.fresnel.at(wo.dot(m)) * (distribution * self.facets.visible(wo, wi));
+        (reflected, distribution * self.facets.reflected(wo))
     }
 
     pub(super) fn sample(
@@ -69,7 +76,7 @@ impl Conductor {
         u: Vec2,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
-        if self.ggx.is_smooth() {
+        if self.facets.is_smooth() {
             let wi = Vec3::new(-wo.x, -wo.y, wo.z);
             return Some(BsdfSample {
                 wi,
@@ -81,7 +88,7 @@ impl Conductor {
             });
         }
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let m = self.ggx.sample_visible(above, u, self.ggx.bound(above));
+        let m = self.facets.sample_reflecting(above, u);
         let wi = reflect(above, m);
         let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(wi.z * wo.z)).normalize();
         let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
@@ -97,8 +104,8 @@ impl Conductor {
 /// The two directions mirrored to above the surface, and the half-vector; `None` where they are on opposite sides of
 /// the surface, or the surface is smooth.
 #[inline]
-pub(super) fn facet_between(ggx: &Ggx, wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
-    if wo.z * wi.z <= 0.0 || ggx.is_smooth() {
+pub(super) fn facet_between(is_smooth: bool, wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
+    if wo.z * wi.z <= 0.0 || is_smooth {
         return None;
     }
     let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z.abs()), Vec3::new(wi.x, wi.y, wi.z.abs()));

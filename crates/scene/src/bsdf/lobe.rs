@@ -135,7 +135,7 @@ impl Lobe {
     pub fn is_delta(&self) -> bool {
         match self {
             Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
-            Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
+            Lobe::Conductor(lobe) => lobe.facets.is_smooth(),
             Lobe::MicrofacetReflection(lobe) => lobe.is_delta(),
             Lobe::CoatedDielectric(lobe) => lobe.is_delta(),
             Lobe::Lambert(_)

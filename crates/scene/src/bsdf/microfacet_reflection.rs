@@ -3,6 +3,7 @@
 //! loses nothing, and a coloured metal becomes more saturated. [Kulla 2017]
 
 use super::conductor::facet_between;
+use super::facets::Smith;
 use super::{
     Albedo, BsdfEntry, BsdfSample, Coating, Fresnel, Ggx, Lobe, ThinFilm, TransportMode, fresnel_dielectric,
 };
@@ -197,7 +198,9 @@ impl MicrofacetReflection {
 
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> (Rgb, f32) {
         let covered = self.covered(wo, wi);
-        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (Rgb::BLACK, 0.0) };
+        let Some((wo, wi, m)) = facet_between(self.ggx.is_smooth(), wo, wi) else {
+            return (Rgb::BLACK, 0.0);
+        };
         let distribution = self.ggx.distribution(m);
         let mut f = self.fresnel(wo.dot(m)) * (distribution * self.ggx.visible(wo, wi));
         let mut pdf = distribution * self.ggx.reflected_within_bound(wo);

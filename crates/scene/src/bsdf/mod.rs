@@ -16,10 +16,10 @@ mod coating;
 mod conductor;
 mod delta;
 mod dielectric;
+mod facets;
 mod for_wo;
 mod fresnel;
 mod fuzz;
-mod ggx;
 mod lambert;
 mod lobe;
 mod lobe_frame;
@@ -43,10 +43,10 @@ pub use coated_diffuse::CoatedDiffuse;
 pub use coating::Coating;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use facets::{Beckmann, Facets, Ggx};
 pub use for_wo::BsdfForWo;
 pub use fresnel::{Fresnel, fresnel_conductor, fresnel_dielectric, refract, schlick};
 pub use fuzz::{Fuzz, FuzzAlbedo};
-pub use ggx::Ggx;
 pub use lambert::Lambert;
 pub use lobe::{BSDFS, BsdfEntry, Lobe};
 pub use microfacet_reflection::MicrofacetReflection;
@@ -255,17 +255,17 @@ impl Bsdf {
 
     #[inline]
     fn pdf_about(&self, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
-        self.pdf_of(|lobe| lobe, frame, wo, wi)
+        self.pdf_of(Lobe::pdf_solid_angle, frame, wo, wi)
     }
 
-    /// The density if each lobe is sampled by the one that `sampled` gives for it.
+    /// The density if each lobe is sampled with the density that `of_lobe` gives.
     #[inline(always)]
-    fn pdf_of(&self, sampled: impl Fn(&Lobe) -> &Lobe, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
+    fn pdf_of(&self, of_lobe: impl Fn(&Lobe, Vec3, Vec3) -> f32, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
         let risen = self.risen(wo);
         let (wo, wi) = (frame.to_local(wo), frame.to_local(wi));
         let mut pdf = 0.0;
         for (i, lobe) in self.lobes.iter().map_while(|lobe| lobe.as_ref()).enumerate() {
-            pdf += (self.strengths[i] + self.rises[i] * risen) * sampled(lobe).pdf_solid_angle(wo, wi);
+            pdf += (self.strengths[i] + self.rises[i] * risen) * of_lobe(lobe, wo, wi);
         }
         pdf / (self.total_strength + self.total_rise * risen)
     }

@@ -2,8 +2,10 @@
 
 use super::conductor::facet_between;
 use super::dielectric::shares;
+use super::facets::Smith;
 use super::{
-    BsdfEntry, BsdfSample, Dielectric, Ggx, Lobe, ThinFilm, TransportMode, fresnel_dielectric, refract,
+    Beckmann, BsdfEntry, BsdfSample, Dielectric, Facets, Ggx, Lobe, ThinFilm, TransportMode,
+    fresnel_dielectric, refract,
 };
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
@@ -20,22 +22,26 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     reciprocal: false,
     lossless: false,
     cases: || {
-        let glass = |eta, thin, ggx| {
+        let glass = |eta, thin, facets: Facets| {
             Lobe::RoughDielectric(RoughDielectric {
                 film: None,
                 eta,
                 dispersion: 0.0,
                 tint: Rgb::WHITE,
                 thin,
-                ggx,
+                facets,
             })
         };
         vec![
-            ("frosted", glass(1.5, false, Ggx::new(0.3))),
-            ("etched", glass(1.5, false, Ggx::new(0.1))),
-            ("bubble", glass(1.0 / 1.33, false, Ggx::new(0.2))),
-            ("diamond, scratched", glass(2.4, false, Ggx::anisotropic(0.1, 0.6, 0.4))),
-            ("pane", glass(1.5, true, Ggx::new(0.25))),
+            ("frosted", glass(1.5, false, Ggx::new(0.3).into())),
+            ("etched", glass(1.5, false, Ggx::new(0.1).into())),
+            ("bubble", glass(1.0 / 1.33, false, Ggx::new(0.2).into())),
+            ("diamond, scratched", glass(2.4, false, Ggx::anisotropic(0.1, 0.6, 0.4).into())),
+            ("pane", glass(1.5, true, Ggx::new(0.25).into())),
+            ("frosted, Beckmann", glass(1.5, false, Beckmann::new(0.4).into())),
+            ("bubble, Beckmann", glass(1.0 / 1.33, false, Beckmann::new(0.2).into())),
+            ("diamond, Beckmann", glass(2.4, false, Beckmann::anisotropic(0.1, 0.6, 0.4).into())),
+            ("pane, Beckmann", glass(1.5, true, Beckmann::new(0.25).into())),
         ]
     },
 };
@@ -51,8 +57,8 @@ pub struct RoughDielectric {
     pub tint: Rgb,
     /// A thin pane: transmitted light continues as the mirror image of reflected light, on the other side.
     pub thin: bool,
-    /// The distribution of its microfacets; not smooth.
-    pub ggx: Ggx,
+    /// Its microfacets; not smooth.
+    pub facets: Facets,
     /// A thin film on the outside; a pane has it on both sides.
     pub film: Option<ThinFilm>,
 }
@@ -62,14 +68,14 @@ impl RoughDielectric {
     ///
     /// With an index near 1, microfacets hardly bend light: it passes as through a smooth boundary, and the lobe's
     /// width is lost to rounding.
-    pub fn is_rough(eta: f32, thin: bool, ggx: &Ggx) -> bool {
-        !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
+    pub fn is_rough(eta: f32, thin: bool, facets: &Facets) -> bool {
+        !facets.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
     }
 
     /// The same glass with another index; smooth if the index is close to that of the outside.
     pub fn of_index(self, eta: f32) -> Lobe {
-        let RoughDielectric { dispersion, tint, thin, ggx, film, .. } = self;
-        if RoughDielectric::is_rough(eta, thin, &ggx) {
+        let RoughDielectric { dispersion, tint, thin, facets, film, .. } = self;
+        if RoughDielectric::is_rough(eta, thin, &facets) {
             Lobe::RoughDielectric(RoughDielectric { eta, ..self })
         } else {
             Lobe::Dielectric(Dielectric { eta, dispersion, tint, thin, film })
@@ -105,10 +111,12 @@ impl RoughDielectric {
     #[inline]
     fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, f32) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
-        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (0.0, 0.0, 1.0) };
+        let Some((wo, wi, m)) = facet_between(self.facets.is_smooth(), wo, wi) else {
+            return (0.0, 0.0, 1.0);
+        };
         let cos = wo.dot(m);
-        let density = self.ggx.distribution(m) * share(self.fresnel(cos, eta, outside));
-        (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo), cos)
+        let density = self.facets.distribution(m) * share(self.fresnel(cos, eta, outside));
+        (density * self.facets.visible(wo, wi), density * 0.25 * self.facets.seen(wo), cos)
     }
 
     /// Light refracted by the microfacets. [Walter 2007, eq. 21]
@@ -132,17 +140,17 @@ impl RoughDielectric {
             Some(_) => 1.0 - self.fresnel(above, self.eta, true),
             None => passed(cos_o, cos_i, eta),
         };
-        let density = self.ggx.distribution(m) * passes * per_angle;
+        let density = self.facets.distribution(m) * passes * per_angle;
         let below = Vec3::new(wi.x, wi.y, -wi.z);
-        let f = density * 4.0 * self.ggx.visible(wo, below);
+        let f = density * 4.0 * self.facets.visible(wo, below);
         let f = if mode == TransportMode::Radiance { f / (eta * eta) } else { f };
-        if f.is_finite() { (f, density * self.ggx.seen(wo), above) } else { (0.0, 0.0, 1.0) }
+        if f.is_finite() { (f, density * self.facets.seen(wo), above) } else { (0.0, 0.0, 1.0) }
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let eta = self.eta_from(wo);
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
-        let m = self.ggx.sample_visible(above, u, Ggx::FULL);
+        let m = self.facets.sample_visible(above, u);
         let reflects = u_choice < self.fresnel(above.dot(m), eta, wo.z > 0.0);
         let wi = match (reflects, self.thin) {
             (true, _) => reflect(above, m),

@@ -1,7 +1,7 @@
 //! `conductor`: polished, satin or brushed metal.
 
 use super::metals::{METALS, NAMES};
-use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
+use super::roughness::{ANISOTROPY, DISTRIBUTION, ROTATION, Roughness, roughness};
 use super::{
     AsPrincipled, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, VISIBLE_SIDES, colour_map,
     reflectance,
@@ -42,6 +42,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             roughness("0.3"),
             ANISOTROPY,
             ROTATION,
+            DISTRIBUTION,
             OPACITY,
             VISIBLE_SIDES,
             NORMAL,
@@ -135,7 +136,7 @@ impl ConductorMaterial {
 
 impl Material for ConductorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let metal = Conductor { fresnel: self.fresnel(surface), ggx: self.roughness.at(surface) };
+        let metal = Conductor { fresnel: self.fresnel(surface), facets: self.roughness.at(surface) };
         Bsdf::of(surface.n_shade, surface.n_geom, Lobe::Conductor(metal)).along(surface.tangent)
     }
 

@@ -1,7 +1,7 @@
 //! `dielectric`: glass, water, diamond, smooth or rough.
 
 use super::glasses::{NAMES, glass_indices};
-use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
+use super::roughness::{ANISOTROPY, DISTRIBUTION, ROTATION, Roughness, roughness};
 use super::{
     ABSORPTION, AsPrincipled, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN,
     colour_map, reflectance, spread,
@@ -40,6 +40,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             roughness("0"),
             ANISOTROPY,
             ROTATION,
+            DISTRIBUTION,
             spread("gloss", "maximum angle by which reflected rays spread, in cook only"),
             spread("translucency", "maximum angle by which refracted rays spread, in cook only"),
             OPACITY,
@@ -154,15 +155,16 @@ struct Glass {
 impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let Glass { eta, dispersion, thin, .. } = *self;
-        let (tint, ggx) = (self.tint.at(surface.uvs()), self.roughness.at(surface));
-        let glass = RoughDielectric { eta, dispersion, tint, thin, ggx, film: None }.of_index(eta);
+        let (tint, facets) = (self.tint.at(surface.uvs()), self.roughness.at(surface));
+        let glass = RoughDielectric { eta, dispersion, tint, thin, facets, film: None }.of_index(eta);
         Bsdf::of(surface.n_shade, surface.n_geom, glass).along(surface.tangent)
     }
 
     fn smooth_lobe(&self) -> Option<SmoothLobe> {
         let Glass { eta, thin, .. } = *self;
         let ColourMap { colour: tint, texture: None } = self.tint else { return None };
-        let is_smooth = self.roughness.even().is_some_and(|ggx| !RoughDielectric::is_rough(eta, thin, &ggx));
+        let is_smooth =
+            self.roughness.even().is_some_and(|facets| !RoughDielectric::is_rough(eta, thin, &facets));
         (is_smooth && self.dispersion == 0.0).then_some(SmoothLobe { tint, eta, is_mirror: false, thin })
     }
 

@@ -111,12 +111,14 @@ typed! {
         reflectance: impl Into<crate::Value>,
         /// With 'reflectance': factor on Schlick's approximation at 82 degrees; default `1`.
         edge: bilux_math::Rgb,
-        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0.3`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of the distribution's alpha; default `0.3`.
         roughness: impl Into<crate::Value>,
         /// Anisotropy: how much smoother the surface is along its tangent than across it; default `0`.
         anisotropy: impl Into<crate::Value>,
         /// Rotation of the anisotropy's direction, which is along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
         rotation: f32,
+        /// Distribution of the normals of microfacets, with long tails or without: `ggx`, `beckmann`; default `ggx`.
+        distribution: &str,
         /// Opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// The sides that the camera sees: both, or the front, where a triangle's vertices run counter-clockwise; light reaches both: `both`, `front`; default `both`.
@@ -152,12 +154,14 @@ typed! {
         priority: i32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin: bool,
-        /// Microfacet roughness: 0 is perfectly smooth; the square root of GGX's alpha; default `0`.
+        /// Microfacet roughness: 0 is perfectly smooth; the square root of the distribution's alpha; default `0`.
         roughness: impl Into<crate::Value>,
         /// Anisotropy: how much smoother the surface is along its tangent than across it; default `0`.
         anisotropy: impl Into<crate::Value>,
         /// Rotation of the anisotropy's direction, which is along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
         rotation: f32,
+        /// Distribution of the normals of microfacets, with long tails or without: `ggx`, `beckmann`; default `ggx`.
+        distribution: &str,
         /// Maximum angle by which reflected rays spread, in cook only (degrees); default `0`.
         gloss: f32,
         /// Maximum angle by which refracted rays spread, in cook only (degrees); default `0`.

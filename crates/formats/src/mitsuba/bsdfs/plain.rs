@@ -90,7 +90,7 @@ impl Maker<'_, '_> {
         Ok(held as f32)
     }
 
-    /// Sets the roughness of a rough material.
+    /// Sets the roughness of a rough material, and the distribution of its microfacets where ours has a choice.
     pub(super) fn set_roughness(
         &mut self,
         spec: &mut Spec,
@@ -98,10 +98,19 @@ impl Maker<'_, '_> {
         keys: Keys,
     ) -> Result<(), FormatError> {
         plugin.ignore(&["sample_visible"]);
-        let distribution = plugin.text("distribution")?.unwrap_or("beckmann");
-        if distribution != "ggx" {
-            let what = "microfacets are distributed by GGX here, whatever 'distribution' says: highlights have longer tails";
-            self.oddities.remark(what, || plugin.at.clone());
+        let has_choice = keys == PLAIN;
+        match plugin.text("distribution")?.unwrap_or("beckmann") {
+            "ggx" => {}
+            "beckmann" if has_choice => spec.parameters.set("distribution", "beckmann"),
+            other if has_choice => {
+                let what = format!("microfacets of '{other}' are rendered as Beckmann's");
+                self.oddities.remark(&what, || plugin.place("distribution"));
+                spec.parameters.set("distribution", "beckmann");
+            }
+            _ => {
+                let what = "microfacets over a diffuse base are those of GGX here, whatever 'distribution' says: highlights have longer tails";
+                self.oddities.remark(what, || plugin.at.clone());
+            }
         }
         let even = self.source_or(plugin, "alpha", Meaning::Number, ALPHA)?;
         let u = self.source(plugin, "alpha_u", Meaning::Number)?.unwrap_or_else(|| even.clone());
@@ -164,12 +173,6 @@ pub(super) fn thin_dielectric(maker: &mut Maker, plugin: &Plugin) -> Result<Opti
 pub(super) fn rough_dielectric(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
     let mut spec = glass(maker, plugin)?;
     maker.set_roughness(&mut spec, plugin, PLAIN)?;
-    if plugin.text("distribution")? != Some("ggx") {
-        // Half of the facets are as steep as those of Beckmann, or more light would be lost between them.
-        if let Some(roughness) = spec.number("roughness") {
-            spec.parameters.set("roughness", roughness * std::f32::consts::LN_2.sqrt().sqrt());
-        }
-    }
     Ok(Some(spec))
 }
 

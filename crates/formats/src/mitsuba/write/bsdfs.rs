@@ -101,7 +101,7 @@ impl<'d> Document<'d> {
         self.rgb("eta", eta);
         self.rgb("k", k);
         if !is_smooth {
-            self.roughness(alphas);
+            self.roughness(spec, alphas);
         }
         Ok(())
     }
@@ -140,7 +140,7 @@ impl<'d> Document<'d> {
             }
         }
         if !is_thin && !is_smooth {
-            self.roughness(alphas);
+            self.roughness(spec, alphas);
         }
         Ok(())
     }
@@ -255,8 +255,9 @@ impl<'d> Document<'d> {
         Ok(())
     }
 
-    fn roughness(&mut self, [u, v]: [f32; 2]) {
-        self.text("distribution", "ggx");
+    fn roughness(&mut self, spec: &Spec, [u, v]: [f32; 2]) {
+        let is_beckmann = matches!(spec.parameters.find("distribution"), Some((Value::Text(name), _)) if name == "beckmann");
+        self.text("distribution", if is_beckmann { "beckmann" } else { "ggx" });
         if u == v {
             self.number("alpha", u);
         } else {

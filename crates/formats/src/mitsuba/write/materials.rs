@@ -15,7 +15,10 @@ const HOLDS: MaterialSupport = MaterialSupport {
     of_kinds: &[
         ("diffuse", &["reflectance"]),
         ("mirror", &["reflectance"]),
-        ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "anisotropy", "rotation"]),
+        (
+            "conductor",
+            &["metal", "eta", "k", "reflectance", "roughness", "anisotropy", "rotation", "distribution"],
+        ),
         (
             "dielectric",
             &[
@@ -29,6 +32,7 @@ const HOLDS: MaterialSupport = MaterialSupport {
                 "roughness",
                 "anisotropy",
                 "rotation",
+                "distribution",
             ],
         ),
         ("interface", &["absorption", "scattering", "scattering_anisotropy", "density"]),

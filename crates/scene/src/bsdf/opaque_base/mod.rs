@@ -11,8 +11,8 @@
 mod numbers;
 
 use super::albedo::{Albedo, AlbedoTable};
+use super::facets::MIN_ALPHA;
 use super::fresnel::{COS_82, dent, fresnel_on_denser, schlick_from};
-use super::ggx::MIN_ALPHA;
 use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::sin_cos_of_turns;
