@@ -42,6 +42,9 @@ fn principled_is_as_bright_as_in_mitsuba() {
     assert!(close(glass.colour("transmission_color").unwrap(), [0.5f32.sqrt(), 0.3162, 0.8944], 1e-3));
     let thin = material(&format!("<bsdf type=\"principledthin\">{inside}</bsdf>"));
     assert!(close(thin.colour("transmission_color").unwrap(), [0.5, 0.1, 0.8], 1e-6));
+    // At normal incidence a pane reflects (1.5 - 1)² / (1.5 + 1)², and only clear parts have a boundary.
+    let each = thin.number("specular_ior").map(|index| (index - 1.0) / (index + 1.0)).map(|a| a * a).unwrap();
+    assert!((2.0 * each / (1.0 + each) - 0.04).abs() < 1e-5 && thin.number("specular_weight") == Some(0.0));
     let metal =
         material(&format!("<bsdf type=\"principled\">{given}<float name=\"metallic\" value=\"1\"/></bsdf>"));
     assert!(

@@ -25,7 +25,7 @@ const COAT: [f32; 2] = [0.0168, 0.0205];
 const FUZZ: f32 = 0.3;
 
 pub(super) fn principled(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
-    let mut spec = common(maker, plugin, &SAME)?;
+    let mut spec = common(maker, plugin, &SAME, 1.0)?;
     let index = match (plugin.number("eta")?, plugin.number("specular")?) {
         (Some(eta), _) => eta as f32,
         (None, specular) => {
@@ -68,8 +68,7 @@ fn set_base(maker: &mut Maker, plugin: &Plugin, spec: &mut Spec, index: f32) -> 
     };
     let (metal, roughness) = (mean("metallic", 0.0)?, mean("roughness", 0.5)?);
     let here = 1.0 - Albedo::new(&Ggx::new(roughness * roughness), index).mean();
-    let there = DIFFUSE[0] + roughness * (DIFFUSE[1] + roughness * DIFFUSE[2]);
-    let factor = metal + (1.0 - metal) * there / here;
+    let factor = metal + (1.0 - metal) * diffuse(roughness) / here;
     let base = colour.clone().mapped(|c| (c * factor).clamp(0.0, 1.0), maker.reading)?;
     maker.set(spec, "base_color", base, &at);
     if plugin.has("spec_trans") {
@@ -79,33 +78,54 @@ fn set_base(maker: &mut Maker, plugin: &Plugin, spec: &mut Spec, index: f32) -> 
     Ok(())
 }
 
-/// The same for walls without thickness.
+/// The mean reflectance of a white base.
+fn diffuse(roughness: f32) -> f32 {
+    DIFFUSE[0] + roughness * (DIFFUSE[1] + roughness * DIFFUSE[2])
+}
+
+/// The same for walls without thickness, of which only the clear part has a boundary. [Burley 2012]
 pub(super) fn thin(maker: &mut Maker, plugin: &Plugin) -> Result<Option<Spec>, FormatError> {
-    let mut spec = common(maker, plugin, &[SAME[0], SAME[2]])?.with("thin_walled", true);
-    spec.parameters.set("specular_ior", (plugin.number_or("eta", 1.5)? as f32).clamp(1.0, 10.0));
-    let colour = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?;
-    maker.set(&mut spec, "base_color", colour.clone(), &plugin.place("base_color"));
+    // Only what is reflected diffusely has sheen.
+    let mut less = |name, share: f32| {
+        let source = maker.source_or(plugin, name, Meaning::Number, 0.0)?;
+        Ok::<_, FormatError>((1.0 - share * source.mean().luminance()).clamp(0.0, 1.0))
+    };
+    let reflected = less("spec_trans", 1.0)? * less("diff_trans", 0.5)?;
+    let spec = common(maker, plugin, &[SAME[0], SAME[2]], reflected)?;
+    let mut spec = spec.with("thin_walled", true).with("specular_weight", 0.0f32);
+    let index = (plugin.number_or("eta", 1.5)? as f32).clamp(1.0, 10.0);
+    // A pane reflects what one face does, and ours what both do: 2 F / (1 + F).
+    let amplitude = (index - 1.0) / (index + 1.0);
+    let of_each = amplitude / (2.0 - amplitude * amplitude).sqrt();
+    spec.parameters.set("specular_ior", (1.0 + of_each) / (1.0 - of_each));
+    let roughness = maker.source_or(plugin, "roughness", Meaning::Number, SAME[0].2)?;
+    let factor = diffuse(roughness.mean().luminance().clamp(0.0, 1.0));
+    let (colour, at) =
+        (maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?, plugin.place("base_color"));
+    let base = colour.clone().mapped(|c| (c * factor).clamp(0.0, 1.0), maker.reading)?;
+    maker.set(&mut spec, "base_color", base, &at);
     if plugin.has("spec_trans") {
-        maker.set(&mut spec, "transmission_color", colour, &plugin.place("base_color"));
-    } else {
-        // Only the clear part has a boundary there.
-        spec.parameters.set("specular_weight", 0.0f32);
+        maker.set(&mut spec, "transmission_color", colour.clone(), &at);
+        let what =
+            "thin walls spread what passes as much as what they reflect: in Mitsuba they spread it less";
+        maker.oddities.remark(what, || plugin.at.clone());
     }
     if plugin.has("diff_trans") {
         // At 2, all diffuse light is transmitted.
         let share = maker.source_or(plugin, "diff_trans", Meaning::Number, 0.0)?.scaled(Rgb::grey(0.5));
-        let colour = maker.source_or(plugin, "base_color", Meaning::Surface, 0.5)?;
         maker.set_number(&mut spec, "diffuse_transmission_weight", share, &plugin.place("diff_trans"));
-        maker.set(&mut spec, "diffuse_transmission_color", colour, &plugin.place("base_color"));
+        maker.set(&mut spec, "diffuse_transmission_color", colour, &at);
     }
     not_shown(maker, plugin, &["spec_tint", "flatness"])?;
     Ok(Some(spec))
 }
 
+/// What both have; `with_sheen` is the fraction of the surface that has sheen.
 fn common(
     maker: &mut Maker,
     plugin: &Plugin,
     same: &[(&'static str, &str, f32)],
+    with_sheen: f32,
 ) -> Result<Spec, FormatError> {
     plugin.ignore(&[
         "main_specular_sampling_rate",
@@ -135,7 +155,8 @@ fn common(
         let fuzz = FuzzAlbedo::new(FUZZ);
         let mean: f32 =
             (0..64).map(|i| (i as f32 + 0.5) / 64.0).map(|cos| fuzz.at(cos) * 2.0 * cos / 64.0).sum();
-        let sheen = maker.source_or(plugin, "sheen", Meaning::Number, 0.0)?.scaled(Rgb::grey(SHEEN / mean));
+        let sheen = maker.source_or(plugin, "sheen", Meaning::Number, 0.0)?;
+        let sheen = sheen.scaled(Rgb::grey(SHEEN / mean * with_sheen));
         maker.set_number(&mut spec, "fuzz_weight", sheen, &plugin.place("sheen"));
         spec.parameters.set("fuzz_roughness", FUZZ);
         let tint =
