@@ -60,6 +60,8 @@ impl Equiangular {
 /// An equiangular point, and how it is to be connected.
 pub(crate) struct EquiangularSample {
     pub(crate) light: usize,
+    /// With which it was chosen.
+    pub(crate) probability: f32,
     pub(crate) points: Equiangular,
     /// Its distance along the ray, in metres.
     pub(crate) distance: f32,

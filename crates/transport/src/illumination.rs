@@ -180,9 +180,8 @@ fn direct(
 ) -> f32 {
     let scene = tracer.scene;
     let mut sum = 0.0;
-    for index in lights.sample(sampler.next_1d()) {
-        let (u, probability, light) =
-            (sampler.next_2d(), lights.probability(index), &scene.lights()[index].light);
+    for (index, probability) in lights.sample(sampler.next_1d(), Some(surface.p)) {
+        let (u, light) = (sampler.next_2d(), &scene.lights()[index].light);
         if probability == 0.0 {
             continue;
         }

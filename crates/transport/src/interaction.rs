@@ -79,6 +79,12 @@ impl Interaction {
         matches!(self, Interaction::Medium(MediumPoint { is_equiangular: true, .. }))
     }
 
+    /// The point for which [lights are chosen](crate::LightChoice::pick): there is none in a medium.
+    #[inline]
+    pub(crate) fn lit_at(&self) -> Option<Vec3> {
+        self.surface().map(|surface| surface.p)
+    }
+
     /// The point.
     #[inline]
     pub(crate) fn p(&self) -> Vec3 {

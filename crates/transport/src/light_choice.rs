@@ -1,21 +1,39 @@
-//! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings.
+//! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings to a point.
 
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Vec2, Vec3};
+use bilux_scene::lights::{LightExtent, LightTree};
 use bilux_scene::{Light, Scene};
-use std::ops::Range;
 
-/// A probability for every light of a scene.
+/// A probability for every light of a scene, at every point.
 ///
-/// Where there are few lights, each is always sampled: a shadow ray costs less than the noise of a choice that ignores
-/// position. Otherwise the probability follows the unoccluded light that it brings to the scene's objects, with a tenth
-/// distributed uniformly, so that a weak light close by is never neglected.
+/// Where there are few lights, each is always sampled: a shadow ray costs less than the noise of a choice. Otherwise each has a share by the
+/// unoccluded light that it brings to the scene's objects, with a tenth distributed uniformly. Finite lights put their shares together, and a
+/// [tree](LightTree) chooses one of them for the point: the ones close to it are far more likely, and those that face away are left out.
+///
+/// Points of media have no tree, but the shares: what is chosen for a ray must not depend on where on it the point is.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
-    probabilities: Vec<f32>,
-    /// `cdf[i]` is the sum of the probabilities `0..=i`.
+    /// The share of each light.
+    shares: Vec<f32>,
+    /// `cdf[i]` is the sum of the shares `0..=i`.
     cdf: Vec<f32>,
     few: bool,
+    local: Local,
+}
+
+/// The lights among which a point chooses.
+#[derive(Clone, Debug, Default)]
+struct Local {
+    tree: LightTree,
+    /// Their numbers, in the tree's order.
+    lights: Vec<usize>,
+    /// The place of each light of the scene in this; `u32::MAX` for those that are not.
+    places: Vec<u32>,
+    /// The sum of their shares.
+    share: f32,
+    /// `cdf[i]` is the sum of the shares `0..=i` of all others.
+    others: Vec<f32>,
 }
 
 /// Up to this many lights are all sampled.
@@ -24,19 +42,44 @@ const FEW: usize = 4;
 const SHARED_ALIKE: f64 = 0.1;
 
 impl LightChoice {
-    /// Computes the probabilities of a scene's lights, in their order.
+    /// Computes the shares of a scene's lights, in their order, and the tree.
     pub fn new(scene: &Scene) -> LightChoice {
         let places = places(scene);
-        LightChoice::weighted(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)))
+        let choice =
+            LightChoice::weighted(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)));
+        if choice.few {
+            return choice;
+        }
+        let (bounds, shutter) = (scene.bounds(), scene.shutter());
+        let extent = |light: &dyn Light| Some((light.extent(shutter)?, light.power(&bounds)));
+        choice.with_tree(scene.lights().iter().map(|l| extent(&*l.light)))
     }
 
     fn weighted(irradiances: impl Iterator<Item = f32>) -> LightChoice {
-        let mut probabilities = weights(irradiances);
-        let few = probabilities.iter().filter(|p| **p > 0.0).count() <= FEW;
+        let mut shares = weights(irradiances);
+        let few = shares.iter().filter(|p| **p > 0.0).count() <= FEW;
         if few {
-            probabilities.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
+            shares.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
         }
-        LightChoice { cdf: sums(&probabilities), probabilities, few }
+        LightChoice { cdf: sums(&shares), shares, few, local: Local::default() }
+    }
+
+    /// The same with a tree over lights of these extents and powers.
+    fn with_tree(mut self, extents: impl Iterator<Item = Option<(LightExtent, f32)>>) -> LightChoice {
+        let mut members = Vec::new();
+        let mut local = Local { places: vec![u32::MAX; self.shares.len()], ..Local::default() };
+        let mut others = self.shares.clone();
+        for (light, extent) in extents.enumerate() {
+            let Some((extent, power)) = extent.filter(|_| self.shares[light] > 0.0) else { continue };
+            local.places[light] = members.len() as u32;
+            local.lights.push(light);
+            members.push((extent, if power.is_finite() { power.max(f32::MIN_POSITIVE) } else { f32::MAX }));
+            local.share += std::mem::take(&mut others[light]);
+        }
+        local.tree = LightTree::new(&members);
+        local.others = sums(&others);
+        self.local = local;
+        self
     }
 
     /// True when all lights are always sampled, whatever the random number.
@@ -45,22 +88,60 @@ impl LightChoice {
         self.few
     }
 
-    /// The lights to sample: those of the range whose probability is above 0.
+    /// The lights to sample from a point, in metres, each with its probability there: all, or one by a random number, or one of probability 0 where none
+    /// shines. `None` stands for the points of media.
     #[inline]
-    pub fn sample(&self, u: f32) -> Range<usize> {
-        if self.few {
-            return 0..self.cdf.len();
-        }
-        let wanted = u * self.cdf[self.cdf.len() - 1];
-        let index = self.cdf.partition_point(|&sum| sum <= wanted).min(self.cdf.len() - 1);
-        index..index + 1
+    pub fn sample(&self, u: f32, at: Option<Vec3>) -> impl Iterator<Item = (usize, f32)> + use<'_> {
+        let one = (!self.few).then(|| self.pick(u, at).unwrap_or_default());
+        let all = if self.few { &*self.shares } else { &[] };
+        all.iter().copied().enumerate().chain(one)
     }
 
-    /// The probability of a light.
+    /// How many random numbers and points it takes to sample lights from a point.
     #[inline]
-    pub fn probability(&self, light: usize) -> f32 {
-        self.probabilities[light]
+    pub(crate) fn draws(&self) -> u32 {
+        1 + self.count() as u32
     }
+
+    /// How many lights are sampled from a point.
+    #[inline]
+    pub fn count(&self) -> usize {
+        if self.few { self.shares.len() } else { 1 }
+    }
+
+    /// One light for a point.
+    #[inline]
+    fn pick(&self, u: f32, at: Option<Vec3>) -> Option<(usize, f32)> {
+        let Some(p) = at else {
+            let light = pick(&self.cdf, u)?;
+            return Some((light, self.shares[light]));
+        };
+        let local = &self.local;
+        if u < local.share {
+            let (member, probability) = local.tree.sample(p, u / local.share)?;
+            return Some((local.lights[member], probability * local.share));
+        }
+        let light = pick(&local.others, (u - local.share) / (1.0 - local.share))?;
+        (local.places[light] == u32::MAX).then(|| (light, self.shares[light]))
+    }
+
+    /// The probability that a light is sampled from a point, in metres; `None` stands for the points of media.
+    #[inline]
+    pub fn probability(&self, light: usize, at: Option<Vec3>) -> f32 {
+        match (at, self.local.places.get(light)) {
+            (Some(p), Some(&place)) if place != u32::MAX => {
+                self.local.share * self.local.tree.probability(p, place as usize)
+            }
+            _ => self.shares[light],
+        }
+    }
+}
+
+/// The index that a random number selects from cumulative sums.
+#[inline]
+fn pick(cdf: &[f32], u: f32) -> Option<usize> {
+    let wanted = u * cdf.last()?;
+    Some(cdf.partition_point(|&sum| sum <= wanted).min(cdf.len() - 1))
 }
 
 /// Number of points at which lights are compared.
@@ -126,35 +207,56 @@ pub(crate) fn sums(probabilities: &[f32]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bilux_math::Aabb;
+
+    const POWERS: [f32; 7] = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
+
+    /// Lamps in a row, and two lights from infinity.
+    fn choice() -> LightChoice {
+        let extent = |i: usize| {
+            let at = Aabb::of_points([Vec3::X * i as f32]);
+            (i != 2 && i != 6).then(|| (LightExtent::all_around(at), POWERS[i]))
+        };
+        LightChoice::weighted(POWERS.into_iter()).with_tree((0..7).map(extent))
+    }
 
     #[test]
     fn each_light_is_picked_as_often_as_it_says() {
-        let powers = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
-        let choice = LightChoice::weighted(powers.into_iter());
-        let mut counts = [0; 7];
-        for i in 0..100_000 {
-            let picked = choice.sample((i as f32 + 0.5) / 100_000.0);
-            assert_eq!(picked.len(), 1);
-            counts[picked.start] += 1;
+        let choice = choice();
+        for at in [None, Some(Vec3::ZERO), Some(Vec3::new(5.0, 0.1, 0.0)), Some(Vec3::Y * 100.0)] {
+            let mut counts = [0; 7];
+            for i in 0..100_000 {
+                let (light, probability) = choice.sample((i as f32 + 0.5) / 100_000.0, at).next().unwrap();
+                assert!((probability - choice.probability(light, at)).abs() < 1e-6);
+                counts[light] += 1;
+            }
+            for (light, n) in counts.into_iter().enumerate() {
+                let share = n as f32 / 100_000.0;
+                assert!((share - choice.probability(light, at)).abs() < 1e-4, "light {light}: {share}");
+            }
+            assert!(choice.probability(2, at) > 0.02 && choice.probability(1, at) == 0.0);
         }
-        for (light, n) in counts.into_iter().enumerate() {
-            let share = n as f32 / 100_000.0;
-            assert!((share - choice.probability(light)).abs() < 1e-4, "light {light}: {share}");
-        }
-        assert!(choice.probability(2) > 0.02 && choice.probability(1) == 0.0);
+    }
+
+    #[test]
+    fn near_lights_are_picked_more_often_and_those_from_infinity_as_often_everywhere() {
+        let choice = choice();
+        let [near, far] = [Vec3::new(5.0, 0.1, 0.0), Vec3::new(-3.0, 0.1, 0.0)].map(Some);
+        assert!(choice.probability(5, near) > 5.0 * choice.probability(5, far));
+        assert_eq!(choice.probability(6, near), choice.probability(6, far));
     }
 
     #[test]
     fn few_emitting_lights_are_all_sampled() {
         let choice = LightChoice::weighted([1.0, 0.0, 1e9].into_iter());
-        assert_eq!(choice.sample(0.5), 0..3);
-        assert_eq!([0, 1, 2].map(|light| choice.probability(light)), [1.0, 0.0, 1.0]);
+        assert!(choice.takes_all());
+        assert_eq!(choice.sample(0.5, None).collect::<Vec<_>>(), [(0, 1.0), (1, 0.0), (2, 1.0)]);
     }
 
     #[test]
     fn without_emission_no_light_is_sampled() {
         let dark = LightChoice::weighted([0.0].into_iter());
-        assert_eq!(dark.probability(0), 0.0);
-        assert!(LightChoice::weighted([].into_iter()).sample(0.5).is_empty());
+        assert_eq!(dark.probability(0, None), 0.0);
+        assert_eq!(LightChoice::weighted([].into_iter()).sample(0.5, None).count(), 0);
     }
 }

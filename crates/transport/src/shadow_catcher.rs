@@ -141,7 +141,9 @@ fn shadowed_lights(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
     let of_model: Vec<usize> =
         (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
     let choice = LightChoice::new(scene);
-    (0..scene.lights().len()).filter(|i| !of_model.contains(i) && choice.probability(*i) > 0.0).collect()
+    (0..scene.lights().len())
+        .filter(|i| !of_model.contains(i) && choice.probability(*i, None) > 0.0)
+        .collect()
 }
 
 impl Sums {

@@ -158,11 +158,12 @@ impl Walk {
         let (origin, direction) = (Vec3::from(self.ray.origin), Vec3::from(self.ray.direction));
         task.sample.enter_equiangular(self.depth);
         let u = task.sample.sampler.next_1d();
-        for light in task.context.lights.sample(u) {
+        let lights = &task.context.lights;
+        for (light, probability) in lights.sample(u, None) {
             let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
             if let Some(points) = Equiangular::new(task.context.scene, light, origin, direction) {
                 let distance = points.sample(u);
-                visit(task, EquiangularSample { light, points, distance, u_light });
+                visit(task, EquiangularSample { light, probability, points, distance, u_light });
             }
         }
     }

@@ -9,6 +9,7 @@ mod cornell;
 mod cornell_rows;
 mod cpu;
 mod embree;
+mod lamps;
 mod lobes;
 mod measurement;
 mod memory;
@@ -36,6 +37,7 @@ pub const MEASUREMENTS: &[Measurement] = &[
     model::MEASUREMENT,
     studio::MEASUREMENT,
     auto::MEASUREMENT,
+    lamps::MEASUREMENT,
     threads::MEASUREMENT,
     memory::MEASUREMENT,
     lobes::MEASUREMENT,

@@ -2,7 +2,7 @@
 
 use super::distribution_2d::Distribution2d;
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightExtent, LightSample,
     LightTracing, given_classic, vector,
 };
 use crate::classic::ClassicLight;
@@ -169,6 +169,10 @@ impl Light for Luminaire {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.position, 0.0))
+    }
+
+    fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {
+        Some(LightExtent::all_around(Aabb::of_points([self.position])))
     }
 
     fn is_delta(&self) -> bool {

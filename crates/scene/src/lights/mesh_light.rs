@@ -2,7 +2,9 @@
 
 use super::cumulative::{Cumulative, CumulativePart};
 use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
-use super::{ClassicLighting, EmissionSample, Light, LightSample, LightTracing, Sides};
+use super::{
+    ClassicLighting, DirectionCone, EmissionSample, Light, LightExtent, LightSample, LightTracing, Sides,
+};
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
 use crate::mesh::Mesh;
@@ -12,7 +14,7 @@ use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::any::Any;
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 /// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness.
@@ -295,6 +297,22 @@ impl Light for MeshLight {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.middle(0.0), self.reach))
+    }
+
+    fn extent(&self, shutter: [f32; 2]) -> Option<LightExtent> {
+        let own = Aabb::of_points(self.triangles.iter().flatten().copied());
+        let bounds = self.motion.bounds_over(&own, shutter);
+        let both_sides = self.sides == Sides::Both;
+        // A side that shines back is as good as one that faces the other way.
+        let axis = self.static_triangles.iter().map(|t| t.normal).find(|normal| *normal != Vec3::ZERO);
+        let forth = |normal: Vec3| match axis {
+            Some(axis) if both_sides && normal.dot(axis) < 0.0 => -normal,
+            _ => normal,
+        };
+        let normals = self.static_triangles.iter().map(|t| forth(t.normal)).filter(|n| *n != Vec3::ZERO);
+        let facing = normals.map(DirectionCone::of).reduce(DirectionCone::union);
+        let facing = facing.unwrap_or(DirectionCone::ALL);
+        Some(LightExtent { bounds, facing, spread: FRAC_PI_2, both_sides })
     }
 
     fn is_delta(&self) -> bool {

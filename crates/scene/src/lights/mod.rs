@@ -13,6 +13,7 @@ mod distribution_2d;
 mod emission_sample;
 mod environment;
 mod environment_map;
+mod extent;
 mod guide;
 mod light;
 mod light_triangle;
@@ -26,16 +27,19 @@ mod sky_dome;
 mod sphere;
 mod spot;
 mod sun;
+mod tree;
 
 pub use crate::light_sample::LightSample;
 pub use crate::sides::Sides;
 pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
+pub use extent::{DirectionCone, LightExtent};
 pub use light::{ClassicLighting, Light, LightTracing, Receiver};
 pub use light_triangle::{LightTriangle, TriangleSample, barycentric};
 pub use mesh_light::{MeshLight, Picture, SurfaceEmission};
 pub use perez_sky::{perez_clearness, perez_coefficients};
 pub use sphere::SphereLight;
+pub use tree::LightTree;
 
 use crate::error::SceneError;
 use crate::mesh::Mesh;

@@ -1,7 +1,7 @@
 //! `point`: light from a point, the same in all directions.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightExtent, LightSample,
     LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
@@ -74,6 +74,10 @@ impl Light for Point {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.position, 0.0))
+    }
+
+    fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {
+        Some(LightExtent::all_around(Aabb::of_points([self.position])))
     }
 
     fn is_delta(&self) -> bool {

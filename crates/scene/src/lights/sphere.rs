@@ -4,7 +4,7 @@
 //! far away. [Shirley 1996, 4.2] The density of a point on it therefore depends on the receiver.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
+    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightExtent, LightSample,
     LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
@@ -198,6 +198,11 @@ impl Light for SphereLight {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.sphere.centre, self.sphere.radius))
+    }
+
+    fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {
+        let PlacedSphere { centre, radius, .. } = self.sphere;
+        Some(LightExtent::all_around(Aabb::of_points([centre]).expanded(radius)))
     }
 
     fn is_delta(&self) -> bool {

@@ -1,15 +1,15 @@
 //! `spot`: light from a point into a cone, with a soft edge.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightSample,
-    LightTracing, colour, given_classic, vector,
+    BuiltLight, CLASSIC, ClassicLighting, DirectionCone, EmissionSample, GROUP, Light, LightEntry,
+    LightExtent, LightSample, LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::transcendental::cos;
+use bilux_math::transcendental::{acos, cos};
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -109,6 +109,13 @@ impl Light for Spot {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.position, 0.0))
+    }
+
+    fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {
+        let [inner, outer] = [self.cos_inner, self.cos_outer].map(acos);
+        let facing = DirectionCone { axis: self.axis, angle: inner };
+        let bounds = Aabb::of_points([self.position]);
+        Some(LightExtent { bounds, facing, spread: outer - inner, both_sides: false })
     }
 
     fn is_delta(&self) -> bool {

@@ -109,7 +109,10 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         if let Some(glow) = subpath.take_glow(task.sample) {
             tally.add_sample(Technique::Connected { s: 0, t: z.count() }, &Contribution::only(glow));
         }
-        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo, subpath.approach()))
+        if let Some(hit) = z
+            .at
+            .surface()
+            .and_then(|surface| emitted(task, surface, z.wo, subpath.walk.leaves_medium, subpath.approach()))
         {
             let (seen, technique) =
                 (subpath.walk.seen(task.sample), Technique::Connected { s: 0, t: z.count() });
@@ -134,11 +137,12 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
     ) {
         let is_open = z.is_open();
         let is_lit = is_open && !z.media.hide_lights(task.context.scene, &z.at);
+        let lights = &task.context.lights;
         let u = task.sample.sampler.next_1d();
-        for index in task.context.lights.sample(u) {
+        for light in lights.sample(u, z.at.lit_at()) {
             let u = task.sample.sampler.next_2d();
             if is_lit {
-                let connection = to_light(task, z, index, u, &self.techniques);
+                let connection = to_light(task, z, light, u, &self.techniques);
                 visit(task, Step::Picked, connection);
             }
         }
@@ -177,18 +181,21 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
 
     fn equiangular(&self, subpath: &Subpath<N>, task: &mut Task, tally: &mut impl Tally<N>) {
         let Some(walk) = subpath.equiangular_walk() else { return };
-        walk.each_equiangular(task, |task, EquiangularSample { light, points, distance, u_light }| {
-            let Some(mut z) = subpath.equiangular_vertex(distance, task) else { return };
-            self.see_first(&walk.ray, &mut z, task);
-            tally.spend(Step::Picked, 1);
-            let connection = to_light(task, &z, light, u_light, &self.techniques);
-            let Some(Connection { join, segment }) = connection else { return };
-            if let Some(passage) = segment.passage(task.tracer) {
-                let join = join.equiangular(points.density(distance) / z.arriving);
-                tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
-                tally.add_sample(join.technique, &join.along(&passage));
-            }
-        });
+        walk.each_equiangular(
+            task,
+            |task, EquiangularSample { light, probability, points, distance, u_light }| {
+                let Some(mut z) = subpath.equiangular_vertex(distance, task) else { return };
+                self.see_first(&walk.ray, &mut z, task);
+                tally.spend(Step::Picked, 1);
+                let connection = to_light(task, &z, (light, probability), u_light, &self.techniques);
+                let Some(Connection { join, segment }) = connection else { return };
+                if let Some(passage) = segment.passage(task.tracer) {
+                    let join = join.equiangular(points.density(distance) / z.arriving);
+                    tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
+                    tally.add_sample(join.technique, &join.along(&passage));
+                }
+            },
+        );
     }
 
     fn leave_camera(&self, ray: &Ray) -> Subpath<'_, N> {

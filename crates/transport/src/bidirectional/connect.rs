@@ -116,15 +116,14 @@ pub(crate) fn places_on_film(context: &Context, film: Vec2) -> impl Iterator<Ite
     std::iter::once(film).chain(beside.filter(move |film| reach.contains(*film)))
 }
 
-/// Connects a camera vertex with a point sampled on a light (s = 1).
+/// Connects a camera vertex with a point sampled on a light (s = 1), which was chosen with this probability.
 pub(crate) fn to_light<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
-    index: usize,
+    (index, probability): (usize, f32),
     u: Vec2,
     techniques: &TechniqueCounts<N>,
 ) -> Option<Connection<N>> {
-    let probability = task.context.lights.probability(index);
     let scene = task.context.scene;
     let light = &scene.lights()[index].light;
     if probability == 0.0 {

@@ -61,17 +61,18 @@ pub(crate) fn from_infinity<const N: usize>(
             continue;
         }
         let pdf_emission = task.context.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
-        let pdf_direct = pdf * task.context.lights.probability(index);
+        let pdf_direct = pdf * task.context.lights.probability(index, None);
         visit(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) });
     }
 }
 
-/// The light that a surface emits towards `wo`; `None` where it emits none. `approach` is how a ray came to the vertex before, if that was
+/// The light that a surface emits towards `wo`; `None` where it emits none. `leaves_medium` if the vertex before is in one, and `approach` is how a ray came to the vertex before, if that was
 /// a point of fog that is sampled by its angle to lights too.
 pub(crate) fn emitted(
     task: &Task,
     surface: &Surface,
     wo: Vec3,
+    leaves_medium: bool,
     approach: Option<Approach>,
 ) -> Option<EmitterHit> {
     let scene = task.context.scene;
@@ -84,10 +85,12 @@ pub(crate) fn emitted(
     };
     let light = &scene.lights()[index].light;
     // As the previous vertex would have sampled it.
-    let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
+    let from = surface.p + wo * surface.t;
+    let pdf_area = light.pdf_area(from, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = task.context.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
     let often = approach.map_or(1.0, |approach| 1.0 + approach.ratio(scene, index));
-    let pdf_direct = pdf_area * task.context.lights.probability(index) * often;
+    let pdf_direct =
+        pdf_area * task.context.lights.probability(index, (!leaves_medium).then_some(from)) * often;
     Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) })
 }

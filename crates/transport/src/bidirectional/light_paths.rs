@@ -112,7 +112,8 @@ pub(super) fn begin_at_light<'w, const N: usize>(
     let Start { light: index, ray, .. } = start;
     let light = &scene.lights()[index].light;
     let (cos, pdf_emission) = (ray.cos(), ray.pdf_emission);
-    let pdf_direct = ray.pdf_direct * task.context.lights.probability(index);
+    // As a point of a medium would choose it: the first vertex knows better.
+    let pdf_direct = ray.pdf_direct * task.context.lights.probability(index, None);
     let beta = ray.le * (cos / pdf_emission);
     let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
     // The start of a ray from infinity already has a density over area.

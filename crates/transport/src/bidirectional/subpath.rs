@@ -4,12 +4,13 @@ use super::vertex::{Vertex, count, kept_share};
 use crate::beam::{Beam, Leaving};
 use crate::emission::Start;
 use crate::equiangular::{self, Approach, Lit};
+use crate::interaction::Interaction;
 use crate::media::{Media, MediumPart, Travelled};
 use crate::mis::{Edge, Partial};
-use crate::task::{PathVertex, SampleState, Task, VertexKind};
+use crate::task::{Context, PathVertex, SampleState, Task, VertexKind};
 use crate::techniques::{PerSet, TechniqueCounts};
 use crate::walk::Walk;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::Rgb;
 use bilux_scene::media::Flight;
 use bilux_scene::{Ray, Scene, Surface, TransportMode};
 
@@ -213,7 +214,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let is_left = is_at_light && !at.finds_direct_light(self.techniques);
         let ball = media.ball(context.scene, &at, self.techniques);
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel, ball) };
-        let distance2 = distance2 * self.light_sampling_ratio(context.scene, at.p());
+        let distance2 = distance2 * self.light_sampling_ratio(context, &at);
         self.partial.arrive(distance2, edge, connections, merged);
         if let Some(lit) = self.lit.filter(|_| !at.is_in_medium()) {
             self.partial.d_vc = self.partial.d_vc + lit.picked(context.scene, wo, t) * (1.0 / edge.forward);
@@ -316,8 +317,13 @@ impl<'w, const N: usize> Subpath<'w, N> {
     }
 
     /// The factor by which the first vertex of a light subpath would sample its start more often than assumed so far.
-    fn light_sampling_ratio(&mut self, scene: &Scene, from: Vec3) -> f32 {
-        self.start.take().map_or(1.0, |start| start.light_sampling_ratio(scene, from))
+    fn light_sampling_ratio(&mut self, context: &Context, at: &Interaction) -> f32 {
+        let Some(start) = self.start.take() else { return 1.0 };
+        let ratio = start.light_sampling_ratio(context.scene, at.p());
+        let Some(p) = at.lit_at().filter(|_| !context.lights.takes_all()) else { return ratio };
+        let [there, assumed] = [Some(p), None].map(|at| context.lights.probability(start.light, at));
+        // No vertex samples a light that is never chosen.
+        if assumed > 0.0 { ratio * (there / assumed) } else { ratio }
     }
 
     fn whose(&self) -> &'static str {

@@ -109,7 +109,9 @@ impl CameraSubpath for PhotonGathering<'_> {
         task: &mut Task,
         tally: &mut impl Tally<1>,
     ) -> bool {
-        if let Some(hit) = z.at.surface().and_then(|surface| emitted(task, surface, z.wo, None)) {
+        if let Some(hit) =
+            z.at.surface().and_then(|surface| emitted(task, surface, z.wo, subpath.walk.leaves_medium, None))
+        {
             let technique = Technique::Connected { s: 0, t: z.count() };
             tally.add_sample(technique, &hit.alone(subpath.walk.seen(task.sample)));
         }

@@ -6,7 +6,6 @@ mod sheet;
 
 use crate::equiangular::{self, Approach, EquiangularSample};
 use crate::interaction::{Interaction, NO_OBJECT};
-use crate::light_choice::LightChoice;
 use crate::media::{Arrival, Media, Travelled};
 use crate::segment::Segment;
 use crate::task::{Context, PathVertex, Task, VertexKind};
@@ -162,17 +161,21 @@ impl PathTracing {
     /// Connects the [equiangular points](equiangular) of the path's ray, which hits this surface first, with their lights.
     fn equiangular(&self, path: &mut Path, first: Surface, task: &mut Task) {
         let walk = path.walk;
-        walk.each_equiangular(task, |task, EquiangularSample { light, distance, u_light, .. }| {
-            let alike = walk.in_fog(first, distance, task.tracer, task.sample);
-            let Some((alike, Travelled { arrival: Arrival::Medium(point), passage, .. })) = alike else {
-                return;
-            };
-            let (at, wo) = (Interaction::Medium(point), alike.wo());
-            let approach = Approach::of(&at, wo, passage.arriving(None));
-            let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach };
-            let seen = alike.seen(task.sample);
-            path.light += seen * self.light_sample(task, light, &from, u_light, (alike.depth, seen));
-        });
+        walk.each_equiangular(
+            task,
+            |task, EquiangularSample { light, probability, distance, u_light, .. }| {
+                let light = (light, probability);
+                let alike = walk.in_fog(first, distance, task.tracer, task.sample);
+                let Some((alike, Travelled { arrival: Arrival::Medium(point), passage, .. })) = alike else {
+                    return;
+                };
+                let (at, wo) = (Interaction::Medium(point), alike.wo());
+                let approach = Approach::of(&at, wo, passage.arriving(None));
+                let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach };
+                let seen = alike.seen(task.sample);
+                path.light += seen * self.light_sample(task, light, &from, u_light, (alike.depth, seen));
+            },
+        );
     }
 
     /// Collects the light that a surface emits.
@@ -262,7 +265,7 @@ impl PathTracing {
         }
         match path.last {
             Some((_, pdf)) if !light.is_backdrop() => {
-                radiance * self.scattering_weight(pdf, light_pdf * context.lights.probability(index))
+                radiance * self.scattering_weight(pdf, light_pdf * context.lights.probability(index, None))
             }
             _ => radiance,
         }
@@ -281,7 +284,8 @@ impl PathTracing {
                 let direction = Vec3::from(path.walk.ray.direction);
                 let often = path.approach.map_or(1.0, |last| 1.0 + last.ratio(task.context.scene, index));
                 let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface)) * often;
-                radiance * self.scattering_weight(pdf, light_pdf * task.context.lights.probability(index))
+                let at = (!path.walk.leaves_medium).then_some(from);
+                radiance * self.scattering_weight(pdf, light_pdf * task.context.lights.probability(index, at))
             }
             _ => radiance,
         };
@@ -303,33 +307,33 @@ impl PathTracing {
             return Rgb::BLACK;
         }
         let lights = &task.context.lights;
-        let chosen = if lights.takes_all() {
+        let u = if lights.takes_all() {
             task.sample.sampler.skip(1);
-            lights.sample(0.0)
+            0.0
         } else {
-            lights.sample(task.sample.sampler.next_1d())
+            task.sample.sampler.next_1d()
         };
-        chosen.fold(Rgb::BLACK, |sum, light| {
+        lights.sample(u, from.at.lit_at()).fold(Rgb::BLACK, |sum, light| {
             let u = task.sample.sampler.next_2d();
             sum + self.light_sample(task, light, from, u, (depth, seen))
         })
     }
 
-    /// What one light sends along `wo`, from the point that `u` picks. The depth of the vertex and what the sample sees of it are for the
-    /// record.
+    /// What one light, chosen with this probability, sends along `wo`, from the point that `u` picks. The depth of the vertex and what the
+    /// sample sees of it are for the record.
     fn light_sample(
         &self,
         task: &mut Task,
-        light: usize,
+        chosen: (usize, f32),
         from: &Vertex,
         u: Vec2,
         (depth, seen): (u32, Rgb),
     ) -> Rgb {
-        let Some(connection) = self.connection(task, light, from, u) else { return Rgb::BLACK };
+        let Some(connection) = self.connection(task, chosen, from, u) else { return Rgb::BLACK };
         let found = connection.trace(task.tracer);
         connection.note(task.sample, depth, seen * found);
         let Segment { ray, through, .. } = &connection.segment;
-        task.sample.find(depth + 2, Some(light), ray.direction, seen * found, |way| {
+        task.sample.find(depth + 2, Some(chosen.0), ray.direction, seen * found, |way| {
             way.length_by(from.at.p(), ray.direction.into(), through.distance)
         });
         found
@@ -337,18 +341,18 @@ impl PathTracing {
 
     /// Leaves out the random numbers of light samples.
     pub(crate) fn skip_lights(&self, task: &mut Task) {
-        task.sample.sampler.skip(self.light_draws(&task.context.lights));
-    }
-
-    /// How many random numbers and points light samples take.
-    pub(crate) fn light_draws(&self, lights: &LightChoice) -> u32 {
-        1 + if lights.takes_all() { lights.sample(0.0).len() as u32 } else { 1 }
+        task.sample.sampler.skip(task.context.lights.draws());
     }
 
     /// Samples one light by this random point; `None` if it brings nothing.
-    fn connection(&self, task: &mut Task, index: usize, from: &Vertex, u: Vec2) -> Option<LightConnection> {
+    fn connection(
+        &self,
+        task: &mut Task,
+        (index, probability): (usize, f32),
+        from: &Vertex,
+        u: Vec2,
+    ) -> Option<LightConnection> {
         let Vertex { at, wo, media, odds, approach } = *from;
-        let probability = task.context.lights.probability(index);
         let light = &task.context.scene.lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
             return None;

@@ -1,7 +1,6 @@
 //! Samples of lights, one for each vertex.
 
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
-use crate::light_choice::LightChoice;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::CpuLevel;
 use bilux_scene::lights::{
@@ -79,12 +78,11 @@ pub(super) struct Points<'a> {
 }
 
 impl LightSamples {
-    /// Samples the light that was picked for each vertex.
+    /// Samples the light that was picked for each vertex, with its probability there; 0 where none was.
     pub(super) fn sample_lights(
         &mut self,
         points: Points,
-        picked: &[usize; LANES],
-        choice: &LightChoice,
+        picked: &[(usize, f32); LANES],
         lights: &[SceneLight],
     ) {
         let Points { count, times, p, u } = points;
@@ -96,11 +94,11 @@ impl LightSamples {
         let mut begin = 0;
         while begin < count {
             // Vertices in a row that sample the same light.
-            let number = picked[begin];
-            let end = begin + picked[begin..count].iter().take_while(|&&other| other == number).count();
-            let (light, probability) = (&lights[number].light, choice.probability(number));
+            let (number, _) = picked[begin];
+            let end = begin + picked[begin..count].iter().take_while(|(other, _)| *other == number).count();
+            let light = &lights[number].light;
             light.sample_li_each(&self.receivers[begin..end], &mut self.samples);
-            for i in begin..end {
+            for (i, &(_, probability)) in picked.iter().enumerate().take(end).skip(begin) {
                 self.put(
                     i,
                     self.samples[i - begin].filter(|_| probability > 0.0),

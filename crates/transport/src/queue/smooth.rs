@@ -56,7 +56,7 @@ impl Paths {
             if v.count == 0 {
                 continue;
             }
-            v.dimension = tracing.light_draws(&context.lights) + 1;
+            v.dimension = context.lights.draws() + 1;
             v.draw_numbers(level, v.dimension);
             run_at(level, Bounce { v, s });
             self.leave_failed(v, s, chunk);

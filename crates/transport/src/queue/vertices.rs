@@ -156,34 +156,32 @@ impl Paths {
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
         let (choice, level) = (&context.lights, context.scene.cpu_level());
-        let mut picked = [0; LANES];
-        let rounds = if choice.takes_all() {
-            choice.sample(0.0)
-        } else {
+        let mut picked = [(0, 0.0); LANES];
+        let rounds = choice.count();
+        if !choice.takes_all() {
             v.draw_numbers(level, 1);
-            for (picked, u) in picked.iter_mut().zip(&v.u[0].0).take(v.count) {
-                *picked = choice.sample(*u).start;
+            for (i, picked) in picked.iter_mut().enumerate().take(v.count) {
+                let mut lights = choice.sample(v.u[0].0[i], Some(vec3(&v.p, i)));
+                *picked = lights.next().unwrap_or_default();
             }
-            0..1
-        };
+        }
         v.dimension = 1;
-        for round in rounds {
+        for round in 0..rounds {
             v.dimension += 1;
             if choice.takes_all() {
-                if choice.probability(round) == 0.0 {
+                let probability = choice.probability(round, None);
+                if probability == 0.0 {
                     continue;
                 }
-                picked = [round; LANES];
+                picked = [(round, probability); LANES];
             }
             v.draw_points(level, v.dimension);
             let lights = context.scene.lights();
             let Vertices { count, times, p, u, light: samples, .. } = &mut *v;
             let points = Points { count: *count, times, p, u };
-            match lights[picked[0]].light.as_mesh() {
-                Some(mesh) if choice.takes_all() => {
-                    samples.sample_mesh(points, mesh, choice.probability(round), level)
-                }
-                _ => samples.sample_lights(points, &picked, choice, lights),
+            match lights[picked[0].0].light.as_mesh() {
+                Some(mesh) if choice.takes_all() => samples.sample_mesh(points, mesh, picked[0].1, level),
+                _ => samples.sample_lights(points, &picked, lights),
             }
             eval(v, level);
             run_at(level, Weigh { v });
@@ -194,12 +192,12 @@ impl Paths {
     fn list_shadow_rays(
         &mut self,
         v: &Vertices,
-        picked: &[usize; LANES],
+        picked: &[(usize, f32); LANES],
         scene: &Scene,
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
         let is_clear = scene.has_clear_media();
-        for (i, &light) in picked.iter().enumerate().take(v.count) {
+        for (i, &(light, _)) in picked.iter().enumerate().take(v.count) {
             let contribution = rgb(&v.shadow.light, i);
             if contribution.is_black() || v.paths[i] == NO_PATH {
                 continue;

@@ -37,11 +37,13 @@ fn large_lights() -> SceneBuilder {
 fn one_of_them_is_chosen_at_a_time() {
     let choice = LightChoice::new(&built(&large_lights()));
     assert!(!choice.takes_all());
-    let all: Vec<f32> = (0..7).map(|light| choice.probability(light)).collect();
-    assert!(
-        (all.iter().sum::<f32>() - 1.0).abs() < 1e-5 && all.iter().all(|&p| p > 0.01 && p < 0.9),
-        "{all:?}"
-    );
+    for at in [None, Some(Vec3::ZERO), Some(Vec3::new(-2.0, 0.5, 1.0))] {
+        let all: Vec<f32> = (0..7).map(|light| choice.probability(light, at)).collect();
+        assert!(
+            (all.iter().sum::<f32>() - 1.0).abs() < 1e-5 && all.iter().all(|&p| p > 0.005 && p < 0.9),
+            "{all:?}"
+        );
+    }
 }
 
 #[test]
@@ -60,7 +62,9 @@ fn all_three_samplings_of_path_find_the_same_light_of_many_large_lights() {
     }
     // Negative control: light that is two hundredths too bright is detected.
     let brighter: Vec<Vec<f64>> = mis.iter().map(|b| b.iter().map(|sum| sum * 1.02).collect()).collect();
-    assert!(agreement(&brighter, &scattering) < UNLIKELY);
+    let others: Vec<Vec<f64>> = lights.iter().zip(&scattering).map(|(a, b)| [&**a, &**b].concat()).collect();
+    let p = agreement(&brighter, &others);
+    assert!(p < UNLIKELY, "too bright: p = {p}");
 }
 
 #[test]

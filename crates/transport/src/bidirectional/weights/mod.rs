@@ -224,11 +224,13 @@ fn every_mis_weight_matches_its_definition_among_many_lights() {
             assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
             assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
         }
-        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[0], Flaw::Choice, None);
-        assert!(
-            wrong > compared / 20,
-            "only {wrong} of {compared} weights know how seldom a light is chosen"
-        );
+        for flaw in [Flaw::Choice, Flaw::ChoiceElsewhere] {
+            let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[0], flaw, None);
+            assert!(
+                wrong > compared / 20,
+                "{flaw:?}: only {wrong} of {compared} weights know how often a light is chosen"
+            );
+        }
     }
 }
 

@@ -51,6 +51,7 @@ pub(super) enum Flaw {
     Distance,
     LightChoice,
     Choice,
+    ChoiceElsewhere,
     PickedTwice,
     MergedTwice,
     Direct,
@@ -204,8 +205,15 @@ impl Path {
         let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
         let choice =
             if flaw == Flaw::LightChoice { 1.0 } else { task.context.emission.probability(self.start.index) };
-        let chosen =
-            if flaw == Flaw::Choice { 1.0 } else { task.context.lights.probability(self.start.index) };
+        let lights = &task.context.lights;
+        let chosen = match flaw {
+            Flaw::Choice => 1.0,
+            // By the end of the path that is not lit.
+            Flaw::ChoiceElsewhere => {
+                lights.probability(self.start.index, self.nodes[self.nodes.len() - 1].at.lit_at())
+            }
+            _ => lights.probability(self.start.index, first.at.lit_at()),
+        };
         let picked = f64::from(direct) * f64::from(chosen);
         let mut product = f64::from(emission)
             * f64::from(choice)

@@ -61,7 +61,15 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
 fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
         let Some(surface) = vertex.at.surface() else { continue };
-        let Some(found) = emitted(task, surface, vertex.wo, z.vertices[i - 1].approach) else { continue };
+        let Some(found) = emitted(
+            task,
+            surface,
+            vertex.wo,
+            z.vertices[i - 1].at.is_in_medium(),
+            z.vertices[i - 1].approach,
+        ) else {
+            continue;
+        };
         let found = found.by(vertex.beta, &vertex.partial);
         let index = task.context.scene.light_index_of(surface.object).unwrap();
         let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
@@ -93,7 +101,8 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.at.is_delta()) {
         for index in 0..task.context.scene.lights().len() {
             let u = task.sample.sampler.next_2d();
-            let Some(connection) = to_light(task, vertex, index, u, techniques) else { continue };
+            let chosen = (index, task.context.lights.probability(index, vertex.at.lit_at()));
+            let Some(connection) = to_light(task, vertex, chosen, u, techniques) else { continue };
             let Some(found) = connection.trace(task.tracer) else { continue };
             let light = &task.context.scene.lights()[index].light;
             let sample = light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
@@ -110,7 +119,8 @@ fn sampled_equiangularly(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
     let techniques = &{ verdict.techniques };
     for EquiangularPoint { before, light, ratio, vertex, camera_density } in &z.points {
         let u = task.sample.sampler.next_2d();
-        let Some(Connection { join, segment }) = to_light(task, vertex, *light, u, techniques) else {
+        let chosen = (*light, task.context.lights.probability(*light, None));
+        let Some(Connection { join, segment }) = to_light(task, vertex, chosen, u, techniques) else {
             continue;
         };
         let Some(passage) = segment.passage(task.tracer) else { continue };

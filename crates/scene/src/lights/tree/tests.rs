@@ -1,0 +1,118 @@
+//! Tests of the tree of lights.
+
+use super::super::extent::{DirectionCone, LightExtent};
+use super::*;
+use bilux_math::Aabb;
+use bilux_math::hash::{hash_words, unit_f32};
+use std::f32::consts::FRAC_PI_2;
+
+fn number(i: u64, k: u64) -> f32 {
+    unit_f32(hash_words([i, k]) as u32)
+}
+
+fn point(i: u64, size: f32) -> Vec3 {
+    (Vec3::new(number(i, 0), number(i, 1), number(i, 2)) * 2.0 - Vec3::ONE) * size
+}
+
+/// Flat lamps that face anywhere, some to both sides; each with where it is and how it faces.
+fn lamps(count: u64) -> Vec<(LightExtent, f32)> {
+    let lamp = |i: u64| {
+        let p = point(i, 5.0);
+        let axis = point(i + 1_000_000, 1.0).normalize();
+        let extent = LightExtent {
+            bounds: Aabb::of_points([p]),
+            facing: DirectionCone::of(axis),
+            spread: FRAC_PI_2,
+            both_sides: i.is_multiple_of(5),
+        };
+        (extent, 0.1 + number(i, 3))
+    };
+    (0..count).map(lamp).collect()
+}
+
+#[test]
+fn each_light_is_chosen_as_often_as_it_says() {
+    let lamps = lamps(40);
+    let tree = LightTree::new(&lamps);
+    for place in (0..20).map(|i| point(i + 77, 7.0)) {
+        let all: Vec<f32> = (0..lamps.len()).map(|light| tree.probability(place, light)).collect();
+        let sum: f32 = all.iter().sum();
+        let (mut counts, mut nothing) = (vec![0; lamps.len()], 0);
+        for i in 0..20_000 {
+            let Some((light, probability)) = tree.sample(place, (i as f32 + 0.5) / 20_000.0) else {
+                nothing += 1;
+                continue;
+            };
+            assert!((probability - all[light]).abs() < 1e-6);
+            counts[light] += 1;
+        }
+        // Where a branch seems to shine, but none of its lights does, nothing is chosen.
+        assert!((nothing as f32 / 20_000.0 - (1.0 - sum)).abs() < 1e-3, "{nothing} {sum}");
+        for (count, probability) in counts.into_iter().zip(all) {
+            assert!((count as f32 / 20_000.0 - probability).abs() < 1e-3);
+        }
+    }
+}
+
+/// What a lamp brings to a point, by its own closed form.
+fn brings((extent, power): &(LightExtent, f32), p: Vec3) -> f32 {
+    let from = p - extent.bounds.centre();
+    let cosine = extent.facing.axis.dot(from.normalize());
+    let cosine = if extent.both_sides { cosine.abs() } else { cosine.max(0.0) };
+    power * cosine / from.length_squared()
+}
+
+#[test]
+fn no_light_that_shines_on_a_point_is_left_out() {
+    let lamps = lamps(3000);
+    let tree = LightTree::new(&lamps);
+    for place in (0..40).map(|i| point(i + 12345, 8.0)) {
+        for (light, lamp) in lamps.iter().enumerate() {
+            assert!(brings(lamp, place) <= 0.0 || tree.probability(place, light) > 0.0, "{light} {place}");
+        }
+    }
+}
+
+/// The second moment of a choice, relative to the square of the mean: 1 if every light is chosen by what it brings.
+fn noise(lamps: &[(LightExtent, f32)], p: Vec3, probability: impl Fn(usize) -> f32) -> f32 {
+    let of = |light: usize| f64::from(brings(&lamps[light], p));
+    let mean: f64 = (0..lamps.len()).map(of).sum();
+    let second = (0..lamps.len()).filter(|&light| of(light) > 0.0);
+    let second: f64 = second.map(|light| of(light) * of(light) / f64::from(probability(light))).sum();
+    (second / (mean * mean)) as f32
+}
+
+#[test]
+fn it_has_a_fraction_of_the_noise_of_a_choice_by_power() {
+    let lamps = lamps(2000);
+    let tree = LightTree::new(&lamps);
+    let power: f32 = lamps.iter().map(|(_, power)| power).sum();
+    let (mut own, mut by_power) = (0.0, 0.0);
+    for place in (0..50).map(|i| point(i + 5000, 5.0)) {
+        own += noise(&lamps, place, |light| tree.probability(place, light)) / 50.0;
+        by_power += noise(&lamps, place, |light| lamps[light].1 / power) / 50.0;
+    }
+    assert!(by_power > 4.0 * own, "{own}, by power {by_power}");
+}
+
+#[test]
+fn lights_in_one_place_and_in_a_row_make_a_tree_too() {
+    let at = |p: Vec3| (LightExtent::all_around(Aabb::of_points([p])), 1.0);
+    let same: Vec<_> = (0..1000).map(|_| at(Vec3::ONE)).collect();
+    // Each lamp is half as far as the one before.
+    let row: Vec<_> =
+        (0..1000).map(|i| at(Vec3::X * bilux_math::transcendental::exp(-0.7 * i as f32))).collect();
+    for lamps in [same, row] {
+        let tree = LightTree::new(&lamps);
+        for place in [Vec3::ZERO, Vec3::ONE, Vec3::X * 100.0] {
+            let sum: f32 = (0..lamps.len()).map(|light| tree.probability(place, light)).sum();
+            assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+            assert!(tree.sample(place, 0.3).is_some());
+        }
+    }
+}
+
+#[test]
+fn no_lights_make_no_tree() {
+    assert!(LightTree::new(&[]).sample(Vec3::ZERO, 0.5).is_none());
+}
