@@ -92,7 +92,7 @@ pub struct Bench {
     /// integrators are compared at equal time [default: 1]
     #[arg(long, value_name = "S,S,…", value_delimiter = ',', value_parser = parse_cpu_seconds)]
     pub seconds: Vec<f64>,
-    /// `speed`: the rows to measure: box, bidirectional, model, studio, auto, threads, memory, principled and rays
+    /// `speed`: the rows to measure: box, bidirectional, model, studio, auto, lamps, threads, memory, principled and rays
     /// [default: all]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub rows: Vec<String>,

@@ -9,7 +9,7 @@ use crate::luminaires;
 use crate::ply::encode;
 use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
-use bilux_math::{Motion, MotionKey};
+use bilux_math::{Motion, MotionKey, Rgb};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value, Visibility};
@@ -275,5 +275,18 @@ fn texture_text(
         }
     }
     out.push_str(" }");
-    Ok(out)
+    Ok(times(out, texture, writing))
+}
+
+/// A procedural texture with the factor that it has besides its formula.
+fn times(formula: String, texture: &Texture, writing: &mut Writing) -> String {
+    let factor = texture.factor;
+    if factor == Rgb::WHITE {
+        return formula;
+    }
+    if factor.to_array().iter().any(|c| *c < 0.0) {
+        writing.warn("a negative factor on a procedural texture cannot be written: it is left out");
+        return formula;
+    }
+    format!("{{ kind = \"scale\", a = {formula}, b = {} }}", list(&factor.to_array()))
 }

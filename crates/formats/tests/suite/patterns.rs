@@ -66,6 +66,21 @@ fn nested_procedural_textures_round_trip() {
     }
 }
 
+/// Other formats scale textures without a formula for that.
+#[test]
+fn factors_on_procedural_textures_are_written() {
+    let folder = folder();
+    let mut scene = read_text("toml", material("reflectance = { kind = \"checker\", b = 0.5 }")).unwrap();
+    let factor = Rgb::new(0.5, 0.25, 1.0);
+    Arc::make_mut(scene.textures.last_mut().unwrap()).factor = factor;
+    let out = folder.path().join("out.toml");
+    assert_eq!(write(&out, &scene, &WriteOptions::default()).unwrap(), []);
+    let (before, back) = (texture(&scene, "reflectance"), read(&out, &ReadOptions::default()).unwrap());
+    let after = texture(&back, "reflectance");
+    assert!(after.formula().is_some() && before.at(Vec2::new(0.01, 0.01)) == factor);
+    assert!(places().all(|uv| before.at(uv) == after.at(uv)));
+}
+
 #[test]
 fn faults_have_a_location() {
     for (lines, wanted) in [
