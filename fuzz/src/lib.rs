@@ -19,6 +19,7 @@ const LIMITS: Limits = Limits::new(64 << 20);
 ///
 /// The result must be consistent: within the limits, with every plane of the picture's size.
 pub fn read_picture(format: &str, bytes: &[u8]) {
+    let_guarded_panics_pass();
     let row = format_named(format).expect("a format of the table");
     let Ok(picture) = (row.read)(bytes, &LIMITS) else { return };
     let pixels = picture.width() * picture.height();
@@ -32,7 +33,21 @@ pub fn read_picture(format: &str, bytes: &[u8]) {
 /// Reads the bytes as this scene format, without a folder, so that no other file is opened; then builds the scene,
 /// which may fail.
 pub fn read_scene(format: &str, bytes: &[u8]) {
+    let_guarded_panics_pass();
     build(bilux_formats::read_bytes(bytes, format, None, "scene", &options()));
+}
+
+/// The fuzzer ends at every panic, also at those in decoders of others that become errors.
+fn let_guarded_panics_pass() {
+    static HOOK: LazyLock<()> = LazyLock::new(|| {
+        let ends = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |panic| {
+            if !bilux_pictures::is_decoding() {
+                ends(panic);
+            }
+        }));
+    });
+    *HOOK
 }
 
 /// Reads the bytes as the materials of a triangle, in a folder with one picture, `t.ppm`.
