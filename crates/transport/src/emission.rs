@@ -2,7 +2,7 @@
 //! may go where no camera sees anything of them. Once a guide has found out which of them matter, most light subpaths
 //! begin like those and the rest as before, so that none is left out and none gets too large a weight.
 
-use crate::light_choice::{sums, weights};
+use crate::light_choice::{pick, sums, weights};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{EmissionSample, Scene};
 use std::sync::Arc;
@@ -216,10 +216,4 @@ impl Guide {
         (is_within(aim.x) && is_within(aim.y))
             .then(|| (light * self.side + of(aim.y)) * self.side + of(aim.x))
     }
-}
-
-/// The index that a random number selects.
-fn pick(cdf: &[f32], u: f32) -> Option<usize> {
-    let wanted = u * cdf.last()?;
-    Some(cdf.partition_point(|&sum| sum <= wanted).min(cdf.len() - 1))
 }

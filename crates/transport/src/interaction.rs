@@ -79,7 +79,7 @@ impl Interaction {
         matches!(self, Interaction::Medium(MediumPoint { is_equiangular: true, .. }))
     }
 
-    /// The point for which [lights are chosen](crate::LightChoice::pick): there is none in a medium.
+    /// The point for which [lights are chosen](crate::LightChoice::sample): there is none in a medium.
     #[inline]
     pub(crate) fn lit_at(&self) -> Option<Vec3> {
         self.surface().map(|surface| surface.p)

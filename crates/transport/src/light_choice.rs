@@ -1,7 +1,7 @@
 //! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings to a point.
 
 use bilux_math::hash::{hash_words, unit_f32};
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{Aabb, Vec2, Vec3};
 use bilux_scene::lights::{LightExtent, LightTree};
 use bilux_scene::{Light, Scene};
 
@@ -68,14 +68,20 @@ impl LightChoice {
     fn with_tree(mut self, extents: impl Iterator<Item = Option<(LightExtent, f32)>>) -> LightChoice {
         let mut members = Vec::new();
         let mut local = Local { places: vec![u32::MAX; self.shares.len()], ..Local::default() };
-        let mut others = self.shares.clone();
+        let (mut others, mut sum) = (self.shares.clone(), 0.0);
         for (light, extent) in extents.enumerate() {
-            let Some((extent, power)) = extent.filter(|_| self.shares[light] > 0.0) else { continue };
+            let is_somewhere = |extent: &LightExtent| {
+                let Aabb { min, max } = extent.bounds;
+                min.is_finite() && max.is_finite() && self.shares[light] > 0.0
+            };
+            let Some((extent, power)) = extent.filter(|(extent, _)| is_somewhere(extent)) else { continue };
             local.places[light] = members.len() as u32;
             local.lights.push(light);
             members.push((extent, if power.is_finite() { power.max(f32::MIN_POSITIVE) } else { f32::MAX }));
-            local.share += std::mem::take(&mut others[light]);
+            // There may be a million.
+            sum += f64::from(std::mem::take(&mut others[light]));
         }
+        local.share = sum as f32;
         local.tree = LightTree::new(&members);
         local.others = sums(&others);
         self.local = local;
@@ -139,7 +145,7 @@ impl LightChoice {
 
 /// The index that a random number selects from cumulative sums.
 #[inline]
-fn pick(cdf: &[f32], u: f32) -> Option<usize> {
+pub(crate) fn pick(cdf: &[f32], u: f32) -> Option<usize> {
     let wanted = u * cdf.last()?;
     Some(cdf.partition_point(|&sum| sum <= wanted).min(cdf.len() - 1))
 }
@@ -207,7 +213,6 @@ pub(crate) fn sums(probabilities: &[f32]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bilux_math::Aabb;
 
     const POWERS: [f32; 7] = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
 

@@ -66,8 +66,8 @@ pub(crate) fn from_infinity<const N: usize>(
     }
 }
 
-/// The light that a surface emits towards `wo`; `None` where it emits none. `leaves_medium` if the vertex before is in one, and `approach` is how a ray came to the vertex before, if that was
-/// a point of fog that is sampled by its angle to lights too.
+/// The light that a surface emits towards `wo`; `None` where it emits none. `leaves_medium` says whether the vertex before is in a medium, and
+/// `approach` how a ray came to that, if it is a point of fog that is sampled by its angle to lights too.
 pub(crate) fn emitted(
     task: &Task,
     surface: &Surface,

@@ -279,6 +279,15 @@ fn every_mis_weight_matches_its_definition_in_fog() {
     }
 }
 
+#[test]
+fn every_mis_weight_matches_its_definition_in_fog_among_many_lights() {
+    let scene = inside(MANY[0]);
+    let Verdict { compared, wrong, worst, telling, .. } =
+        verdict(&scene, &sets()[1], Flaw::None, Some(FOG[0] + FOG[1]));
+    assert!(wrong == 0, "{wrong} of {compared} weights are wrong, by up to {worst}");
+    assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
+}
+
 /// The same where fog is dense: its points are merged in balls.
 fn with_points(set: TechniqueCounts) -> TechniqueCounts {
     TechniqueCounts { densest: 0.1, points: PerSet([2000.0]), radius: 0.5, ..set }

@@ -212,7 +212,8 @@ impl Path {
             Flaw::ChoiceElsewhere => {
                 lights.probability(self.start.index, self.nodes[self.nodes.len() - 1].at.lit_at())
             }
-            _ => lights.probability(self.start.index, first.at.lit_at()),
+            // Where the light subpath has come to, of two vertices that are merged.
+            _ => lights.probability(self.start.index, first.at.lit_at().map(|_| first.from_light.0)),
         };
         let picked = f64::from(direct) * f64::from(chosen);
         let mut product = f64::from(emission)
