@@ -37,14 +37,15 @@ const BLOCK: u32 = 4;
 /// The number of blocks whose samples are taken together.
 const TOGETHER: usize = 8;
 
-/// Maximum number of pixels of a pilot; and minimum, unless the film has fewer.
-const MAX_PIXELS: u64 = 1024;
+/// Maximum number of pixels of a pilot; and minimum, unless the film has fewer. More make a better choice, but not in proportion
+/// to their time: docs/adr/0013-auto.md has figures.
+const MAX_PIXELS: u64 = 256;
 const MIN_PIXELS: u64 = 128;
 /// Between the two, the pilot has one pixel for this many of the film's.
-const PART: u64 = 48;
+const PART: u64 = 96;
 
-/// Maximum number of photon paths in one of its iterations, and minimum.
-const MAX_LIGHT_PATHS: u64 = 8192;
+/// Maximum number of photon paths in one of its iterations, and minimum. Rare light is seen by them alone.
+const MAX_LIGHT_PATHS: u64 = 4096;
 pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
 /// Between the two, one photon path for this many of the film's.
 const LIGHT_PART: u64 = 8;
