@@ -71,13 +71,19 @@ impl Albedo {
     /// The reflected fraction along a direction whose cosine with the normal is `cos`, 0..=1.
     #[inline]
     pub fn at(&self, cos: f32) -> f32 {
-        self.entry(cos, self.shared())
+        self.at_root(cos.clamp(0.0, 1.0).sqrt())
+    }
+
+    /// The same by the square root of the cosine, 0..=1.
+    #[inline(always)]
+    pub(super) fn at_root(&self, root: f32) -> f32 {
+        self.entry(root, self.shared())
     }
 
     /// Like [`Albedo::at`], for opaque microfacets, which reflect everything.
     #[inline]
     pub fn opaque_at(&self, cos: f32) -> f32 {
-        self.entry(cos, |entry| entry[INDICES])
+        self.entry(cos.clamp(0.0, 1.0).sqrt(), |entry| entry[INDICES])
     }
 
     /// The mean of [`Albedo::at`] over the hemisphere, weighted by the cosine.
@@ -163,8 +169,8 @@ impl Albedo {
 
     /// One number of the four entries around a position, interpolated bilinearly.
     #[inline(always)]
-    fn entry(&self, cos: f32, of: impl Fn(&Entry) -> f32) -> f32 {
-        let (column, share) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
+    fn entry(&self, root: f32, of: impl Fn(&Entry) -> f32) -> f32 {
+        let (column, share) = place(root * (COSINES - 1) as f32, COSINES);
         let (row, between) = place(self.roughness, ROUGHNESSES);
         let rows: &[[Entry; COSINES]] = &TABLE.at;
         let [a, b] = [&rows[row], &rows[row + 1]];

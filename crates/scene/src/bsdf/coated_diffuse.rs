@@ -2,7 +2,7 @@
 //! out again. [Kulla 2017] A rough base scatters like [`RoughDiffuse`]: its light is scaled like a Lambertian one's, so
 //! that no more comes out than went in.
 
-use super::rough_diffuse::GAUSS;
+use super::rough_diffuse::{GAUSS, light_at_nodes};
 use super::{Albedo, BsdfEntry, BsdfSample, Coating, FuzzAlbedo, Ggx, Lobe, RoughDiffuse, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -70,26 +70,36 @@ impl CoatedDiffuse {
     ///
     /// The two are at most 1 together.
     pub fn sheet(reflected: Rgb, passed: Rgb, boundary: Albedo, cover: Coating) -> CoatedDiffuse {
-        let gets_in = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
-        let mean = if cover.is_none() {
-            1.0 - boundary.mean()
-        } else {
-            // ∫ g(µ) 2µ dµ with µ = t²
-            GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * gets_in(t * t)).sum()
-        };
-        let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
-        CoatedDiffuse {
-            scale: reflected * scale,
-            through: passed * scale,
-            boundary,
-            cover,
-            rough_diffuse: None,
+        CoatedDiffuse::sheet_of([reflected, passed], boundary, cover, None)
+    }
+
+    /// [`CoatedDiffuse::sheet`], perhaps with a [rough base](CoatedDiffuse::rough) of this roughness, above 0, and colour.
+    pub(crate) fn sheet_of(
+        [reflected, passed]: [Rgb; 2],
+        boundary: Albedo,
+        cover: Coating,
+        rough: Option<(f32, Rgb)>,
+    ) -> CoatedDiffuse {
+        let sheet = CoatedDiffuse { scale: reflected, through: passed, boundary, cover, rough_diffuse: None };
+        let (is_covered, mut light) = (!cover.is_none(), [0.0; GAUSS.len()]);
+        if is_covered || rough.is_some() {
+            light = sheet.light_at_nodes();
         }
+        // ∫ g(µ) 2µ dµ with µ = t²
+        let mean = if is_covered { light.iter().sum() } else { 1.0 - boundary.mean() };
+        let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
+        let rough_diffuse = rough.map(|(roughness, colour)| RoughDiffuse::new(roughness, colour, &light));
+        CoatedDiffuse { scale: reflected * scale, through: passed * scale, rough_diffuse, ..sheet }
+    }
+
+    /// The light that reaches the base at each node of a quadrature over t, the root of the cosine, with its weight.
+    fn light_at_nodes(&self) -> [f32; GAUSS.len()] {
+        light_at_nodes(|t| self.passed_at_root(t))
     }
 
     /// The same lobe with a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
     pub fn rough(self, roughness: f32, colour: Rgb) -> CoatedDiffuse {
-        let rough_diffuse = RoughDiffuse::new(roughness, colour, |cos| self.passed(cos));
+        let rough_diffuse = RoughDiffuse::new(roughness, colour, &self.light_at_nodes());
         CoatedDiffuse { rough_diffuse: (roughness > 0.0).then_some(rough_diffuse), ..self }
     }
 
@@ -105,7 +115,14 @@ impl CoatedDiffuse {
     /// The fraction of light that reaches the base when all normals make this cosine with the direction.
     #[inline]
     fn passed(&self, cos: f32) -> f32 {
-        (1.0 - self.boundary.at(cos)) * self.cover.passed(cos)
+        self.passed_at_root(cos.clamp(0.0, 1.0).sqrt())
+    }
+
+    /// The same by the square root of the cosine, 0..=1.
+    #[inline(always)]
+    fn passed_at_root(&self, root: f32) -> f32 {
+        let passed = if self.cover.is_none() { 1.0 } else { self.cover.passed_at_root(root) };
+        (1.0 - self.boundary.at_root(root)) * passed
     }
 
     /// The same along a direction, where the coating may have a normal of its own.
@@ -171,7 +188,7 @@ impl CoatedDiffuse {
 
     /// Almost no light reaches the base at grazing angles. Keep a tenth, so that no direction is sampled too rarely.
     #[inline]
-    pub(super) fn rise(&self) -> f32 {
-        -0.9 * self.strength()
+    pub(super) fn rise(&self, strength: f32) -> f32 {
+        -0.9 * strength
     }
 }

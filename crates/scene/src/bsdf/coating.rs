@@ -53,11 +53,19 @@ impl Coating {
     /// The transmitted fraction along a direction whose cosine with the normal is `cos`.
     #[inline]
     pub fn passed(&self, cos: f32) -> f32 {
-        if self.is_none() {
-            return 1.0;
-        }
-        let below_fuzz = self.fuzz.map_or(1.0, |(weight, fuzz)| 1.0 - weight * fuzz.at(cos));
-        below_fuzz * (1.0 - self.coat_weight * self.coat.at(cos))
+        if self.is_none() { 1.0 } else { self.passed_at_root(cos.clamp(0.0, 1.0).sqrt()) }
+    }
+
+    /// The same by the square root of the cosine, 0..=1.
+    #[inline(always)]
+    pub(super) fn passed_at_root(&self, root: f32) -> f32 {
+        let below_fuzz = match self.fuzz {
+            Some((weight, fuzz)) => 1.0 - weight * fuzz.at_root(root),
+            None => 1.0,
+        };
+        let below_coat =
+            if self.coat_weight > 0.0 { 1.0 - self.coat_weight * self.coat.at_root(root) } else { 1.0 };
+        below_fuzz * below_coat
     }
 
     /// The transmitted fraction along a direction in the lobe's local frame.

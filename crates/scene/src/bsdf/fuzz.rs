@@ -92,8 +92,8 @@ impl Fuzz {
     }
 
     #[inline]
-    pub(super) fn rise(&self) -> f32 {
-        (self.colour.luminance() * self.albedo.at(0.0) - self.strength()).max(0.0)
+    pub(super) fn rise(&self, strength: f32) -> f32 {
+        (self.colour.luminance() * self.albedo.at(0.0) - strength).max(0.0)
     }
 }
 
@@ -167,8 +167,14 @@ impl FuzzAlbedo {
     /// The scattered fraction along a direction whose cosine with the normal is `cos`, 0..=1.
     #[inline]
     pub fn at(&self, cos: f32) -> f32 {
+        self.at_root(cos.clamp(0.0, 1.0).sqrt())
+    }
+
+    /// The same by the square root of the cosine, 0..=1.
+    #[inline(always)]
+    pub(super) fn at_root(&self, root: f32) -> f32 {
         let row = (self.roughness as usize).min(ROUGHNESSES - 2);
-        let place = cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32;
+        let place = root * (COSINES - 1) as f32;
         let column = (place as usize).min(COSINES - 2);
         let (between_rows, between) = (self.roughness - row as f32, place - column as f32);
         let of = |row: &[f32; COSINES]| row[column] + (row[column + 1] - row[column]) * between;

@@ -153,13 +153,13 @@ impl Lobe {
         each_lobe!(self, l => l.strength())
     }
 
-    /// How much more light than [`Lobe::strength`] it scatters at grazing angles; negative for less.
+    /// How much more light than [`Lobe::strength`], which is given, it scatters at grazing angles; negative for less.
     #[inline]
-    pub fn rise(&self) -> f32 {
+    pub(super) fn rise(&self, strength: f32) -> f32 {
         match self {
-            Lobe::MicrofacetReflection(lobe) => lobe.rise(),
-            Lobe::CoatedDiffuse(lobe) => lobe.rise(),
-            Lobe::Fuzz(lobe) => lobe.rise(),
+            Lobe::MicrofacetReflection(lobe) => lobe.rise(strength),
+            Lobe::CoatedDiffuse(lobe) => lobe.rise(strength),
+            Lobe::Fuzz(lobe) => lobe.rise(strength),
             _ => 0.0,
         }
     }

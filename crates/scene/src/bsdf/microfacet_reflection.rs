@@ -248,8 +248,8 @@ impl MicrofacetReflection {
 
     /// Microfacets reflect more light towards grazing, and smoother surfaces gain more.
     #[inline]
-    pub(super) fn rise(&self) -> f32 {
+    pub(super) fn rise(&self, strength: f32) -> f32 {
         let grazing = (self.glass + self.metal_weight).luminance();
-        (grazing - self.strength()).max(0.0) * (1.0 - self.ggx.least()).max(0.0)
+        (grazing - strength).max(0.0) * (1.0 - self.ggx.least()).max(0.0)
     }
 }

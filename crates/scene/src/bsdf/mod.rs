@@ -113,6 +113,11 @@ impl Bsdf {
 
     /// A sum of at most [`MAX_LOBES`] lobes around a shading normal.
     pub fn new<const N: usize>(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; N]) -> Bsdf {
+        Bsdf::of_lobes(n_shade, n_geom, &lobes)
+    }
+
+    /// The same for lobes that are copied once: they are large.
+    pub(crate) fn of_lobes(n_shade: Vec3, n_geom: Vec3, lobes: &[Option<Lobe>]) -> Bsdf {
         let mut sum = Bsdf::empty(Frame::from_normal(n_shade), n_geom);
         for (i, lobe) in lobes.iter().flatten().take(MAX_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
@@ -147,11 +152,11 @@ impl Bsdf {
     /// Sets a lobe, which is copied once: it is large.
     #[inline]
     fn set(&mut self, i: usize, lobe: &Lobe, weight: f32) {
-        let strength = weight * lobe.strength();
+        let strength = lobe.strength();
         self.lobes[i] = Some(*lobe);
-        (self.weights[i], self.strengths[i]) = (weight, strength);
-        self.total_strength += strength;
-        self.rises[i] = weight * lobe.rise();
+        (self.weights[i], self.strengths[i]) = (weight, weight * strength);
+        self.total_strength += self.strengths[i];
+        self.rises[i] = weight * lobe.rise(strength);
         self.total_rise += self.rises[i];
     }
 
@@ -384,8 +389,7 @@ impl Bsdf {
         last
     }
 
-    /// Both directions must be on the same sides of the triangle and of the interpolated surface `n`, or light leaks
-    /// through.
+    /// Both directions must be on the same sides of the triangle and of the interpolated surface `n`, or light leaks through.
     #[inline]
     fn sides_agree(&self, n: Vec3, wo: Vec3, wi: Vec3) -> bool {
         let geometric = wo.dot(self.n_geom) * wi.dot(self.n_geom);

@@ -10,10 +10,17 @@ pub(super) struct Parts([Bsdf; 2]);
 
 impl Bsdf {
     /// The same BSDF with one of its lobes, by index, about a normal of its own.
-    pub fn with_lobe_frame(self, index: usize, n: Vec3) -> Bsdf {
+    pub fn with_lobe_frame(mut self, index: usize, n: Vec3) -> Bsdf {
+        self.set_lobe_frame(index, n);
+        self
+    }
+
+    /// [`Bsdf::with_lobe_frame`] in place.
+    #[inline]
+    pub(crate) fn set_lobe_frame(&mut self, index: usize, n: Vec3) {
         let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
         let apart = LobeFrame { index: index as u8, n, bends: false };
-        Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
+        self.apart = (is_there && n != self.frame.n).then_some(apart);
     }
 
     /// The two parts, if a lobe has its own normal.

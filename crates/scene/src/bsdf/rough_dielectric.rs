@@ -93,65 +93,64 @@ impl RoughDielectric {
     }
 
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        let (f, pdf, cos) = match (wo.z * wi.z > 0.0, self.thin) {
+        let (f, pdf, colours) = match (wo.z * wi.z > 0.0, self.thin) {
             (true, _) => self.reflected(wo, wi, |reflected| reflected),
             (false, true) => self.reflected(wo, Vec3::new(wi.x, wi.y, -wi.z), |reflected| 1.0 - reflected),
             (false, false) => self.refracted(wo, wi, mode),
         };
-        let Some(film) = &self.film else { return (self.tint * f, pdf) };
         let passes = usize::from(wo.z * wi.z < 0.0);
-        // For refracted light `cos` is the cosine on the outside.
-        let outside = wo.z > 0.0 || passes == 1;
-        let (_, colours) = shares(film.over_clear(cos, self.eta, outside, self.thin));
         (self.tint * colours[passes] * f, pdf)
     }
 
     /// Light reflected by the microfacets, or transmitted by those of a pane; `share` maps Fresnel's reflectance to its
-    /// factor.
+    /// factor. With the density, and the [colours](RoughDielectric::fresnel) of light.
     #[inline]
-    fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, f32) {
+    fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, [Rgb; 2]) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
         let Some((wo, wi, m)) = facet_between(self.facets.is_smooth(), wo, wi) else {
-            return (0.0, 0.0, 1.0);
+            return NOTHING;
         };
-        let cos = wo.dot(m);
-        let density = self.facets.distribution(m) * share(self.fresnel(cos, eta, outside));
-        (density * self.facets.visible(wo, wi), density * 0.25 * self.facets.seen(wo), cos)
+        let (reflected, colours) = self.fresnel(wo.dot(m), eta, outside);
+        let density = self.facets.distribution(m) * share(reflected);
+        (density * self.facets.visible(wo, wi), density * 0.25 * self.facets.seen(wo), colours)
     }
 
     /// Light refracted by the microfacets. [Walter 2007, eq. 21]
     #[inline]
-    fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32, f32) {
+    fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32, [Rgb; 2]) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
         let side = 1f32.copysign(wo.z);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
         let Some(m) = (wo + wi * eta).try_normalize().map(|m| m * 1f32.copysign(m.z)) else {
-            return (0.0, 0.0, 1.0);
+            return NOTHING;
         };
         let (cos_o, cos_i) = (wo.dot(m), -wi.dot(m));
         if cos_o <= 0.0 || cos_i <= 0.0 || wo.z == 0.0 || wi.z == 0.0 {
-            return (0.0, 0.0, 1.0);
+            return NOTHING;
         }
         let spread = cos_o - eta * cos_i;
         let per_angle = cos_i * cos_o * eta * eta / (spread * spread);
         // Use the cosine on the outside, from which both ends compute the same value to the last digits.
         let above = if outside { cos_o } else { cos_i };
-        let passes = match &self.film {
-            Some(_) => 1.0 - self.fresnel(above, self.eta, true),
-            None => passed(cos_o, cos_i, eta),
+        let (passes, colours) = match &self.film {
+            Some(_) => {
+                let (reflected, colours) = self.fresnel(above, self.eta, true);
+                (1.0 - reflected, colours)
+            }
+            None => (passed(cos_o, cos_i, eta), [Rgb::WHITE; 2]),
         };
         let density = self.facets.distribution(m) * passes * per_angle;
         let below = Vec3::new(wi.x, wi.y, -wi.z);
         let f = density * 4.0 * self.facets.visible(wo, below);
         let f = if mode == TransportMode::Radiance { f / (eta * eta) } else { f };
-        if f.is_finite() { (f, density * self.facets.seen(wo), above) } else { (0.0, 0.0, 1.0) }
+        if f.is_finite() { (f, density * self.facets.seen(wo), colours) } else { NOTHING }
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let eta = self.eta_from(wo);
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
         let m = self.facets.sample_visible(above, u);
-        let reflects = u_choice < self.fresnel(above.dot(m), eta, wo.z > 0.0);
+        let reflects = u_choice < self.fresnel(above.dot(m), eta, wo.z > 0.0).0;
         let wi = match (reflects, self.thin) {
             (true, _) => reflect(above, m),
             (false, true) => reflect(above, m) * Vec3::new(1.0, 1.0, -1.0),
@@ -167,17 +166,18 @@ impl RoughDielectric {
         Some(BsdfSample { transmits: !reflects, eta, ..sample })
     }
 
-    /// The reflectance of a microfacet, averaged over the channels; for a pane, of both faces.
+    /// The reflectance of a microfacet, averaged over the channels; for a pane, of both faces. With it the colours of
+    /// what is reflected and of what passes, relative to their means.
     #[inline]
-    fn fresnel(&self, cos: f32, eta: f32, outside: bool) -> f32 {
+    fn fresnel(&self, cos: f32, eta: f32, outside: bool) -> (f32, [Rgb; 2]) {
         if let Some(film) = &self.film {
-            return shares(film.over_clear(cos, self.eta, outside, self.thin)).0;
+            return shares(film.over_clear(cos, self.eta, outside, self.thin));
         }
         if !self.thin {
-            return fresnel_dielectric(cos, eta);
+            return (fresnel_dielectric(cos, eta), [Rgb::WHITE; 2]);
         }
         let once = fresnel_dielectric(cos, self.eta);
-        2.0 * once / (1.0 + once)
+        (2.0 * once / (1.0 + once), [Rgb::WHITE; 2])
     }
 
     /// The index of the far side over that of the side of `wo`.
@@ -191,6 +191,9 @@ impl RoughDielectric {
         self.tint.luminance()
     }
 }
+
+/// No light, where no microfacet scatters from one direction to the other.
+const NOTHING: (f32, f32, [Rgb; 2]) = (0.0, 0.0, [Rgb::WHITE; 2]);
 
 /// 1 minus [`fresnel_dielectric`], from the cosines on both sides: equal from both, and exact where almost nothing is
 /// transmitted. `eta` is the index of the second side over that of the first.

@@ -27,16 +27,25 @@ pub(super) const GAUSS: [(f32, f32); 8] = [
     (0.980_144_9, 0.050_614_27),
 ];
 
+/// The light at each node t, where t² is the cosine, of which a fraction `gets_in` by t gets in, with the node's weight:
+/// terms of ∫ g(µ) 2µ dµ.
+#[inline(always)]
+pub(super) fn light_at_nodes(gets_in: impl Fn(f32) -> f32) -> [f32; GAUSS.len()] {
+    let mut light = [0.0; GAUSS.len()];
+    for (light, (t, w)) in light.iter_mut().zip(GAUSS) {
+        *light = w * 4.0 * t * t * t * gets_in(t);
+    }
+    light
+}
+
 impl RoughDiffuse {
-    /// From a roughness, 0..=1, the colour of the microfacets, and the fraction `gets_in` of light that reaches them by
-    /// cosine.
-    pub(super) fn new(roughness: f32, colour: Rgb, gets_in: impl Fn(f32) -> f32) -> RoughDiffuse {
+    /// From a roughness, 0..=1, the colour of the microfacets, and the light that reaches them ([`light_at_nodes`]).
+    pub(super) fn new(roughness: f32, colour: Rgb, light: &[f32; GAUSS.len()]) -> RoughDiffuse {
         let once = 1.0 / (1.0 + roughness * (0.5 - 2.0 * FRAC_1_PI / 3.0));
         let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
         // The light that reaches the microfacets, and the part of it that is scattered again.
         let (mut all, mut left) = (0.0, 0.0);
-        for (t, w) in GAUSS {
-            let here = w * 4.0 * t * t * t * gets_in(t * t);
+        for ((t, _), here) in GAUSS.into_iter().zip(light) {
             all += here;
             left += here * unscaled.left(t * t);
         }
@@ -100,7 +109,7 @@ mod tests {
     #[test]
     fn it_matches_the_published_model() {
         for (roughness, colour) in [(0.3f32, 0.9f32), (1.0, 0.5)] {
-            let bsdf = RoughDiffuse::new(roughness, Rgb::grey(colour), |_| 1.0);
+            let bsdf = RoughDiffuse::new(roughness, Rgb::grey(colour), &light_at_nodes(|_| 1.0));
             for (o, i, turn) in [(0.2f32, 0.9f32, 0.0f32), (0.7, 0.6, 2.8), (0.3, 0.2, 0.4), (1.0, 0.5, 0.0)]
             {
                 let (sin, cos) = sin_cos(turn);
@@ -121,7 +130,7 @@ mod tests {
     #[test]
     fn nothing_is_lost() {
         for roughness in [0.2f32, 0.6, 1.0] {
-            let bsdf = RoughDiffuse::new(roughness, Rgb::WHITE, |_| 1.0);
+            let bsdf = RoughDiffuse::new(roughness, Rgb::WHITE, &light_at_nodes(|_| 1.0));
             for cos in [0.05f32, 0.3, 0.7, 1.0] {
                 let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
                 const N: u32 = 300;

@@ -24,7 +24,7 @@ pub struct ThinFilm {
 }
 
 /// The number of interreflections in the film before the rest is negligible.
-const ORDERS: i32 = 5;
+const ORDERS: usize = 5;
 
 impl ThinFilm {
     /// The reflectance per channel, under the film, of a boundary whose index over the medium above is `eta`, at least
@@ -80,14 +80,20 @@ impl ThinFilm {
     fn reflected(&self, above: f32, within: f32, b: [Rgb; 2]) -> Rgb {
         let path = 2.0 * self.eta * self.thickness * within;
         let a = [amplitude(above, self.eta * within), amplitude(above, within / self.eta)];
+        // They are the same for both.
+        let table = COSINES.as_slice();
+        let mut cosines = [Rgb::BLACK; ORDERS];
+        for (order, cosine) in cosines.iter_mut().enumerate() {
+            *cosine = mean_cosine(table, path * (order + 1) as f32);
+        }
         let mut sum = Rgb::BLACK;
         for (a, b) in a.into_iter().zip(b) {
             let q = b * a;
             let mut series = Rgb::WHITE;
             let mut power = Rgb::WHITE;
-            for order in 1..=ORDERS {
+            for cosine in cosines {
                 power = power * q * -1.0;
-                series += power * mean_cosine(path * order as f32) * 2.0;
+                series += power * cosine * 2.0;
             }
             let passed = b.map(|b| (1.0 - a * a) * (1.0 - b * b)) * q.map(|q| 1.0 / (1.0 - q * q).max(1e-6));
             sum += passed * series;
@@ -109,10 +115,10 @@ const STEPS: usize = 1601;
 
 /// The mean of cos(2π · path / wavelength), weighted by the sensitivity of each channel.
 #[inline]
-fn mean_cosine(path: f32) -> Rgb {
+fn mean_cosine(table: &[Rgb], path: f32) -> Rgb {
     let place = path / LONGEST * (STEPS - 1) as f32;
     let first = place as usize;
-    match (COSINES.get(first), COSINES.get(first + 1)) {
+    match (table.get(first), table.get(first + 1)) {
         (Some(a), Some(b)) => a.lerp(*b, place - first as f32),
         _ => Rgb::BLACK,
     }

@@ -34,6 +34,10 @@ pub trait Material: Send + Sync {
     fn opaque_base(&self, _surface: &Surface) -> Option<OpaqueBaseInputs> {
         None
     }
+    /// [`Material::opaque_base`] at many points, in their order.
+    fn opaque_bases(&self, surfaces: &[Surface], inputs: &mut Vec<Option<OpaqueBaseInputs>>) {
+        inputs.extend(surfaces.iter().map(|surface| self.opaque_base(surface)));
+    }
     /// The lobe, if its [`Bsdf`] is the same [`SmoothLobe`] everywhere, about the shading normal.
     fn smooth_lobe(&self) -> Option<SmoothLobe> {
         None
@@ -45,6 +49,10 @@ pub trait Material: Send + Sync {
     /// Tracers call it where there are tangents; the other functions read the result from the surface.
     fn n_shade(&self, surface: &Surface) -> Vec3 {
         surface.n_shade
+    }
+    /// Sets the shading normals of many points that have tangents, as [`Material::n_shade`] gives them; they have interpolated ones.
+    fn set_normals(&self, surfaces: &mut [Surface]) {
+        surfaces.iter_mut().for_each(|surface| surface.n_shade = self.n_shade(surface));
     }
     /// True when it is anisotropic, and so needs [`Surface::tangent`].
     fn needs_tangents(&self) -> bool {

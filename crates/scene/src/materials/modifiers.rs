@@ -52,6 +52,12 @@ impl Material for ModifiedMaterial {
         self.normals.as_ref().map_or(surface.n_shade, |normals| normals.at(surface))
     }
 
+    fn set_normals(&self, surfaces: &mut [Surface]) {
+        if let Some(normals) = &self.normals {
+            normals.set_on(surfaces);
+        }
+    }
+
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         self.material.bsdf(surface)
     }
@@ -74,6 +80,10 @@ impl Material for ModifiedMaterial {
 
     fn opaque_base(&self, surface: &Surface) -> Option<OpaqueBaseInputs> {
         self.material.opaque_base(surface)
+    }
+
+    fn opaque_bases(&self, surfaces: &[Surface], inputs: &mut Vec<Option<OpaqueBaseInputs>>) {
+        self.material.opaque_bases(surfaces, inputs);
     }
 
     fn smooth_lobe(&self) -> Option<SmoothLobe> {

@@ -5,9 +5,9 @@ use super::{MaterialInputs, texture};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
-use crate::texture::Texture;
-use bilux_math::Vec3;
+use crate::texture::{AT_ONCE, LookUps, Texture};
 use bilux_math::registry::{Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
 pub(super) const NORMAL: Parameter = Parameter {
@@ -37,6 +37,8 @@ pub(super) const COAT_NORMAL_SCALE: Parameter = Parameter { name: "coat_normal_s
 /// A normal map.
 pub(super) struct NormalMap {
     map: Arc<Texture>,
+    /// The map, for many points at a time.
+    look_ups: LookUps,
     scale: f32,
 }
 
@@ -60,14 +62,29 @@ fn read_named(
 ) -> Result<Option<NormalMap>, SceneError> {
     let scale = reader.number(scale);
     let map = texture(reader, map, inputs)?;
-    Ok(map.filter(|_| scale > 0.0).map(|map| NormalMap { map, scale }))
+    Ok(map.filter(|_| scale > 0.0).map(|map| NormalMap { look_ups: LookUps::of_points(&map), map, scale }))
 }
 
 impl NormalMap {
     /// The normal at a point that has a tangent, on the same side as `n_geom`.
     pub(super) fn at(&self, surface: &Surface) -> Vec3 {
         // Use single texels: averaged normals would give a smoother surface.
-        let texel = self.map.at(surface.uv_pair());
+        self.turned(surface, self.map.at(surface.uv_pair()))
+    }
+
+    /// Sets the shading normals of many points that have tangents.
+    pub(super) fn set_on(&self, surfaces: &mut [Surface]) {
+        for surfaces in surfaces.chunks_mut(AT_ONCE) {
+            let seen = self.look_ups.at_each::<1>(surfaces.iter().map(|surface| surface.uv_pair().into()));
+            for (surface, mut seen) in surfaces.iter_mut().zip(seen) {
+                surface.n_shade = self.turned(surface, seen.take());
+            }
+        }
+    }
+
+    /// The normal that a texel gives.
+    #[inline]
+    fn turned(&self, surface: &Surface, texel: Rgb) -> Vec3 {
         let lean = |c: f32| (2.0 * c - 1.0) * self.scale;
         let (x, y, z) = (lean(texel.r), lean(texel.g), 2.0 * texel.b - 1.0);
         let n = surface.n_smooth;

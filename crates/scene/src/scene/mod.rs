@@ -181,6 +181,9 @@ impl Scene {
     /// Radiance that a surface emits towards `wo`: triangles on the sides that their material sets, spheres outwards.
     #[inline]
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
+        if self.is_dark(surface.object) {
+            return Rgb::BLACK;
+        }
         let material = self.material(surface);
         let emission = match material.emission_map() {
             // The same value as in light sampling, down to the last texel.
@@ -304,6 +307,12 @@ impl Scene {
     #[inline]
     pub fn shading(&self, object: u32) -> Shading {
         self.parts.shading.get(object as usize).map_or(Shading::General, |object| object.kind)
+    }
+
+    /// True when no surface of an object emits light.
+    #[inline]
+    pub fn is_dark(&self, object: u32) -> bool {
+        self.parts.shading.get(object as usize).is_some_and(|object| object.is_dark)
     }
 
     /// True when some material refracts each wavelength differently.

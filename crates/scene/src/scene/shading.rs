@@ -23,6 +23,8 @@ pub enum Shading {
 #[derive(Clone, Copy)]
 pub(super) struct ObjectShading {
     pub(super) kind: Shading,
+    /// Nothing there emits light.
+    pub(super) is_dark: bool,
     /// The reflectance, where it is Lambertian and the same everywhere; the triangles, if there are any, are in the
     /// common tree, and do not move.
     pub(super) constant: Option<Rgb>,
@@ -33,8 +35,8 @@ pub(super) struct ObjectShading {
 impl ObjectShading {
     pub(super) fn of(object: &Placed, materials: &[Arc<dyn Material>]) -> ObjectShading {
         let material = &materials[object.material as usize];
-        let of_kind = |kind| ObjectShading { kind, constant: None, smooth: None };
         let is_dark = !object.gives_light && material.emission().is_black();
+        let of_kind = |kind| ObjectShading { kind, is_dark, constant: None, smooth: None };
         if let Some(lobe) = material.smooth_lobe().filter(|_| is_dark) {
             return ObjectShading { smooth: Some(lobe), ..of_kind(Shading::Smooth) };
         }

@@ -2,6 +2,7 @@
 
 use super::sheets::{End, Sheets};
 use super::{MayPass, Scene, SceneParts};
+use crate::bsdf::OpaqueBaseInputs;
 use crate::sides::Sides;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
@@ -236,15 +237,45 @@ impl<'s> Tracer<'s> {
     /// The surface at a hit of a ray.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let mut surface = self.smooth_surface(ray, hit);
+        if surface.tangent != Vec3::ZERO {
+            surface.n_shade = self.scene.material(&surface).n_shade(&surface);
+        }
+        surface
+    }
+
+    /// The same with the interpolated normal.
+    #[inline]
+    fn smooth_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let scene = self.scene;
         let mut surface = scene.parts.geometry.surface(ray, hit);
         if let Some(view) = &scene.view {
             view.put_on(&mut surface, &scene.parts.geometry);
         }
-        if surface.tangent != Vec3::ZERO {
-            surface.n_shade = scene.material(&surface).n_shade(&surface);
-        }
         surface
+    }
+
+    /// The surfaces at many hits, in their order, each with its [`Material::opaque_base`](crate::materials::Material::opaque_base).
+    /// Textures of surfaces of one material are looked up together.
+    pub fn opaque_bases<'h>(
+        &self,
+        hits: impl Iterator<Item = (&'h Ray, &'h Hit)>,
+        (surfaces, bases): (&mut Vec<Surface>, &mut Vec<Option<OpaqueBaseInputs>>),
+    ) {
+        surfaces.clear();
+        bases.clear();
+        surfaces.extend(hits.map(|(ray, hit)| self.smooth_surface(ray, hit)));
+        let number = |surface: &Surface| self.scene.parts.geometry.material_of(surface.object);
+        let is_one = |a: &Surface, b: &Surface| {
+            number(a) == number(b) && (a.tangent != Vec3::ZERO) == (b.tangent != Vec3::ZERO)
+        };
+        for surfaces in surfaces.chunk_by_mut(is_one) {
+            let material = self.scene.material(&surfaces[0]);
+            if surfaces[0].tangent != Vec3::ZERO {
+                material.set_normals(surfaces);
+            }
+            material.opaque_bases(surfaces, bases);
+        }
     }
 
     #[inline]

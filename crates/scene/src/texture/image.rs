@@ -106,14 +106,30 @@ impl Image {
         let Texels::Bytes(bytes) = &self.texels else {
             return mean_of_four(indices.map(|index| self.texel(index, channel, is_data)), at);
         };
-        let texels = indices.map(|index| bytes[index]);
+        let [a, b, c, d] = indices;
+        Image::blended([bytes[a], bytes[b], bytes[c], bytes[d]], at, channel, is_data)
+    }
+
+    /// The same for four texels that were read before.
+    #[inline(always)]
+    pub(super) fn blended(
+        texels: [[u8; 4]; 4],
+        at: [f32; 2],
+        channel: Option<Channel>,
+        is_data: bool,
+    ) -> Rgb {
         let decode: &[f32; 256] = if is_data || channel == Some(Channel::A) { &PLAIN } else { &LIGHT };
         let decode = |byte: u8| decode[usize::from(byte)];
         match channel {
-            None => mean_of_four(texels.map(|[r, g, b, _]| Rgb::new(decode(r), decode(g), decode(b))), at),
+            None => {
+                let colour = |[r, g, b, _]: [u8; 4]| Rgb::new(decode(r), decode(g), decode(b));
+                let [a, b, c, d] = texels;
+                mean_of_four([colour(a), colour(b), colour(c), colour(d)], at)
+            }
             Some(channel) => {
-                let [[a, b], [c, d]] =
-                    [[0, 1], [2, 3]].map(|row| row.map(|i| decode(texels[i][channel as usize])));
+                let number = |texel: [u8; 4]| decode(texel[channel as usize]);
+                let [a, b, c, d] = texels;
+                let (a, b, c, d) = (number(a), number(b), number(c), number(d));
                 let lerp = |a: f32, b: f32, t: f32| Rgb::grey(a).lerp(Rgb::grey(b), t).r;
                 Rgb::grey(lerp(lerp(a, b, at[0]), lerp(c, d, at[0]), at[1]))
             }

@@ -6,6 +6,7 @@ mod levels;
 pub(crate) mod mipmaps;
 mod procedural;
 mod sampling;
+mod together;
 mod uv;
 
 pub use channel::Channel;
@@ -13,6 +14,7 @@ pub use image::{ComputedTexels, Image, Texels};
 pub use levels::Levels;
 pub use procedural::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use sampling::{Filter, UvTransform, Wrap};
+pub(crate) use together::{AT_ONCE, LookUps, Seen};
 pub use uv::{Patch, UvPair};
 
 use bilux_math::{Rgb, Vec2};
@@ -138,9 +140,16 @@ impl Texture {
     #[inline(never)]
     fn seen_in(&self, patch: &Patch) -> Rgb {
         let set = usize::from(self.second_uv);
+        self.look_up(self.image_for(patch), patch.at.0[set])
+    }
+
+    /// The image, or a coarser level of it, that a patch is looked up in.
+    #[inline(always)]
+    fn image_for(&self, patch: &Patch) -> &Image {
+        let set = usize::from(self.second_uv);
         let (uv, level) = (patch.at.0[set], self.level_for(patch.width[set]));
         let is_picture = std::ptr::eq(level, &*self.image);
-        self.look_up(if is_picture || self.is_beyond_clamped_edge(uv) { &self.image } else { level }, uv)
+        if is_picture || self.is_beyond_clamped_edge(uv) { &self.image } else { level }
     }
 
     /// True beyond an edge that is clamped: a coarser level would also contain what is inside the edge.
@@ -216,31 +225,6 @@ impl Texture {
         Some(([above + x0, above + x1, below + x0, below + x1], [fx, fy]))
     }
 
-    /// True when two textures take single channels of the same texels.
-    pub(crate) fn shares_texels_with(&self, other: &Texture) -> bool {
-        let place = |t: &Texture| (t.wrap, t.filter, t.transform, t.second_uv);
-        let is_stored = !matches!(self.image.texels, Texels::Formula(_));
-        Arc::ptr_eq(&self.image, &other.image)
-            && is_stored
-            && self.filter == Filter::Linear
-            && self.channel.is_some()
-            && other.channel.is_some()
-            && place(self) == place(other)
-    }
-
-    /// [`Texture::number`] of two textures that share their texels.
-    #[inline]
-    pub(crate) fn two_numbers(textures: [&Texture; 2], at: UvPair) -> [f32; 2] {
-        let [first, _] = textures;
-        let image = &*first.image;
-        match first.four_around(image, at.0[usize::from(first.second_uv)]) {
-            Some((indices, at)) => {
-                textures.map(|t| t.finished(image.bilinear(indices, at, t.channel, t.is_data)).r)
-            }
-            None => [1.0; 2],
-        }
-    }
-
     /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
     #[inline(never)]
     fn eval_procedural(&self, formula: &dyn ComputedTexels, uv: Vec2) -> Rgb {
@@ -255,7 +239,12 @@ impl Texture {
     /// A number at texture coordinates: the selected channel, otherwise the luminance.
     #[inline]
     pub fn number(&self, patch: impl Into<Patch>) -> f32 {
-        let colour = self.at(patch);
+        self.number_of(self.at(patch))
+    }
+
+    /// The number that a colour of this texture stands for.
+    #[inline(always)]
+    fn number_of(&self, colour: Rgb) -> f32 {
         if self.channel.is_some() { colour.r } else { colour.luminance() }
     }
 
@@ -295,18 +284,6 @@ impl NumberMap {
             // light.
             Some(texture) => self.within(texture.number(patch.into().at)),
             None => self.number,
-        }
-    }
-
-    /// [`NumberMap::at`] for two maps; `share` tells whether their textures [share texels](Texture::shares_texels_with).
-    #[inline(always)]
-    pub(crate) fn two_at(maps: [&NumberMap; 2], share: bool, patch: &Patch) -> [f32; 2] {
-        match maps.map(|map| map.texture.as_deref()) {
-            [Some(a), Some(b)] if share => {
-                let [x, y] = Texture::two_numbers([a, b], patch.at);
-                [maps[0].within(x), maps[1].within(y)]
-            }
-            _ => maps.map(|map| map.at(*patch)),
         }
     }
 

@@ -1,5 +1,5 @@
 //! Surfaces of an [`OpaqueBase`](bilux_scene::bsdf::OpaqueBase), [`LANES`] of them at a time: metal, plastic and paint, as most glTF files have them.
-//! Textures are looked up one by one; the BSDF is built, evaluated and sampled in columns.
+//! The textures of surfaces in a row that have one material are looked up together; the BSDF is built, evaluated and sampled in columns.
 //!
 //! Every expression is the one that a single path evaluates ([`PathTracing::interact`] with a [`bilux_scene::Bsdf`] of that one
 //! lobe), in the same order, so that the bits are the same.
@@ -12,12 +12,15 @@ use crate::path_tracing::PathTracing;
 use crate::task::Context;
 use bilux_accel::Hit;
 use bilux_math::{Frame, Vec2};
-use bilux_scene::Tracer;
 use bilux_scene::bsdf::{AlbedoTable, OpaqueBaseAlbedos, OpaqueBaseForWo, OpaqueBaseInputs, faces_away};
+use bilux_scene::{Surface, Tracer};
 
 /// What these vertices have beyond the others.
 pub(super) struct Opaque {
     table: &'static AlbedoTable,
+    /// The surfaces of a chunk of hits, and what they are made of.
+    surfaces: Vec<Surface>,
+    bases: Vec<Option<OpaqueBaseInputs>>,
     inputs: Inputs,
     n_shade: Columns3,
     /// The numbers of each lobe.
@@ -43,6 +46,8 @@ impl Default for Opaque {
     fn default() -> Opaque {
         Opaque {
             table: AlbedoTable::shared(),
+            surfaces: Vec::with_capacity(LANES),
+            bases: Vec::with_capacity(LANES),
             inputs: Inputs {
                 base_color: ZERO3,
                 specular_color: ZERO3,
@@ -127,11 +132,13 @@ impl Paths {
     ) {
         v.count = 0;
         let is_clear = context.scene.has_clear_media();
-        for (index, hit) in chunk {
+        let Opaque { surfaces, bases, inputs: columns, n_shade, next, .. } = o;
+        let hits = chunk.iter().map(|(index, hit)| (&self.paths[*index as usize].path.walk.ray, hit));
+        tracer.opaque_bases(hits, (&mut *surfaces, &mut *bases));
+        for ((index, hit), (surface, base)) in chunk.iter().zip(surfaces.iter().zip(bases)) {
             let one = &mut self.paths[*index as usize];
             let wo = one.path.walk.wo();
-            let surface = tracer.surface(&one.path.walk.ray, hit);
-            let inputs = match context.scene.material(&surface).opaque_base(&surface) {
+            let inputs = match base {
                 Some(inputs) if !faces_away(surface.n_shade, surface.n_geom, wo) => inputs,
                 // Few normals face away, and are bent; few points are polished.
                 _ => {
@@ -141,20 +148,20 @@ impl Paths {
             };
             if !is_clear {
                 let walk = &mut one.path.walk;
-                let (_, passed) = walk.media.closest_from(tracer, &walk.ray, surface, 0);
+                let (_, passed) = walk.media.closest_from(tracer, &walk.ray, *surface, 0);
                 walk.beta *= passed;
             }
             one.begin_event();
             let (path, mut task) = one.parts(context, tracer);
-            tracing.collect(path, &surface, &mut task);
+            tracing.collect(path, surface, &mut task);
             if one.path.walk.depth >= context.max_depth {
                 continue;
             }
             one.state.sampler.enter(u64::from(one.path.walk.depth) + 1);
-            let i = v.push(*index, &Point::from(&surface), wo, &one.state.sampler);
-            o.inputs.put(i, &inputs);
-            put(&mut o.n_shade, i, surface.n_shade.to_array());
-            o.next.put_path(i, one);
+            let i = v.push(*index, &Point::from(surface), wo, &one.state.sampler);
+            columns.put(i, inputs);
+            put(n_shade, i, surface.n_shade.to_array());
+            next.put_path(i, one);
             self.shaded.push(*index);
         }
     }

@@ -6,7 +6,8 @@ use super::point::{Point, Subsurface};
 use crate::bsdf::{OpaqueBaseInputs, ThinFilm, is_rough};
 use crate::error::SceneError;
 use crate::parameters::Reader;
-use crate::texture::{ColourMap, NumberMap, Patch};
+use crate::surface::Surface;
+use crate::texture::{AT_ONCE, ColourMap, LookUps, NumberMap, Patch, Seen};
 use bilux_math::{Rgb, Vec3};
 
 /// The parameters, each a constant or a texture.
@@ -17,8 +18,6 @@ pub(super) struct Maps {
     pub(super) specular_weight: NumberMap,
     pub(super) specular_color: ColourMap,
     pub(super) specular_roughness: NumberMap,
-    /// True if metalness and roughness are channels of one picture, as in glTF files.
-    is_packed: bool,
     pub(super) specular_ior: NumberMap,
     pub(super) anisotropy: NumberMap,
     pub(super) rotation: NumberMap,
@@ -46,7 +45,16 @@ pub(super) struct Maps {
     pub(super) film_weight: NumberMap,
     pub(super) film_thickness: NumberMap,
     pub(super) film_ior: NumberMap,
+    /// The textures of an opaque base, in the order of [`Maps::base_of`].
+    of_base: LookUps,
+    /// Those of [`Maps::rest_of`].
+    of_rest: LookUps,
 }
+
+/// The maximum number of textures of an opaque base.
+const BASE: usize = 6;
+/// The maximum number of the others.
+const REST: usize = 17;
 
 impl Maps {
     pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Maps, SceneError> {
@@ -55,19 +63,13 @@ impl Maps {
         let transmission_weight = number("transmission_weight")?;
         let is_solid = is_there(&transmission_weight) && !reader.bool("thin_walled");
         let scale = if is_solid { reader.number("transmission_dispersion_scale") } else { 0.0 };
-        let (base_metalness, specular_roughness) = (number("base_metalness")?, number("specular_roughness")?);
-        let is_packed = match [&base_metalness, &specular_roughness].map(|map| map.texture.as_ref()) {
-            [Some(metalness), Some(roughness)] => metalness.shares_texels_with(roughness),
-            _ => false,
-        };
-        Ok(Maps {
+        let mut maps = Maps {
             base_color: colour("base_color")?,
             base_roughness: number("base_diffuse_roughness")?,
-            base_metalness,
-            is_packed,
+            base_metalness: number("base_metalness")?,
             specular_weight: number("specular_weight")?,
             specular_color: colour("specular_color")?,
-            specular_roughness,
+            specular_roughness: number("specular_roughness")?,
             specular_ior: number("specular_ior")?,
             anisotropy: number("specular_roughness_anisotropy")?,
             rotation: number("anisotropy_rotation")?,
@@ -92,7 +94,41 @@ impl Maps {
             film_weight: number("thin_film_weight")?,
             film_thickness: number("thin_film_thickness")?,
             film_ior: number("thin_film_ior")?,
-        })
+            of_base: LookUps::default(),
+            of_rest: LookUps::default(),
+        };
+        (maps.of_base, maps.of_rest) = maps.look_ups();
+        Ok(maps)
+    }
+
+    /// The textures, in the order in which points take their colours.
+    fn look_ups(&self) -> (LookUps, LookUps) {
+        let (mut base, mut rest) = (LookUps::default(), LookUps::default());
+        base.add_colour(&self.base_color);
+        base.add_number(&self.base_metalness);
+        base.add_number(&self.specular_roughness);
+        base.add_number(&self.specular_weight);
+        base.add_colour(&self.specular_color);
+        base.add_number(&self.specular_ior);
+        let numbers = [
+            &self.base_roughness,
+            &self.anisotropy,
+            &self.rotation,
+            &self.transmission_weight,
+            &self.coat_weight,
+            &self.coat_roughness,
+            &self.coat_ior,
+            &self.fuzz_weight,
+            &self.fuzz_roughness,
+            &self.passing,
+            &self.film_weight,
+            &self.film_thickness,
+            &self.film_ior,
+        ];
+        let colours = [&self.transmission_color, &self.coat_color, &self.fuzz_color, &self.passing_color];
+        numbers.into_iter().for_each(|map| rest.add_number(map));
+        colours.into_iter().for_each(|map| rest.add_colour(map));
+        (base, rest)
     }
 
     /// True if no texture varies over the surface.
@@ -158,62 +194,79 @@ impl Maps {
 
     /// What an opaque base is made of at a point; `vertex` is a factor on its colour.
     pub(super) fn opaque_base_at(&self, uv: impl Into<Patch>, vertex: Rgb) -> OpaqueBaseInputs {
-        let uv = uv.into();
-        let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
-        OpaqueBaseInputs {
-            base_color: (self.base_color.at(uv) * vertex).clamp(0.0, 1.0),
-            metalness,
-            specular_weight: self.specular_weight.at(uv),
-            specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
-            roughness,
-            ior: self.specular_ior.at(uv),
+        self.base_of(self.of_base.at(&uv.into()), vertex)
+    }
+
+    /// [`Maps::opaque_base_at`] for many points, in their order.
+    pub(super) fn opaque_bases_at(&self, surfaces: &[Surface], mut found: impl FnMut(OpaqueBaseInputs)) {
+        for surfaces in surfaces.chunks(AT_ONCE) {
+            let seen = self.of_base.at_each(surfaces.iter().map(Surface::uvs));
+            for (surface, seen) in surfaces.iter().zip(seen) {
+                found(self.base_of(seen, surface.vertex_kd.unwrap_or(Rgb::WHITE)));
+            }
         }
     }
 
+    /// The opaque base of these colours.
     #[inline(always)]
-    fn metalness_and_roughness_at(&self, uv: &Patch) -> [f32; 2] {
-        NumberMap::two_at([&self.base_metalness, &self.specular_roughness], self.is_packed, uv)
+    fn base_of(&self, mut seen: Seen<BASE>, vertex: Rgb) -> OpaqueBaseInputs {
+        // In the order of `look_ups`.
+        OpaqueBaseInputs {
+            base_color: (seen.colour(&self.base_color) * vertex).clamp(0.0, 1.0),
+            metalness: seen.number(&self.base_metalness),
+            roughness: seen.number(&self.specular_roughness),
+            specular_weight: seen.number(&self.specular_weight),
+            specular_color: seen.colour(&self.specular_color).clamp(0.0, 1.0),
+            ior: seen.number(&self.specular_ior),
+        }
     }
 
     /// All but what is scattered below the surface.
     pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {
         let uv = uv.into();
-        let [metalness, roughness] = self.metalness_and_roughness_at(&uv);
+        let base = self.opaque_base_at(uv, Rgb::WHITE);
+        let seen = &mut self.of_rest.at::<REST>(&uv);
+        // In the order of `look_ups`.
+        let base_roughness = seen.number(&self.base_roughness);
+        let (anisotropy, rotation) = (seen.number(&self.anisotropy), seen.number(&self.rotation));
+        let transmission = seen.number(&self.transmission_weight);
+        let coat = seen.number(&self.coat_weight);
+        let (coat_roughness, coat_ior) = (seen.number(&self.coat_roughness), seen.number(&self.coat_ior));
+        let (fuzz, fuzz_roughness) = (seen.number(&self.fuzz_weight), seen.number(&self.fuzz_roughness));
+        let passing = seen.number(&self.passing);
+        let film = ThinFilm {
+            weight: seen.number(&self.film_weight),
+            thickness: seen.number(&self.film_thickness) * 1e3,
+            eta: seen.number(&self.film_ior),
+        };
+        let passed = seen.colour(&self.transmission_color).clamp(0.0, 1.0);
         Point {
-            base_color: self.base_color.at(uv).clamp(0.0, 1.0),
-            base_roughness: self.base_roughness.at(uv),
-            metalness,
-            specular_weight: self.specular_weight.at(uv),
-            specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
-            roughness,
-            ior: self.specular_ior.at(uv),
-            anisotropy: self.anisotropy.at(uv),
-            rotation: self.rotation.at(uv),
-            transmission: self.transmission_weight.at(uv),
-            passed: if self.tints_surface {
-                self.transmission_color.at(uv).clamp(0.0, 1.0)
-            } else {
-                Rgb::WHITE
-            },
+            base_color: base.base_color,
+            base_roughness,
+            metalness: base.metalness,
+            specular_weight: base.specular_weight,
+            specular_color: base.specular_color,
+            roughness: base.roughness,
+            ior: base.ior,
+            anisotropy,
+            rotation,
+            transmission,
+            passed: if self.tints_surface { passed } else { Rgb::WHITE },
             subsurface: Subsurface::None,
-            body_ior: self.specular_ior.at(uv),
+            body_ior: base.ior,
             thin: self.thin,
             dispersion: self.dispersion,
-            coat: self.coat_weight.at(uv),
-            coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
-            coat_roughness: self.coat_roughness.at(uv),
-            coat_ior: self.coat_ior.at(uv),
+            coat,
+            coat_color: seen.colour(&self.coat_color).clamp(0.0, 1.0),
+            coat_roughness,
+            coat_ior,
             coat_up: Vec3::Z,
-            fuzz: self.fuzz_weight.at(uv),
-            fuzz_color: self.fuzz_color.at(uv).clamp(0.0, 1.0),
-            fuzz_roughness: self.fuzz_roughness.at(uv),
-            passing: self.passing.at(uv),
-            passing_color: self.passing_color.at(uv).clamp(0.0, 1.0),
-            film: ThinFilm {
-                weight: self.film_weight.at(uv),
-                thickness: self.film_thickness.at(uv) * 1e3,
-                eta: self.film_ior.at(uv),
-            },
+            fuzz,
+            fuzz_color: seen.colour(&self.fuzz_color).clamp(0.0, 1.0),
+            fuzz_roughness,
+            passing,
+            passing_color: seen.colour(&self.passing_color).clamp(0.0, 1.0),
+            film,
         }
     }
 }

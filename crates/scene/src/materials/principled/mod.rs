@@ -239,11 +239,14 @@ impl Principled {
     #[inline(never)]
     fn below_coat(&self, surface: &Surface, n: Vec3) -> Bsdf {
         let frame = Frame::from_normal(surface.n_shade).along(surface.tangent);
-        let [fuzz, coat, rest @ ..] = Point { coat_up: frame.to_local(n), ..self.point(surface) }.lobes();
-        let (place, is_coated) = (usize::from(fuzz.is_some()), coat.is_some());
-        let [a, b, c] = rest;
-        let bsdf = Bsdf::new(surface.n_shade, surface.n_geom, [fuzz, coat, a, b, c]).along(surface.tangent);
-        if is_coated { bsdf.with_lobe_frame(place, n) } else { bsdf }
+        let lobes = Point { coat_up: frame.to_local(n), ..self.point(surface) }.lobes();
+        let [fuzz, coat, ..] = &lobes;
+        let mut bsdf = Bsdf::of_lobes(surface.n_shade, surface.n_geom, &lobes);
+        bsdf.turn_along(surface.tangent);
+        if coat.is_some() {
+            bsdf.set_lobe_frame(usize::from(fuzz.is_some()), n);
+        }
+        bsdf
     }
 
     /// The coat's normal at a point.
@@ -281,6 +284,12 @@ impl Material for Principled {
         (self.is_opaque_base && is_rough(inputs.roughness)).then_some(inputs)
     }
 
+    fn opaque_bases(&self, surfaces: &[Surface], inputs: &mut Vec<Option<OpaqueBaseInputs>>) {
+        self.maps.opaque_bases_at(surfaces, |base| {
+            inputs.push((self.is_opaque_base && is_rough(base.roughness)).then_some(base));
+        });
+    }
+
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         if is_there(&self.maps.coat_weight) {
             let n = self.coat_normal(surface);
@@ -294,9 +303,9 @@ impl Material for Principled {
             }
             _ if self.is_opaque_base => match self.opaque_base(surface) {
                 Some(inputs) => opaque_base([surface.n_shade, surface.n_geom], &inputs),
-                None => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
+                None => Bsdf::of_lobes(surface.n_shade, surface.n_geom, &self.point(surface).lobes()),
             },
-            _ => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
+            _ => Bsdf::of_lobes(surface.n_shade, surface.n_geom, &self.point(surface).lobes()),
         };
         if self.needs_tangents() {
             bsdf.turn_along(surface.tangent);

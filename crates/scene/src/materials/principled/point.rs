@@ -85,12 +85,9 @@ impl Point {
             }
             // What a film reflects at its brightest colour is withheld from the base at every colour.
             let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
-            let coated = CoatedDiffuse::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
-            Lobe::CoatedDiffuse(if self.base_roughness > 0.0 {
-                coated.rough(self.base_roughness, self.base_color)
-            } else {
-                coated
-            })
+            let rough = (self.base_roughness > 0.0).then_some((self.base_roughness, self.base_color));
+            let boundary = Albedo::new(&ggx, most);
+            Lobe::CoatedDiffuse(CoatedDiffuse::sheet_of([albedo, passing], boundary, cover, rough))
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, index) = (self.specular_color * clear, (self.body_ior, self.dispersion));
