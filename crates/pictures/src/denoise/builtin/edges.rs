@@ -29,7 +29,15 @@ const RIDGE: f32 = 3e-3;
 
 /// Fraction of a fit's squared residual that counts as error of the fit itself; the rest is noise of the light around
 /// it.
-const RESIDUAL_FRACTION: f32 = 0.3;
+const RESIDUAL_FRACTION: f32 = 0.4;
+
+/// A pixel's weight in a fit is the inverse of its variance, plus the variance of the pixel that the fit is for, plus this fraction of
+/// its squared light: neighbours off the edge are smooth already, and those on it are as noisy as the pixel itself, but a fit
+/// to the smooth ones alone would rely on light being linear.
+const OF_LIGHT: f32 = 0.5;
+
+/// Factor on the weight of the pixel itself: its own light is taken into account once more, when the fit is blended with it.
+const OF_ITSELF: f32 = 0.6;
 
 /// Weight of a pixel's distance in the image, relative to differences of features: light also has gradients that no feature shows.
 const OF_POSITIONS: f32 = 0.3;
@@ -120,6 +128,7 @@ impl Fit {
             squares: 0.0,
             bounds: [Rgb::grey(f32::INFINITY), Rgb::BLACK],
         };
+        let variances = &colours.planes[3];
         let first = middle - RADIUS * colours.stride() - RADIUS;
         let rows = (0..SIDE).map(|row| first + row * colours.stride());
         let farthest = rows
@@ -137,8 +146,10 @@ impl Fit {
                 let features =
                     [r, g, b, x, y, z, feature(INVERSE) * by_depth, position(column), position(j), 1.0];
                 let light = [0, 1, 2].map(|c| colours.planes[c][q]);
-                let weight = down * across * planes[WITHIN][q];
-                fit.add(&features, light, weight);
+                let mean = (light[0] + light[1] + light[2]) * (1.0 / 3.0);
+                let uncertain = variances[q] + variances[middle] + OF_LIGHT * mean * mean + 1e-12;
+                let itself = if q == middle { OF_ITSELF } else { 1.0 };
+                fit.add(&features, light, down * across * itself * planes[WITHIN][q] / uncertain);
             }
         }
         fit

@@ -1,21 +1,22 @@
 //! Removes fireflies: single pixels that a rare path has made far brighter than all pixels around them. Averaging
-//! them with their neighbours would turn them into blotches, so they are scaled down to the brightest of the other
-//! pixels. Highlights stay: their brightness is the same in all samples.
+//! them with their neighbours would turn them into blotches, so they are scaled down to little more than the brightest of the other
+//! pixels. What exceeds these by less stays, since the mean of uneven noise is in its brightest pixels: without them the picture would
+//! be too dark. Highlights stay too: their brightness is the same in all samples.
 
 use bilux_math::Rgb;
 use rayon::prelude::*;
 
 /// Number of pixels around a firefly that may be as bright by chance.
-const BRIGHT: usize = 3;
-/// Ratio to the brightest other pixels from which on a pixel is too bright.
-const TOO_BRIGHT: f32 = 1.3;
+const BRIGHT: usize = 2;
+/// Maximum ratio to the brightest other pixels.
+const TOO_BRIGHT: f32 = 1.5;
 /// The noise must account for at least this fraction of the difference.
 const NOISE: f32 = 0.4;
 
-/// The pixels without fireflies, and their variances; both come from the brightest neighbour that counts.
+/// The pixels without fireflies, and their variances. Both are scaled: with the neighbour's variance, a pixel that is still brighter
+/// would look as if its light were certain.
 pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) -> Vec<(Rgb, f32)> {
     let lights: Vec<f32> = pixels.par_iter().map(|(colour, _)| colour.luminance()).collect();
-    let variances: Vec<f32> = pixels.par_iter().map(|(_, variance)| *variance).collect();
     let mut without = pixels;
     without.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         for (x, (colour, variance)) in row.iter_mut().enumerate() {
@@ -23,7 +24,8 @@ pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) 
             if let Some(j) = brightest((width, height), &lights, x, y)
                 && variance.sqrt() > NOISE * (light - lights[j])
             {
-                (*colour, *variance) = (*colour * (lights[j] / light), variances[j]);
+                let share = TOO_BRIGHT * lights[j] / light;
+                (*colour, *variance) = (*colour * share, *variance * (share * share));
             }
         }
     });

@@ -12,7 +12,7 @@ const BAND: usize = 16;
 const NEAR: [f32; 5] = [0.7, 0.9, 1.0, 0.9, 0.7];
 /// Tolerance for differences in light, in standard deviations of the noise, and the factor by which it grows from one pass to the
 /// next: later passes see errors that their neighbours share, and so underestimate them.
-const LIGHT: f32 = 1.15;
+const LIGHT: f32 = 1.4;
 const LIGHT_GROWTH: f32 = 1.1;
 /// Tolerances for differences in albedo and in normals.
 const ALBEDO_APART: f32 = 0.05;
@@ -28,7 +28,7 @@ const SAME: f32 = 1e-5;
 const BEYOND: f32 = 2.0;
 
 /// Up to this step, passes fit a slope to the light too. Neighbours farther away differ by more than the noise where there is a slope.
-const LAST_LINEAR: usize = 2;
+const LAST_LINEAR: usize = 4;
 
 /// Applies one pass to the light, and stores the result in `smooth`, which has the same size.
 pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Light) {
