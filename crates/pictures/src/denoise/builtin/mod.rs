@@ -89,7 +89,8 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     let (size, layers) = ((noisy.width, noisy.height), std::mem::take(&mut noisy.layers));
     let albedo = noisy.albedo.as_deref();
     let by = |i: usize| albedo.map_or(Rgb::WHITE, |a| planes::divisor(a[i]));
-    let divided = |layer| Light::of(size, layer, &by, coverage.as_deref());
+    let haze = noisy.haze.as_deref();
+    let divided = |layer| Light::of(size, layer, &by, coverage.as_deref(), haze);
     let lights = layers.into_iter().map(divided).collect::<Result<Vec<_>, _>>()?;
     let guides = Guides::of(&noisy, coverage.as_deref())?;
     let has_albedo = albedo.is_some();

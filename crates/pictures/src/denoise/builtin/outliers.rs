@@ -8,14 +8,20 @@ use rayon::prelude::*;
 
 /// Number of pixels around a firefly that may be as bright by chance.
 const BRIGHT: usize = 2;
-/// Maximum ratio to the brightest other pixels.
+/// Maximum ratio to the brightest other pixels, and how much larger it is in fog and all else that is hazy: few samples find its light,
+/// and passes spread it over many pixels.
 const TOO_BRIGHT: f32 = 1.5;
+const HAZY: f32 = 3.0;
 /// The noise must account for at least this fraction of the difference.
 const NOISE: f32 = 0.4;
 
 /// The pixels without fireflies, and their variances. Both are scaled: with the neighbour's variance, a pixel that is still brighter
 /// would look as if its light were certain.
-pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) -> Vec<(Rgb, f32)> {
+pub(super) fn without(
+    (width, height): (usize, usize),
+    pixels: Vec<(Rgb, f32)>,
+    haze: Option<&[f32]>,
+) -> Vec<(Rgb, f32)> {
     let lights: Vec<f32> = pixels.par_iter().map(|(colour, _)| colour.luminance()).collect();
     let mut without = pixels;
     without.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
@@ -24,7 +30,8 @@ pub(super) fn without((width, height): (usize, usize), pixels: Vec<(Rgb, f32)>) 
             if let Some(j) = brightest((width, height), &lights, x, y)
                 && variance.sqrt() > NOISE * (light - lights[j])
             {
-                let share = TOO_BRIGHT * lights[j] / light;
+                let limit = TOO_BRIGHT + HAZY * haze.map_or(0.0, |haze| haze[y * width + x]);
+                let share = (limit * lights[j] / light).min(1.0);
                 (*colour, *variance) = (*colour * share, *variance * (share * share));
             }
         }

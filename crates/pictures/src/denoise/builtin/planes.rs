@@ -110,12 +110,13 @@ pub(super) fn divisor(albedo: Rgb) -> Rgb {
 }
 
 impl Light {
-    /// The light of a layer, divided by the albedo: `by`. Where `coverage` is 0 there is only background.
+    /// The light of a layer, divided by the albedo: `by`. Where `coverage` is 0 there is only background, and where `haze` is 1 only a medium.
     pub(super) fn of(
         size: (usize, usize),
         layer: Layer,
         by: &(impl Fn(usize) -> Rgb + Sync),
         coverage: Option<&[f32]>,
+        haze: Option<&[f32]>,
     ) -> Result<Light, PictureError> {
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
@@ -129,7 +130,7 @@ impl Light {
         let pixels = (0..size.0 * size.1).into_par_iter().map(|i| (colour(i), variance(i)));
         let pixels: Vec<(Rgb, f32)> = pixels.collect();
         drop((layer, guessed));
-        let pixels = outliers::without(size, pixels);
+        let pixels = outliers::without(size, pixels, haze);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
         let blurred = blur(&pixels, size.0, coverage);
         let planes = Planes::filled(size, |i| {
