@@ -78,6 +78,11 @@ impl LookUps {
         one
     }
 
+    /// True if none of the maps has a texture.
+    pub(crate) fn are_none(&self) -> bool {
+        self.0.is_empty()
+    }
+
     fn add(&mut self, texture: Option<&Arc<Texture>>, is_filtered: bool) {
         let Some(texture) = texture else { return };
         let place = |t: &Texture| (t.wrap, t.transform, t.second_uv);

@@ -8,6 +8,7 @@ mod irradiance;
 mod normal_maps;
 mod orientation;
 mod presets;
+mod principled;
 mod rebuilding;
 mod scene;
 mod strokes;

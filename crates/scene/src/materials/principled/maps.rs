@@ -133,36 +133,8 @@ impl Maps {
 
     /// True if no texture varies over the surface.
     pub(super) fn are_constant(&self) -> bool {
-        let colours = [
-            &self.base_color,
-            &self.specular_color,
-            &self.transmission_color,
-            &self.subsurface_color,
-            &self.coat_color,
-            &self.fuzz_color,
-            &self.passing_color,
-        ];
-        let numbers = [
-            &self.base_roughness,
-            &self.base_metalness,
-            &self.specular_weight,
-            &self.specular_roughness,
-            &self.specular_ior,
-            &self.anisotropy,
-            &self.rotation,
-            &self.transmission_weight,
-            &self.subsurface_weight,
-            &self.coat_weight,
-            &self.coat_roughness,
-            &self.coat_ior,
-            &self.fuzz_weight,
-            &self.fuzz_roughness,
-            &self.passing,
-            &self.film_weight,
-            &self.film_thickness,
-            &self.film_ior,
-        ];
-        colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
+        let below = [self.subsurface_weight.texture.as_ref(), self.subsurface_color.texture.as_ref()];
+        self.of_base.are_none() && self.of_rest.are_none() && below.iter().all(Option::is_none)
     }
 
     /// True when nothing is above the base, and the base is opaque, reflects at its surface in the same way in all
