@@ -38,7 +38,7 @@ pub trait Accelerator: Send + Sync {
         let found = Mutex::new(&mut *hits);
         let note = |hit: &Hit| {
             if query.accepts(hit) {
-                found.lock().unwrap_or_else(PoisonError::into_inner).push(hit.with_positive_zeros());
+                found.lock().unwrap_or_else(PoisonError::into_inner).push(*hit);
             }
             // Never accept a hit, so that the search goes on to the end of the ray.
             false
@@ -63,7 +63,7 @@ pub trait Accelerator: Send + Sync {
 
 /// What a structure implements: each query once, generic over a [`Count`].
 pub trait Traverse: Send + Sync {
-    /// See [`Accelerator::closest_hit`].
+    /// See [`Accelerator::closest_hit`]. No number of a hit is a negative zero.
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit>;
     /// See [`Accelerator::any_hit`].
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool;
@@ -95,16 +95,13 @@ pub trait Traverse: Send + Sync {
 
 impl<T: Traverse> Accelerator for T {
     fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit> {
-        self.closest(ray, query, &mut NoCounters).map(Hit::with_positive_zeros)
+        self.closest(ray, query, &mut NoCounters)
     }
     fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
         self.any(ray, query, &mut NoCounters)
     }
     fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
         self.closest_each(rays, query, hits);
-        for hit in hits.iter_mut().take(rays.len()).flatten() {
-            *hit = hit.with_positive_zeros();
-        }
     }
     fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
         self.any_each(rays, query, hits);
@@ -113,7 +110,7 @@ impl<T: Traverse> Accelerator for T {
         self.blocker_each(rays, query, blockers);
     }
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit> {
-        self.closest(ray, query, counters).map(Hit::with_positive_zeros)
+        self.closest(ray, query, counters)
     }
     fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool {
         self.any(ray, query, counters)

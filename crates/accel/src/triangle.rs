@@ -122,12 +122,18 @@ impl PreparedRay {
         let dz = f64::from(self.ray.direction[self.axes[2]]);
         let t = (u * az + v * bz + w * cz) / (det * dz);
         Some(Crossing {
-            t: t as f32,
-            u: (v / det) as f32,
-            v: (w / det) as f32,
+            t: without_sign_of_zero(t),
+            u: without_sign_of_zero(v / det),
+            v: without_sign_of_zero(w / det),
             back: (det < 0.0) != (dz < 0.0),
         })
     }
+}
+
+/// A number in single precision, where a zero is positive: adding zero changes no other number.
+#[inline(always)]
+fn without_sign_of_zero(x: f64) -> f32 {
+    x as f32 + 0.0
 }
 
 /// 16 units of f32 rounding: twice what the proof requires.

@@ -45,7 +45,7 @@ impl<P: Primitives> PrimitiveTree<P> {
         self.primitives.crossings(index, ray, &mut |Crossing { t, u, v, back }| {
             let seen = !(back && query.culling == Culling::Back);
             if t >= ray.t_min && t <= ray.t_max && seen {
-                visit(Hit { t, u, v, primitive: index, instance: 0 });
+                visit(Hit { t, u, v, primitive: index, instance: 0 }.with_positive_zeros());
             }
         });
     }

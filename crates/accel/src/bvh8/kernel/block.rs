@@ -25,6 +25,13 @@ pub(super) struct BlockRay {
 /// Corners in sheared space: `[axis][corner]`.
 pub(super) type Sheared = [[__m128; 3]; 3];
 
+/// Triangles that may be hit.
+pub(super) struct Candidates {
+    /// The sign bit of each lane.
+    there: __m128,
+    corners: Sheared,
+}
+
 /// Triangles that are hit within the part of the ray that counts.
 pub(super) struct Crossings {
     /// The sign bit of each lane.
@@ -65,13 +72,17 @@ impl BlockRay {
         }
     }
 
-    /// A bit for each triangle that the signs of its edges do not reject, and all corners.
+    /// The triangles that the signs of their edges do not reject, without the one that the ray leaves.
     ///
     /// # Safety
     /// The machine must have the level, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn signs<L: Reorder, F: NodeFormat>(&self, block: *const u8) -> (u32, Sheared) {
-        // SAFETY: as the caller promises.
+    pub(super) unsafe fn signs<L: Reorder, F: NodeFormat>(
+        &self,
+        block: *const u8,
+        exclude: u32,
+    ) -> Candidates {
+        // SAFETY: as the caller promises; the primitives of a block are aligned to 16 bytes.
         unsafe {
             let corners = F::corners::<L>(block, self.axes);
             let rows = |axis: usize| {
@@ -92,28 +103,30 @@ impl BlockRay {
             let (least, greatest) = (_mm_min_ps(_mm_min_ps(u, v), w), _mm_max_ps(_mm_max_ps(u, v), w));
             let zero = _mm_setzero_ps();
             let one_side = _mm_or_ps(_mm_cmpnlt_ps(least, zero), _mm_cmpngt_ps(greatest, zero));
-            (_mm_movemask_ps(one_side) as u32, [x, y, z])
+            let primitives = _mm_load_si128(block.add(F::PRIMITIVES).cast());
+            let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(exclude as i32));
+            // No mesh has indices so large that their sign bit is set; empty lanes have.
+            let never = _mm_castsi128_ps(_mm_or_si128(excluded, primitives));
+            Candidates { there: _mm_andnot_ps(never, one_side), corners: [x, y, z] }
         }
     }
 
-    /// The exact stage, and everything else that decides whether a hit counts. What the signs rejected is rejected
-    /// here too.
+    /// The exact stage, and everything else that decides whether a hit counts.
     ///
     /// # Safety
-    /// The machine must have the level of the doubles, and `block` must point to a block.
+    /// The machine must have the level of the doubles.
     #[inline(always)]
-    pub(super) unsafe fn cross<D: Doubles, F: NodeFormat>(
+    pub(super) unsafe fn cross<D: Doubles>(
         &self,
-        block: *const u8,
-        corners: Sheared,
-        (ray, t_max): (&Ray, f32),
+        candidates: &Candidates,
+        (t_min, t_max): (f32, f32),
         culling: Culling,
     ) -> Crossings {
-        // SAFETY: as the caller promises; the primitives of a block are aligned to 16 bytes.
+        // SAFETY: as the caller promises.
         unsafe {
             // Not `map`, which would be compiled without the instructions of the level, and called.
             let wide = |[a, b, c]: [__m128; 3]| [D::widen(a), D::widen(b), D::widen(c)];
-            let [x, y, z] = corners;
+            let [x, y, z] = candidates.corners;
             let (x, y, z) = (wide(x), wide(y), wide(z));
             let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
@@ -128,13 +141,8 @@ impl BlockRay {
             let along = along.add(w.mul(z[2]));
             let depth = D::widen(self.depth);
             let t = along.div(det.mul(depth)).narrow();
-            let within =
-                _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(ray.t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
-            let primitives = _mm_load_si128(block.add(F::PRIMITIVES).cast());
-            let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(ray.exclude.index as i32));
-            let within = _mm_andnot_ps(_mm_castsi128_ps(excluded), within);
-            // No mesh has indices this large; empty lanes do.
-            let within = _mm_andnot_ps(_mm_castsi128_ps(primitives), within);
+            let within = _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
+            let within = _mm_and_ps(within, candidates.there);
             let mut good = one_side.and(sound);
             if culling == Culling::Back {
                 good = good.and(det.mul(depth).gt(zero));
@@ -142,6 +150,18 @@ impl BlockRay {
             let within = _mm_and_ps(within, good.narrow_mask());
             Crossings { within, t, v: v.div(det).narrow(), w: w.div(det).narrow() }
         }
+    }
+}
+
+impl Candidates {
+    /// True where there are none.
+    ///
+    /// # Safety
+    /// Requires SSE, which every machine of this kind has.
+    #[inline(always)]
+    pub(super) unsafe fn is_empty(&self) -> bool {
+        // SAFETY: as the caller promises.
+        unsafe { _mm_movemask_ps(self.there) == 0 }
     }
 }
 

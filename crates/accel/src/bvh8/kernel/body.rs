@@ -10,6 +10,7 @@ use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+use std::hint::cold_path;
 
 /// Prefetches the cache lines of a node, or of the first block of a leaf, so that they are there when needed.
 #[inline(always)]
@@ -130,6 +131,8 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
                     continue;
                 }
             } else {
+                // Many rays reach no leaf: registers are kept for nodes, and saved only here.
+                cold_path();
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
                 leaf::closest::<L, F, PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
@@ -205,6 +208,8 @@ pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: 
                     continue;
                 }
             } else {
+                // As above.
+                cold_path();
                 count.triangles(current.blocks() * LANES);
                 let found = leaf::any::<L, F, PLAIN>(ray, (place, current.blocks()), query);
                 if found.is_some() {

@@ -11,6 +11,7 @@ pub(in crate::bvh8) trait Doubles: Copy {
     declare! {
         splat(x: f64) -> Self;
         widen(x: __m128) -> Self;
+        // Zeros become positive.
         narrow(self) -> __m128;
         add(self, other: Self) -> Self;
         sub(self, other: Self) -> Self;
@@ -36,7 +37,7 @@ impl Doubles for __m256d {
     define! {
         splat(x: f64) -> Self = _mm256_set1_pd(x);
         widen(x: __m128) -> Self = _mm256_cvtps_pd(x);
-        narrow(self) -> __m128 = _mm256_cvtpd_ps(self);
+        narrow(self) -> __m128 = _mm_add_ps(_mm256_cvtpd_ps(self), _mm_setzero_ps());
         add(self, other: Self) -> Self = _mm256_add_pd(self, other);
         sub(self, other: Self) -> Self = _mm256_sub_pd(self, other);
         mul(self, other: Self) -> Self = _mm256_mul_pd(self, other);
@@ -66,7 +67,8 @@ impl Doubles for Halves {
     define! {
         splat(x: f64) -> Self = Halves(_mm_set1_pd(x), _mm_set1_pd(x));
         widen(x: __m128) -> Self = Halves(_mm_cvtps_pd(x), _mm_cvtps_pd(_mm_movehl_ps(x, x)));
-        narrow(self) -> __m128 = _mm_movelh_ps(_mm_cvtpd_ps(self.0), _mm_cvtpd_ps(self.1));
+        narrow(self) -> __m128 =
+            _mm_add_ps(_mm_movelh_ps(_mm_cvtpd_ps(self.0), _mm_cvtpd_ps(self.1)), _mm_setzero_ps());
         add(self, other: Self) -> Self = Halves(_mm_add_pd(self.0, other.0), _mm_add_pd(self.1, other.1));
         sub(self, other: Self) -> Self = Halves(_mm_sub_pd(self.0, other.0), _mm_sub_pd(self.1, other.1));
         mul(self, other: Self) -> Self = Halves(_mm_mul_pd(self.0, other.0), _mm_mul_pd(self.1, other.1));

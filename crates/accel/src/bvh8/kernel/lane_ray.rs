@@ -49,6 +49,9 @@ pub(super) const MIN: f32 = 4.0 * f32::MIN_POSITIVE;
 pub(super) const SIZES: [u32; 8] =
     [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
+/// Lower bounds of the values that [`LaneRay::new`] compares: none, the length of the direction, and the minimum `t`.
+const LEAST: [f32; 8] = [0.0, 0.0, 0.0, 0.0, SHORTEST, SHORTEST, SHORTEST, 0.0];
+
 impl LaneRay {
     /// `None` for rays that are not regular, or can hit nothing.
     ///
@@ -59,35 +62,42 @@ impl LaneRay {
         // SAFETY: as the caller promises; an outline has four numbers for the centre and eight for the reach.
         unsafe {
             let outline = view.outline;
+            // Everything is in both halves, so that spreading a component takes one step, within halves.
+            let twice = |v: __m128| _mm256_set_m128(v, v);
             let (origin, direction) = halves(ray);
-            let away = _mm_sub_ps(origin, _mm_loadu_ps(outline.centre.as_ptr()));
-            let both = _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(away), direction);
+            let (origin, direction) = (twice(origin), twice(direction));
+            let away = _mm256_sub_ps(origin, twice(_mm_loadu_ps(outline.centre.as_ptr())));
+            let both = _mm256_blend_ps::<0xf0>(away, direction);
             let sizes = _mm256_and_ps(both, _mm256_loadu_ps(SIZES.as_ptr().cast()));
             let pairs = _mm256_max_ps(sizes, _mm256_permute_ps::<0b10_11_00_01>(sizes));
             let greatest = _mm256_max_ps(pairs, _mm256_permute_ps::<0b01_00_11_10>(pairs));
             // A NaN is dropped in at most half of the lanes, so at least one lane fails.
             let within = _mm256_cmp_ps::<_CMP_LE_OQ>(greatest, _mm256_loadu_ps(outline.reach.as_ptr()));
-            let (far, pace) = (_mm256_castps256_ps128(greatest), _mm256_extractf128_ps::<1>(greatest));
-            let long_enough = _mm_cvtss_f32(pace) >= SHORTEST;
-            if !(_mm256_movemask_ps(within) == 0xff && long_enough && ray.t_min >= 0.0) {
+            let lower = _mm256_blend_ps::<0x80>(greatest, direction);
+            let enough = _mm256_cmp_ps::<_CMP_GE_OQ>(lower, _mm256_loadu_ps(LEAST.as_ptr()));
+            if _mm256_movemask_ps(_mm256_and_ps(within, enough)) != 0xff {
                 return None;
             }
-            let minus = _mm_set1_ps(-0.0);
-            let tilted = _mm_max_ps(_mm_andnot_ps(minus, direction), _mm_set1_ps(LEVEL));
-            let tilted = _mm_or_ps(tilted, _mm_and_ps(direction, minus));
-            let inverse = _mm_div_ps(_mm_set1_ps(1.0), tilted);
-            let pad = _mm_fmadd_ps(far, _mm_set1_ps(FAR_PAD), _mm_set1_ps(outline.pad));
+            let minus = _mm256_set1_ps(-0.0);
+            let tilted = _mm256_max_ps(_mm256_andnot_ps(minus, direction), _mm256_set1_ps(LEVEL));
+            let tilted = _mm256_or_ps(tilted, _mm256_and_ps(direction, minus));
+            let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), tilted);
+            let far = _mm256_permute2f128_ps::<0>(greatest, greatest);
+            let pad = _mm256_fmadd_ps(far, _mm256_set1_ps(FAR_PAD), _mm256_set1_ps(outline.pad));
             // The pad makes rays enter earlier and leave later.
             let (bias, steep) =
-                (_mm_mul_ps(_mm_xor_ps(origin, minus), inverse), _mm_andnot_ps(minus, inverse));
-            let (enter, leave) = (_mm_fnmadd_ps(pad, steep, bias), _mm_fmadd_ps(pad, steep, bias));
+                (_mm256_mul_ps(_mm256_xor_ps(origin, minus), inverse), _mm256_andnot_ps(minus, inverse));
+            let (enter, leave) = (_mm256_fnmadd_ps(pad, steep, bias), _mm256_fmadd_ps(pad, steep, bias));
             let nearest = _mm_fmsub_ss(_mm_set_ss(ray.t_min), _mm_set_ss(1.0 - SLACK), _mm_set_ss(MIN));
             let nearest = _mm_max_ss(nearest, _mm_setzero_ps());
-            let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
-            let lane = |v: __m128, lane: i32| {
-                _mm256_permutevar8x32_ps(_mm256_castps128_ps256(v), _mm256_set1_epi32(lane))
+            let [enter_rows, leave_rows] = ROWS[_mm256_movemask_ps(direction) as usize & 7];
+            let spread = |v: __m256| {
+                [
+                    _mm256_permute_ps::<0>(v),
+                    _mm256_permute_ps::<0b01_01_01_01>(v),
+                    _mm256_permute_ps::<0b10_10_10_10>(v),
+                ]
             };
-            let spread = |v: __m128| [_mm256_broadcastss_ps(v), lane(v, 1), lane(v, 2)];
             Some(LaneRay {
                 enter_rows,
                 leave_rows,

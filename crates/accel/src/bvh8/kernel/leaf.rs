@@ -35,12 +35,12 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
         let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * block_bytes::<F>());
-            let signs = block_ray.signs::<L, F>(block);
-            if signs.0 == 0 {
+            let candidates = block_ray.signs::<L, F>(block, ray.exclude.index);
+            if candidates.is_empty() {
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, nearest.t), culling);
+            let crossings = block_ray.cross::<L::Doubles>(&candidates, (ray.t_min, nearest.t), culling);
             let mask = crossings.mask();
             if mask == 0 {
                 continue;
@@ -102,12 +102,12 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
         let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * block_bytes::<F>());
-            let signs = block_ray.signs::<L, F>(block);
-            if signs.0 == 0 {
+            let candidates = block_ray.signs::<L, F>(block, ray.exclude.index);
+            if candidates.is_empty() {
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, ray.t_max), culling);
+            let crossings = block_ray.cross::<L::Doubles>(&candidates, (ray.t_min, ray.t_max), culling);
             if crossings.mask() == 0 {
                 continue;
             }

@@ -75,6 +75,7 @@ pub(super) trait Half: Copy {
     declare! {
         splat(x: f64) -> Self;
         widen(x: Self::Narrow) -> Self;
+        // Zeros become positive.
         narrow(self) -> Self::Narrow;
         add(self, other: Self) -> Self;
         sub(self, other: Self) -> Self;
@@ -141,7 +142,7 @@ impl Half for __m512d {
     define! {
         splat(x: f64) -> Self = _mm512_set1_pd(x);
         widen(x: __m256) -> Self = _mm512_cvtps_pd(x);
-        narrow(self) -> __m256 = _mm512_cvtpd_ps(self);
+        narrow(self) -> __m256 = _mm256_add_ps(_mm512_cvtpd_ps(self), _mm256_setzero_ps());
         add(self, other: Self) -> Self = _mm512_add_pd(self, other);
         sub(self, other: Self) -> Self = _mm512_sub_pd(self, other);
         mul(self, other: Self) -> Self = _mm512_mul_pd(self, other);
@@ -209,7 +210,7 @@ impl Half for __m256d {
     define! {
         splat(x: f64) -> Self = _mm256_set1_pd(x);
         widen(x: __m128) -> Self = _mm256_cvtps_pd(x);
-        narrow(self) -> __m128 = _mm256_cvtpd_ps(self);
+        narrow(self) -> __m128 = _mm_add_ps(_mm256_cvtpd_ps(self), _mm_setzero_ps());
         add(self, other: Self) -> Self = _mm256_add_pd(self, other);
         sub(self, other: Self) -> Self = _mm256_sub_pd(self, other);
         mul(self, other: Self) -> Self = _mm256_mul_pd(self, other);
