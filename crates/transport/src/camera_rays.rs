@@ -48,13 +48,14 @@ impl<'a> CameraRays<'a> {
         camera: &'a dyn Camera,
         settings: &'a RenderSettings,
         spread: CameraSpread,
+        lights: Arc<LightChoice>,
     ) -> CameraRays<'a> {
         let context = Context {
             scene,
             camera,
             reach: settings.reach(),
             exposure: Exposure::new(scene, settings),
-            lights: LightChoice::new(scene),
+            lights,
             emission: Emission::new(scene, None),
             photons: None,
             // The paper that receives light is no surface of the scene.

@@ -3,6 +3,7 @@
 use crate::bidirectional::{BothEnds, BothEndsSamples};
 use crate::camera_rays::{CameraRays, CameraSpread};
 use crate::emission::Guide;
+use crate::light_choice::LightChoice;
 use crate::photons::{Merging, Photons};
 use crate::plan::Choice;
 use crate::sample_queue::SampleQueue;
@@ -150,7 +151,8 @@ impl dyn PixelIntegrator {
         camera: &'a dyn Camera,
         settings: &'a RenderSettings,
     ) -> CameraRays<'a> {
-        let rays = CameraRays::new(scene, camera, settings, self.camera_spread());
+        let lights = Arc::new(LightChoice::new(scene));
+        let rays = CameraRays::new(scene, camera, settings, self.camera_spread(), lights);
         let rays = rays.guided(self.light_subpaths().and_then(|subpaths| subpaths.guide()));
         if self.merging().is_some() { rays.merging() } else { rays }
     }

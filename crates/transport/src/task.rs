@@ -9,6 +9,7 @@ use crate::settings::Reach;
 use crate::way::{Place, Way};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Camera, Scene, Tracer, TransportMode, Wavelength};
+use std::sync::Arc;
 
 /// What all samples of a render share.
 pub struct Context<'a> {
@@ -21,7 +22,7 @@ pub struct Context<'a> {
     /// When.
     pub(crate) exposure: Exposure,
     /// Chooses lights by what they bring.
-    pub lights: LightChoice,
+    pub lights: Arc<LightChoice>,
     /// Starts light subpaths.
     pub emission: Emission,
     /// The photons of this iteration's light subpaths, where subpaths are merged.

@@ -160,10 +160,7 @@ impl Paths {
         let rounds = choice.count();
         if !choice.takes_all() {
             v.draw_numbers(level, 1);
-            for (i, picked) in picked.iter_mut().enumerate().take(v.count) {
-                let mut lights = choice.sample(v.u[0].0[i], Some(vec3(&v.p, i)));
-                *picked = lights.next().unwrap_or_default();
-            }
+            choice.pick_each((0..v.count).map(|i| (vec3(&v.p, i), v.u[0].0[i])), &mut picked);
         }
         v.dimension = 1;
         for round in 0..rounds {

@@ -116,3 +116,20 @@ fn lights_in_one_place_and_in_a_row_make_a_tree_too() {
 fn no_lights_make_no_tree() {
     assert!(LightTree::new(&[]).sample(Vec3::ZERO, 0.5).is_none());
 }
+
+#[test]
+fn many_walks_find_what_each_finds_alone() {
+    let lamps = lamps(3000);
+    let tree = LightTree::new(&lamps);
+    let points: Vec<(Vec3, f32)> = (0..500).map(|i| (point(i + 900, 9.0), number(i, 9))).collect();
+    let mut together = vec![None; points.len()];
+    tree.sample_each(points.iter().copied(), |i, found| together[i] = Some(found));
+    let alone: Vec<_> = points.iter().map(|&(p, u)| Some(tree.sample(p, u))).collect();
+    assert_eq!(together, alone);
+    let found: Vec<_> = points.iter().filter_map(|&(p, u)| Some((p, tree.sample(p, u)?))).collect();
+    assert!(found.len() > 300, "{}", found.len());
+    for (p, (light, probability)) in found {
+        // The same factors, from the other end.
+        assert!((probability / tree.probability(p, light) - 1.0).abs() < 1e-5);
+    }
+}

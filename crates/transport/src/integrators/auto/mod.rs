@@ -134,11 +134,14 @@ impl Chooser for Auto {
         let settings = pilot::settings(film);
         let least = |round| if round == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|round| pilot::photon_settings(film, &settings[round], least(round)));
-        let eye = |settings| CameraRays::new(scene, camera, settings, CameraSpread::FULL).merging();
+        let lights = Arc::new(LightChoice::new(scene));
+        let eye = |settings| {
+            CameraRays::new(scene, camera, settings, CameraSpread::FULL, Arc::clone(&lights)).merging()
+        };
         let round = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
         // A point on each of few lights is always sampled; of many, photons find the nearest by themselves.
-        merging.techniques.direct = !LightChoice::new(scene).takes_all();
+        merging.techniques.direct = !lights.takes_all();
         if merging.radius == 0.0 {
             let pixel = pilot::pixel_radius(&round(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
