@@ -7,7 +7,7 @@ mod split;
 use super::extent::LightExtent;
 use bilux_math::Vec3;
 use branch::{Branch, Child, WIDTH};
-use split::{Member, split};
+use split::{Member, sort, split};
 use std::ops::Range;
 
 /// A tree over lights, one in each leaf, with up to four children in each branch.
@@ -124,6 +124,7 @@ impl Walk {
 /// Up to four parts of a range of lights, each with its depth: the one with most lights is split first.
 fn parts(members: &mut [Member], range: Range<usize>, depth: u32) -> Vec<(Range<usize>, u32)> {
     if range.len() <= WIDTH {
+        sort(&mut members[range.clone()]);
         return range.map(|i| (i..i + 1, depth)).collect();
     }
     let mut parts = vec![(range, depth)];

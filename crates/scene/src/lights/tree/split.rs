@@ -13,6 +13,13 @@ const MAX_COMPARED: usize = 1024;
 /// Parts further down have as many lights on either side.
 const MAX_UNEVEN: u32 = 48;
 
+/// Sorts lights along the longest axis, so that it does not matter in which order a file lists them.
+pub(super) fn sort(members: &mut [Member]) {
+    let middle = |member: &Member| member.1.bounds.centre();
+    let axis = Aabb::of_points(members.iter().map(middle)).extent().max_position();
+    members.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+}
+
 /// Sorts lights to two sides, and returns how many are on the first: at least one, and not all.
 pub(super) fn split(members: &mut [Member], depth: u32) -> usize {
     let middle = |member: &Member| member.1.bounds.centre();
@@ -21,8 +28,7 @@ pub(super) fn split(members: &mut [Member], depth: u32) -> usize {
     let even = members.len() / 2;
     // Also where a number is not finite.
     if depth >= MAX_UNEVEN || !(longest > 0.0 && longest.is_finite()) {
-        let axis = centres.extent().max_position();
-        members.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+        sort(members);
         return even;
     }
     let count = members.len().min(BINS);

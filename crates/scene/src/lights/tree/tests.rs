@@ -133,3 +133,18 @@ fn many_walks_find_what_each_finds_alone() {
         assert!((probability / tree.probability(p, light) - 1.0).abs() < 1e-5);
     }
 }
+
+#[test]
+fn the_order_of_few_lights_does_not_matter() {
+    for count in [2, 3, 4] {
+        let lamps = lamps(count);
+        let reversed: Vec<_> = lamps.iter().rev().copied().collect();
+        let [tree, other] = [&lamps, &reversed].map(|lamps| LightTree::new(lamps));
+        for i in 0..500 {
+            let (p, u) = (point(i + 600, 9.0), number(i, 8));
+            let same = other.sample(p, u).map(|(light, share)| (lamps.len() - 1 - light, share));
+            let found = tree.sample(p, u);
+            assert_eq!(found.map(|found| found.0), same.map(|found| found.0), "{count} lamps, {p}");
+        }
+    }
+}
