@@ -33,6 +33,9 @@ impl LightTree {
                 branch.children[above[1] as usize] = Child::Branch(index);
             }
             let mut branch = Branch::below(above);
+            if range.len() <= WIDTH {
+                branch.end_with(range.len());
+            }
             for (place, (part, depth)) in parts(&mut members, range, depth).into_iter().enumerate() {
                 let place = place as u32;
                 branch.put(place as usize, &members[part.clone()]);

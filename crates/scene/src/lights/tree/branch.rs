@@ -9,6 +9,13 @@ use bilux_math::transcendental::{cos, sin_cos};
 /// The maximum number of children.
 pub(super) const WIDTH: usize = 4;
 
+/// How often one of the lights of a last branch is chosen without looking at their importance, since the most important one may be
+/// hidden: over how often one is chosen by it.
+const CHOSEN_ALIKE: f32 = 0.2;
+
+/// From here on sums of importances may overflow.
+const GREATEST: f32 = f32::MAX / 16.0;
+
 /// A number for each child.
 type Lanes = Vec4;
 
@@ -35,6 +42,8 @@ pub(super) struct Branch {
     power: Lanes,
     /// 1 where it shines to both sides, otherwise -1.
     other_side: Lanes,
+    /// What each child that shines has beyond its importance, over the sum of all importances.
+    alike: f32,
     pub(super) children: [Child; WIDTH],
     /// The branch above, and its place there; the root's is the root.
     pub(super) above: [u32; 2],
@@ -44,6 +53,11 @@ impl Branch {
     /// A branch without children, in this place of that branch.
     pub(super) fn below(above: [u32; 2]) -> Branch {
         Branch { above, ..Branch::default() }
+    }
+
+    /// Its `count` children are all lights.
+    pub(super) fn end_with(&mut self, count: usize) {
+        self.alike = CHOSEN_ALIKE / count as f32;
     }
 
     /// Describes the lights of a child, at least one.
@@ -93,14 +107,15 @@ impl Branch {
     /// The importance of each child relative to each other, and their finite sum.
     #[inline(always)]
     fn comparable(&self, p: Vec3) -> (Lanes, f32) {
-        let all = self.importances(p);
-        let sum = sum(all);
-        if sum < f32::INFINITY {
-            return (all, sum);
+        let mut all = self.importances(p);
+        let mut sum = sum(all);
+        if sum >= GREATEST {
+            // Those that overflow are as good as each other.
+            all = (all * (1.0 / GREATEST)).min(Vec4::ONE);
+            sum = self::sum(all);
         }
-        // Those that overflow are as good as each other.
-        let greatest = Vec4::select(all.cmpge(Vec4::splat(f32::MAX / WIDTH as f32)), Vec4::ONE, Vec4::ZERO);
-        (greatest, self::sum(greatest))
+        let all = all + Vec4::select(all.cmpgt(Vec4::ZERO), Vec4::splat(sum * self.alike), Vec4::ZERO);
+        (all, self::sum(all))
     }
 
     /// About how much light each child may bring to a point; 0 only where it brings none. [Conty Estevez & Kulla 2018, eq. 3, without the
@@ -112,6 +127,8 @@ impl Branch {
         let distance2 = dot(from, from);
         // Within its sphere it may be anywhere, and is as strong as from the sphere's surface.
         let strength = self.power / distance2.max(self.radius2).max(Vec4::splat(f32::MIN_POSITIVE));
+        // Infinity times darkness would be no number.
+        let strength = strength.min(Vec4::splat(f32::MAX));
         let cosine = dot(self.axis, from) / root(distance2);
         let cosine = cosine.max(-cosine * self.other_side).min(Vec4::ONE);
         let sin_size2 = self.radius2 / distance2;

@@ -148,3 +148,16 @@ fn the_order_of_few_lights_does_not_matter() {
         }
     }
 }
+
+/// The strongest may be behind something, and whatever the others bring would be noise.
+#[test]
+fn the_weakest_of_few_lights_is_chosen_now_and_then() {
+    let at = |x: f32, power: f32| (LightExtent::all_around(Aabb::of_points([Vec3::X * x])), power);
+    let tree = LightTree::new(&[at(1.0, 1e5), at(2.0, 1.0), at(30.0, 0.01), at(3.0, f32::MAX)]);
+    for place in (0..40).map(|i| point(i + 700, 8.0)) {
+        for light in 0..4 {
+            let probability = tree.probability(place, light);
+            assert!((0.04..0.9).contains(&probability), "{light}, {place}: {probability}");
+        }
+    }
+}
