@@ -20,6 +20,7 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// Light subpaths whose vertices are connected with those of the camera subpath (s, t > 1).
     pub(crate) connections: PerSet<N>,
     /// η: light subpaths that a merged vertex counts, times the area of merging.
+    /// All of them count as independent, although they share one camera subpath [Grittmann 2021]: see docs/adr/0012-both-ends.md.
     pub(crate) eta: PerSet<N>,
     /// The same for beams that cross in a medium: light subpaths whose beams are kept, times the width of merging, in metres.
     pub(crate) beams: PerSet<N>,
