@@ -6,6 +6,7 @@
 //! towards grazing angles. That share hardly depends on the index, so a few indices suffice.
 
 use super::facets::Smith;
+use super::nodes::{GAUSS, NODES, lerp_nodes};
 use super::{Ggx, fresnel_dielectric};
 use bilux_math::frame::reflect;
 use bilux_math::{Vec2, Vec3};
@@ -29,6 +30,8 @@ pub struct AlbedoTable {
     at: [[Entry; COSINES]; ROUGHNESSES],
     /// Cosine-weighted means over the hemisphere.
     mean: [Entry; ROUGHNESSES],
+    /// The entries at the nodes of quadratures: for each number of an entry, that at all nodes.
+    at_nodes: [[[f32; NODES]; INDICES + 1]; ROUGHNESSES],
     /// Mean loss of opaque microfacets between two neighbouring cosines; `left_before` is its running integral.
     left: [[f32; COSINES - 1]; ROUGHNESSES],
     left_before: [[f32; COSINES]; ROUGHNESSES],
@@ -179,6 +182,18 @@ impl Albedo {
         lerp(upper, lower, between)
     }
 
+    /// [`Albedo::at_root`], but for rounding, at all nodes of [quadratures](super::nodes).
+    #[inline]
+    pub(super) fn at_nodes(&self) -> [f32; NODES] {
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        let (index, share) = place(self.index, INDICES);
+        let [a, b] = [&TABLE.at_nodes[row], &TABLE.at_nodes[row + 1]];
+        let total = lerp_nodes(&a[INDICES], &b[INDICES], between);
+        let [first, second] = [index, index + 1].map(|index| lerp_nodes(&a[index], &b[index], between));
+        let gain = lerp_nodes(&first, &second, share);
+        std::array::from_fn(|i| total[i] * self.straight + gain[i] * (1.0 - self.straight))
+    }
+
     fn between(&self, of: impl Fn(&Entry) -> f32) -> f32 {
         let (row, between) = place(self.roughness, ROUGHNESSES);
         lerp(of(&TABLE.mean[row]), of(&TABLE.mean[row + 1]), between)
@@ -237,7 +252,8 @@ impl AlbedoTable {
             let of = |k: usize| left[row][k] * (fourth(k + 1) - fourth(k));
             std::array::from_fn(|k| (0..k).map(of).sum())
         });
-        AlbedoTable { at, mean, left, left_before }
+        let at_nodes = std::array::from_fn(|row| at_nodes(&at[row]));
+        AlbedoTable { at, mean, at_nodes, left, left_before }
     }
 }
 
@@ -281,6 +297,16 @@ fn gained(cos: f32, weight: f32) -> Entry {
         } else {
             weight * (fresnel_dielectric(cos, eta) - straight) / (1.0 - straight)
         }
+    })
+}
+
+/// A row of the table at the nodes of quadratures.
+fn at_nodes(row: &[Entry; COSINES]) -> [[f32; NODES]; INDICES + 1] {
+    std::array::from_fn(|i| {
+        GAUSS.map(|(root, _)| {
+            let (column, share) = place(root * (COSINES - 1) as f32, COSINES);
+            lerp(row[column][i], row[column + 1][i], share)
+        })
     })
 }
 

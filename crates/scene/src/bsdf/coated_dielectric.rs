@@ -105,16 +105,24 @@ impl CoatedDielectric {
         if self.is_delta() { self.smooth().transmitted(wo) } else { None }
     }
 
-    /// The factor on light between two directions. The inside of solid glass has no coating.
+    /// The layers above.
     #[inline]
-    fn left(&self, wo: Vec3, wi: Vec3) -> Rgb {
+    pub(super) fn cover(&self) -> &Coating {
+        &self.cover
+    }
+
+    /// The factor on light between two directions, by what the coating lets pass along them. The inside of solid glass has no
+    /// coating.
+    #[inline]
+    fn left(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> Rgb {
         let tint = if wo.z * wi.z > 0.0 { self.reflected } else { self.passed };
         if self.cover.is_none() {
             return tint;
         }
         let covered = |v: Vec3| v.z > 0.0 || self.glass.thin;
-        let passed = |v: Vec3| if covered(v) { self.cover.passed_along(v) } else { 1.0 };
-        tint * passed(wo).min(passed(wi))
+        let [passed_wo, passed_wi] =
+            [(wo, passed[0]), (wi, passed[1])].map(|(v, passed)| if covered(v) { passed } else { 1.0 });
+        tint * passed_wo.min(passed_wi)
     }
 
     #[inline]
@@ -127,12 +135,24 @@ impl CoatedDielectric {
         if self.is_delta() { 0.0 } else { self.glass.pdf_solid_angle(wo, wi) }
     }
 
+    #[inline]
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        self.eval_and_pdf_below(self.cover.passed_along_both(wo, wi), wo, wi, mode)
+    }
+
+    /// The same by what the coating lets pass along both directions.
+    pub(super) fn eval_and_pdf_below(
+        &self,
+        passed: [f32; 2],
+        wo: Vec3,
+        wi: Vec3,
+        mode: TransportMode,
+    ) -> (Rgb, f32) {
         if self.is_delta() {
             return (Rgb::BLACK, 0.0);
         }
         let (f, pdf) = self.glass.eval_and_pdf(wo, wi, mode);
-        (f * self.left(wo, wi), pdf)
+        (f * self.left(passed, wo, wi), pdf)
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
@@ -141,7 +161,8 @@ impl CoatedDielectric {
         } else {
             self.glass.sample(wo, u_choice, u, mode)
         }?;
-        Some(BsdfSample { weight: sample.weight * self.left(wo, sample.wi), ..sample })
+        let passed = self.cover.passed_along_both(wo, sample.wi);
+        Some(BsdfSample { weight: sample.weight * self.left(passed, wo, sample.wi), ..sample })
     }
 
     #[inline]

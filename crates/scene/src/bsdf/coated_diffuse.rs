@@ -2,7 +2,7 @@
 //! out again. [Kulla 2017] A rough base scatters like [`RoughDiffuse`]: its light is scaled like a Lambertian one's, so
 //! that no more comes out than went in.
 
-use super::rough_diffuse::{GAUSS, light_at_nodes};
+use super::nodes::{NODES, light_at_nodes};
 use super::{Albedo, BsdfEntry, BsdfSample, Coating, FuzzAlbedo, Ggx, Lobe, RoughDiffuse, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -81,7 +81,7 @@ impl CoatedDiffuse {
         rough: Option<(f32, Rgb)>,
     ) -> CoatedDiffuse {
         let sheet = CoatedDiffuse { scale: reflected, through: passed, boundary, cover, rough_diffuse: None };
-        let (is_covered, mut light) = (!cover.is_none(), [0.0; GAUSS.len()]);
+        let (is_covered, mut light) = (!cover.is_none(), [0.0; NODES]);
         if is_covered || rough.is_some() {
             light = sheet.light_at_nodes();
         }
@@ -93,8 +93,9 @@ impl CoatedDiffuse {
     }
 
     /// The light that reaches the base at each node of a quadrature over t, the root of the cosine, with its weight.
-    fn light_at_nodes(&self) -> [f32; GAUSS.len()] {
-        light_at_nodes(|t| self.passed_at_root(t))
+    fn light_at_nodes(&self) -> [f32; NODES] {
+        let (boundary, passed) = (self.boundary.at_nodes(), self.cover.passed_at_nodes());
+        light_at_nodes(&std::array::from_fn(|i| (1.0 - boundary[i]) * passed[i]))
     }
 
     /// The same lobe with a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
@@ -112,27 +113,26 @@ impl CoatedDiffuse {
         self.through.luminance() / (self.through.luminance() + self.scale.luminance())
     }
 
+    /// The layers above.
+    #[inline]
+    pub(super) fn cover(&self) -> &Coating {
+        &self.cover
+    }
+
     /// The fraction of light that reaches the base when all normals make this cosine with the direction.
     #[inline]
     fn passed(&self, cos: f32) -> f32 {
-        self.passed_at_root(cos.clamp(0.0, 1.0).sqrt())
-    }
-
-    /// The same by the square root of the cosine, 0..=1.
-    #[inline(always)]
-    fn passed_at_root(&self, root: f32) -> f32 {
-        let passed = if self.cover.is_none() { 1.0 } else { self.cover.passed_at_root(root) };
-        (1.0 - self.boundary.at_root(root)) * passed
-    }
-
-    /// The same along a direction, where the coating may have a normal of its own.
-    #[inline]
-    fn passed_along(&self, v: Vec3) -> f32 {
-        (1.0 - self.boundary.at(v.z.abs())) * self.cover.passed_along(v)
+        (1.0 - self.boundary.at(cos)) * self.cover.passed(cos)
     }
 
     #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
+        self.eval_below(self.cover.passed_along_both(wo, wi), wo, wi)
+    }
+
+    /// [`CoatedDiffuse::eval`] by what the cover lets pass along both directions.
+    #[inline]
+    fn eval_below(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> Rgb {
         let scale = if wo.z * wi.z > 0.0 {
             self.rough_diffuse
                 .map_or(self.scale, |rough_diffuse| self.scale * rough_diffuse.over_lambert(wo, wi))
@@ -142,7 +142,9 @@ impl CoatedDiffuse {
             return Rgb::BLACK;
         };
         let cos = wi.z.abs();
-        scale * (self.passed_along(wo) * self.passed_along(wi) * FRAC_1_PI * cos)
+        let [passed_wo, passed_wi] = [(wo, passed[0]), (wi, passed[1])]
+            .map(|(v, passed)| (1.0 - self.boundary.at(v.z.abs())) * passed);
+        scale * (passed_wo * passed_wi * FRAC_1_PI * cos)
     }
 
     #[inline]
@@ -159,6 +161,12 @@ impl CoatedDiffuse {
     #[inline]
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    /// The same by what the cover lets pass along both directions.
+    #[inline]
+    pub(super) fn eval_and_pdf_below(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        (self.eval_below(passed, wo, wi), self.pdf_solid_angle(wo, wi))
     }
 
     #[inline]

@@ -5,6 +5,7 @@
 //! keeps all of it where both directions have the same g, as for a mirror. Diffuse light is scaled by the product of
 //! the two over the mean of g, which loses none of it. [Kulla 2017]
 
+use super::nodes::NODES;
 use super::{Albedo, FuzzAlbedo};
 use bilux_math::Vec3;
 
@@ -68,15 +69,29 @@ impl Coating {
         below_fuzz * below_coat
     }
 
+    /// [`Coating::passed`], but for rounding, at all nodes of [quadratures](super::nodes).
+    pub(super) fn passed_at_nodes(&self) -> [f32; NODES] {
+        let mut passed = [1.0; NODES];
+        if let Some((weight, fuzz)) = self.fuzz {
+            let albedo = fuzz.at_nodes();
+            passed = std::array::from_fn(|i| 1.0 - weight * albedo[i]);
+        }
+        if self.coat_weight > 0.0 {
+            let albedo = self.coat.at_nodes();
+            passed = std::array::from_fn(|i| passed[i] * (1.0 - self.coat_weight * albedo[i]));
+        }
+        passed
+    }
+
     /// The transmitted fraction along a direction in the lobe's local frame.
     #[inline]
     pub(super) fn passed_along(&self, direction: Vec3) -> f32 {
         if self.is_none() { 1.0 } else { self.passed(direction.dot(self.up).abs()) }
     }
 
-    /// The fraction of light scattered from one direction to the other that passes the coating, in and out.
+    /// [`Coating::passed_along`] two directions.
     #[inline]
-    pub(super) fn both(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_none() { 1.0 } else { self.passed_along(wo).min(self.passed_along(wi)) }
+    pub(super) fn passed_along_both(&self, wo: Vec3, wi: Vec3) -> [f32; 2] {
+        if self.is_none() { [1.0; 2] } else { [self.passed_along(wo), self.passed_along(wi)] }
     }
 }

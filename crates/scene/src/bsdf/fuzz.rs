@@ -1,6 +1,7 @@
 //! Fuzz: fine upright fibres on top of a surface, like velvet's pile or the bloom of a peach. They are visible at
 //! grazing angles, and hide what is below them there. [Estevez 2017; Neubelt 2013]
 
+use super::nodes::{GAUSS, NODES, lerp_nodes};
 use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{powf, sin_cos};
@@ -126,6 +127,18 @@ static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
     })
 });
 
+/// The same at the nodes of [quadratures](super::nodes).
+static AT_NODES: LazyLock<[[f32; NODES]; ROUGHNESSES]> =
+    LazyLock::new(|| TABLE.each_ref().map(|row| GAUSS.map(|(root, _)| between_cosines(row, root))));
+
+/// The albedo in a row of the table, by the root of the cosine.
+#[inline(always)]
+fn between_cosines(row: &[f32; COSINES], root: f32) -> f32 {
+    let place = root * (COSINES - 1) as f32;
+    let column = (place as usize).min(COSINES - 2);
+    row[column] + (row[column + 1] - row[column]) * (place - column as f32)
+}
+
 fn inverse_alpha(roughness: f32) -> f32 {
     1.0 / (roughness * roughness).max(MIN_ALPHA)
 }
@@ -173,13 +186,23 @@ impl FuzzAlbedo {
     /// The same by the square root of the cosine, 0..=1.
     #[inline(always)]
     pub(super) fn at_root(&self, root: f32) -> f32 {
+        let (row, share) = self.row();
+        let (a, b) = (between_cosines(&TABLE[row], root), between_cosines(&TABLE[row + 1], root));
+        (a + (b - a) * share) * self.scale
+    }
+
+    /// The same at all nodes of [quadratures](super::nodes).
+    #[inline]
+    pub(super) fn at_nodes(&self) -> [f32; NODES] {
+        let ((row, share), table) = (self.row(), &*AT_NODES);
+        lerp_nodes(&table[row], &table[row + 1], share).map(|albedo| albedo * self.scale)
+    }
+
+    /// The row of the table, and the place between it and the next.
+    #[inline(always)]
+    fn row(&self) -> (usize, f32) {
         let row = (self.roughness as usize).min(ROUGHNESSES - 2);
-        let place = root * (COSINES - 1) as f32;
-        let column = (place as usize).min(COSINES - 2);
-        let (between_rows, between) = (self.roughness - row as f32, place - column as f32);
-        let of = |row: &[f32; COSINES]| row[column] + (row[column + 1] - row[column]) * between;
-        let (a, b) = (of(&TABLE[row]), of(&TABLE[row + 1]));
-        (a + (b - a) * between_rows) * self.scale
+        (row, self.roughness - row as f32)
     }
 }
 

@@ -148,9 +148,14 @@ impl MicrofacetReflection {
 
     #[inline]
     fn fresnel(&self, cos: f32) -> Rgb {
-        if let Some(film) = &self.film {
-            return self.fresnel_below(film, cos);
+        match &self.film {
+            Some(film) => self.fresnel_below(film, cos),
+            None => self.fresnel_bare(cos),
         }
+    }
+
+    #[inline]
+    fn fresnel_bare(&self, cos: f32) -> Rgb {
         let mut reflected = Rgb::BLACK;
         if !self.metal_weight.is_black() {
             reflected = self.metal.at(cos) * self.metal_weight;
@@ -163,21 +168,27 @@ impl MicrofacetReflection {
 
     #[inline(never)]
     fn fresnel_below(&self, film: &ThinFilm, cos: f32) -> Rgb {
-        let bare = MicrofacetReflection { film: None, ..*self }.fresnel(cos);
+        let within = film.within(cos);
         let mut reflected = Rgb::BLACK;
         if !self.metal_weight.is_black() {
-            reflected = film.over_metal(cos, &self.metal) * self.metal_weight;
+            reflected = within.over_metal(&self.metal) * self.metal_weight;
         }
         if !self.glass.is_black() {
-            reflected += self.glass * film.over_glass(cos, self.eta);
+            reflected += self.glass * within.over_glass(self.eta);
         }
-        bare.lerp(reflected, film.weight)
+        self.fresnel_bare(cos).lerp(reflected, film.weight)
     }
 
-    /// The fraction of light that passes the coating above the microfacets.
+    /// The layers above.
     #[inline]
-    fn covered(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let passed = self.cover.both(wo, wi);
+    pub(super) fn cover(&self) -> &Coating {
+        &self.cover
+    }
+
+    /// The fraction of light that passes the coating above the microfacets, of the fractions along both directions.
+    #[inline]
+    fn covered(&self, [passed_wo, passed_wi]: [f32; 2], wo: Vec3) -> f32 {
+        let passed = passed_wo.min(passed_wi);
         if wo.z < 0.0 { passed * self.from_below } else { passed }
     }
 
@@ -196,8 +207,14 @@ impl MicrofacetReflection {
         self.eval_and_pdf(wo, wi, TransportMode::Radiance).1
     }
 
+    #[inline]
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> (Rgb, f32) {
-        let covered = self.covered(wo, wi);
+        self.eval_and_pdf_below(self.cover.passed_along_both(wo, wi), wo, wi)
+    }
+
+    /// The same by what the cover lets pass along both directions.
+    pub(super) fn eval_and_pdf_below(&self, passed: [f32; 2], wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        let covered = self.covered(passed, wo);
         let Some((wo, wi, m)) = facet_between(self.ggx.is_smooth(), wo, wi) else {
             return (Rgb::BLACK, 0.0);
         };
@@ -216,7 +233,7 @@ impl MicrofacetReflection {
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         if self.ggx.is_smooth() {
             let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-            let weight = self.fresnel(wo.z.abs()) * self.covered(wo, wi);
+            let weight = self.fresnel(wo.z.abs()) * self.covered(self.cover.passed_along_both(wo, wi), wo);
             let sample =
                 BsdfSample { wi, weight, pdf_solid_angle: 1.0, is_delta: true, transmits: false, eta: 1.0 };
             return Some(sample);

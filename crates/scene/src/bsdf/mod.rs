@@ -14,6 +14,7 @@ mod coated_dielectric;
 mod coated_diffuse;
 mod coating;
 mod conductor;
+mod covered;
 mod delta;
 mod dielectric;
 mod facets;
@@ -26,6 +27,7 @@ mod lobe_frame;
 mod microfacet_reflection;
 mod mirror;
 mod mixed;
+mod nodes;
 mod opaque_base;
 mod parts;
 mod phong_lobe;
@@ -33,6 +35,7 @@ mod rough_dielectric;
 mod rough_diffuse;
 mod sample;
 mod smooth_lobe;
+mod splitting;
 mod thin_film;
 mod transport_mode;
 
@@ -60,7 +63,6 @@ pub use smooth_lobe::{SmoothLobe, SmoothSample};
 pub use thin_film::ThinFilm;
 pub use transport_mode::TransportMode;
 
-use crate::wavelength::Wavelength;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use lobe_frame::LobeFrame;
 
@@ -203,29 +205,6 @@ impl Bsdf {
         }
     }
 
-    /// The same BSDF for light of one wavelength, where the outside has this refractive index rather than that of air.
-    /// If the wavelength matters, the BSDF [splits](Bsdf::splits) paths.
-    pub fn refracting(mut self, wavelength: &Wavelength, eta_outside: f32) -> Bsdf {
-        for lobe in self.lobes.iter_mut().flatten() {
-            let Some((eta, dispersion)) = lobe.index() else { continue };
-            let inside = if dispersion == 0.0 { eta } else { wavelength.index(eta, dispersion) };
-            self.splits |= dispersion != 0.0;
-            *lobe = lobe.of_index(inside / eta_outside);
-        }
-        self
-    }
-
-    /// The same BSDF, marked when the outside medium depends on the wavelength.
-    pub fn splitting(self, splits: bool) -> Bsdf {
-        Bsdf { splits: self.splits || splits, ..self }
-    }
-
-    /// True when other wavelengths scatter differently: a path through here carries a single wavelength.
-    #[inline]
-    pub fn splits(&self) -> bool {
-        self.splits
-    }
-
     /// True when all of its lobes are delta lobes.
     #[inline]
     pub fn is_delta(&self) -> bool {
@@ -292,8 +271,14 @@ impl Bsdf {
         let risen = self.risen(wo);
         let (local_wo, local_wi) = (frame.to_local(wo), frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
+        // Most lobes of a sum have the same layers above.
+        let (mut cover, mut passed) = (&Coating::NONE, [1.0; 2]);
         for (i, (weight, lobe)) in self.weighted().enumerate() {
-            let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
+            if lobe.cover() != cover {
+                cover = lobe.cover();
+                passed = cover.passed_along_both(local_wo, local_wi);
+            }
+            let (f, p) = lobe.eval_and_pdf_below(passed, local_wo, local_wi, mode);
             scattered += f * weight;
             pdf += (self.strengths[i] + self.rises[i] * risen) * p;
         }

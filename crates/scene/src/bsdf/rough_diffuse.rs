@@ -2,6 +2,7 @@
 //! Lambert's law when seen from the direction of the light, and towards grazing. Multiple scattering between
 //! microfacets comes out in the end, so that white loses nothing. [Portsmouth 2025]
 
+use super::nodes::{GAUSS, NODES};
 use bilux_math::{Rgb, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -15,32 +16,10 @@ pub struct RoughDiffuse {
     again: Rgb,
 }
 
-/// Gauss-Legendre nodes and weights on 0..=1.
-pub(super) const GAUSS: [(f32, f32); 8] = [
-    (0.019_855_07, 0.050_614_27),
-    (0.101_666_76, 0.111_190_52),
-    (0.237_233_8, 0.156_853_32),
-    (0.408_282_7, 0.181_341_89),
-    (0.591_717_3, 0.181_341_89),
-    (0.762_766_2, 0.156_853_32),
-    (0.898_333_24, 0.111_190_52),
-    (0.980_144_9, 0.050_614_27),
-];
-
-/// The light at each node t, where t² is the cosine, of which a fraction `gets_in` by t gets in, with the node's weight:
-/// terms of ∫ g(µ) 2µ dµ.
-#[inline(always)]
-pub(super) fn light_at_nodes(gets_in: impl Fn(f32) -> f32) -> [f32; GAUSS.len()] {
-    let mut light = [0.0; GAUSS.len()];
-    for (light, (t, w)) in light.iter_mut().zip(GAUSS) {
-        *light = w * 4.0 * t * t * t * gets_in(t);
-    }
-    light
-}
-
 impl RoughDiffuse {
-    /// From a roughness, 0..=1, the colour of the microfacets, and the light that reaches them ([`light_at_nodes`]).
-    pub(super) fn new(roughness: f32, colour: Rgb, light: &[f32; GAUSS.len()]) -> RoughDiffuse {
+    /// From a roughness, 0..=1, the colour of the microfacets, and the light that reaches them
+    /// ([`light_at_nodes`](super::nodes::light_at_nodes)).
+    pub(super) fn new(roughness: f32, colour: Rgb, light: &[f32; NODES]) -> RoughDiffuse {
         let once = 1.0 / (1.0 + roughness * (0.5 - 2.0 * FRAC_1_PI / 3.0));
         let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
         // The light that reaches the microfacets, and the part of it that is scattered again.
@@ -87,6 +66,7 @@ impl RoughDiffuse {
 
 #[cfg(test)]
 mod tests {
+    use super::super::nodes::light_at_nodes;
     use super::*;
     use bilux_math::transcendental::{acos, sin_cos};
 
@@ -109,7 +89,7 @@ mod tests {
     #[test]
     fn it_matches_the_published_model() {
         for (roughness, colour) in [(0.3f32, 0.9f32), (1.0, 0.5)] {
-            let bsdf = RoughDiffuse::new(roughness, Rgb::grey(colour), &light_at_nodes(|_| 1.0));
+            let bsdf = RoughDiffuse::new(roughness, Rgb::grey(colour), &light_at_nodes(&[1.0; NODES]));
             for (o, i, turn) in [(0.2f32, 0.9f32, 0.0f32), (0.7, 0.6, 2.8), (0.3, 0.2, 0.4), (1.0, 0.5, 0.0)]
             {
                 let (sin, cos) = sin_cos(turn);
@@ -130,7 +110,7 @@ mod tests {
     #[test]
     fn nothing_is_lost() {
         for roughness in [0.2f32, 0.6, 1.0] {
-            let bsdf = RoughDiffuse::new(roughness, Rgb::WHITE, &light_at_nodes(|_| 1.0));
+            let bsdf = RoughDiffuse::new(roughness, Rgb::WHITE, &light_at_nodes(&[1.0; NODES]));
             for cos in [0.05f32, 0.3, 0.7, 1.0] {
                 let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
                 const N: u32 = 300;

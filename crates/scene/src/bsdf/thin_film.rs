@@ -27,14 +27,25 @@ pub struct ThinFilm {
 const ORDERS: usize = 5;
 
 impl ThinFilm {
+    /// Light that meets the film at this cosine.
+    #[inline]
+    pub(super) fn within(&self, cosine: f32) -> Within {
+        let above = cosine.clamp(0.0, 1.0);
+        let within = 1.0 - (1.0 - above * above) / (self.eta * self.eta);
+        let cosines = (within > 0.0).then(|| [above, within.sqrt()]);
+        let path = cosines.map_or(0.0, |[_, within]| 2.0 * self.eta * self.thickness * within);
+        let table = COSINES.as_slice();
+        Within {
+            eta: self.eta,
+            cosines,
+            interference: std::array::from_fn(|order| mean_cosine(table, path * (order + 1) as f32)),
+        }
+    }
+
     /// The reflectance per channel, under the film, of a boundary whose index over the medium above is `eta`, at least
     /// 1.
     pub(super) fn over_glass(&self, cosine: f32, eta: f32) -> Rgb {
-        let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
-        let below = (1.0 - (1.0 - above * above) / (eta * eta)).max(0.0).sqrt();
-        let across = amplitude(self.eta * within, eta * below);
-        let along = amplitude(within / self.eta, below / eta);
-        self.reflected(above, within, [Rgb::grey(across), Rgb::grey(along)])
+        self.within(cosine).over_glass(eta)
     }
 
     /// The reflectance per channel of clear glass of relative index `eta`, part of whose surface has the film.
@@ -52,13 +63,6 @@ impl ThinFilm {
         if thin { once.map(|r| 2.0 * r / (1.0 + r)) } else { once }
     }
 
-    /// The same for metal, which shifts the phase of light by half a wavelength.
-    pub(super) fn over_metal(&self, cosine: f32, metal: &Fresnel) -> Rgb {
-        let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
-        let b = metal.at(within).map(f32::sqrt);
-        self.reflected(above, within, [b * -1.0, b])
-    }
-
     /// The index of a boundary that reflects as much at normal incidence as the maximum of this film over `eta`.
     pub fn most(&self, eta: f32) -> f32 {
         let (a, b) = ((self.eta - 1.0) / (self.eta + 1.0), (eta - self.eta).abs() / (eta + self.eta));
@@ -67,31 +71,44 @@ impl ThinFilm {
         let amplitude = (own + (most.max(own) - own) * self.weight).min(0.99);
         (1.0 + amplitude) / (1.0 - amplitude)
     }
+}
 
+/// Light in a film: what is the same for all that may be below it.
+pub(super) struct Within {
+    eta: f32,
     /// The cosines above and within the film; `None` where light does not enter it.
-    fn cosines(&self, cosine: f32) -> Option<(f32, f32)> {
-        let above = cosine.clamp(0.0, 1.0);
-        let within = 1.0 - (1.0 - above * above) / (self.eta * self.eta);
-        (within > 0.0).then(|| (above, within.sqrt()))
+    cosines: Option<[f32; 2]>,
+    /// The mean cosine of each order.
+    interference: [Rgb; ORDERS],
+}
+
+impl Within {
+    /// The reflectance per channel of a boundary below the film, whose index over the medium above is `eta`, at least 1.
+    pub(super) fn over_glass(&self, eta: f32) -> Rgb {
+        let Some([above, within]) = self.cosines else { return Rgb::WHITE };
+        let below = (1.0 - (1.0 - above * above) / (eta * eta)).max(0.0).sqrt();
+        let across = amplitude(self.eta * within, eta * below);
+        let along = amplitude(within / self.eta, below / eta);
+        self.reflected([above, within], [Rgb::grey(across), Rgb::grey(along)])
+    }
+
+    /// The same for metal, which shifts the phase of light by half a wavelength.
+    pub(super) fn over_metal(&self, metal: &Fresnel) -> Rgb {
+        let Some([above, within]) = self.cosines else { return Rgb::WHITE };
+        let b = metal.at(within).map(f32::sqrt);
+        self.reflected([above, within], [b * -1.0, b])
     }
 
     /// The mean of both polarisations; `b` has the amplitudes below the film, perpendicular and parallel to the plane
     /// of incidence.
-    fn reflected(&self, above: f32, within: f32, b: [Rgb; 2]) -> Rgb {
-        let path = 2.0 * self.eta * self.thickness * within;
+    fn reflected(&self, [above, within]: [f32; 2], b: [Rgb; 2]) -> Rgb {
         let a = [amplitude(above, self.eta * within), amplitude(above, within / self.eta)];
-        // They are the same for both.
-        let table = COSINES.as_slice();
-        let mut cosines = [Rgb::BLACK; ORDERS];
-        for (order, cosine) in cosines.iter_mut().enumerate() {
-            *cosine = mean_cosine(table, path * (order + 1) as f32);
-        }
         let mut sum = Rgb::BLACK;
         for (a, b) in a.into_iter().zip(b) {
             let q = b * a;
             let mut series = Rgb::WHITE;
             let mut power = Rgb::WHITE;
-            for cosine in cosines {
+            for cosine in self.interference {
                 power = power * q * -1.0;
                 series += power * cosine * 2.0;
             }
