@@ -100,7 +100,9 @@ impl<const N: usize> Photons<N> {
     ) -> (Photons<N>, Counters) {
         let scene = eye.context.scene;
         let followed = Followed::of(scene, merging, tiles, iteration);
-        let (radius, techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
+        let (radius, mut techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
+        // Of many lights one is sampled, seldom the nearest, which photons find by themselves.
+        techniques.direct |= !eye.context.lights.takes_all();
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut traced = TracedPhotons::NONE;

@@ -38,12 +38,16 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 pub(super) const CONNECTIONS: Parameter = switch("connections", "connect the vertices of the two subpaths");
 pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to the camera");
 
-/// Whether light subpaths look for direct light too where camera subpaths find it well: on surfaces, and in fog with equiangular points.
-pub(super) const DIRECT: Parameter = switch(
-    "direct",
-    "also connect and merge light paths that come straight from a light to a surface or into grey, even fog; in coloured fog and \
-     smoke this is always done",
-);
+/// Whether light subpaths look for direct light too where camera subpaths find it well: on surfaces, and in fog with equiangular points, where
+/// all lights are always sampled.
+pub(super) const DIRECT: Parameter = Parameter {
+    name: "direct",
+    summary: "also connect and merge light paths that come straight from a light to a surface or into grey, even fog; in coloured fog and \
+              smoke, and with more than four lights, this is always done",
+    unit: "",
+    kind: ParameterKind::Bool,
+    default: "false",
+};
 
 const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }

@@ -33,11 +33,12 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     classic: false,
     default_spp: 64,
     build: |reader| {
-        let techniques = TechniqueCounts {
-            direct: reader.bool("direct"),
-            ..TechniqueCounts::with_splats_and_connections(reader.bool("splats"), reader.bool("connections"))
-        };
-        Ok(Box::new(Vcm { merging: super::merging::read(reader, techniques), guide: None }))
+        let (splats, connections) = (reader.bool("splats"), reader.bool("connections"));
+        let techniques = TechniqueCounts::with_splats_and_connections(splats, connections);
+        let mut merging = super::merging::read(reader, techniques);
+        // Without merging it is `bdpt`.
+        merging.techniques.direct = reader.bool("direct") || merging.radius == 0.0;
+        Ok(Box::new(Vcm { merging, guide: None }))
     },
 };
 

@@ -491,9 +491,9 @@ fn merging_agrees_with_path() {
     let unshown = spec("vcm").with("splats", false);
     let alone = unconnected.clone().with("splats", false);
     let switched = [unconnected, unshown, alone];
-    let indirect = switched.clone().map(|spec| spec.with("direct", false));
-    let all = [spec("vcm"), spec("vcm").with("direct", false), spec("sppm"), few];
-    for (i, spec) in all.iter().chain(&switched).chain(&indirect).enumerate() {
+    let direct = switched.clone().map(|spec| spec.with("direct", true));
+    let all = [spec("vcm"), spec("vcm").with("direct", true), spec("sppm"), few];
+    for (i, spec) in all.iter().chain(&switched).chain(&direct).enumerate() {
         let found = blocks(&scene, &*integrators::build(spec).unwrap(), 100 * (i as u64 + 1));
         let p = agreement(&path, &found);
         assert!(p > UNLIKELY, "path and {spec:?}: p = {p}");

@@ -8,6 +8,7 @@
 //! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
 //! aimed.
 
+use super::WIDEST;
 use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
 use crate::emission::Guide;
@@ -21,6 +22,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Minimum number of light subpaths of an iteration.
 pub(super) const MIN_LIGHT_PATHS: u64 = 2048;
+
+/// The round merges as widely as a film of this many pixels would: the pixels that it samples are few, and nearly no photon falls within
+/// the footprints of small ones.
+const PIXELS: f32 = 32.0 * 24.0;
 
 /// Number of light subpaths that are started, but not traced, to measure how often each cell is chosen.
 const STARTS: u32 = 1 << 16;
@@ -46,6 +51,12 @@ fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> Techniq
         radius: film.radius,
         direct: film.direct,
     }
+}
+
+/// The round's merging where a film of so many pixels merges like this.
+pub(super) fn merging(film: &Merging, pixels: f32) -> Merging {
+    let wide = (film.radius * (pixels / PIXELS).sqrt()).min(WIDEST);
+    Merging { radius: film.radius.max(wide), ..*film }
 }
 
 /// Learns from a round whose light subpaths are not aimed. `film` are the techniques of the picture, of whose photons `near` are
@@ -221,5 +232,28 @@ impl ContributionsByTile {
         let mut all = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
         all.sort_by_key(|(tile, _)| *tile);
         all.into_iter().map(|(_, finds)| finds).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::integrators;
+    use crate::settings::RenderSettings;
+    use crate::shapes::built;
+    use bilux_scene::Spec;
+
+    /// Where pixels are small, photons hardly ever fall within their footprints.
+    #[test]
+    fn light_under_water_is_aimed_at_in_films_of_any_size() {
+        let scene = built(&bilux_scene::generators::generate(&Spec::new("", "pool")).unwrap());
+        let auto = integrators::build(&Spec::new("", "auto").with("techniques", "path-photons")).unwrap();
+        for (width, height) in [(128, 96), (512, 384), (2048, 1536)] {
+            for seed in 0..4 {
+                let film = RenderSettings { seed, ..RenderSettings::new(width, height, 1) };
+                let plan = auto.chooser().unwrap().plan(&scene, &*scene.cameras()[0].1, &film);
+                let guide = plan.integrator.light_subpaths().and_then(|both| both.guide());
+                assert!(guide.is_some(), "{width}x{height}, seed {seed}");
+            }
+        }
     }
 }

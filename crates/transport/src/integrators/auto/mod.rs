@@ -165,7 +165,8 @@ impl Chooser for Auto {
         let mut counters = Counters::default();
         let mut guide = None;
         if self.aims {
-            let (learned, rays) = aim::learn(round(0), &merging, &techniques(&SETS[SETS.len() - 1]), NEAR);
+            let learning = aim::merging(&merging, pixels);
+            let (learned, rays) = aim::learn(round(0), &learning, &techniques(&SETS[SETS.len() - 1]), NEAR);
             counters += rays;
             guide = learned.map(Arc::new);
         }
