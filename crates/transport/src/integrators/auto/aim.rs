@@ -8,8 +8,7 @@
 //! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
 //! aimed.
 
-use super::WIDEST;
-use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
+use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, WIDEST, sample_all};
 use super::sets::DARK;
 use crate::emission::Guide;
 use crate::photons::{MergeCounts, Merging};

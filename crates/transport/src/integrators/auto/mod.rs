@@ -27,7 +27,7 @@ use crate::techniques::TechniqueCounts;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Counters, Ray, Scene, SceneError};
-use pilot::{Block, PilotRound};
+use pilot::{Block, PilotRound, WIDEST};
 use sets::{SETS, Set, TECHNIQUES};
 use std::sync::Arc;
 
@@ -104,9 +104,6 @@ const WORTH_MORE: f64 = 1.1;
 
 /// Default merging radius of the first iteration, in radii of a disc as large as a pixel's footprint.
 const PIXELS: f32 = 3.0;
-
-/// Maximum of that radius, as a fraction of the scene's radius, however large the pixels' footprints are.
-const WIDEST: f32 = 0.1;
 
 /// Approximate number of photons on directly lit surfaces that are merged then, if each pixel has its light subpath: the
 /// disc is as large as the footprints of this many pixels.

@@ -50,6 +50,9 @@ pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
 /// Between the two, one photon path for this many of the film's.
 const LIGHT_PART: u64 = 8;
 
+/// Maximum merging radius that is chosen, as a fraction of the scene's radius, however large the pixels' footprints are.
+pub(super) const WIDEST: f32 = 0.1;
+
 /// The pilot's measurements of a block of pixels, as means over its pixels. Luminances only.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
