@@ -105,7 +105,7 @@ fn all_strategies_find_the_same_light() {
 fn merging_finds_the_same_light_with_a_small_radius() {
     let scene = built(&diffuse_scene());
     let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, effort(64, 128)) };
-    let vcm = Spec::new("", "vcm").with("radius", 0.02f32).with("alpha", 1.0f32);
+    let vcm = Spec::new("", "vcm").with("radius", 0.02f32).with("alpha", 1.0f32).with("direct", true);
     let [mut all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &vcm, seed, &settings)));
     all.retain(|strategy, _| strategy.merges);
     // Paths of 2 to 4 edges, merged at each vertex in between.
