@@ -34,7 +34,7 @@ impl LightTree {
             }
             let mut branch = Branch::below(above);
             if range.len() <= WIDTH {
-                branch.end_with(range.len());
+                branch.choose_alike(range.len());
             }
             for (place, (part, depth)) in parts(&mut members, range, depth).into_iter().enumerate() {
                 let place = place as u32;

@@ -55,8 +55,8 @@ impl Branch {
         Branch { above, ..Branch::default() }
     }
 
-    /// Its `count` children are all lights.
-    pub(super) fn end_with(&mut self, count: usize) {
+    /// Its `count` children are all lights: each is chosen now and then, however unimportant.
+    pub(super) fn choose_alike(&mut self, count: usize) {
         self.alike = CHOSEN_ALIKE / count as f32;
     }
 
