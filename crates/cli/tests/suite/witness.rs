@@ -1,5 +1,5 @@
 //! If Mitsuba 3's Python package is installed, it renders the same boxes for comparison: `witness/cornell.py`; and the scenes of others,
-//! if a folder of them is named: `witness/scenes.py`.
+//! if a folder of them is named: `witness/scenes.py`. `witness/smallvcm.py`, which no test starts, compares means and errors with SmallVCM.
 //!
 //! `BILUX_MITSUBA=FOLDER cargo test -p bilux-cli --test suite scenes_of_mitsuba -- --nocapture` prints a table of them.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
