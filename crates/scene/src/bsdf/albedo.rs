@@ -83,10 +83,22 @@ impl Albedo {
         self.entry(root, self.shared())
     }
 
+    /// The same along several directions.
+    #[inline(always)]
+    pub(super) fn at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
+        self.entries(roots, self.shared())
+    }
+
     /// Like [`Albedo::at`], for opaque microfacets, which reflect everything.
     #[inline]
     pub fn opaque_at(&self, cos: f32) -> f32 {
         self.entry(cos.clamp(0.0, 1.0).sqrt(), |entry| entry[INDICES])
+    }
+
+    /// The same along several directions, by the square roots of their cosines.
+    #[inline(always)]
+    pub(super) fn opaque_at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
+        self.entries(roots, |entry| entry[INDICES])
     }
 
     /// The mean of [`Albedo::at`] over the hemisphere, weighted by the cosine.
@@ -173,13 +185,25 @@ impl Albedo {
     /// One number of the four entries around a position, interpolated bilinearly.
     #[inline(always)]
     fn entry(&self, root: f32, of: impl Fn(&Entry) -> f32) -> f32 {
-        let (column, share) = place(root * (COSINES - 1) as f32, COSINES);
+        let [found] = self.entries([root], of);
+        found
+    }
+
+    /// The same for several cosines.
+    #[inline(always)]
+    fn entries<const N: usize>(&self, roots: [f32; N], of: impl Fn(&Entry) -> f32) -> [f32; N] {
         let (row, between) = place(self.roughness, ROUGHNESSES);
         let rows: &[[Entry; COSINES]] = &TABLE.at;
         let [a, b] = [&rows[row], &rows[row + 1]];
-        let upper = lerp(of(&a[column]), of(&a[column + 1]), share);
-        let lower = lerp(of(&b[column]), of(&b[column + 1]), share);
-        lerp(upper, lower, between)
+        // In place, as `map` would call its closure.
+        let mut found = roots;
+        for found in &mut found {
+            let (column, share) = place(*found * (COSINES - 1) as f32, COSINES);
+            let upper = lerp(of(&a[column]), of(&a[column + 1]), share);
+            let lower = lerp(of(&b[column]), of(&b[column + 1]), share);
+            *found = lerp(upper, lower, between);
+        }
+        found
     }
 
     /// [`Albedo::at_root`], but for rounding, at all nodes of [quadratures](super::nodes).
@@ -211,9 +235,10 @@ impl Albedo {
 
 /// The first of the two neighbouring entries, and the position's fraction of the way to the second.
 #[inline(always)]
-fn place(x: f32, count: usize) -> (usize, f32) {
-    let first = (x as i32).clamp(0, count as i32 - 2) as usize;
-    (first, x - first as f32)
+pub(super) fn place(x: f32, count: usize) -> (usize, f32) {
+    // An i32 becomes a float by one instruction, a usize by many.
+    let first = (x as i32).clamp(0, count as i32 - 2);
+    (first as usize, x - first as f32)
 }
 
 #[inline(always)]

@@ -142,8 +142,8 @@ impl CoatedDiffuse {
             return Rgb::BLACK;
         };
         let cos = wi.z.abs();
-        let [passed_wo, passed_wi] = [(wo, passed[0]), (wi, passed[1])]
-            .map(|(v, passed)| (1.0 - self.boundary.at(v.z.abs())) * passed);
+        let boundary = self.boundary.at_roots([wo, wi].map(|v| v.z.abs().clamp(0.0, 1.0).sqrt()));
+        let (passed_wo, passed_wi) = ((1.0 - boundary[0]) * passed[0], (1.0 - boundary[1]) * passed[1]);
         scale * (passed_wo * passed_wi * FRAC_1_PI * cos)
     }
 

@@ -54,19 +54,26 @@ impl Coating {
     /// The transmitted fraction along a direction whose cosine with the normal is `cos`.
     #[inline]
     pub fn passed(&self, cos: f32) -> f32 {
-        if self.is_none() { 1.0 } else { self.passed_at_root(cos.clamp(0.0, 1.0).sqrt()) }
+        let [passed] = self.passed_at([cos]);
+        passed
     }
 
-    /// The same by the square root of the cosine, 0..=1.
+    /// The same along several directions.
     #[inline(always)]
-    pub(super) fn passed_at_root(&self, root: f32) -> f32 {
-        let below_fuzz = match self.fuzz {
-            Some((weight, fuzz)) => 1.0 - weight * fuzz.at_root(root),
-            None => 1.0,
-        };
-        let below_coat =
-            if self.coat_weight > 0.0 { 1.0 - self.coat_weight * self.coat.at_root(root) } else { 1.0 };
-        below_fuzz * below_coat
+    fn passed_at<const N: usize>(&self, cosines: [f32; N]) -> [f32; N] {
+        let mut passed = [1.0; N];
+        if self.is_none() {
+            return passed;
+        }
+        let roots = cosines.map(|cos| cos.clamp(0.0, 1.0).sqrt());
+        if let Some((weight, fuzz)) = &self.fuzz {
+            passed = fuzz.at_roots(roots).map(|albedo| 1.0 - weight * albedo);
+        }
+        if self.coat_weight > 0.0 {
+            let albedo = self.coat.at_roots(roots);
+            passed = std::array::from_fn(|i| passed[i] * (1.0 - self.coat_weight * albedo[i]));
+        }
+        passed
     }
 
     /// [`Coating::passed`], but for rounding, at all nodes of [quadratures](super::nodes).
@@ -83,15 +90,8 @@ impl Coating {
         passed
     }
 
-    /// The transmitted fraction along a direction in the lobe's local frame.
-    #[inline]
-    pub(super) fn passed_along(&self, direction: Vec3) -> f32 {
-        if self.is_none() { 1.0 } else { self.passed(direction.dot(self.up).abs()) }
-    }
-
-    /// [`Coating::passed_along`] two directions.
-    #[inline]
+    /// The transmitted fractions along two directions in the lobe's local frame.
     pub(super) fn passed_along_both(&self, wo: Vec3, wi: Vec3) -> [f32; 2] {
-        if self.is_none() { [1.0; 2] } else { [self.passed_along(wo), self.passed_along(wi)] }
+        self.passed_at([wo, wi].map(|direction| direction.dot(self.up).abs()))
     }
 }

@@ -1,6 +1,7 @@
 //! Fuzz: fine upright fibres on top of a surface, like velvet's pile or the bloom of a peach. They are visible at
 //! grazing angles, and hide what is below them there. [Estevez 2017; Neubelt 2013]
 
+use super::albedo::place;
 use super::nodes::{GAUSS, NODES, lerp_nodes};
 use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
 use bilux_math::registry::Entry;
@@ -134,9 +135,8 @@ static AT_NODES: LazyLock<[[f32; NODES]; ROUGHNESSES]> =
 /// The albedo in a row of the table, by the root of the cosine.
 #[inline(always)]
 fn between_cosines(row: &[f32; COSINES], root: f32) -> f32 {
-    let place = root * (COSINES - 1) as f32;
-    let column = (place as usize).min(COSINES - 2);
-    row[column] + (row[column + 1] - row[column]) * (place - column as f32)
+    let (column, share) = place(root * (COSINES - 1) as f32, COSINES);
+    row[column] + (row[column + 1] - row[column]) * share
 }
 
 fn inverse_alpha(roughness: f32) -> f32 {
@@ -185,10 +185,21 @@ impl FuzzAlbedo {
 
     /// The same by the square root of the cosine, 0..=1.
     #[inline(always)]
-    pub(super) fn at_root(&self, root: f32) -> f32 {
-        let (row, share) = self.row();
-        let (a, b) = (between_cosines(&TABLE[row], root), between_cosines(&TABLE[row + 1], root));
-        (a + (b - a) * share) * self.scale
+    fn at_root(&self, root: f32) -> f32 {
+        let [found] = self.at_roots([root]);
+        found
+    }
+
+    /// The same along several directions.
+    #[inline(always)]
+    pub(super) fn at_roots<const N: usize>(&self, roots: [f32; N]) -> [f32; N] {
+        let ((row, share), table) = (self.row(), &*TABLE);
+        let mut found = roots;
+        for found in &mut found {
+            let (a, b) = (between_cosines(&table[row], *found), between_cosines(&table[row + 1], *found));
+            *found = (a + (b - a) * share) * self.scale;
+        }
+        found
     }
 
     /// The same at all nodes of [quadratures](super::nodes).
@@ -201,8 +212,7 @@ impl FuzzAlbedo {
     /// The row of the table, and the place between it and the next.
     #[inline(always)]
     fn row(&self) -> (usize, f32) {
-        let row = (self.roughness as usize).min(ROUGHNESSES - 2);
-        (row, self.roughness - row as f32)
+        place(self.roughness, ROUGHNESSES)
     }
 }
 

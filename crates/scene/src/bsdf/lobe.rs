@@ -94,6 +94,8 @@ impl Lobe {
                 let above = if transmits { wi * Vec3::new(1.0, 1.0, -1.0) } else { wi };
                 BsdfSample::direction(wo, above).map(|sample| BsdfSample { wi, transmits, ..sample })
             }
+            Lobe::RoughDielectric(glass) => glass.direction(wo, u_choice, u),
+            Lobe::CoatedDielectric(lobe) => lobe.glass().direction(wo, u_choice, u),
             _ => self.sample(wo, u_choice, u, mode),
         }
     }

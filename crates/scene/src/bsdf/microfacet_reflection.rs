@@ -222,8 +222,9 @@ impl MicrofacetReflection {
         let mut f = self.fresnel(wo.dot(m)) * (distribution * self.ggx.visible(wo, wi));
         let mut pdf = distribution * self.ggx.reflected_within_bound(wo);
         if self.again_share > 0.0 {
-            let left = 1.0 - self.albedo.opaque_at(wo.z);
-            f += self.again * (left * (1.0 - self.albedo.opaque_at(wi.z)) * FRAC_1_PI * wi.z);
+            let roots = [wo, wi].map(|v| v.z.clamp(0.0, 1.0).sqrt());
+            let [left, left_wi] = self.albedo.opaque_at_roots(roots).map(|albedo| 1.0 - albedo);
+            f += self.again * (left * left_wi * FRAC_1_PI * wi.z);
             let again = self.again_share * left;
             pdf = (1.0 - again) * pdf + again * self.albedo.left_pdf(wi.z) * (FRAC_1_PI * wi.z);
         }

@@ -147,6 +147,14 @@ impl RoughDielectric {
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let BsdfSample { wi, transmits, eta, .. } = self.direction(wo, u_choice, u)?;
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
+        Some(BsdfSample { transmits, eta, ..sample })
+    }
+
+    /// The direction of [`RoughDielectric::sample`], whose weight and density are not known yet.
+    pub(super) fn direction(&self, wo: Vec3, u_choice: f32, u: Vec2) -> Option<BsdfSample> {
         let eta = self.eta_from(wo);
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
         let m = self.facets.sample_visible(above, u);
@@ -160,10 +168,9 @@ impl RoughDielectric {
             return None;
         }
         let wi = Vec3::new(wi.x, wi.y, wi.z * 1f32.copysign(wo.z)).normalize();
-        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
         let eta = if reflects || self.thin { 1.0 } else { eta };
-        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
-        Some(BsdfSample { transmits: !reflects, eta, ..sample })
+        let (weight, pdf_solid_angle) = (Rgb::BLACK, 0.0);
+        Some(BsdfSample { wi, weight, pdf_solid_angle, is_delta: false, transmits: !reflects, eta })
     }
 
     /// The reflectance of a microfacet, averaged over the channels; for a pane, of both faces. With it the colours of

@@ -73,13 +73,16 @@ impl ThinFilm {
     }
 }
 
+/// Red, green, blue and nothing: four numbers that are computed at once.
+type Four = [f32; 4];
+
 /// Light in a film: what is the same for all that may be below it.
 pub(super) struct Within {
     eta: f32,
     /// The cosines above and within the film; `None` where light does not enter it.
     cosines: Option<[f32; 2]>,
     /// The mean cosine of each order.
-    interference: [Rgb; ORDERS],
+    interference: [Four; ORDERS],
 }
 
 impl Within {
@@ -103,19 +106,24 @@ impl Within {
     /// of incidence.
     fn reflected(&self, [above, within]: [f32; 2], b: [Rgb; 2]) -> Rgb {
         let a = [amplitude(above, self.eta * within), amplitude(above, within / self.eta)];
-        let mut sum = Rgb::BLACK;
-        for (a, b) in a.into_iter().zip(b) {
-            let q = b * a;
-            let mut series = Rgb::WHITE;
-            let mut power = Rgb::WHITE;
-            for cosine in self.interference {
-                power = power * q * -1.0;
-                series += power * cosine * 2.0;
+        let mut sum = Four::default();
+        for (a, Rgb { r, g, b }) in a.into_iter().zip(b) {
+            let b = [r, g, b, 0.0];
+            // By Horner's rule.
+            let mut series = Four::default();
+            for cosine in self.interference.iter().rev() {
+                for i in 0..4 {
+                    series[i] = (series[i] + cosine[i]) * -(b[i] * a);
+                }
             }
-            let passed = b.map(|b| (1.0 - a * a) * (1.0 - b * b)) * q.map(|q| 1.0 / (1.0 - q * q).max(1e-6));
-            sum += passed * series;
+            for i in 0..4 {
+                let q = b[i] * a;
+                let passed = (1.0 - a * a) * (1.0 - b[i] * b[i]) / (1.0 - q * q).max(1e-6);
+                sum[i] += passed * (1.0 + 2.0 * series[i]);
+            }
         }
-        (Rgb::WHITE + sum * -0.5).clamp(0.0, 1.0)
+        let [r, g, b, _] = sum;
+        (Rgb::WHITE + Rgb::new(r, g, b) * -0.5).clamp(0.0, 1.0)
     }
 }
 
@@ -132,23 +140,23 @@ const STEPS: usize = 1601;
 
 /// The mean of cos(2π · path / wavelength), weighted by the sensitivity of each channel.
 #[inline]
-fn mean_cosine(table: &[Rgb], path: f32) -> Rgb {
+fn mean_cosine(table: &[Four], path: f32) -> Four {
     let place = path / LONGEST * (STEPS - 1) as f32;
-    let first = place as usize;
+    let (first, share) = (place as i32 as usize, place - place as i32 as f32);
     match (table.get(first), table.get(first + 1)) {
-        (Some(a), Some(b)) => a.lerp(*b, place - first as f32),
-        _ => Rgb::BLACK,
+        (Some(a), Some(b)) => std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share),
+        _ => Four::default(),
     }
 }
 
-static COSINES: LazyLock<Vec<Rgb>> = LazyLock::new(|| {
+static COSINES: LazyLock<Vec<Four>> = LazyLock::new(|| {
     let seen: Vec<(f32, Rgb)> =
         (0..90).map(|i| 385.0 + 4.0 * i as f32).map(|nm| (nm, sensitivity(nm))).collect();
     let whole: Rgb = seen.iter().map(|(_, rgb)| *rgb).sum();
     let mean = |step: usize| {
         let path = step as f32 * LONGEST / (STEPS - 1) as f32;
         let sum: Rgb = seen.iter().map(|(nm, rgb)| *rgb * cos(TAU * path / nm)).sum();
-        Rgb::new(sum.r / whole.r, sum.g / whole.g, sum.b / whole.b)
+        [sum.r / whole.r, sum.g / whole.g, sum.b / whole.b, 0.0]
     };
     (0..STEPS).map(mean).collect()
 });
