@@ -38,8 +38,7 @@ use std::time::Instant;
 use test_scene::{TestScene, test_scenes};
 use timed_render::{calibrate, settings, shoot};
 
-/// The maximum number of trial pictures for finding a number of samples, and the first of their seeds.
-const TRIALS: u64 = 3;
+/// The first of the seeds of trial pictures, which find a number of samples.
 const TRIAL_SEED: u64 = 1 << 31;
 
 /// The default integrators, as far as they are available.
@@ -157,8 +156,8 @@ impl Bench<'_> {
         })
     }
 
-    /// The number of samples with which a picture takes its budget. One-off costs, such as a pilot pass that decides
-    /// how to go on, distort the speed of short renders, so trial pictures measure it.
+    /// The number of samples with which a picture takes its budget. What is spent once, as on a pilot, comes on top of what each sample
+    /// takes: two trial pictures tell one from the other.
     fn fitting(
         &self,
         scene: &SceneBuilder,
@@ -166,17 +165,12 @@ impl Bench<'_> {
         seconds: f64,
         speed: f64,
     ) -> Result<u32, Error> {
-        let mut samples = ((speed * seconds).round() as u32).max(1);
-        for seed in 0..TRIALS {
-            let took = shoot(scene, &settings(integrator, samples, TRIAL_SEED + seed, self.options.threads))?
-                .seconds;
-            let better = ((f64::from(samples) * seconds / took.max(1e-3)).round() as u32).max(1);
-            if better == samples || (took / seconds - 1.0).abs() < 0.1 {
-                break;
-            }
-            samples = better;
-        }
-        Ok(samples)
+        let time = |samples: u32, seed: u64| {
+            let settings = settings(integrator, samples, TRIAL_SEED + seed, self.options.threads);
+            Ok::<f64, Error>(shoot(scene, &settings)?.seconds)
+        };
+        let many = ((speed * seconds).round() as u32).max(2);
+        Ok(samples_in(seconds, [(1, time(1, 0)?), (many, time(many, 1)?)]))
     }
 
     fn time_left(&self) -> String {
@@ -188,6 +182,14 @@ impl Bench<'_> {
     }
 }
 
+/// The number of samples that takes nearest to this many seconds, by what two other numbers of them took.
+fn samples_in(seconds: f64, [(few, few_took), (many, many_took)]: [(u32, f64); 2]) -> u32 {
+    let each = (many_took - few_took) / f64::from(many - few);
+    // Clocks are coarse: a sample takes no more than a picture's part.
+    let each = each.clamp(0.1 * many_took.max(1e-3) / f64::from(many), many_took.max(1e-3) / f64::from(many));
+    (f64::from(many) + (seconds - many_took) / each).round().max(1.0) as u32
+}
+
 fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
     let known: Vec<String> =
         INTEGRATORS.iter().filter(|row| !row.classic).map(|row| row.entry.name.to_owned()).collect();
@@ -197,4 +199,19 @@ fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
     let plain = |name: &String| name.strip_prefix("auto:").map_or(name.clone(), |_| "auto".to_owned());
     names.iter().try_for_each(|name| check("integrator", &plain(name), &known))?;
     Ok(names.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::samples_in;
+
+    #[test]
+    fn what_is_spent_once_is_not_counted_for_each_sample() {
+        // 0.4 s for a pilot, 0.3 for a sample.
+        assert_eq!(samples_in(1.0, [(1, 0.7), (2, 1.0)]), 2);
+        assert_eq!(samples_in(4.0, [(1, 0.7), (10, 3.4)]), 12);
+        assert_eq!(samples_in(0.1, [(1, 0.7), (2, 1.0)]), 1);
+        // One thing took no longer than ten.
+        assert_eq!(samples_in(2.0, [(1, 1.0), (10, 1.0)]), 110);
+    }
 }

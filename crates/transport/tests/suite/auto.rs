@@ -82,6 +82,28 @@ fn the_noise_of_every_set_is_predicted() {
     }
 }
 
+/// Few pixels of a large film are looked at, and hardly a photon falls within their footprints: predictions by these alone differ
+/// by a factor of four from pilot to pilot, and say that photons are as noisy as paths.
+#[test]
+fn every_pilot_of_a_large_film_sees_that_photons_have_less_noise_than_paths() {
+    let scene = built(&bilux_scene::generators::generate(&Spec::new("", "cornell")).unwrap());
+    for seed in 0..4 {
+        let film = RenderSettings { seed, ..RenderSettings::new(512, 384, 1) };
+        let plan = integrators::build(&auto()).unwrap().chooser().unwrap().plan(
+            &scene,
+            &*scene.cameras()[0].1,
+            &film,
+        );
+        let error = |techniques| {
+            let mut candidates = plan.choice.candidates.iter();
+            candidates.find(|candidate| candidate.techniques == techniques).unwrap().error
+        };
+        // In pictures of eight samples it is 0.10.
+        let ratio = error("path-photons") / error("path");
+        assert!((0.04..0.25).contains(&ratio), "seed {seed}: {ratio}");
+    }
+}
+
 #[test]
 fn without_merging_it_has_the_same_mean_as_path() {
     let mut builder = still_life();

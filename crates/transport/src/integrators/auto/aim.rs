@@ -8,7 +8,7 @@
 //! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
 //! aimed.
 
-use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, WIDEST, sample_all};
+use super::pilot::{Grid, GridPass, PilotRound, SAMPLES, sample_all};
 use super::sets::DARK;
 use crate::emission::Guide;
 use crate::photons::{MergeCounts, Merging};
@@ -19,12 +19,9 @@ use bilux_scene::Counters;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Minimum number of light subpaths of an iteration.
-pub(super) const MIN_LIGHT_PATHS: u64 = 2048;
-
-/// The round merges as widely as a film of this many pixels would: the pixels that it samples are few, and nearly no photon falls within
-/// the footprints of small ones.
-const PIXELS: f32 = 32.0 * 24.0;
+/// Number of light subpaths of an iteration: one for so many of the film's pixels, within these limits.
+const PART: u64 = 8;
+const LIGHT_PATHS: [u64; 2] = [2048, 4096];
 
 /// Number of light subpaths that are started, but not traced, to measure how often each cell is chosen.
 const STARTS: u32 = 1 << 16;
@@ -52,10 +49,10 @@ fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> Techniq
     }
 }
 
-/// The round's merging where a film of so many pixels merges like this.
-pub(super) fn merging(film: &Merging, pixels: f32) -> Merging {
-    let wide = (film.radius * (pixels / PIXELS).sqrt()).min(WIDEST);
-    Merging { radius: film.radius.max(wide), ..*film }
+/// The number of light subpaths of an iteration for a film of so many pixels.
+pub(super) fn light_paths(pixels: u64) -> u64 {
+    let [least, most] = LIGHT_PATHS;
+    (pixels / PART).clamp(least, most)
 }
 
 /// Learns from a round whose light subpaths are not aimed. `film` are the techniques of the picture, of whose photons `near` are

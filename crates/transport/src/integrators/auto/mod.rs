@@ -129,8 +129,9 @@ impl Chooser for Auto {
             return self.without_pilot();
         }
         let settings = pilot::settings(film);
-        let least = |round| if round == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
-        let sources = [0, 1, 2].map(|round| pilot::photon_settings(film, &settings[round], least(round)));
+        let pixels = u64::from(film.width) * u64::from(film.height);
+        let light_paths = [aim::light_paths(pixels), pilot::LIGHT_PATHS, pilot::LIGHT_PATHS];
+        let sources = [0, 1, 2].map(|round| pilot::photon_settings(&settings[round], light_paths[round]));
         let lights = Arc::new(LightChoice::new(scene));
         let eye = |settings| {
             CameraRays::new(scene, camera, settings, CameraSpread::FULL, Arc::clone(&lights)).merging()
@@ -143,9 +144,8 @@ impl Chooser for Auto {
             let pixel = pilot::pixel_radius(&round(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
         }
-        let light_paths =
-            (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
-        let pixels = (u64::from(film.width) * u64::from(film.height)) as f32;
+        let light_paths = pixels.min(u64::from(merging.max_light_paths)) as f32;
+        let pixels = pixels as f32;
         let counts = |set: &Set| {
             let traced = light_paths * set.photons;
             let paths = PhotonPaths {
@@ -160,10 +160,10 @@ impl Chooser for Auto {
             set.merging(merging).techniques(&MergeCounts { light_paths, ..counts(set) })
         };
         let mut counters = Counters::default();
+        let wide = pilot::merging(&merging, pixels);
         let mut guide = None;
         if self.aims {
-            let learning = aim::merging(&merging, pixels);
-            let (learned, rays) = aim::learn(round(0), &learning, &techniques(&SETS[SETS.len() - 1]), NEAR);
+            let (learned, rays) = aim::learn(round(0), &wide, &techniques(&SETS[SETS.len() - 1]), NEAR);
             counters += rays;
             guide = learned.map(Arc::new);
         }
@@ -173,7 +173,7 @@ impl Chooser for Auto {
             TechniqueCounts::pack(all)
         };
         let rounds: Vec<PilotRound> = (1..settings.len()).map(|i| round(i).guided(&guide)).collect();
-        let mut seen = pilot::look(&rounds, &merging, all_sets);
+        let mut seen = pilot::look(&rounds, &wide, all_sets);
         seen.steps.in_columns = columns::share_in_columns(&rounds[0].eye, film);
         counters += seen.counters;
         let candidates: Vec<Candidate> = SETS

@@ -44,11 +44,12 @@ const MIN_PIXELS: u64 = 128;
 /// Between the two, the pilot has one pixel for this many of the film's.
 const PART: u64 = 96;
 
-/// Maximum number of photon paths in one of its iterations, and minimum. Rare light is seen by them alone.
-const MAX_LIGHT_PATHS: u64 = 4096;
-pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
-/// Between the two, one photon path for this many of the film's.
-const LIGHT_PART: u64 = 8;
+/// Number of photon paths in one of its iterations. Rare light is seen by them alone.
+pub(super) const LIGHT_PATHS: u64 = 512;
+
+/// Photons are merged as widely as a film of this many pixels would: the pixels that the pilot samples are few, and nearly no photon falls
+/// within the footprints of small ones.
+const MERGED_PIXELS: f32 = 32.0 * 24.0;
 
 /// Maximum merging radius that is chosen, as a fraction of the scene's radius, however large the pixels' footprints are.
 pub(super) const WIDEST: f32 = 0.1;
@@ -127,13 +128,17 @@ impl Grid {
     }
 }
 
-/// The settings of the pilot's photons: the light subpaths of a film of its own, `least` or more.
-pub(super) fn photon_settings(film: &RenderSettings, round: &RenderSettings, least: u64) -> RenderSettings {
-    let pixels = u64::from(film.width) * u64::from(film.height);
-    let wanted = (pixels / LIGHT_PART).clamp(least, MAX_LIGHT_PATHS.max(least));
+/// The settings of the photons of a round: the light subpaths of a film of its own.
+pub(super) fn photon_settings(round: &RenderSettings, light_paths: u64) -> RenderSettings {
     // They may be connected with the camera, for which this is no film: none reaches beyond the edge of the true one.
     let (filter, pixel_anchor) = (Filter::default(), PixelAnchor::Centre);
-    RenderSettings { width: wanted as u32, height: 1, filter, pixel_anchor, ..round.clone() }
+    RenderSettings { width: light_paths as u32, height: 1, filter, pixel_anchor, ..round.clone() }
+}
+
+/// How the pilot merges where a film of so many pixels merges like this.
+pub(super) fn merging(film: &Merging, pixels: f32) -> Merging {
+    let wide = (film.radius * (pixels / MERGED_PIXELS).sqrt()).min(WIDEST);
+    Merging { radius: film.radius.max(wide), ..*film }
 }
 
 /// The radius of a disc as large as a pixel's footprint on the first surface there, in metres: the median over the
