@@ -11,6 +11,7 @@ use bilux_pictures::{Limits, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::cmp::Reverse;
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
@@ -48,8 +49,13 @@ impl Pictures {
         // Each decoder holds its own buffers as well as the texels, and all decoders run at once.
         let share = Limits::new(reading.budget.left() / (2 * encoded.len().max(1) as u64));
         let decode = |bytes: &[u8]| read_rgba8(bytes, None, &share).ok().flatten();
-        let decoded: Vec<_> = encoded.par_iter().map(|(_, _, (_, bytes))| decode(bytes)).collect();
-        for ((number, node, (name, bytes)), picture) in encoded.into_iter().zip(decoded) {
+        // The largest first, each to the next thread that is free, so that all threads end at about the same time.
+        let mut largest_first: Vec<usize> = (0..encoded.len()).collect();
+        largest_first.sort_by_key(|&i| Reverse(encoded[i].2.1.len()));
+        let each = largest_first.into_iter().par_bridge();
+        let mut decoded: Vec<_> = each.map(|i| (i, decode(&encoded[i].2.1))).collect();
+        decoded.sort_unstable_by_key(|(i, _)| *i);
+        for ((number, node, (name, bytes)), (_, picture)) in encoded.into_iter().zip(decoded) {
             release(bytes, reading);
             let Some(picture) = picture else { continue };
             reading.note_picture_faults(&name, &picture.warnings, &node.at());
