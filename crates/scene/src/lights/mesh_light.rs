@@ -2,22 +2,22 @@
 
 use super::cumulative::{Cumulative, CumulativePart};
 use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
+use super::near_triangles::NearTriangles;
+use super::picture::{Picture, weights_by_brightness};
 use super::{
     ClassicLighting, DirectionCone, EmissionSample, Light, LightExtent, LightSample, LightTracing, Sides,
 };
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
-use crate::mesh::Mesh;
 use crate::surface::{Surface, gamma};
-use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
-use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
+use bilux_math::{Aabb, Frame, Rgb, Transform, Vec2, Vec3, warp};
 use std::any::Any;
 use std::f32::consts::{FRAC_PI_2, PI};
-use std::sync::Arc;
 
-/// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness.
+/// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness; where there are many,
+/// points of the scene choose among them by where they are.
 ///
 /// Points are uniform within each triangle.
 pub struct MeshLight {
@@ -32,6 +32,8 @@ pub struct MeshLight {
     motion: Motion,
     /// The triangles in world space; empty when they move.
     static_triangles: Vec<LightTriangle>,
+    /// How points choose among these, if they are many and equally bright.
+    near: Option<NearTriangles>,
     /// The mean radiance over its area.
     radiance: Rgb,
     picture: Option<Picture>,
@@ -39,42 +41,6 @@ pub struct MeshLight {
     /// The orientation of the front in world space: -1 if mirrored, otherwise 1.
     turn: f32,
     classic: Option<Rgb>,
-}
-
-/// The emission of a light across its surface.
-pub struct Picture {
-    /// Emission by texture coordinates.
-    pub map: ColourMap,
-    /// The opacity mask, if any. Light sampling scales the emission by it; a ray that hits the light has already passed
-    /// the opacity test.
-    pub opacity: Option<NumberMap>,
-    /// The texture coordinates of each triangle's corners.
-    pub uvs: Vec<[UvPair; 3]>,
-    /// The mesh, whose vertices may have factors on emission and opacity.
-    pub mesh: Arc<Mesh>,
-}
-
-impl Picture {
-    fn at(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
-        let uv = UvPair::between(self.uvs[triangle], weights);
-        let opacity = self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv));
-        let corners = self.mesh.triangles[triangle];
-        self.map.at(uv)
-            * self.mesh.emission_factor(corners, weights)
-            * self.mesh.opacity(opacity, corners, weights)
-    }
-
-    /// The mean over a triangle, from the centres of its sixteen sub-triangles.
-    fn mean(&self, triangle: usize) -> Rgb {
-        let mut sum = Rgb::BLACK;
-        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-            // Every second sub-triangle is upside down.
-            let (i, j, third) = if i + j < 4 { (i, j, 1.0 / 3.0) } else { (7 - i - j, j, 2.0 / 3.0) };
-            let (u, v) = ((i as f32 + third) / 4.0, (j as f32 + third) / 4.0);
-            sum += self.at(triangle, [1.0 - u - v, u, v]);
-        }
-        sum / 16.0
-    }
 }
 
 /// What a surface emits.
@@ -86,9 +52,6 @@ pub struct SurfaceEmission {
     /// From which sides.
     pub sides: Sides,
 }
-
-/// The minimum brightness of a triangle, relative to the mean: a few points may miss the bright parts of a triangle.
-const MIN_SHARE: f64 = 0.1;
 
 impl MeshLight {
     /// A light from an object's object-space triangles; `None` when they have no area.
@@ -103,7 +66,11 @@ impl MeshLight {
         SurfaceEmission { radiance, picture, sides }: SurfaceEmission,
         classic: Option<Rgb>,
     ) -> Option<MeshLight> {
-        let areas: Vec<f64> = triangles.iter().map(|t| f64::from(area(t))).map(finite_or_zero).collect();
+        let has_near = picture.is_none() && motion.is_still() && NearTriangles::is_for(triangles.len());
+        // Then points are uniform in world space, whatever the scale along each axis.
+        let to_world = if has_near { motion.at(0.0) } else { Transform::IDENTITY };
+        let area_of = |t: &[Vec3; 3]| f64::from(area(&t.map(|p| to_world.point(p))));
+        let areas: Vec<f64> = triangles.iter().map(area_of).map(finite_or_zero).collect();
         let total: f64 = areas.iter().sum();
         if total <= 0.0 {
             return None;
@@ -125,6 +92,7 @@ impl MeshLight {
             reach: 0.0,
             motion,
             static_triangles,
+            near: None,
             radiance,
             picture,
             sides,
@@ -135,13 +103,36 @@ impl MeshLight {
         if light.motion.is_still() {
             light.static_triangles = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
+        if has_near {
+            light.near = Some(NearTriangles::new(&light.static_triangles, sides == Sides::Both));
+        }
         Some(light)
     }
 
-    /// Picks a triangle in proportion to its probability; returns its index, and the rest of the random number.
+    /// Picks a triangle for a point; returns its index, the rest of the random number, and the triangle with the density of its points.
+    /// `None` where none shines.
     #[inline]
-    pub fn choose(&self, u: f32) -> (usize, f32) {
-        self.choice.sample(u)
+    pub fn choose(&self, from: Vec3, time: f32, u: f32) -> Option<(usize, f32, LightTriangle)> {
+        let Some(near) = &self.near else {
+            let (triangle, rest) = self.choice.sample(u);
+            return Some((triangle, rest, self.facet(triangle, time)));
+        };
+        let (triangle, rest, pdf_area) = near.choose(from, u)?;
+        Some((triangle, rest, LightTriangle { pdf_area, ..self.facet(triangle, time) }))
+    }
+
+    /// The density over area with which a point samples points of a triangle.
+    #[inline]
+    fn pdf_area_of(&self, from: Vec3, time: f32, triangle: usize) -> f32 {
+        let near = self.near.as_ref().map(|near| near.pdf_area(from, triangle));
+        let pdf = near.unwrap_or_else(|| self.facet(triangle, time).pdf_area);
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    /// The density over area with which light subpaths begin at a point, where points of the scene sample it with `pdf_direct`.
+    #[inline]
+    fn start_pdf_area(&self, pdf_direct: f32) -> f32 {
+        self.near.as_ref().map_or(pdf_direct, NearTriangles::uniform_pdf_area)
     }
 
     /// Its triangles with the random numbers that pick each, in their order, if they are few, do not move and emit
@@ -234,17 +225,6 @@ impl MeshLight {
     }
 }
 
-/// The mean radiance over all triangles, and the unnormalised probability of each.
-fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
-    let total: f64 = areas.iter().sum();
-    let means: Vec<Rgb> = (0..areas.len()).map(|i| picture.mean(i)).collect();
-    let mean: Rgb = means.iter().zip(areas).map(|(mean, area)| *mean * (area / total) as f32).sum();
-    let least = MIN_SHARE * f64::from(mean.luminance());
-    let weight = |(mean, area): (&Rgb, &f64)| area * (f64::from(mean.luminance()) + least);
-    let weights = if least > 0.0 { means.iter().zip(areas).map(weight).collect() } else { areas.to_vec() };
-    (mean, weights)
-}
-
 fn area(t: &[Vec3; 3]) -> f32 {
     (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
 }
@@ -263,8 +243,9 @@ impl dyn Light {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (triangle, weights) = self.sample_weights(u);
-        let sample = TriangleSample::new(from, &self.facet(triangle, time), weights, self.sides);
+        let (triangle, rest, facet) = self.choose(from, time, u.x)?;
+        let weights = barycentric(Vec2::new(rest, u.y));
+        let sample = TriangleSample::new(from, &facet, weights, self.sides);
         (sample.pdf_solid_angle > 0.0).then(|| LightSample {
             wi: sample.wi,
             li: self.radiance(triangle, weights),
@@ -281,13 +262,12 @@ impl Light for MeshLight {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    fn pdf_area(&self, _from: Vec3, hit: &Surface) -> f32 {
+    fn pdf_area(&self, from: Vec3, hit: &Surface) -> f32 {
         let triangle = hit.primitive.index.wrapping_sub(self.first.index) as usize;
         if hit.primitive.instance != self.first.instance || triangle >= self.triangles.len() {
             return 0.0;
         }
-        let pdf = self.facet(triangle, hit.time).pdf_area;
-        if pdf.is_finite() { pdf } else { 0.0 }
+        self.pdf_area_of(from, hit.time, triangle)
     }
 
     fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
@@ -325,6 +305,11 @@ impl Light for MeshLight {
 }
 
 impl LightTracing for MeshLight {
+    fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
+        let triangle = sample.primitive.index.wrapping_sub(self.first.index) as usize;
+        if self.near.is_some() { self.pdf_area_of(from, 0.0, triangle) } else { sample.pdf_direct }
+    }
+
     fn sample_le(
         &self,
         bounds: &Aabb,
@@ -350,15 +335,16 @@ impl LightTracing for MeshLight {
         let (LightTriangle { normal, pdf_area, .. }, direction) =
             (self.facet(triangle, time), warp::square_to_sphere(aim).normalize());
         let leaves = self.sides == Sides::Both || normal.dot(direction) > 0.0;
-        leaves.then(|| self.ray(triangle, weights, time, direction, pdf_area)).flatten()
+        let pdf = self.start_pdf_area(pdf_area);
+        leaves.then(|| self.ray(triangle, weights, time, direction, pdf)).flatten()
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct
+        self.start_pdf_area(pdf_direct)
     }
 
     fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
-        pdf_direct * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
+        self.start_pdf_area(pdf_direct) * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
     }
 
     fn is_infinite(&self) -> bool {

@@ -54,10 +54,17 @@ impl LightTree {
     /// A light for a point, by a random number, and its probability there; `None` where no light shines.
     #[inline]
     pub fn sample(&self, p: Vec3, u: f32) -> Option<(usize, f32)> {
+        let (light, probability, _) = self.sample_with_rest(p, u)?;
+        Some((light, probability))
+    }
+
+    /// The same, and what is left of the random number, from 0 to 1.
+    #[inline]
+    pub(super) fn sample_with_rest(&self, p: Vec3, u: f32) -> Option<(usize, f32, f32)> {
         let mut walk = Walk { branch: 0, p, u, probability: 1.0 };
         loop {
             if let Some(end) = walk.step(self) {
-                return end;
+                return end.map(|(light, probability)| (light, probability, walk.u));
             }
         }
     }

@@ -148,8 +148,10 @@ impl LightSamples {
         }
         let mut indices = [0; LANES];
         for i in 0..count {
-            (indices[i], u[0].0[i]) = mesh.choose(u[0].0[i]);
-            let LightTriangle { corners, normal, pdf_area } = mesh.facet(indices[i], times[i]);
+            let chosen = mesh.choose(vec3(p, i), times[i], u[0].0[i]);
+            samples.triangles.pdf_area.0[i] = 0.0;
+            let Some((index, rest, LightTriangle { corners, normal, pdf_area })) = chosen else { continue };
+            (indices[i], u[0].0[i]) = (index, rest);
             for (columns, corner) in samples.triangles.corners.iter_mut().zip(corners) {
                 put(columns, i, corner.to_array());
             }

@@ -4,8 +4,10 @@
 use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks};
 use crate::common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{SceneBuilder, Spec};
+use bilux_scene::generators::shapes::icosphere;
+use bilux_scene::{Mesh, Scene, SceneBuilder, Spec};
 use bilux_transport::{LightChoice, PixelIntegrator, RenderSettings, integrators};
+use std::sync::Arc;
 
 fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
@@ -46,10 +48,50 @@ fn one_of_them_is_chosen_at_a_time() {
     }
 }
 
+/// The same things under one mesh of a dozen balls of 80 triangles each, from close to the floor to far above it, that glow on the outside.
+fn mesh_of_lamps(radiance: f32) -> SceneBuilder {
+    let mut builder = large_lights();
+    builder.lights.clear();
+    let mut all: Option<Mesh> = None;
+    for i in 0..12 {
+        let (column, row) = ((i % 4) as f32, (i / 4) as f32);
+        let place = Vec3::new(1.1 * column - 1.6, 0.45 + 0.35 * row * row + 0.1 * column, 1.0 * row - 1.0);
+        let ball = icosphere(place, 0.12 + 0.04 * row, 1);
+        match &mut all {
+            None => all = Some(ball),
+            Some(all) => {
+                let first = all.positions.len() as u32;
+                all.positions.extend(ball.positions);
+                all.normals.extend(ball.normals);
+                all.triangles.extend(ball.triangles.iter().map(|corners| corners.map(|i| i + first)));
+            }
+        }
+    }
+    let glow = diffuse(0.2f32).with("emission", radiance).with("emission_sides", "front");
+    put(&mut builder, "lamps", Arc::new(all.unwrap()), glow);
+    builder
+}
+
+#[test]
+fn a_mesh_of_lamps_looks_the_same_from_both_ends() {
+    let right = built(&mesh_of_lamps(9.0));
+    assert_eq!(right.lights().len(), 1);
+    assert_like_path("mesh of lamps", &right, &["light", "bdpt", "vcm"]);
+    assert_unlike_path(&right, &built(&mesh_of_lamps(8.5)), &["bdpt"]);
+}
+
+#[test]
+fn all_three_samplings_of_path_find_the_same_light_of_a_mesh_of_lamps() {
+    assert_same_by_all_samplings(&built(&mesh_of_lamps(9.0)));
+}
+
 #[test]
 fn all_three_samplings_of_path_find_the_same_light_of_many_large_lights() {
-    let scene = built(&large_lights());
-    let of = |sampling: &str, seed: u64| blocks(&scene, &*path(sampling), seed);
+    assert_same_by_all_samplings(&built(&large_lights()));
+}
+
+fn assert_same_by_all_samplings(scene: &Scene) {
+    let of = |sampling: &str, seed: u64| blocks(scene, &*path(sampling), seed);
     let [mis, lights, scattering] =
         [("mis", 0), ("lights", 100), ("scattering", 200)].map(|(s, seed)| of(s, seed));
     for (name, a, b) in [
