@@ -80,7 +80,7 @@ mod tests {
         let triangle = |i: u64| {
             let a = Vec3::new(20.0 * u(i, 0), u(i, 1), 20.0 * u(i, 2));
             let side = |k: u64| Vec3::new(u(i, k), u(i, k + 1), u(i, k + 2)) - Vec3::splat(0.5);
-            let size = if i % 50 == 0 { 0.0 } else { 0.1 };
+            let size = if i.is_multiple_of(50) { 0.0 } else { 0.1 };
             let corners = [a, a + side(3) * size, a + side(6) * size];
             let normal = (corners[1] - a).cross(corners[2] - a).normalize_or_zero();
             LightTriangle { corners, normal, pdf_area: 0.0 }
