@@ -185,8 +185,9 @@ impl Bench<'_> {
 /// The number of samples that takes nearest to this many seconds, by what two other numbers of them took.
 fn samples_in(seconds: f64, [(few, few_took), (many, many_took)]: [(u32, f64); 2]) -> u32 {
     let each = (many_took - few_took) / f64::from(many - few);
-    // Clocks are coarse: a sample takes no more than a picture's part.
-    let each = each.clamp(0.1 * many_took.max(1e-3) / f64::from(many), many_took.max(1e-3) / f64::from(many));
+    // Clocks are coarse: a sample takes at most its part of the picture's time, and not much less than a tenth of that.
+    let part = many_took.max(1e-3) / f64::from(many);
+    let each = each.clamp(0.1 * part, part);
     (f64::from(many) + (seconds - many_took) / each).round().max(1.0) as u32
 }
 

@@ -66,9 +66,12 @@ impl MeshLight {
         SurfaceEmission { radiance, picture, sides }: SurfaceEmission,
         classic: Option<Rgb>,
     ) -> Option<MeshLight> {
-        let has_near = picture.is_none() && motion.is_still() && NearTriangles::is_for(triangles.len());
+        let to_world = motion.at(0.0);
+        let is_finite = || triangles.iter().flatten().all(|p| to_world.point(*p).is_finite());
+        let is_even = picture.is_none() && motion.is_still();
+        let has_near = is_even && NearTriangles::is_for(triangles.len()) && is_finite();
         // Then points are uniform in world space, whatever the scale along each axis.
-        let to_world = if has_near { motion.at(0.0) } else { Transform::IDENTITY };
+        let to_world = if has_near { to_world } else { Transform::IDENTITY };
         let area_of = |t: &[Vec3; 3]| f64::from(area(&t.map(|p| to_world.point(p))));
         let areas: Vec<f64> = triangles.iter().map(area_of).map(finite_or_zero).collect();
         let total: f64 = areas.iter().sum();

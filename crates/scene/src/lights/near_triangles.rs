@@ -69,7 +69,11 @@ impl NearTriangles {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lights::{Light, MeshLight, Sides, SurfaceEmission};
+    use bilux_accel::Primitive;
     use bilux_math::hash::{hash_words, unit_f32};
+    use bilux_math::motion::Motion;
+    use bilux_math::{Rgb, Transform, Vec2};
 
     fn u(i: u64, k: u64) -> f32 {
         unit_f32(hash_words([i, k]) as u32)
@@ -132,5 +136,28 @@ mod tests {
                 chosen[most]
             );
         }
+    }
+
+    /// A file may have vertices that are nowhere. Bounds that reach there would hide their neighbours in the tree.
+    #[test]
+    fn a_vertex_that_is_nowhere_leaves_the_other_triangles_their_light() {
+        let mut triangles: Vec<[Vec3; 3]> = scattered().iter().map(|triangle| triangle.corners).collect();
+        triangles[7][1] = Vec3::new(f32::INFINITY, 0.0, 0.0);
+        let from = Vec3::new(7.0, -0.5, 9.0);
+        let seen = |[a, b, c]: &[Vec3; 3]| {
+            let area_times_normal = 0.5 * (*b - *a).cross(*c - *a);
+            let to = *a - from;
+            f64::from(area_times_normal.dot(to.normalize()).abs() / to.length_squared())
+        };
+        let wanted: f64 = triangles.iter().map(seen).filter(|seen| seen.is_finite()).sum();
+        let emitted = SurfaceEmission { radiance: Rgb::WHITE, picture: None, sides: Sides::Both };
+        let rest = Motion::still(Transform::IDENTITY);
+        let light = MeshLight::new(triangles, false, Primitive::NONE, rest, emitted, None).unwrap();
+        let sample = |i| light.sample_li(from, 0.0, Vec2::new(u(i, 0), u(i, 1)));
+        let count = 2_000_000;
+        let sum: f64 =
+            (0..count).filter_map(sample).map(|sample| 1.0 / f64::from(sample.pdf_solid_angle)).sum();
+        let found = sum / f64::from(count as u32);
+        assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
     }
 }

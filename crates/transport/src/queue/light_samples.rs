@@ -149,6 +149,7 @@ impl LightSamples {
         let mut indices = [0; LANES];
         for i in 0..count {
             let chosen = mesh.choose(vec3(p, i), times[i], u[0].0[i]);
+            // No triangle shines here, unless one is chosen.
             samples.triangles.pdf_area.0[i] = 0.0;
             let Some((index, rest, LightTriangle { corners, normal, pdf_area })) = chosen else { continue };
             (indices[i], u[0].0[i]) = (index, rest);
