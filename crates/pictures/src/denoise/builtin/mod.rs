@@ -6,6 +6,7 @@
 //! In a cut-out it filters the light of what covers the pixels, and weights each by how much of it is covered.
 
 mod edges;
+mod fits;
 mod guides;
 mod linear;
 mod outliers;
@@ -48,7 +49,7 @@ const MAX_ROWS: usize = 288;
 
 /// The distance over which one row can affect another: the reach of all passes, of the means of variances, outliers
 /// and guesses before them, and of the edges after them.
-const REACH: usize = 34 + 1 + 2 + 1 + edges::RADIUS;
+const REACH: usize = 34 + 1 + 2 + 1 + edges::REACH;
 
 pub(super) struct Builtin {
     pool: ThreadPool,
@@ -107,12 +108,10 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
         }
     }
     let Some(mut colours) = sum else { return Ok(Vec::new()) };
-    let mut smooth = if has_albedo {
-        colours.pad();
-        edges::rebuilt(&colours, &guides)?
-    } else {
-        (0..size.0 * size.1).map(|i| colours.rgb(i)).collect()
-    };
+    if has_albedo {
+        edges::rebuild(&mut colours, &guides)?;
+    }
+    let mut smooth: Vec<Rgb> = (0..size.0 * size.1).map(|i| colours.rgb(i)).collect();
     noisy::multiply(&mut smooth, coverage.as_deref());
     Ok(smooth)
 }
