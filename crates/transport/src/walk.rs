@@ -185,7 +185,7 @@ impl Walk {
     }
 
     /// Russian roulette by the throughput, after `free` events without; `full` is the throughput's maximum channel at the
-    /// beginning. Behind a surface, whatever has lost nothing goes on: a walk through milk has thousands of events. [Arvo 1990]
+    /// beginning. In a medium, whatever has lost nothing goes on: walks through clouds have tens of events, and through milk thousands. [Arvo 1990]
     #[inline]
     pub(crate) fn survives(&mut self, free: u32, full: f32, u: impl FnOnce() -> f32) -> bool {
         if self.beta.is_black() {
@@ -194,8 +194,7 @@ impl Walk {
         if self.depth <= free {
             return true;
         }
-        let [_, in_row] = self.inside;
-        let most = if in_row > 0 { 1.0 } else { MOST };
+        let most = if self.leaves_medium { 1.0 } else { MOST };
         let survival = survival(self.beta, full, self.eta_scale, most);
         if u() < survival {
             self.beta = self.beta / survival;
@@ -213,4 +212,25 @@ pub(crate) const MOST: f32 = 0.95;
 #[inline(always)]
 pub(crate) fn survival(beta: Rgb, full: f32, eta_scale: f32, most: f32) -> f32 {
     (beta.max_channel() / full * eta_scale).min(most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a walk with this throughput goes on by a number, after an event in a medium or on a surface; and its throughput then.
+    fn goes_on(beta: f32, u: f32, leaves_medium: bool) -> Option<f32> {
+        let ray = Ray::new([0.0; 3], [0.0, 0.0, 1.0]);
+        let mut walk = Walk { depth: 9, leaves_medium, ..Walk::new(&ray, Rgb::grey(beta), Media::AIR) };
+        walk.survives(4, 1.0, || u).then_some(walk.beta.g)
+    }
+
+    #[test]
+    fn in_a_medium_roulette_ends_what_absorption_has_taken_and_no_more() {
+        assert_eq!(goes_on(1.0, 1.0f32.next_down(), true), Some(1.0), "nothing was lost");
+        assert_eq!(goes_on(0.99, 0.98, true), Some(1.0), "what is left is white again");
+        assert_eq!(goes_on(0.99, 0.995, true), None);
+        assert_eq!(goes_on(1.0, 0.96, false), None, "between mirrors walks end");
+        assert_eq!(goes_on(1.0, 0.94, false), Some(1.0 / MOST));
+    }
 }

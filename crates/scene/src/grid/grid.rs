@@ -192,7 +192,9 @@ impl Grid {
     /// border, and 0 beyond.
     #[inline]
     fn look_up(&self, p: Vec3) -> f32 {
-        let size = self.size.map(|n| n as f32);
+        // In here loops take the place of `array::map`, whose closures are called and not inlined.
+        let [x, y, z] = self.size;
+        let size = [x as f32, y as f32, z as f32];
         if !(p.cmpge(Vec3::ZERO).all() && p.cmple(Vec3::from(size)).all()) {
             return 0.0;
         }
@@ -215,19 +217,26 @@ impl Grid {
     /// The voxels between `low` and `high`, x varying fastest.
     #[inline]
     fn corners(&self, low: [usize; 3], high: [usize; 3]) -> [f32; 8] {
-        let [a, b] = [low, high].map(|at| at.map(|x| x / BLOCK));
-        let pick =
-            |i: usize| [0, 1, 2].map(|axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] });
-        if a != b {
-            return std::array::from_fn(|i| self.voxel(pick(i)));
+        let block = |[x, y, z]: [usize; 3]| [x / BLOCK, y / BLOCK, z / BLOCK];
+        let mut corners = [0.0; 8];
+        if block(low) != block(high) {
+            for (i, corner) in corners.iter_mut().enumerate() {
+                let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+                *corner = self.voxel([pick(0), pick(1), pick(2)]);
+            }
+            return corners;
         }
-        match self.places[self.block_index(a)] {
-            EMPTY => [0.0; 8],
-            place => std::array::from_fn(|i| {
-                let [x, y, z] = pick(i);
-                self.number(place, within(x, y, z))
-            }),
+        let place = self.places[self.block_index(block(low))];
+        if place == EMPTY {
+            return corners;
         }
+        let first = within(low[0], low[1], low[2]);
+        let step = [high[0] - low[0], (high[1] - low[1]) * BLOCK, (high[2] - low[2]) * BLOCK * BLOCK];
+        for (i, corner) in corners.iter_mut().enumerate() {
+            let [along_x, along_y, along_z] = [i & 1, i >> 1 & 1, i >> 2];
+            *corner = self.number(place, first + along_x * step[0] + along_y * step[1] + along_z * step[2]);
+        }
+        corners
     }
 
     #[inline]
@@ -237,7 +246,7 @@ impl Grid {
 
     #[inline]
     fn block_index(&self, [x, y, z]: [usize; 3]) -> usize {
-        let [nx, ny, _] = self.size.map(|n| n.div_ceil(BLOCK));
+        let [nx, ny] = [self.size[0].div_ceil(BLOCK), self.size[1].div_ceil(BLOCK)];
         (z * ny + y) * nx + x
     }
 

@@ -168,32 +168,30 @@ impl Medium<'_> {
         }
         let sigma_t = self.sigma_t();
         let (mut passed, mut event) = (Rgb::WHITE, None);
-        self.collide(grid, along, length, &mut draw, |draw, t, fraction| {
+        self.collide(grid, along, length, &mut draw, |draw, t, density, fraction| {
             if self.glow.is_some() {
                 emitted += self.emitted_at(line, t) * fraction * (passed / mean(odds * passed));
             }
             if draw() < fraction[index] {
-                event = Some(t);
+                event = Some((t, density));
                 return false;
             }
             passed *= Rgb::WHITE - fraction;
             true
         });
-        let hazard_at = |t: f32| sigma_t[index] * grid.at(along, t);
-        let path = |end: f32| FreePath {
+        let path = |density_at_end: f32| FreePath {
             transmittance: passed,
             survival: passed[index],
             survivals: passed,
-            hazards: [hazard_at(0.0), hazard_at(end)],
+            hazards: [sigma_t[index] * grid.at(along, 0.0), sigma_t[index] * density_at_end],
         };
         match event {
-            Some(distance) => {
-                let density = grid.at(along, distance);
+            Some((distance, density)) => {
                 let event =
                     MediumEvent { distance, sigma_s: self.sigma_s * density, sigma_t: sigma_t * density };
-                Flight { path: path(distance), event: Some(event), emitted }
+                Flight { path: path(density), event: Some(event), emitted }
             }
-            None => Flight { path: path(length), event: None, emitted },
+            None => Flight { path: path(grid.at(along, length)), event: None, emitted },
         }
     }
 
@@ -219,7 +217,7 @@ impl Medium<'_> {
     ) -> FreePath {
         let Some(along) = &line.density else { return FreePath::CLEAR };
         let (mut passed, mut counts_for) = (Rgb::WHITE, 1.0);
-        self.collide(grid, along, length, &mut draw, |draw, t, fraction| {
+        self.collide(grid, along, length, &mut draw, |draw, t, _, fraction| {
             at_collision(t, fraction, passed * counts_for);
             passed *= Rgb::WHITE - fraction;
             if passed.max_channel() * counts_for < LITTLE {
@@ -237,8 +235,8 @@ impl Medium<'_> {
         FreePath { transmittance, survival: passed[channel], survivals: passed, hazards }
     }
 
-    /// Visits collisions along a line, as often as the majorant says: their distance, and the probability, for each channel,
-    /// that they are real; until `visit` returns false.
+    /// Visits collisions along a line, as often as the majorant says: their distance, the density there, and the probability, for each
+    /// channel, that they are real; until `visit` returns false.
     #[inline]
     fn collide<D: FnMut() -> f32>(
         &self,
@@ -246,7 +244,7 @@ impl Medium<'_> {
         line: &GridLine,
         length: f32,
         draw: &mut D,
-        mut visit: impl FnMut(&mut D, f32, Rgb) -> bool,
+        mut visit: impl FnMut(&mut D, f32, f32, Rgb) -> bool,
     ) {
         let sigma_t = self.sigma_t();
         let largest = sigma_t.max_channel();
@@ -268,8 +266,9 @@ impl Medium<'_> {
                 t += left / rate;
                 left = thickness(draw());
                 // A value rounded up beyond its bound must not let more than everything stop.
-                let fraction = relative * (grid.at(line, t) / majorant).min(1.0);
-                if !visit(draw, t, fraction) {
+                let density = grid.at(line, t);
+                let fraction = relative * (density / majorant).min(1.0);
+                if !visit(draw, t, density, fraction) {
                     return false;
                 }
             }

@@ -46,7 +46,12 @@ fn layered(albedo: f32, tau: f32, from_above: bool) -> Scene {
 
 /// The mean over a picture, in green, and its standard error.
 fn mean(scene: &Scene, name: &str, side: u32, spp: u32) -> (f64, f64) {
-    let integrator = integrators::build(&Spec::new("", name).with("roulette_depth", 1000)).unwrap();
+    mean_with_roulette(1000, scene, name, side, spp)
+}
+
+/// The same with Russian roulette after so many events.
+fn mean_with_roulette(free: i32, scene: &Scene, name: &str, side: u32, spp: u32) -> (f64, f64) {
+    let integrator = integrators::build(&Spec::new("", name).with("roulette_depth", free)).unwrap();
     let settings = RenderSettings { max_depth: 200, ..RenderSettings::new(side, side, spp) };
     let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
     estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
@@ -73,6 +78,17 @@ fn layers_reflect_and_pass_what_a_slab_of_their_thickness_does() {
                 assert_is(&format!("{what}, {name}"), mean(&scene, name, 64, spp), wanted, error);
             }
         }
+    }
+}
+
+#[test]
+fn roulette_keeps_the_light_of_a_slab() {
+    let [(albedo, tau, reflected, _), _] = SLABS;
+    let scene = layered(albedo, tau, true);
+    for (name, (spp, error)) in
+        [("path", effort((16, 2e-3), (600, 4e-4))), ("vcm", effort((3, 6e-3), (100, 1e-3)))]
+    {
+        assert_is(name, mean_with_roulette(0, &scene, name, 64, spp), reflected, error);
     }
 }
 
