@@ -135,7 +135,8 @@ impl LightChoice {
         }
         let points = walks.iter().map(|&(_, p, u)| (p, u));
         local.tree.sample_each(points, |walk, found| {
-            picked[walks[walk].0] = found.map_or_else(Default::default, |found| local.of(found));
+            picked[walks[walk].0] =
+                found.map_or_else(Default::default, |(member, share, _)| local.of((member, share)));
         });
     }
 

@@ -5,7 +5,8 @@ use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, c
 use super::near_triangles::NearTriangles;
 use super::picture::{Picture, weights_by_brightness};
 use super::{
-    ClassicLighting, DirectionCone, EmissionSample, Light, LightExtent, LightSample, LightTracing, Sides,
+    ClassicLighting, DirectionCone, EmissionSample, Light, LightExtent, LightSample, LightTracing, Receiver,
+    Sides,
 };
 use crate::classic::ClassicLight;
 use crate::corners::transform_with_error;
@@ -120,8 +121,53 @@ impl MeshLight {
             let (triangle, rest) = self.choice.sample(u);
             return Some((triangle, rest, self.facet(triangle, time)));
         };
-        let (triangle, rest, pdf_area) = near.choose(from, u)?;
-        Some((triangle, rest, LightTriangle { pdf_area, ..self.facet(triangle, time) }))
+        near.choose(from, u).map(|chosen| self.nearby(chosen, time))
+    }
+
+    /// [`MeshLight::choose`] for each receiver, by the first of its numbers: faster than one by one.
+    pub fn choose_each(
+        &self,
+        receivers: impl Iterator<Item = Receiver>,
+        mut chosen: impl FnMut(usize, Option<(usize, f32, LightTriangle)>),
+    ) {
+        let Some(near) = &self.near else {
+            receivers.enumerate().for_each(|(i, r)| chosen(i, self.choose(r.p, r.time, r.u.x)));
+            return;
+        };
+        // These triangles do not move.
+        near.choose_each(receivers.map(|r| (r.p, r.u.x)), |i, found| {
+            chosen(i, found.map(|found| self.nearby(found, 0.0)));
+        });
+    }
+
+    /// What a point has chosen, with the triangle.
+    #[inline]
+    fn nearby(
+        &self,
+        (triangle, rest, pdf_area): (usize, f32, f32),
+        time: f32,
+    ) -> (usize, f32, LightTriangle) {
+        (triangle, rest, LightTriangle { pdf_area, ..self.facet(triangle, time) })
+    }
+
+    /// A point of the triangle that `from` has chosen, by what is left of the number that chose it, and another.
+    #[inline]
+    fn sample_chosen(
+        &self,
+        from: Vec3,
+        u_y: f32,
+        (triangle, rest, facet): (usize, f32, LightTriangle),
+    ) -> Option<LightSample> {
+        let weights = barycentric(Vec2::new(rest, u_y));
+        let sample = TriangleSample::new(from, &facet, weights, self.sides);
+        (sample.pdf_solid_angle > 0.0).then(|| LightSample {
+            wi: sample.wi,
+            li: self.radiance(triangle, weights),
+            point: Some(sample.point),
+            n_light: sample.n_light,
+            pdf_solid_angle: sample.pdf_solid_angle,
+            clearance: sample.clearance,
+        })
     }
 
     /// The density over area with which a point samples points of a triangle.
@@ -246,17 +292,16 @@ impl dyn Light {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (triangle, rest, facet) = self.choose(from, time, u.x)?;
-        let weights = barycentric(Vec2::new(rest, u.y));
-        let sample = TriangleSample::new(from, &facet, weights, self.sides);
-        (sample.pdf_solid_angle > 0.0).then(|| LightSample {
-            wi: sample.wi,
-            li: self.radiance(triangle, weights),
-            point: Some(sample.point),
-            n_light: sample.n_light,
-            pdf_solid_angle: sample.pdf_solid_angle,
-            clearance: sample.clearance,
-        })
+        self.sample_chosen(from, u.y, self.choose(from, time, u.x)?)
+    }
+
+    fn sample_li_each(&self, receivers: &[Receiver], samples: &mut Vec<Option<LightSample>>) {
+        samples.clear();
+        samples.resize(receivers.len(), None);
+        self.choose_each(receivers.iter().copied(), |i, chosen| {
+            let Receiver { p, u, .. } = receivers[i];
+            samples[i] = chosen.and_then(|chosen| self.sample_chosen(p, u.y, chosen));
+        });
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {

@@ -49,8 +49,21 @@ impl NearTriangles {
     /// A triangle for a point, the rest of the random number, and the density of points on the triangle over area; `None` where none shines.
     #[inline]
     pub(super) fn choose(&self, from: Vec3, u: f32) -> Option<(usize, f32, f32)> {
-        let (triangle, probability, rest) = self.tree.sample_with_rest(from, u)?;
-        Some((triangle, rest, probability / self.areas[triangle]))
+        self.tree.sample_with_rest(from, u).map(|found| self.with_density(found))
+    }
+
+    /// [`NearTriangles::choose`] for each point with its number: faster than one by one.
+    pub(super) fn choose_each(
+        &self,
+        points: impl Iterator<Item = (Vec3, f32)>,
+        mut chosen: impl FnMut(usize, Option<(usize, f32, f32)>),
+    ) {
+        self.tree.sample_each(points, |i, found| chosen(i, found.map(|found| self.with_density(found))));
+    }
+
+    #[inline]
+    fn with_density(&self, (triangle, probability, rest): (usize, f32, f32)) -> (usize, f32, f32) {
+        (triangle, rest, probability / self.areas[triangle])
     }
 
     /// The density over area with which [`NearTriangles::choose`] leads to points of a triangle.

@@ -64,16 +64,17 @@ impl LightTree {
         let mut walk = Walk { branch: 0, p, u, probability: 1.0 };
         loop {
             if let Some(end) = walk.step(self) {
-                return end.map(|(light, probability)| (light, probability, walk.u));
+                return end;
             }
         }
     }
 
-    /// [`LightTree::sample`] for each point with its number. Many walks side by side wait for memory together.
+    /// [`LightTree::sample`] for each point with its number, and what is left of the number, from 0 to 1. Many walks side by side wait for
+    /// memory together.
     pub fn sample_each(
         &self,
         points: impl Iterator<Item = (Vec3, f32)>,
-        mut found: impl FnMut(usize, Option<(usize, f32)>),
+        mut found: impl FnMut(usize, Option<(usize, f32, f32)>),
     ) {
         let walk = |(i, (p, u))| (i, Walk { branch: 0, p, u, probability: 1.0 });
         let mut walks: Vec<(usize, Walk)> = points.enumerate().map(walk).collect();
@@ -115,14 +116,14 @@ struct Walk {
 impl Walk {
     /// Goes on to a child. Returns what is found at the end.
     #[inline(always)]
-    fn step(&mut self, tree: &LightTree) -> Option<Option<(usize, f32)>> {
+    fn step(&mut self, tree: &LightTree) -> Option<Option<(usize, f32, f32)>> {
         let Some(branch) = tree.branches.get(self.branch as usize) else { return Some(None) };
         let Some((place, share, left)) = branch.choose(self.p, self.u) else { return Some(None) };
         self.probability *= share;
         self.u = left;
         match branch.children[place] {
             Child::Nothing => Some(None),
-            Child::Light(light) => Some(Some((light as usize, self.probability))),
+            Child::Light(light) => Some(Some((light as usize, self.probability, left))),
             Child::Branch(index) => {
                 self.branch = index;
                 None

@@ -87,10 +87,7 @@ impl LightSamples {
     ) {
         let Points { count, times, p, u } = points;
         self.receivers.clear();
-        self.receivers.extend((0..count).map(|i| {
-            let u = Vec2::new(u[0].0[i], u[1].0[i]);
-            Receiver { p: vec3(p, i), time: times[i], u }
-        }));
+        self.receivers.extend((0..count).map(|i| receiver(i, times, p, u)));
         let mut begin = 0;
         while begin < count {
             // Vertices in a row that sample the same light.
@@ -147,18 +144,19 @@ impl LightSamples {
             return;
         }
         let mut indices = [0; LANES];
-        for i in 0..count {
-            let chosen = mesh.choose(vec3(p, i), times[i], u[0].0[i]);
+        samples.receivers.clear();
+        samples.receivers.extend((0..count).map(|i| receiver(i, times, p, u)));
+        mesh.choose_each(samples.receivers.iter().copied(), |i, chosen| {
             // No triangle shines here, unless one is chosen.
             samples.triangles.pdf_area.0[i] = 0.0;
-            let Some((index, rest, LightTriangle { corners, normal, pdf_area })) = chosen else { continue };
+            let Some((index, rest, LightTriangle { corners, normal, pdf_area })) = chosen else { return };
             (indices[i], u[0].0[i]) = (index, rest);
             for (columns, corner) in samples.triangles.corners.iter_mut().zip(corners) {
                 put(columns, i, corner.to_array());
             }
             put(&mut samples.triangles.normal, i, normal.to_array());
             samples.triangles.pdf_area.0[i] = pdf_area;
-        }
+        });
         samples.triangles.u[0] = u[0];
         run_at(level, SampleTriangles { samples });
         for (i, &triangle) in indices.iter().enumerate().take(count) {
@@ -168,6 +166,12 @@ impl LightSamples {
             put(&mut samples.li, i, li.to_array());
         }
     }
+}
+
+/// The point of a lane that light falls on.
+#[inline]
+fn receiver(i: usize, times: &[f32; LANES], p: &Columns3, u: &[Column; 2]) -> Receiver {
+    Receiver { p: vec3(p, i), time: times[i], u: Vec2::new(u[0].0[i], u[1].0[i]) }
 }
 
 /// Gives a triangle to the lanes whose number picks it or one after it.

@@ -124,7 +124,7 @@ fn many_walks_find_what_each_finds_alone() {
     let points: Vec<(Vec3, f32)> = (0..500).map(|i| (point(i + 900, 9.0), number(i, 9))).collect();
     let mut together = vec![None; points.len()];
     tree.sample_each(points.iter().copied(), |i, found| together[i] = Some(found));
-    let alone: Vec<_> = points.iter().map(|&(p, u)| Some(tree.sample(p, u))).collect();
+    let alone: Vec<_> = points.iter().map(|&(p, u)| Some(tree.sample_with_rest(p, u))).collect();
     assert_eq!(together, alone);
     let found: Vec<_> = points.iter().filter_map(|&(p, u)| Some((p, tree.sample(p, u)?))).collect();
     assert!(found.len() > 300, "{}", found.len());
