@@ -18,6 +18,9 @@ pub struct LightSample {
     /// The fraction of the distance before `point` within which a ray may already hit the light's own surface through
     /// rounding; 0 for a light without a surface.
     pub clearance: f32,
+    /// The density over area with which light subpaths begin at `point`; `None` where it is that with which this receiver samples the point, or
+    /// where [`crate::LightTracing::emission_pdf`] does not ask.
+    pub pdf_start: Option<f32>,
 }
 
 impl LightSample {

@@ -112,12 +112,12 @@ impl Emission {
         scene: &Scene,
         light: usize,
         p: Vec3,
-        pdf_direct: f32,
+        pdf_start: f32,
         direction: Vec3,
         cos: f32,
     ) -> f32 {
         let cell = self.guide.as_ref().and_then(|guide| guide.cell(scene, light, p, direction));
-        self.pdf_through(cell, scene, light, pdf_direct, direction, cos)
+        self.pdf_through(cell, scene, light, pdf_start, direction, cos)
     }
 
     /// The same for a line through this cell of the guide.
@@ -126,19 +126,19 @@ impl Emission {
         cell: Option<usize>,
         scene: &Scene,
         light: usize,
-        pdf_direct: f32,
+        pdf_start: f32,
         direction: Vec3,
         cos: f32,
     ) -> f32 {
         let (bounds, source) = (scene.bounds(), &scene.lights()[light].light);
-        let unaimed = source.emission_pdf(&bounds, pdf_direct, direction, cos) * self.probabilities[light];
+        let unaimed = source.emission_pdf(&bounds, pdf_start, direction, cos) * self.probabilities[light];
         let Some(guide) = &self.guide else { return unaimed };
         let share = cell.map_or(0.0, |cell| guide.shares[cell]);
         if share == 0.0 {
             return unaimed * guide.unaimed;
         }
         let in_cell = source.aim_pdf(&bounds) * (guide.side * guide.side) as f32;
-        let aimed = share * in_cell * source.unaimed_pdf(&bounds, pdf_direct, direction, cos);
+        let aimed = share * in_cell * source.unaimed_pdf(&bounds, pdf_start, direction, cos);
         unaimed * guide.unaimed + aimed * (1.0 - guide.unaimed)
     }
 }

@@ -230,8 +230,11 @@ fn found_on_surface(
     let tolerance = if wanted == sample.pdf_direct { 1e-5 } else { rough };
     let exact = near(area, wanted, tolerance) && near(pdf, converted, tolerance.max(1e-3));
     let there = hit.p.distance(sample.p) < 1e-4 * (1.0 + sample.p.length()) / sample.cos();
-    Some(check(exact && there, || {
-        format!("over area {area} for {wanted}, over solid angle {pdf} for {converted}")
+    let start = case.light.pdf_start(area, &hit);
+    let sent = case.light.emission_pdf(&case.scene.bounds(), start, sample.direction, sample.cos());
+    let begins = near(sent, sample.pdf_emission, 1e-4);
+    Some(check(exact && there && begins, || {
+        format!("over area {area} for {wanted}, over solid angle {pdf} for {converted}; emission_pdf {sent}")
     }))
 }
 
@@ -263,8 +266,15 @@ pub fn sampled_points_are_hit(case: &LightCase) -> Result<(), String> {
             continue;
         }
         let pdf = case.light.li_pdf_solid_angle(from, sample.wi, hit.as_ref());
-        check(near(pdf, sample.pdf_solid_angle, 2e-2 / sample.cos().max(1e-2)), || {
-            format!("{pdf} for {sample:?}")
+        let tolerance = 2e-2 / sample.cos().max(1e-2);
+        check(near(pdf, sample.pdf_solid_angle, tolerance), || format!("{pdf} for {sample:?}"))?;
+        let Some(hit) = hit else { continue };
+        // As a connection states it, and as a hit does.
+        let area = case.light.pdf_area(from, &hit);
+        let [connected, found] = [sample.pdf_start.unwrap_or(area), case.light.pdf_start(area, &hit)]
+            .map(|start| case.light.emission_pdf(&case.scene.bounds(), start, -sample.wi, sample.cos()));
+        check(near(connected, found, 1e-5), || {
+            format!("emission_pdf {found} for {connected} of {sample:?}")
         })?;
     }
     check(missed * 4 <= 3 * asked, || format!("{missed} of {asked} are not hit"))

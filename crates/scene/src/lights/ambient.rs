@@ -52,11 +52,11 @@ impl LightTracing for Ambient {
         None
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
         0.0
     }
 
-    fn emission_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+    fn emission_pdf(&self, _bounds: &Aabb, _pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
         0.0
     }
 

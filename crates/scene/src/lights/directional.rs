@@ -63,6 +63,7 @@ impl Light for Directional {
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -90,12 +91,12 @@ impl LightTracing for Directional {
         ray(bounds, Across::At(aim), -self.towards, self.irradiance, 1.0, 1.0)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
         1.0
     }
 
-    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct * disc_pdf_area(bounds)
+    fn emission_pdf(&self, bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start * disc_pdf_area(bounds)
     }
 
     fn is_infinite(&self) -> bool {

@@ -24,8 +24,8 @@ pub struct EmissionSample {
     /// fixed origin or direction counts as 1.
     pub pdf_emission: f32,
     /// The direct density, with which [`super::Light::sample_li`] samples this origin, over area; for an infinite light, this
-    /// direction, over solid angle. 1 for delta lights. If it depends on the receiver, this is the mean over the
-    /// light's area, and [`super::LightTracing::direct_pdf`] is exact.
+    /// direction, over solid angle. 1 for delta lights. If it depends on the receiver, this is the density with
+    /// which light subpaths begin here, and [`super::LightTracing::direct_pdf`] is exact.
     pub pdf_direct: f32,
     /// The triangle or sphere that it leaves; [`Primitive::NONE`] if there is none.
     pub primitive: Primitive,

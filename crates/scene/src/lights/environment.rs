@@ -102,6 +102,7 @@ impl Light for Environment {
             n_light: Vec3::ZERO,
             pdf_solid_angle: warp::sphere_pdf_solid_angle(),
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -143,12 +144,12 @@ impl LightTracing for Environment {
         ray(bounds, Across::At(aim), -towards, self.le(towards), pdf, pdf_direct)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        if self.backdrop { 0.0 } else { pdf_direct }
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        if self.backdrop { 0.0 } else { pdf_start }
     }
 
-    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        if self.backdrop { 0.0 } else { pdf_direct * disc_pdf_area(bounds) }
+    fn emission_pdf(&self, bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        if self.backdrop { 0.0 } else { pdf_start * disc_pdf_area(bounds) }
     }
 
     fn is_infinite(&self) -> bool {

@@ -227,7 +227,7 @@ impl Light for EnvironmentMap {
     fn sample_li(&self, _from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
         let (wi, place, pdf_solid_angle) = self.sample(&self.asked, u)?;
         let (li, n_light) = (self.le_at(place), Vec3::ZERO);
-        Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 })
+        Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0, pdf_start: None })
     }
 
     fn sample_li_each(&self, receivers: &[Receiver], samples: &mut Vec<Option<LightSample>>) {
@@ -251,7 +251,15 @@ impl Light for EnvironmentMap {
                 let wi = Vec3::new(directions[0][i], directions[1][i], directions[2][i]);
                 let pdf_solid_angle = self.pdf_at(&self.asked, place(i));
                 let (li, n_light) = (Rgb::BLACK, Vec3::ZERO);
-                let sample = LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 };
+                let sample = LightSample {
+                    wi,
+                    li,
+                    point: None,
+                    n_light,
+                    pdf_solid_angle,
+                    clearance: 0.0,
+                    pdf_start: None,
+                };
                 (pdf_solid_angle > 0.0).then_some(sample)
             }));
             for (i, sample) in samples[begin..].iter_mut().enumerate() {
@@ -336,11 +344,11 @@ impl LightTracing for EnvironmentMap {
         ray(bounds, Across::At(aim), -towards, self.le_at(place), pdf, self.pdf(&self.asked, towards))
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_start: f32, direction: Vec3, _cos: f32) -> f32 {
         self.pdf(&self.sent, -direction)
     }
 
-    fn emission_pdf(&self, bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+    fn emission_pdf(&self, bounds: &Aabb, _pdf_start: f32, direction: Vec3, _cos: f32) -> f32 {
         self.pdf(&self.sent, -direction) * disc_pdf_area(bounds)
     }
 

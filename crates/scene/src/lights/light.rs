@@ -115,17 +115,21 @@ pub trait LightTracing {
 
     /// The density ([`EmissionSample::pdf_emission`]) with which [`LightTracing::sample_le`] emits a ray along `direction`.
     ///
-    /// `direction` is a unit vector away from the light. `pdf_direct` is the direct density of the ray's origin
-    /// ([`EmissionSample::pdf_direct`], whose mean suffices if it depends on the receiver). `cos` is
-    /// [`EmissionSample::cos`].
-    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+    /// `direction` is a unit vector away from the light. `pdf_start` is [`EmissionSample::pdf_direct`] of the ray's origin, or
+    /// [`LightTracing::pdf_start`] of a point that was hit. `cos` is [`EmissionSample::cos`].
+    fn emission_pdf(&self, bounds: &Aabb, pdf_start: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// The density over area with which light subpaths begin at a point of its surface, which some point samples with the density `pdf_direct`.
+    fn pdf_start(&self, pdf_direct: f32, _hit: &Surface) -> f32 {
+        pdf_direct
+    }
 
     /// Like [`LightTracing::sample_le`], but aimed ([`LightTracing::aim`]): `u` picks the rest, the point on a finite light or the
     /// direction of an infinite one. The sample's `pdf_emission` is the density of the rest alone.
     fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample>;
 
     /// The density of the rest that [`LightTracing::sample_le_aimed`] picks; otherwise like [`LightTracing::emission_pdf`].
-    fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+    fn unaimed_pdf(&self, bounds: &Aabb, pdf_start: f32, direction: Vec3, cos: f32) -> f32;
 
     /// The aim of a ray of light through `p` along `direction`, as a point on the unit square.
     ///

@@ -160,6 +160,7 @@ impl Light for Luminaire {
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -198,12 +199,12 @@ impl LightTracing for Luminaire {
         super::point::ray(self.position, direction, self.per_candela * candela, shines)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start
     }
 
-    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct * (self.candela(direction) / self.lumens) as f32
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_start: f32, direction: Vec3, _cos: f32) -> f32 {
+        pdf_start * (self.candela(direction) / self.lumens) as f32
     }
 
     fn is_infinite(&self) -> bool {

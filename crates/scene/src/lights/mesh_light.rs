@@ -1,28 +1,29 @@
 //! Emissive triangle meshes. Not in the table: objects with an emissive material become mesh lights.
 
+mod subpaths;
+
 use super::cumulative::{Cumulative, CumulativePart};
 use super::light_triangle::{LightTriangle, TriangleSample, barycentric, blend, clearance};
 use super::near_triangles::NearTriangles;
-use super::picture::{Picture, weights_by_brightness};
-use super::{
-    ClassicLighting, DirectionCone, EmissionSample, Light, LightExtent, LightSample, LightTracing, Receiver,
-    Sides,
-};
+use super::picture::{Picture, pieces_by_brightness};
+use super::pieces::{Piece, Pieces};
+use super::{ClassicLighting, DirectionCone, Light, LightExtent, LightSample, Receiver, Sides};
 use crate::classic::ClassicLight;
-use crate::corners::transform_with_error;
-use crate::surface::{Surface, gamma};
+use crate::surface::Surface;
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
-use bilux_math::{Aabb, Frame, Rgb, Transform, Vec2, Vec3, warp};
+use bilux_math::{Aabb, Rgb, Transform, Vec2, Vec3};
 use std::any::Any;
 use std::f32::consts::{FRAC_PI_2, PI};
 
 /// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness; where there are many,
 /// points of the scene choose among them by where they are.
 ///
-/// Points are uniform within each triangle.
+/// Where a picture is uneven within triangles, they are cut into pieces, which are chosen like triangles. Points are uniform within each piece.
 pub struct MeshLight {
     triangles: Vec<[Vec3; 3]>,
+    pieces: Pieces,
+    /// Among all pieces, wherever the receiver is.
     choice: Cumulative,
     /// The object's first triangle, as in a hit.
     first: Primitive,
@@ -31,9 +32,9 @@ pub struct MeshLight {
     /// Half the root of its area in world space, when its motion begins.
     reach: f32,
     motion: Motion,
-    /// The triangles in world space; empty when they move.
+    /// The triangles in world space, each with the density of its first piece; empty when they move.
     static_triangles: Vec<LightTriangle>,
-    /// How points choose among these, if they are many and equally bright.
+    /// How points choose among their pieces, if they are many.
     near: Option<NearTriangles>,
     /// The mean radiance over its area.
     radiance: Rgb,
@@ -54,6 +55,19 @@ pub struct SurfaceEmission {
     pub sides: Sides,
 }
 
+/// A piece of a triangle that a point has chosen.
+pub struct ChosenPiece {
+    number: usize,
+    /// The triangle of the mesh.
+    pub triangle: usize,
+    /// The part of it.
+    pub piece: Piece,
+    /// The rest of the random number, from 0 to 1.
+    pub rest: f32,
+    /// The triangle in world space, with the density of points on the piece.
+    pub facet: LightTriangle,
+}
+
 impl MeshLight {
     /// A light from an object's object-space triangles; `None` when they have no area.
     ///
@@ -69,19 +83,19 @@ impl MeshLight {
     ) -> Option<MeshLight> {
         let to_world = motion.at(0.0);
         let is_finite = || triangles.iter().flatten().all(|p| to_world.point(*p).is_finite());
-        let is_even = picture.is_none() && motion.is_still();
-        let has_near = is_even && NearTriangles::is_for(triangles.len()) && is_finite();
-        // Then points are uniform in world space, whatever the scale along each axis.
-        let to_world = if has_near { to_world } else { Transform::IDENTITY };
+        let may_be_many = picture.is_some() || NearTriangles::is_for(triangles.len());
+        let may_have_near = may_be_many && motion.is_still() && is_finite();
+        // Then points are as dense in world space, whatever the scale along each axis.
+        let to_world = if may_have_near { to_world } else { Transform::IDENTITY };
         let area_of = |t: &[Vec3; 3]| f64::from(area(&t.map(|p| to_world.point(p))));
         let areas: Vec<f64> = triangles.iter().map(area_of).map(finite_or_zero).collect();
         let total: f64 = areas.iter().sum();
         if total <= 0.0 {
             return None;
         }
-        let (radiance, weights) = match &picture {
-            None => (radiance, areas.clone()),
-            Some(picture) => weights_by_brightness(picture, &areas),
+        let (pieces, radiance, weights) = match &picture {
+            None => (Pieces::WHOLE, radiance, areas.clone()),
+            Some(picture) => pieces_by_brightness(picture, &areas),
         };
         let choice = Cumulative::new(&weights);
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
@@ -90,6 +104,7 @@ impl MeshLight {
         let turn = if mirrored { -1.0 } else { 1.0 };
         let mut light = MeshLight {
             triangles,
+            pieces,
             choice,
             first,
             middle,
@@ -105,83 +120,95 @@ impl MeshLight {
         };
         light.reach = 0.5 * light.world_area(0.0).sqrt();
         if light.motion.is_still() {
-            light.static_triangles = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
+            light.static_triangles =
+                (0..light.triangles.len()).map(|i| light.facet(i * pieces.of_each(), 0.0)).collect();
         }
-        if has_near {
-            light.near = Some(NearTriangles::new(&light.static_triangles, sides == Sides::Both));
+        if may_have_near && NearTriangles::is_for(weights.len()) {
+            let piece_of = |(i, weight): (usize, &f64)| {
+                let LightTriangle { corners, normal, .. } = light.static_triangles[pieces.triangle(i)];
+                (pieces.piece(i).corners(&corners), normal, *weight as f32)
+            };
+            let all = weights.iter().enumerate().map(piece_of);
+            light.near = Some(NearTriangles::new(all, sides == Sides::Both));
         }
         Some(light)
     }
 
-    /// Picks a triangle for a point; returns its index, the rest of the random number, and the triangle with the density of its points.
-    /// `None` where none shines.
+    /// Picks a piece of a triangle for a point. `None` where none shines.
     #[inline]
-    pub fn choose(&self, from: Vec3, time: f32, u: f32) -> Option<(usize, f32, LightTriangle)> {
+    pub fn choose(&self, from: Vec3, time: f32, u: f32) -> Option<ChosenPiece> {
         let Some(near) = &self.near else {
-            let (triangle, rest) = self.choice.sample(u);
-            return Some((triangle, rest, self.facet(triangle, time)));
+            let (number, rest) = self.choice.sample(u);
+            return Some(self.chosen(number, rest, self.facet(number, time)));
         };
-        near.choose(from, u).map(|chosen| self.nearby(chosen, time))
+        near.choose(from, u).map(|found| self.nearby(found))
     }
 
     /// [`MeshLight::choose`] for each receiver, by the first of its numbers: faster than one by one.
     pub fn choose_each(
         &self,
         receivers: impl Iterator<Item = Receiver>,
-        mut chosen: impl FnMut(usize, Option<(usize, f32, LightTriangle)>),
+        mut chosen: impl FnMut(usize, Option<ChosenPiece>),
     ) {
         let Some(near) = &self.near else {
             receivers.enumerate().for_each(|(i, r)| chosen(i, self.choose(r.p, r.time, r.u.x)));
             return;
         };
-        // These triangles do not move.
         near.choose_each(receivers.map(|r| (r.p, r.u.x)), |i, found| {
-            chosen(i, found.map(|found| self.nearby(found, 0.0)));
+            chosen(i, found.map(|found| self.nearby(found)));
         });
     }
 
-    /// What a point has chosen, with the triangle.
+    /// A piece that was chosen by where the receiver is. These do not move.
     #[inline]
-    fn nearby(
-        &self,
-        (triangle, rest, pdf_area): (usize, f32, f32),
-        time: f32,
-    ) -> (usize, f32, LightTriangle) {
-        (triangle, rest, LightTriangle { pdf_area, ..self.facet(triangle, time) })
+    fn nearby(&self, (number, rest, pdf_area): (usize, f32, f32)) -> ChosenPiece {
+        self.chosen(number, rest, LightTriangle { pdf_area, ..self.facet(number, 0.0) })
     }
 
-    /// A point of the triangle that `from` has chosen, by what is left of the number that chose it, and another.
     #[inline]
-    fn sample_chosen(
-        &self,
-        from: Vec3,
-        u_y: f32,
-        (triangle, rest, facet): (usize, f32, LightTriangle),
-    ) -> Option<LightSample> {
-        let weights = barycentric(Vec2::new(rest, u_y));
-        let sample = TriangleSample::new(from, &facet, weights, self.sides);
+    fn chosen(&self, number: usize, rest: f32, facet: LightTriangle) -> ChosenPiece {
+        let (triangle, piece) = (self.pieces.triangle(number), self.pieces.piece(number));
+        ChosenPiece { number, triangle, piece, rest, facet }
+    }
+
+    /// A point of the piece that `from` has chosen, by another number.
+    #[inline]
+    fn sample_chosen(&self, from: Vec3, chosen: &ChosenPiece, u: f32, time: f32) -> Option<LightSample> {
+        let weights = chosen.piece.weights(barycentric(Vec2::new(chosen.rest, u)));
+        let sample = TriangleSample::new(from, &chosen.facet, weights, self.sides);
         (sample.pdf_solid_angle > 0.0).then(|| LightSample {
             wi: sample.wi,
-            li: self.radiance(triangle, weights),
+            li: self.radiance(chosen.triangle, weights),
             point: Some(sample.point),
             n_light: sample.n_light,
             pdf_solid_angle: sample.pdf_solid_angle,
             clearance: sample.clearance,
+            pdf_start: self.near.is_some().then(|| self.facet(chosen.number, time).pdf_area),
         })
     }
 
-    /// The density over area with which a point samples points of a triangle.
+    /// The density over area with which a point samples points of a piece.
     #[inline]
-    fn pdf_area_of(&self, from: Vec3, time: f32, triangle: usize) -> f32 {
-        let near = self.near.as_ref().map(|near| near.pdf_area(from, triangle));
-        let pdf = near.unwrap_or_else(|| self.facet(triangle, time).pdf_area);
-        if pdf.is_finite() { pdf } else { 0.0 }
+    fn pdf_area_of(&self, from: Vec3, time: f32, piece: usize) -> f32 {
+        let near = self.near.as_ref().map(|near| near.pdf_area(from, piece));
+        finite(near.unwrap_or_else(|| self.facet(piece, time).pdf_area))
     }
 
-    /// The density over area with which light subpaths begin at a point, where points of the scene sample it with `pdf_direct`.
+    /// The piece of one of its triangles in which a point lies at a time; `None` if the triangle is not one of its.
     #[inline]
-    fn start_pdf_area(&self, pdf_direct: f32) -> f32 {
-        self.near.as_ref().map_or(pdf_direct, NearTriangles::uniform_pdf_area)
+    fn piece_at(&self, primitive: Primitive, p: Vec3, time: f32) -> Option<usize> {
+        let triangle = primitive.index.wrapping_sub(self.first.index) as usize;
+        if primitive.instance != self.first.instance || triangle >= self.triangles.len() {
+            return None;
+        }
+        if self.pieces.of_each() == 1 {
+            return Some(triangle);
+        }
+        let [a, b, c] = self.corners(triangle, time);
+        let (second, third) = (b - a, c - a);
+        let across = second.cross(third);
+        let weights = Vec2::new((p - a).cross(third).dot(across), second.cross(p - a).dot(across));
+        Some(self.pieces.at(triangle, weights / across.length_squared()))
     }
 
     /// Its triangles with the random numbers that pick each, in their order, if they are few, do not move and emit
@@ -204,65 +231,40 @@ impl MeshLight {
         self.picture.as_ref().map_or(self.radiance, |picture| picture.at(triangle, weights))
     }
 
+    /// In world space.
+    #[inline]
     fn corners(&self, triangle: usize, time: f32) -> [Vec3; 3] {
+        if let Some(stored) = self.static_triangles.get(triangle) {
+            return stored.corners;
+        }
         let to_world = self.motion.at(time);
         self.triangles[triangle].map(|p| to_world.point(p))
     }
 
-    /// A triangle in world space at a time.
+    /// The triangle of a piece in world space at a time, with the density of points on the piece.
     #[inline]
-    pub fn facet(&self, triangle: usize, time: f32) -> LightTriangle {
-        if let Some(stored) = self.static_triangles.get(triangle) {
+    fn facet(&self, piece: usize, time: f32) -> LightTriangle {
+        let of_each = self.pieces.of_each();
+        if let (1, Some(stored)) = (of_each, self.static_triangles.get(piece)) {
             return *stored;
         }
-        let corners @ [a, b, c] = self.corners(triangle, time);
+        let corners @ [a, b, c] = self.corners(self.pieces.triangle(piece), time);
         let normal = (b - a).cross(c - a);
-        let pdf_area = self.choice.probability(triangle) / (0.5 * normal.length());
+        let pdf_area = self.choice.probability(piece) / (0.5 * normal.length() / of_each as f32);
         LightTriangle { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
     }
 
-    /// Picks a triangle, and barycentric coordinates uniform over it.
+    /// Picks a piece, and barycentric coordinates in its triangle, uniform over the piece.
     fn sample_weights(&self, u: Vec2) -> (usize, [f32; 3]) {
-        let (triangle, rest) = self.choice.sample(u.x);
-        (triangle, barycentric(Vec2::new(rest, u.y)))
+        let (number, rest) = self.choice.sample(u.x);
+        (number, self.pieces.piece(number).weights(barycentric(Vec2::new(rest, u.y))))
     }
 
-    /// Samples a point; returns it, its triangle and the emitted radiance.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, LightTriangle, Rgb) {
-        let (triangle, weights) = self.sample_weights(u);
-        let facet = self.facet(triangle, time);
-        (blend(&facet.corners, weights), facet, self.radiance(triangle, weights))
-    }
-
-    /// A point of a triangle and the bound on its error, both as for a hit there.
-    fn point_with_error(&self, triangle: usize, weights: [f32; 3], time: f32) -> (Vec3, Vec3) {
-        let own = &self.triangles[triangle];
-        let (p, error) = (blend(own, weights), blend(&own.map(Vec3::abs), weights) * gamma(7));
-        let to_world = self.motion.at(time);
-        if to_world.is_identity() { (p, error) } else { transform_with_error(&to_world, p, error) }
-    }
-
-    /// A ray from a point of a triangle, emitted with density `pdf_emission`; `None` if that is zero.
-    fn ray(
-        &self,
-        triangle: usize,
-        weights: [f32; 3],
-        time: f32,
-        direction: Vec3,
-        pdf_emission: f32,
-    ) -> Option<EmissionSample> {
-        let LightTriangle { normal, pdf_area, .. } = self.facet(triangle, time);
-        let (p, p_error) = self.point_with_error(triangle, weights, time);
-        (pdf_emission.is_finite() && pdf_emission > 0.0).then(|| EmissionSample {
-            p,
-            p_error,
-            n_light: if normal.dot(direction) < 0.0 { -normal } else { normal },
-            direction,
-            le: self.radiance(triangle, weights),
-            pdf_emission,
-            pdf_direct: pdf_area,
-            primitive: Primitive { index: self.first.index + triangle as u32, ..self.first },
-        })
+    /// Samples a point; returns it, and its triangle.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, LightTriangle) {
+        let (number, weights) = self.sample_weights(u);
+        let facet = self.facet(number, time);
+        (blend(&facet.corners, weights), facet)
     }
 
     fn middle(&self, time: f32) -> Vec3 {
@@ -276,6 +278,11 @@ impl MeshLight {
 
 fn area(t: &[Vec3; 3]) -> f32 {
     (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
+}
+
+/// 0 where a triangle has no area.
+fn finite(pdf: f32) -> f32 {
+    if pdf.is_finite() { pdf } else { 0.0 }
 }
 
 fn finite_or_zero(x: f64) -> f64 {
@@ -292,15 +299,15 @@ impl dyn Light {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        self.sample_chosen(from, u.y, self.choose(from, time, u.x)?)
+        self.sample_chosen(from, &self.choose(from, time, u.x)?, u.y, time)
     }
 
     fn sample_li_each(&self, receivers: &[Receiver], samples: &mut Vec<Option<LightSample>>) {
         samples.clear();
         samples.resize(receivers.len(), None);
         self.choose_each(receivers.iter().copied(), |i, chosen| {
-            let Receiver { p, u, .. } = receivers[i];
-            samples[i] = chosen.and_then(|chosen| self.sample_chosen(p, u.y, chosen));
+            let Receiver { p, time, u } = receivers[i];
+            samples[i] = chosen.and_then(|chosen| self.sample_chosen(p, &chosen, u.y, time));
         });
     }
 
@@ -311,16 +318,13 @@ impl Light for MeshLight {
     }
 
     fn pdf_area(&self, from: Vec3, hit: &Surface) -> f32 {
-        let triangle = hit.primitive.index.wrapping_sub(self.first.index) as usize;
-        if hit.primitive.instance != self.first.instance || triangle >= self.triangles.len() {
-            return 0.0;
-        }
-        self.pdf_area_of(from, hit.time, triangle)
+        let piece = self.piece_at(hit.primitive, hit.p, hit.time);
+        piece.map_or(0.0, |piece| self.pdf_area_of(from, hit.time, piece))
     }
 
     fn emits_towards(&self, hit: &Surface, wo: Vec3) -> bool {
-        let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
-        self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
+        let piece = || hit.primitive.index.wrapping_sub(self.first.index) as usize * self.pieces.of_each();
+        self.sides == Sides::Both || self.facet(piece(), hit.time).normal.dot(wo) > 0.0
     }
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
@@ -352,58 +356,10 @@ impl Light for MeshLight {
     }
 }
 
-impl LightTracing for MeshLight {
-    fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
-        let triangle = sample.primitive.index.wrapping_sub(self.first.index) as usize;
-        if self.near.is_some() { self.pdf_area_of(from, 0.0, triangle) } else { sample.pdf_direct }
-    }
-
-    fn sample_le(
-        &self,
-        bounds: &Aabb,
-        time: f32,
-        u_point: Vec2,
-        u_direction: Vec2,
-    ) -> Option<EmissionSample> {
-        let (triangle, weights) = self.sample_weights(u_point);
-        let LightTriangle { normal, pdf_area, .. } = self.facet(triangle, time);
-        let (n_light, u) = match self.sides {
-            Sides::Front => (normal, u_direction),
-            // Each side takes half of the random numbers.
-            Sides::Both if u_direction.x < 0.5 => (normal, Vec2::new(2.0 * u_direction.x, u_direction.y)),
-            Sides::Both => (-normal, Vec2::new(2.0 * u_direction.x - 1.0, u_direction.y)),
-        };
-        let direction = Frame::from_normal(n_light).to_world(warp::sample_cosine_hemisphere(u)).normalize();
-        let pdf_emission = self.emission_pdf(bounds, pdf_area, direction, n_light.dot(direction).abs());
-        self.ray(triangle, weights, time, direction, pdf_emission)
-    }
-
-    fn sample_le_aimed(&self, _: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
-        let (triangle, weights) = self.sample_weights(u);
-        let (LightTriangle { normal, pdf_area, .. }, direction) =
-            (self.facet(triangle, time), warp::square_to_sphere(aim).normalize());
-        let leaves = self.sides == Sides::Both || normal.dot(direction) > 0.0;
-        let pdf = self.start_pdf_area(pdf_area);
-        leaves.then(|| self.ray(triangle, weights, time, direction, pdf)).flatten()
-    }
-
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        self.start_pdf_area(pdf_direct)
-    }
-
-    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
-        self.start_pdf_area(pdf_direct) * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
-    }
-
-    fn is_infinite(&self) -> bool {
-        false
-    }
-}
-
 impl ClassicLighting for MeshLight {
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
-        let (point, LightTriangle { corners, normal, .. }, _) = self.sample_point(time, u);
+        let (point, LightTriangle { corners, normal, .. }) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
         let cos = normal.dot(wi);

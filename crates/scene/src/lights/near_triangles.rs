@@ -1,7 +1,6 @@
-//! The triangles of an emissive mesh of many, as a point of the scene chooses among them: by a tree of lights, each triangle a light. A mesh may
-//! be all lamps of a city.
+//! The triangles of an emissive mesh of many, or their pieces, as a point of the scene chooses among them: by a tree of lights, each triangle a
+//! light. A mesh may be all lamps of a city.
 
-use super::light_triangle::LightTriangle;
 use super::{DirectionCone, LightExtent, LightTree};
 use bilux_math::{Aabb, Vec3};
 use std::f32::consts::FRAC_PI_2;
@@ -12,13 +11,11 @@ const FEW: usize = 64;
 /// A mesh of more is chosen by area alone: a random number has no bits left for more.
 const MOST: usize = 1 << 20;
 
-/// A choice among the triangles of a mesh that emits evenly and does not move.
+/// A choice among the triangles of a mesh that does not move, or among their pieces.
 pub(super) struct NearTriangles {
     tree: LightTree,
     /// The area of each, in m².
     areas: Vec<f32>,
-    /// The density of a point that is uniform over all of them, per m².
-    uniform_pdf_area: f32,
 }
 
 impl NearTriangles {
@@ -27,23 +24,26 @@ impl NearTriangles {
         (FEW + 1..=MOST).contains(&count)
     }
 
-    /// A choice among triangles of the same radiance, in world space.
-    pub(super) fn new(triangles: &[LightTriangle], both_sides: bool) -> NearTriangles {
-        let area = |LightTriangle { corners: [a, b, c], .. }: &LightTriangle| {
-            let area = 0.5 * (*b - *a).cross(*c - *a).length();
+    /// A choice among pieces by their corners and normals, in world space, and their power in any unit.
+    pub(super) fn new(
+        pieces: impl Iterator<Item = ([Vec3; 3], Vec3, f32)>,
+        both_sides: bool,
+    ) -> NearTriangles {
+        let area = |[a, b, c]: [Vec3; 3]| {
+            let area = 0.5 * (b - a).cross(c - a).length();
             if area.is_finite() { area } else { 0.0 }
         };
-        let areas: Vec<f32> = triangles.iter().map(area).collect();
-        let extent = |LightTriangle { corners, normal, .. }: &LightTriangle| LightExtent {
-            bounds: Aabb::of_points(*corners),
-            facing: if *normal == Vec3::ZERO { DirectionCone::ALL } else { DirectionCone::of(*normal) },
+        let extent = |corners: [Vec3; 3], normal: Vec3| LightExtent {
+            bounds: Aabb::of_points(corners),
+            facing: if normal == Vec3::ZERO { DirectionCone::ALL } else { DirectionCone::of(normal) },
             spread: FRAC_PI_2,
             both_sides,
         };
-        let powers = areas.iter().map(|area| area.max(f32::MIN_POSITIVE));
-        let lights: Vec<(LightExtent, f32)> = triangles.iter().map(extent).zip(powers).collect();
-        let all: f64 = areas.iter().copied().map(f64::from).sum();
-        NearTriangles { tree: LightTree::new(&lights), areas, uniform_pdf_area: (1.0 / all) as f32 }
+        let light = |(corners, normal, power): ([Vec3; 3], Vec3, f32)| {
+            (area(corners), (extent(corners, normal), power.max(f32::MIN_POSITIVE)))
+        };
+        let (areas, lights): (Vec<f32>, Vec<(LightExtent, f32)>) = pieces.map(light).unzip();
+        NearTriangles { tree: LightTree::new(&lights), areas }
     }
 
     /// A triangle for a point, the rest of the random number, and the density of points on the triangle over area; `None` where none shines.
@@ -71,18 +71,12 @@ impl NearTriangles {
     pub(super) fn pdf_area(&self, from: Vec3, triangle: usize) -> f32 {
         self.tree.probability(from, triangle) / self.areas[triangle]
     }
-
-    /// The density of a point that is uniform over all triangles, per m².
-    #[inline]
-    pub(super) fn uniform_pdf_area(&self) -> f32 {
-        self.uniform_pdf_area
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lights::{Light, MeshLight, Sides, SurfaceEmission};
+    use crate::lights::{Light, LightTriangle, MeshLight, Sides, SurfaceEmission};
     use bilux_accel::Primitive;
     use bilux_math::hash::{hash_words, unit_f32};
     use bilux_math::motion::Motion;
@@ -105,11 +99,19 @@ mod tests {
         (0..2000).map(triangle).collect()
     }
 
+    /// The choice among triangles of the same radiance.
+    fn near(triangles: &[LightTriangle], both_sides: bool) -> NearTriangles {
+        let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
+        let piece = |t: &LightTriangle| (t.corners, t.normal, area(t.corners));
+        NearTriangles::new(triangles.iter().map(piece), both_sides)
+    }
+
     #[test]
     fn near_triangles_are_chosen_as_often_as_they_say_and_with_less_noise_than_by_area() {
         let triangles = scattered();
         for (from, both_sides) in [(Vec3::new(7.0, -0.5, 9.0), true), (Vec3::new(3.0, 4.0, 18.0), false)] {
-            let near = NearTriangles::new(&triangles, both_sides);
+            let near = near(&triangles, both_sides);
+            let uniform = 1.0 / near.areas.iter().sum::<f32>();
             let irradiance = |i: usize| {
                 let LightTriangle { corners: [a, ..], normal, .. } = triangles[i];
                 let cos = normal.dot((from - a).normalize());
@@ -134,7 +136,7 @@ mod tests {
             }
             let all: f64 = (0..triangles.len()).map(irradiance).sum();
             for i in 0..triangles.len() {
-                let probability = f64::from(near.uniform_pdf_area() * near.areas[i]);
+                let probability = f64::from(uniform * near.areas[i]);
                 if probability > 0.0 {
                     uniform_squares += irradiance(i) * irradiance(i) / probability;
                 }

@@ -1,5 +1,6 @@
 //! Emission that varies across a surface.
 
+use super::pieces::{Piece, Pieces};
 use crate::mesh::Mesh;
 use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_math::Rgb;
@@ -28,29 +29,47 @@ impl Picture {
             * self.mesh.opacity(opacity, corners, weights)
     }
 
-    /// The mean over a triangle, from the centres of its sixteen sub-triangles.
-    fn mean(&self, triangle: usize) -> Rgb {
-        let mut sum = Rgb::BLACK;
-        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-            // Every second sub-triangle is upside down.
-            let (i, j, third) = if i + j < 4 { (i, j, 1.0 / 3.0) } else { (7 - i - j, j, 2.0 / 3.0) };
-            let (u, v) = ((i as f32 + third) / 4.0, (j as f32 + third) / 4.0);
-            sum += self.at(triangle, [1.0 - u - v, u, v]);
-        }
-        sum / 16.0
+    /// The mean over a piece of a triangle, from the centres of its sixteen pieces.
+    fn mean(&self, triangle: usize, piece: Piece) -> Rgb {
+        let sixteenths = Pieces::up_to(16, 1);
+        let centre = |i| piece.weights(sixteenths.piece(i).weights([1.0 / 3.0; 3]));
+        (0..16).map(|i| self.at(triangle, centre(i))).sum::<Rgb>() / 16.0
     }
 }
 
-/// The minimum brightness of a triangle, relative to the mean: a few points may miss the bright parts of a triangle.
+/// The minimum brightness of a piece, relative to the mean: a few points may miss its bright parts.
 const MIN_SHARE: f64 = 0.1;
 
-/// The mean radiance over all triangles, and the unnormalised probability of each.
-pub(super) fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
+/// Triangles are cut where that gives up to so many pieces.
+const MAX_PIECES: usize = 1024;
+
+/// … and where the brightness within them has a standard deviation of more than this, relative to the mean.
+const UNEVEN: f64 = 0.25;
+
+/// How to cut the triangles of these areas, the mean radiance over all of them, and the unnormalised probability of each piece, whose mean is
+/// about the piece's area.
+pub(super) fn pieces_by_brightness(picture: &Picture, areas: &[f64]) -> (Pieces, Rgb, Vec<f64>) {
+    let mut pieces = Pieces::up_to(MAX_PIECES, areas.len());
+    let mean_of = |i| picture.mean(pieces.triangle(i), pieces.piece(i));
+    let mut means: Vec<Rgb> = (0..areas.len() * pieces.of_each()).map(mean_of).collect();
+    let of_triangle = |means: &[Rgb]| means.iter().copied().sum::<Rgb>() / means.len() as f32;
+    let wholes: Vec<Rgb> = means.chunks(pieces.of_each()).map(of_triangle).collect();
     let total: f64 = areas.iter().sum();
-    let means: Vec<Rgb> = (0..areas.len()).map(|i| picture.mean(i)).collect();
-    let mean: Rgb = means.iter().zip(areas).map(|(mean, area)| *mean * (area / total) as f32).sum();
-    let least = MIN_SHARE * f64::from(mean.luminance());
-    let weight = |(mean, area): (&Rgb, &f64)| area * (f64::from(mean.luminance()) + least);
-    let weights = if least > 0.0 { means.iter().zip(areas).map(weight).collect() } else { areas.to_vec() };
-    (mean, weights)
+    let mean: Rgb = wholes.iter().zip(areas).map(|(mean, area)| *mean * (area / total) as f32).sum();
+    let brightness = f64::from(mean.luminance());
+    let square = |x: f64| x * x;
+    let relative = |mean: &Rgb| f64::from(mean.luminance()) / brightness;
+    let spread = |((means, whole), area): ((&[Rgb], &Rgb), &f64)| {
+        let squares: f64 = means.iter().map(|mean| square(relative(mean) - relative(whole))).sum();
+        squares / means.len() as f64 * area / total
+    };
+    let spreads = means.chunks(pieces.of_each()).zip(&wholes).zip(areas).map(spread);
+    if !(spreads.sum::<f64>() > square(UNEVEN)) {
+        (pieces, means) = (Pieces::WHOLE, wholes);
+    }
+    let count = pieces.of_each();
+    let weight = |(i, mean)| areas[i / count] / count as f64 * (relative(mean) + MIN_SHARE);
+    let weights: Vec<f64> = means.iter().enumerate().map(weight).collect();
+    let is_usable = weights.iter().all(|weight| weight.is_finite());
+    if is_usable { (pieces, mean, weights) } else { (Pieces::WHOLE, mean, areas.to_vec()) }
 }

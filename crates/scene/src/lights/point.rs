@@ -65,6 +65,7 @@ impl Light for Point {
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -99,12 +100,12 @@ impl LightTracing for Point {
         ray(self.position, warp::square_to_sphere(aim).normalize(), self.intensity, 1.0)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start
     }
 
-    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct * warp::sphere_pdf_solid_angle()
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start * warp::sphere_pdf_solid_angle()
     }
 
     fn is_infinite(&self) -> bool {

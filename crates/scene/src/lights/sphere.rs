@@ -177,6 +177,7 @@ impl Light for SphereLight {
             n_light,
             pdf_solid_angle: warp::cap_pdf_solid_angle(cone.height),
             clearance: self.clearance(from, point, cos_light as f32),
+            pdf_start: None,
         })
     }
 
@@ -242,12 +243,12 @@ impl LightTracing for SphereLight {
         self.ray(n_light, direction, |cos| self.unaimed_pdf(bounds, 0.0, direction, cos))
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_start: f32, _direction: Vec3, cos: f32) -> f32 {
         warp::cosine_hemisphere_pdf_solid_angle(cos) / (self.sphere.radius * self.sphere.radius)
     }
 
     /// Rays start uniformly on the whole surface, whatever the receiver.
-    fn emission_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
+    fn emission_pdf(&self, _bounds: &Aabb, _pdf_start: f32, _direction: Vec3, cos: f32) -> f32 {
         self.uniform_pdf_area() * warp::cosine_hemisphere_pdf_solid_angle(cos)
     }
 

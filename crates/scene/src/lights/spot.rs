@@ -100,6 +100,7 @@ impl Light for Spot {
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -143,13 +144,13 @@ impl LightTracing for Spot {
         super::point::ray(self.position, direction, self.intensity * falloff, shines)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start
     }
 
-    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_start: f32, direction: Vec3, _cos: f32) -> f32 {
         let pdf = warp::cone_pdf_solid_angle(self.cos_outer);
-        if pdf.is_finite() && self.falloff(-direction) > 0.0 { pdf_direct * pdf } else { 0.0 }
+        if pdf.is_finite() && self.falloff(-direction) > 0.0 { pdf_start * pdf } else { 0.0 }
     }
 
     fn is_infinite(&self) -> bool {

@@ -42,6 +42,7 @@ impl Light for Sun {
             n_light: Vec3::ZERO,
             pdf_solid_angle: warp::cap_pdf_solid_angle(self.height),
             clearance: 0.0,
+            pdf_start: None,
         })
     }
 
@@ -79,12 +80,12 @@ impl LightTracing for Sun {
         ray(bounds, Across::At(aim), -self.direction(u), self.radiance, pdf, pdf)
     }
 
-    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start
     }
 
-    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        pdf_direct * disc_pdf_area(bounds)
+    fn emission_pdf(&self, bounds: &Aabb, pdf_start: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_start * disc_pdf_area(bounds)
     }
 
     fn is_infinite(&self) -> bool {

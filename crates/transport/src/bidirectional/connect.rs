@@ -140,8 +140,8 @@ pub(crate) fn to_light<const N: usize>(
     // A delta light has one certain point: its density over solid angle grows with the distance alone.
     let area_to_angle = distance.map_or(1.0, |distance| distance * distance / cos_light);
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
-    let pdf_emission =
-        task.context.emission.pdf(scene, index, z.at.p(), pdf_direct / area_to_angle, -sample.wi, cos_light);
+    let pdf_start = sample.pdf_start.unwrap_or(pdf_direct / area_to_angle);
+    let pdf_emission = task.context.emission.pdf(scene, index, z.at.p(), pdf_start, -sample.wi, cos_light);
     let ratio = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);

@@ -88,7 +88,8 @@ pub(crate) fn emitted(
     let from = surface.p + wo * surface.t;
     let pdf_area = light.pdf_area(from, surface);
     let cos = surface.n_geom.dot(wo).abs();
-    let pdf_emission = task.context.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
+    let pdf_start = light.pdf_start(pdf_area, surface);
+    let pdf_emission = task.context.emission.pdf(scene, index, surface.p, pdf_start, wo, cos);
     let often = approach.map_or(1.0, |approach| 1.0 + approach.ratio(scene, index));
     let pdf_direct =
         pdf_area * task.context.lights.probability(index, (!leaves_medium).then_some(from)) * often;

@@ -4,7 +4,8 @@ use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, run_at, vec3};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::CpuLevel;
 use bilux_scene::lights::{
-    CumulativePart, LightSample, LightTriangle, MeshLight, Receiver, Sides, TriangleSample, barycentric,
+    ChosenPiece, CumulativePart, LightSample, LightTriangle, MeshLight, Piece, Receiver, Sides,
+    TriangleSample, barycentric,
 };
 use bilux_scene::scene::SceneLight;
 
@@ -32,6 +33,8 @@ struct Triangles {
     corners: [Columns3; 3],
     normal: Columns3,
     pdf_area: Column,
+    /// The pieces of these triangles: where they begin, and their scale.
+    pieces: Columns3,
     /// The points that receive the light.
     from: Columns3,
     /// The sampler's numbers; the first of each is what is left after a triangle was chosen.
@@ -40,6 +43,16 @@ struct Triangles {
     rest: Column,
     probability: f32,
     sides: Sides,
+}
+
+impl Triangles {
+    /// The weights of a lane's point in its triangle.
+    #[inline(always)]
+    fn weights(&self, i: usize) -> [f32; 3] {
+        let [x, y, scale] = vec3(&self.pieces, i).to_array();
+        Piece { begin: Vec2::new(x, y), scale }
+            .weights(barycentric(Vec2::new(self.u[0].0[i], self.u[1].0[i])))
+    }
 }
 
 impl Default for LightSamples {
@@ -57,6 +70,7 @@ impl Default for LightSamples {
                 corners: [ZERO3; 3],
                 normal: ZERO3,
                 pdf_area: Column::ZERO,
+                pieces: ZERO3,
                 from: ZERO3,
                 u: [Column::ZERO; 2],
                 rest: Column::ZERO,
@@ -139,34 +153,43 @@ impl LightSamples {
                 run_at(level, Pick { samples, triangle: &triangle });
             }
             samples.triangles.u[0] = samples.triangles.rest;
+            samples.triangles.pieces = WHOLE;
             run_at(level, SampleTriangles { samples });
             run_at(level, Emit { samples, radiance: &mesh.radiance(0, [0.0; 3]) });
             return;
         }
-        let mut indices = [0; LANES];
+        let mut chosen_triangles = [0; LANES];
         samples.receivers.clear();
         samples.receivers.extend((0..count).map(|i| receiver(i, times, p, u)));
         mesh.choose_each(samples.receivers.iter().copied(), |i, chosen| {
             // No triangle shines here, unless one is chosen.
             samples.triangles.pdf_area.0[i] = 0.0;
-            let Some((index, rest, LightTriangle { corners, normal, pdf_area })) = chosen else { return };
-            (indices[i], u[0].0[i]) = (index, rest);
+            let Some(ChosenPiece { triangle, piece, rest, facet, .. }) = chosen else { return };
+            (chosen_triangles[i], u[0].0[i]) = (triangle, rest);
+            let LightTriangle { corners, normal, pdf_area } = facet;
             for (columns, corner) in samples.triangles.corners.iter_mut().zip(corners) {
                 put(columns, i, corner.to_array());
             }
             put(&mut samples.triangles.normal, i, normal.to_array());
             samples.triangles.pdf_area.0[i] = pdf_area;
+            put(&mut samples.triangles.pieces, i, [piece.begin.x, piece.begin.y, piece.scale]);
         });
         samples.triangles.u[0] = u[0];
         run_at(level, SampleTriangles { samples });
-        for (i, &triangle) in indices.iter().enumerate().take(count) {
+        for (i, &triangle) in chosen_triangles.iter().enumerate().take(count) {
             let is_there = samples.pdf.0[i] > 0.0;
-            let weights = || barycentric(Vec2::new(u[0].0[i], u[1].0[i]));
+            let weights = || samples.triangles.weights(i);
             let li = if is_there { mesh.radiance(triangle, weights()) } else { Rgb::BLACK };
             put(&mut samples.li, i, li.to_array());
         }
     }
 }
+
+/// The whole triangle, in every lane.
+const WHOLE: Columns3 = {
+    let Piece { begin, scale } = Piece::WHOLE;
+    [Column([begin.x; LANES]), Column([begin.y; LANES]), Column([scale; LANES])]
+};
 
 /// The point of a lane that light falls on.
 #[inline]
@@ -235,7 +258,7 @@ impl Stage for SampleTriangles<'_> {
             let corners: [Vec3; 3] = [vec3(a, i), vec3(b, i), vec3(c, i)];
             let normal = vec3(&triangles.normal, i);
             let triangle = LightTriangle { corners, normal, pdf_area: triangles.pdf_area.0[i] };
-            let weights = barycentric(Vec2::new(triangles.u[0].0[i], triangles.u[1].0[i]));
+            let weights = triangles.weights(i);
             let sample = TriangleSample::new(vec3(&triangles.from, i), &triangle, weights, sides);
             put(wi, i, sample.wi.to_array());
             put(towards, i, sample.point.to_array());

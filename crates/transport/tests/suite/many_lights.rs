@@ -3,9 +3,9 @@
 
 use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks};
 use crate::common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::generators::shapes::icosphere;
-use bilux_scene::{Mesh, Scene, SceneBuilder, Spec};
+use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{LightChoice, PixelIntegrator, RenderSettings, integrators};
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn one_of_them_is_chosen_at_a_time() {
 }
 
 /// The same things under one mesh of a dozen balls of 80 triangles each, from close to the floor to far above it, that glow on the outside.
-fn mesh_of_lamps(radiance: f32) -> SceneBuilder {
+pub(crate) fn mesh_of_lamps(radiance: f32) -> SceneBuilder {
     let mut builder = large_lights();
     builder.lights.clear();
     let mut all: Option<Mesh> = None;
@@ -70,6 +70,51 @@ fn mesh_of_lamps(radiance: f32) -> SceneBuilder {
     let glow = diffuse(0.2f32).with("emission", radiance).with("emission_sides", "front");
     put(&mut builder, "lamps", Arc::new(all.unwrap()), glow);
     builder
+}
+
+/// The mesh of lamps in front of a picture: a third of the balls' triangles are black, and others many times as bright as the rest.
+pub(crate) fn painted_lamps(scale: f32) -> SceneBuilder {
+    let mut builder = mesh_of_lamps(1.0);
+    let lamps = builder.objects.iter_mut().find(|object| object.name == "lamps").unwrap();
+    let mesh = Arc::make_mut(&mut lamps.mesh);
+    mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(p.x + p.z, p.y - p.z) * 0.7).collect();
+    paint(&mut builder, scale);
+    builder
+}
+
+/// A screen of two triangles with the same picture, close to the floor.
+pub(crate) fn screen(scale: f32) -> SceneBuilder {
+    let mut builder = large_lights();
+    builder.lights.clear();
+    let mut screen = Mesh::clone(&quad(Vec3::new(-1.5, 0.1, -1.2), Vec3::X * 3.0, Vec3::Y * 1.4));
+    screen.uvs = screen.positions.iter().map(|p| Vec2::new(p.x * 0.3 + 0.5, p.y * 0.6)).collect();
+    put(&mut builder, "lamps", Arc::new(screen), diffuse(0.2f32));
+    paint(&mut builder, scale);
+    builder
+}
+
+/// Makes the last object glow by a picture.
+fn paint(builder: &mut SceneBuilder, scale: f32) {
+    let texel = |i: usize| Rgb::new(1.0, 0.7, 0.4) * [0.0, 9.0, 2.0, 0.0, 1.0, 1.0][(i + i / 8) % 6];
+    builder.textures = vec![Arc::new(Texture::new("paint", 8, 8, (0..64).map(texel).collect(), false))];
+    let parameters = &mut builder.materials.last_mut().unwrap().parameters;
+    parameters.set("emission", Value::Texture(0));
+    parameters.set("emission_scale", scale);
+}
+
+#[test]
+fn painted_lamps_look_the_same_from_both_ends() {
+    let right = built(&painted_lamps(1.0));
+    assert_like_path("painted lamps", &right, &["light", "bdpt", "vcm"]);
+    assert_unlike_path(&right, &built(&painted_lamps(0.93)), &["bdpt"]);
+}
+
+#[test]
+fn a_screen_looks_the_same_from_both_ends() {
+    let right = built(&screen(1.0));
+    assert_like_path("screen", &right, &["light", "bdpt", "vcm"]);
+    assert_unlike_path(&right, &built(&screen(0.93)), &["bdpt"]);
+    assert_same_by_all_samplings(&right);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, mixed, put, shoot, sky, still_life,
 };
+use crate::many_lights::{mesh_of_lamps, painted_lamps, screen};
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
@@ -252,6 +253,22 @@ fn mirrors_and_smooth_glass_are_the_same() {
     // Roulette begins within the glass.
     let deep = RenderSettings { max_depth: 40, ..settings() };
     assert_same_with("smooth, many bounces", &built(&scene), &deep);
+}
+
+/// Their vertices go down the tree of a mesh together; alone, and as one of many lights.
+#[test]
+fn meshes_of_many_triangles_or_pieces_are_the_same() {
+    for (name, scene) in
+        [("lamps", mesh_of_lamps(3.0)), ("painted lamps", painted_lamps(1.0)), ("screen", screen(1.0))]
+    {
+        assert_same(name, &built(&scene));
+        let mut many = scene;
+        for i in 0..4 {
+            let lamp = Spec::new("", "point").with("position", Vec3::new(i as f32 - 1.5, 1.0, 1.0));
+            many.lights.push(lamp.with("intensity", 0.2f32));
+        }
+        assert_same(&format!("{name} and others"), &built(&many));
+    }
 }
 
 #[test]

@@ -110,6 +110,44 @@ fn by_picture(sides: f64) -> LightCase {
     LightCase { power: Some(mean * 0.8 * 0.5 * TAU * sides), ..placed }
 }
 
+/// A ball of so many levels whose emission is a picture, flattened and mirrored: its triangles are whole or cut. A quarter of it is black.
+fn ball_with_a_picture(levels: u32) -> LightCase {
+    let texel = |i: usize| RADIANCE * [0.0, 3.0, 0.3, 0.0, 0.2, 1.0][(i + i / 8) % 6];
+    let picture = Texture::new("spots", 8, 8, (0..64).map(texel).collect(), false);
+    let mut ball = icosphere(Vec3::ZERO, 0.4, levels);
+    ball.uvs = ball.positions.iter().map(|p| Vec2::new(p.x, p.y) + Vec2::splat(0.5)).collect();
+    let to_world = DMat4::from_translation(DVec3::new(-0.5, 3.0, 0.5))
+        * DMat4::from_rotation_x(0.7)
+        * DMat4::from_scale(DVec3::new(-1.5, 0.5, 0.9));
+    let to_world = Transform::from_matrix(to_world).unwrap();
+    let area_and_radiance = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| to_world.point(ball.positions[i as usize]).as_dvec3());
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let cells = (0..64 * 64).filter(|i| i % 64 + i / 64 < 64);
+        let uvs = t.map(|i| ball.uvs[i as usize]);
+        // Two points of each cell but those at the far edge, which have one.
+        let points = cells.flat_map(|i| {
+            let (x, y) = ((i % 64) as f32, (i / 64) as f32);
+            [1.0 / 3.0, 2.0 / 3.0].map(|third| ((x + third) / 64.0, (y + third) / 64.0))
+        });
+        let inside: Vec<_> = points.filter(|(v, w)| v + w < 1.0).collect();
+        let at = |&(v, w): &(f32, f32)| {
+            f64::from(picture.at_one(uvs[0] * (1.0 - v - w) + uvs[1] * v + uvs[2] * w).luminance())
+        };
+        area * inside.iter().map(at).sum::<f64>() / inside.len() as f64
+    };
+    let power = ball.triangles.iter().map(area_and_radiance).sum::<f64>() * 0.5 * TAU;
+    let name = format!("ball of {levels} levels with a picture");
+    let placed = case(&name, 0.0, |builder| {
+        builder.textures.push(Arc::new(picture));
+        let glowing = Spec::new("spots", "diffuse").with("emission", Value::Texture(0));
+        let material = builder.add_material(glowing.with("emission_sides", "front"));
+        let lamp = Object::new("lamp", Arc::new(ball), material);
+        builder.objects.push(Object { motion: Motion::still(to_world), ..lamp });
+    });
+    LightCase { power: Some(power), ..placed }
+}
+
 /// A lamp that is turned, with angles at uneven distances, other intensities in all of them, and none in many directions.
 fn luminaire(goniometer: Goniometer) -> LightCase {
     let azimuths = match goniometer {
@@ -180,7 +218,7 @@ fn cases() -> Vec<LightCase> {
     let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
     let picture =
         Arc::new(Texture::new("", 64, 32, (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(), false));
-    cases.extend([by_picture(1.0), by_picture(2.0)]);
+    cases.extend([by_picture(1.0), by_picture(2.0), ball_with_a_picture(1), ball_with_a_picture(3)]);
     cases.push(case("picture", 0.0, |builder| {
         builder.textures.push(picture);
         let spec = Spec::new("", "environment").with("radiance", Value::Texture(0));
@@ -216,6 +254,8 @@ enum Defect {
     Picked(fn(LightSample) -> LightSample),
     /// In the density with which a start is sampled.
     Density(fn(f32, &EmissionSample) -> f32),
+    /// In the density with which light subpaths begin where a point is hit that was sampled with another.
+    Start(fn(f32, f32) -> f32),
 }
 
 impl Light for BuggyLight {
@@ -257,6 +297,11 @@ impl LightTracing for BuggyLight {
     fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
         let pdf = self.light.direct_pdf(sample, from);
         if let Defect::Density(defect) = self.defect { defect(pdf, sample) } else { pdf }
+    }
+
+    fn pdf_start(&self, pdf_direct: f32, hit: &Surface) -> f32 {
+        let pdf = self.light.pdf_start(pdf_direct, hit);
+        if let Defect::Start(defect) = self.defect { defect(pdf, pdf_direct) } else { pdf }
     }
 
     fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u: Vec2) -> Option<EmissionSample> {
@@ -422,6 +467,24 @@ const PLANTED: &[Bug] = &[
     (
         "a density that forgets who asks",
         "near sphere",
+        "direct sampling finds the emitted light",
+        Defect::Density(|_, s| s.pdf_direct),
+    ),
+    (
+        "a start as often as the receiver asks",
+        "panel with a picture on 1 sides",
+        "direct sampling finds the emitted light",
+        Defect::Start(|_, pdf_direct| pdf_direct),
+    ),
+    (
+        "a connection that knows only how often it was made",
+        "ball of 3 levels with a picture",
+        "sampled points are hit with the same density",
+        Defect::Picked(|s| LightSample { pdf_start: None, ..s }),
+    ),
+    (
+        "the density of a start for all who ask",
+        "ball of 1 levels with a picture",
         "direct sampling finds the emitted light",
         Defect::Density(|_, s| s.pdf_direct),
     ),
