@@ -64,7 +64,8 @@ pub(super) fn pieces_by_brightness(picture: &Picture, areas: &[f64]) -> (Pieces,
         squares / means.len() as f64 * area / total
     };
     let spreads = means.chunks(pieces.of_each()).zip(&wholes).zip(areas).map(spread);
-    if !(spreads.sum::<f64>() > square(UNEVEN)) {
+    let is_uneven = spreads.sum::<f64>() > square(UNEVEN);
+    if !is_uneven {
         (pieces, means) = (Pieces::WHOLE, wholes);
     }
     let count = pieces.of_each();
