@@ -30,9 +30,12 @@ pub use blob::Blob;
 pub use error::EncodingError;
 pub use hash::ContentHash;
 
+use bilux_scene::texture::Texels;
 use bilux_scene::{SceneBuilder, Spec};
 use code::{Coded, Decoder, Encoder};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use tables::ReadTables;
 
 /// What a document begins with.
@@ -58,6 +61,7 @@ pub struct EncodedScene {
 /// # Errors
 /// If a texture is computed by code of the calling program.
 pub fn encode(scene: &SceneBuilder) -> Result<EncodedScene, EncodingError> {
+    hash_images(scene);
     let mut body = Encoder::default();
     scene.write(&mut body);
     let tables = std::mem::take(&mut body.tables);
@@ -114,6 +118,7 @@ fn decode_content<'b>(
 
 /// The hash of what pictures of a scene show, without names, places in files and the like; and of more specs and a text.
 pub(crate) fn hash_what_is_seen(scene: &SceneBuilder, more: &[&Spec], text: &str) -> ContentHash {
+    hash_images(scene);
     let mut body = Encoder::default();
     scene::write_what_is_seen(scene, &mut body);
     more.iter().for_each(|spec| spec.write(&mut body));
@@ -123,6 +128,17 @@ pub(crate) fn hash_what_is_seen(scene: &SceneBuilder, more: &[&Spec], text: &str
     std::mem::take(&mut body.tables).write(&mut whole);
     whole.bytes.append(&mut body.bytes);
     ContentHash::of(&whole.bytes)
+}
+
+/// Computes the hashes of the textures' images side by side. They are known when the images are written one by one.
+fn hash_images(scene: &SceneBuilder) {
+    let mut images: Vec<_> = scene.textures.iter().map(|texture| &texture.image).collect();
+    images.retain(|image| !matches!(image.texels, Texels::Formula(_)));
+    images.sort_by_key(|image| Arc::as_ptr(image));
+    images.dedup_by_key(|image| Arc::as_ptr(image));
+    images.into_par_iter().with_max_len(1).for_each(|image| {
+        Blob::Image(image.clone()).hash();
+    });
 }
 
 #[cfg(test)]
