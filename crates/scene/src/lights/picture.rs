@@ -17,6 +17,8 @@ pub struct Picture {
     pub uvs: Vec<[UvPair; 3]>,
     /// The mesh, whose vertices may have factors on emission and opacity.
     pub mesh: Arc<Mesh>,
+    /// Into how many pieces its triangles may be cut.
+    pub max_pieces: usize,
 }
 
 impl Picture {
@@ -40,16 +42,16 @@ impl Picture {
 /// The minimum brightness of a piece, relative to the mean: a few points may miss its bright parts.
 const MIN_SHARE: f64 = 0.1;
 
-/// Triangles are cut where that gives up to so many pieces.
+/// The pieces of one picture are no more than these: each takes a few bytes and microseconds.
 const MAX_PIECES: usize = 1024;
 
-/// … and where the brightness within them has a standard deviation of more than this, relative to the mean.
+/// Triangles are cut where the brightness within them has a standard deviation of more than this, relative to the mean.
 const UNEVEN: f64 = 0.25;
 
 /// How to cut the triangles of these areas, the mean radiance over all of them, and the unnormalised probability of each piece, whose mean is
 /// about the piece's area.
 pub(super) fn pieces_by_brightness(picture: &Picture, areas: &[f64]) -> (Pieces, Rgb, Vec<f64>) {
-    let mut pieces = Pieces::up_to(MAX_PIECES, areas.len());
+    let mut pieces = Pieces::up_to(picture.max_pieces.min(MAX_PIECES), areas.len());
     let mean_of = |i| picture.mean(pieces.triangle(i), pieces.piece(i));
     let mut means: Vec<Rgb> = (0..areas.len() * pieces.of_each()).map(mean_of).collect();
     let of_triangle = |means: &[Rgb]| means.iter().copied().sum::<Rgb>() / means.len() as f32;

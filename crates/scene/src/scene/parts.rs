@@ -3,7 +3,7 @@
 use super::clearance::Clearance;
 use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
-use super::mesh_lights::MeshLights;
+use super::mesh_lights::{MeshLights, max_pieces};
 use super::scene_light::SceneLight;
 use super::shading::ObjectShading;
 use crate::cameras::Camera;
@@ -67,10 +67,11 @@ impl SceneParts {
         mesh_lights: &mut MeshLights,
     ) -> SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
+        let max_pieces = max_pieces(&geometry, &materials);
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
             let classic = of_lights.panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
             let material = &materials[object.material as usize];
-            if let Some(light) = mesh_lights.of_object(&geometry, i as u32, material, classic) {
+            if let Some(light) = mesh_lights.of_object(&geometry, i as u32, material, classic, max_pieces) {
                 object_lights[i] = Some(lights.len() as u32);
                 lights.push(SceneLight::new(&object.mesh.name, light));
             }
