@@ -66,16 +66,8 @@ impl SceneParts {
         textures: Vec<Vec<Arc<Texture>>>,
         mesh_lights: &mut MeshLights,
     ) -> SceneParts {
-        let mut object_lights = vec![None; geometry.objects().len()];
-        let max_pieces = max_pieces(&geometry, &materials);
-        for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
-            let classic = of_lights.panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
-            let material = &materials[object.material as usize];
-            if let Some(light) = mesh_lights.of_object(&geometry, i as u32, material, classic, max_pieces) {
-                object_lights[i] = Some(lights.len() as u32);
-                lights.push(SceneLight::new(&object.mesh.name, light));
-            }
-        }
+        let mut object_lights =
+            emissive_objects(&geometry, &materials, of_lights.panels, &mut lights, mesh_lights);
         for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(of_lights.spheres).enumerate() {
             let material = &materials[sphere.material as usize];
             let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
@@ -150,4 +142,25 @@ impl SceneParts {
             }
         }
     }
+}
+
+/// Adds the lights of emissive objects, and says which light each object is.
+fn emissive_objects(
+    geometry: &Geometry,
+    materials: &[Arc<dyn Material>],
+    panels: &[(usize, Rgb)],
+    lights: &mut Vec<SceneLight>,
+    mesh_lights: &mut MeshLights,
+) -> Vec<Option<u32>> {
+    let mut object_lights = vec![None; geometry.objects().len()];
+    let max_pieces = max_pieces(geometry, materials);
+    for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
+        let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
+        let material = &materials[object.material as usize];
+        if let Some(light) = mesh_lights.of_object(geometry, i as u32, material, classic, max_pieces) {
+            object_lights[i] = Some(lights.len() as u32);
+            lights.push(SceneLight::new(&object.mesh.name, light));
+        }
+    }
+    object_lights
 }
