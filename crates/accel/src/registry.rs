@@ -8,7 +8,7 @@ use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every available structure.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[
+pub static ACCELERATORS: &[AcceleratorEntry] = &[
     brute_force::ENTRY,
     brute_simd::ENTRY,
     bsp::paper::ENTRY,

@@ -43,7 +43,7 @@ pub struct Surroundings {
 }
 
 /// All surroundings that need no file.
-pub const SURROUNDINGS: &[Surroundings] = &[
+pub static SURROUNDINGS: &[Surroundings] = &[
     // The studio adds nothing to lights of the scene's own.
     Surroundings { name: "none", apply: |scene| scene.environment_unspecified = false },
     Surroundings {

@@ -64,7 +64,7 @@ macro_rules! rows {
 }
 
 /// Every table.
-pub const TABLES: &[Table] = &[
+pub static TABLES: &[Table] = &[
     Table {
         name: "integrators",
         summary: "light-transport algorithms",

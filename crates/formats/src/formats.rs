@@ -15,7 +15,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// All scene formats.
-pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
+pub static SCENE_FORMATS: &[SceneFormatEntry] = &[
     asc::ENTRY,
     gltf::ENTRY,
     fbx::ENTRY,

@@ -216,7 +216,7 @@ pub struct AovEntry {
 }
 
 /// All AOVs.
-pub const AOVS: &[AovEntry] = &[
+pub static AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
             name: "strategies",

@@ -21,7 +21,7 @@ pub struct FilterEntry {
 }
 
 /// All filters; the first is the default.
-pub const FILTERS: &[FilterEntry] = &[
+pub static FILTERS: &[FilterEntry] = &[
     FilterEntry { entry: filter("box", "constant over the pixel", ""), radius: 0.5, shape: |_| 1.0 },
     FilterEntry {
         entry: filter("tent", "linear fall-off to the neighbours' centres", ""),

@@ -52,7 +52,7 @@ use bilux_accel::TriangleMesh;
 use bilux_math::registry::Entry;
 
 /// Every available algorithm.
-pub const VISIBILITY: &[VisibilityEntry] = &[
+pub static VISIBILITY: &[VisibilityEntry] = &[
     painter::ENTRY,
     newell::ENTRY,
     warnock::ENTRY,

@@ -31,7 +31,7 @@ pub use options::Options;
 use row::Row;
 
 /// Everything that can be measured, in the order of the table.
-pub const MEASUREMENTS: &[Measurement] = &[
+pub static MEASUREMENTS: &[Measurement] = &[
     cornell_rows::PATH,
     cornell_rows::BIDIRECTIONAL,
     model::MEASUREMENT,

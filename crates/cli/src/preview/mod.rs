@@ -23,7 +23,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// All protocols; the first that is detected is taken. Blocks are last: every terminal has them.
-const PROTOCOLS: &[Protocol] = &[kitty::ENTRY, iterm::ENTRY, sixel::ENTRY, blocks::ENTRY];
+static PROTOCOLS: &[Protocol] = &[kitty::ENTRY, iterm::ENTRY, sixel::ENTRY, blocks::ENTRY];
 
 /// What `--preview` asks for.
 #[derive(Clone, Copy)]

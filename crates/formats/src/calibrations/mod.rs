@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// All formats of calibrated cameras.
-const CALIBRATION_FORMATS: &[CalibrationFormatEntry] =
+static CALIBRATION_FORMATS: &[CalibrationFormatEntry] =
     &[colmap::BINARY, colmap::TEXT, transforms::FORMAT, opencv::FORMAT];
 
 /// A row of [`CALIBRATION_FORMATS`].

@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// All formats of grids.
-pub(crate) const GRID_FORMATS: &[GridFormatEntry] = &[vdb::OPEN, vdb::NANO, npy::FORMAT, vol::FORMAT];
+pub(crate) static GRID_FORMATS: &[GridFormatEntry] = &[vdb::OPEN, vdb::NANO, npy::FORMAT, vol::FORMAT];
 
 /// A row of [`GRID_FORMATS`].
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// All formats of luminaires.
-pub(crate) const LUMINAIRE_FORMATS: &[LuminaireFormatEntry] = &[ies::FORMAT, eulumdat::FORMAT];
+pub(crate) static LUMINAIRE_FORMATS: &[LuminaireFormatEntry] = &[ies::FORMAT, eulumdat::FORMAT];
 
 /// A row of [`LUMINAIRE_FORMATS`].
 #[derive(Clone, Copy, Debug)]

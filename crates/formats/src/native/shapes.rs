@@ -15,7 +15,7 @@ pub struct ShapeEntry {
 }
 
 /// Every value of `shape` in a `[[model]]`.
-pub const SHAPES: &[ShapeEntry] = &[
+pub static SHAPES: &[ShapeEntry] = &[
     ShapeEntry {
         entry: Entry {
             name: "floor",

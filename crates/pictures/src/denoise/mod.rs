@@ -19,7 +19,7 @@ use std::time::Duration;
 pub use task::{Denoiser, DenoiserEntry, Task};
 
 /// Every available denoiser, best first.
-pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
+pub static DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
 
 /// A chosen denoiser, with its expected time and advice.
 pub struct DenoiserChoice {

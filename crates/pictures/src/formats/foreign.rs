@@ -31,7 +31,7 @@ const fn other(what: &'static str, advice: &'static str, is_like: fn(&[u8]) -> b
 }
 
 /// The formats that are recognised, the most specific first.
-pub const FOREIGN_FORMATS: &[ForeignFormat] = &[
+pub static FOREIGN_FORMATS: &[ForeignFormat] = &[
     picture("a GIF picture", |b| b.starts_with(b"GIF87a") || b.starts_with(b"GIF89a")),
     picture("an AVIF picture", |b| has_brand(b, &[b"avif", b"avis"])),
     picture("a HEIC picture, as phones take them", |b| {

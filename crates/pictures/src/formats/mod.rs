@@ -39,7 +39,7 @@ use bilux_math::registry::Entry;
 use std::path::Path;
 
 /// Every available format.
-pub const PICTURE_FORMATS: &[PictureFormatEntry] = &[
+pub static PICTURE_FORMATS: &[PictureFormatEntry] = &[
     png::ENTRY,
     exr::ENTRY,
     hdr::ENTRY,

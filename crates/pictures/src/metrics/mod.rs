@@ -20,7 +20,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
 /// Every available metric.
-pub const METRICS: &[MetricEntry] =
+pub static METRICS: &[MetricEntry] =
     &[rmse::ENTRY, relmse::ENTRY, max::ENTRY, psnr::ENTRY, ssim::ENTRY, flip::ENTRY];
 
 /// One metric.

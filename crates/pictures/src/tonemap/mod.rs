@@ -17,7 +17,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
 /// Every available curve; the first does nothing.
-pub const TONEMAPS: &[ToneMapEntry] =
+pub static TONEMAPS: &[ToneMapEntry] =
     &[none::ENTRY, agx::ENTRY, neutral::ENTRY, aces::ENTRY, reinhard::ENTRY];
 
 /// One curve.

@@ -181,7 +181,7 @@ pub struct BsdfEntry {
 }
 
 /// All lobes.
-pub const BSDFS: &[BsdfEntry] = &[
+pub static BSDFS: &[BsdfEntry] = &[
     super::lambert::ENTRY,
     super::mirror::ENTRY,
     super::conductor::ENTRY,

@@ -157,7 +157,7 @@ pub struct CameraEntry {
 }
 
 /// All cameras.
-pub const CAMERAS: &[CameraEntry] = &[
+pub static CAMERAS: &[CameraEntry] = &[
     perspective::ENTRY,
     orthographic::ENTRY,
     irradiance::ENTRY,

@@ -41,7 +41,7 @@ pub struct GeneratorEntry {
 }
 
 /// All generated scenes.
-pub const GENERATORS: &[GeneratorEntry] = &[
+pub static GENERATORS: &[GeneratorEntry] = &[
     trio::ENTRY,
     teapots::ENTRY,
     teapot::ENTRY,

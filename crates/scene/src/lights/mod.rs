@@ -97,7 +97,7 @@ pub struct LightEntry {
 }
 
 /// All lights.
-pub const LIGHTS: &[LightEntry] = &[
+pub static LIGHTS: &[LightEntry] = &[
     point::ENTRY,
     directional::ENTRY,
     spot::ENTRY,

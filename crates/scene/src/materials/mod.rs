@@ -95,7 +95,7 @@ pub fn metal_indices(name: &str) -> Option<[Rgb; 2]> {
 }
 
 /// All materials.
-pub const MATERIALS: &[MaterialEntry] = &[
+pub static MATERIALS: &[MaterialEntry] = &[
     phong::ENTRY,
     diffuse::ENTRY,
     translucent::ENTRY,

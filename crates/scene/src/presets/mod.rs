@@ -32,7 +32,7 @@ pub struct PresetEntry {
 }
 
 /// All presets.
-pub const PRESETS: &[PresetEntry] = &[studio::ENTRY, course::ENTRY, course::SECOND, paper::ENTRY];
+pub static PRESETS: &[PresetEntry] = &[studio::ENTRY, course::ENTRY, course::SECOND, paper::ENTRY];
 
 /// Applies the preset of this name.
 ///

@@ -44,7 +44,7 @@ const ROULETTE_DEPTH: Parameter = Parameter {
 };
 
 /// All integrators.
-pub const INTEGRATORS: &[IntegratorEntry] = &[
+pub static INTEGRATORS: &[IntegratorEntry] = &[
     auto::ENTRY,
     cast::ENTRY,
     whitted::ENTRY,

@@ -69,7 +69,7 @@ const fn integer(aov: Aov, name: &'static str, of: fn(&Label) -> u32) -> Channel
 }
 
 /// The channels of all labels.
-pub(super) const CHANNELS: &[Channel] = &[
+pub(super) static CHANNELS: &[Channel] = &[
     float(Aov::Normal, "normal.X", |label| label.normal.x),
     float(Aov::Normal, "normal.Y", |label| label.normal.y),
     float(Aov::Normal, "normal.Z", |label| label.normal.z),

@@ -18,7 +18,7 @@ macro_rules! file {
 }
 
 /// All files of the page.
-pub(super) const FILES: &[File] = &[
+pub(super) static FILES: &[File] = &[
     file!("", "index.html", "text/html; charset=utf-8"),
     file!("style.css", "style.css", "text/css; charset=utf-8"),
     file!("icon.svg", "icon.svg", "image/svg+xml"),

@@ -22,7 +22,7 @@ const fn open(name: &'static str, extends: &'static Kind) -> ExtensionEntry {
 }
 
 /// Every extension that is checked, once for each kind of object that it extends.
-pub(super) const EXTENSIONS: &[ExtensionEntry] = &[
+pub(super) static EXTENSIONS: &[ExtensionEntry] = &[
     open("EXT_lights_area", &ROOT),
     open("EXT_lights_area", &NODE),
     open("EXT_mesh_gpu_instancing", &NODE),

@@ -38,7 +38,7 @@ const fn rule(
 
 /// All rules. The rules of an object run after everything it contains has been checked; those of the root run
 /// last.
-pub(super) const RULES: &[Rule] = &[
+pub(super) static RULES: &[Rule] = &[
     rule("an accessor lies within its buffer view", &ACCESSOR, accessors::lies_within),
     rule("elements are aligned", &ACCESSOR, accessors::is_aligned),
     rule("only integers are normalized", &ACCESSOR, accessors::normalized),

@@ -25,7 +25,7 @@ pub struct DensityEntry {
 }
 
 /// All densities that are formulas.
-pub const DENSITIES: &[DensityEntry] = &[super::cloud::ENTRY, super::noise::ENTRY, super::height::ENTRY];
+pub static DENSITIES: &[DensityEntry] = &[super::cloud::ENTRY, super::noise::ENTRY, super::height::ENTRY];
 
 /// Voxels that a formula takes unless a resolution is asked for: 16 MB.
 pub const USUAL_MAX_VOXELS: usize = 1 << 23;

@@ -85,7 +85,7 @@ pub struct PhaseEntry {
 }
 
 /// All phase functions, the default first.
-pub const PHASES: &[PhaseEntry] =
+pub static PHASES: &[PhaseEntry] =
     &[super::henyey_greenstein::ENTRY, super::rayleigh::ENTRY, super::draine::ENTRY, super::droplets::ENTRY];
 
 /// The phase function that a material's parameters describe.

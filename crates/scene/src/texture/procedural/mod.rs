@@ -18,7 +18,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// All kinds of procedural textures.
-pub const TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTRY, mix::ENTRY, scale::ENTRY];
+pub static TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTRY, mix::ENTRY, scale::ENTRY];
 
 /// A row of [`TEXTURES`].
 #[derive(Clone, Copy, Debug)]
