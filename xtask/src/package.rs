@@ -12,6 +12,13 @@ pub(crate) const LIBRARIES: &[&str] = &[
     "bilux-pictures",
     "bilux-scene",
     "bilux-transport",
+    "bilux-import",
+    "bilux-meshes",
+    "bilux-gltf",
+    "bilux-usd",
+    "bilux-dcc",
+    "bilux-renderers",
+    "bilux-step",
     "bilux-formats",
     "bilux",
 ];

@@ -12,7 +12,28 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-pictures", &["bilux-math"]),
     ("bilux-scene", &["bilux-math", "bilux-accel", "bilux-pictures"]),
     ("bilux-transport", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene"]),
-    ("bilux-formats", &["bilux-math", "bilux-pictures", "bilux-scene"]),
+    ("bilux-import", UNDER_IMPORT),
+    ("bilux-meshes", UNDER_FORMAT),
+    ("bilux-gltf", UNDER_FORMAT),
+    ("bilux-usd", UNDER_FORMAT),
+    ("bilux-dcc", UNDER_FORMAT),
+    ("bilux-renderers", &["bilux-math", "bilux-pictures", "bilux-scene", "bilux-import", "bilux-meshes"]),
+    ("bilux-step", UNDER_FORMAT),
+    (
+        "bilux-formats",
+        &[
+            "bilux-math",
+            "bilux-pictures",
+            "bilux-scene",
+            "bilux-import",
+            "bilux-meshes",
+            "bilux-gltf",
+            "bilux-usd",
+            "bilux-dcc",
+            "bilux-renderers",
+            "bilux-step",
+        ],
+    ),
     ("bilux", LIBRARIES),
     ("bilux-bench", WITH_FACADE),
     ("bilux-viewer", &["bilux"]),
@@ -21,6 +42,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-validation", WITH_FACADE),
     ("xtask", &[]),
 ];
+
+/// What the readers of scene files share stands on what scenes are made of.
+const UNDER_IMPORT: &[&str] = &["bilux-math", "bilux-pictures", "bilux-scene"];
+
+/// The readers of a format know those of no other.
+const UNDER_FORMAT: &[&str] = &["bilux-math", "bilux-pictures", "bilux-scene", "bilux-import"];
 
 /// All libraries but the facade, which is published last.
 const LIBRARIES: &[&str] = match WITH_FACADE {

@@ -4,9 +4,9 @@ use super::document::{Table, TomlValue};
 use super::include::Part;
 use super::plain::{missing, plain_value};
 use super::reader::Native;
-use crate::FormatError;
-use crate::displacement::{Along, Displacement};
-use crate::reading::Texels;
+use bilux_import::FormatError;
+use bilux_import::displacement::{Along, Displacement};
+use bilux_import::reading::Texels;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice};
 use bilux_scene::{Reader, Spec};
 

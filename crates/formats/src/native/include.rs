@@ -1,9 +1,8 @@
 //! Collects a file and the files that it includes.
 
 use super::document::{BYTES_PER_BYTE, Item, Table, TomlValue, parse};
-use crate::FormatError;
-use crate::formats::format_named;
-use crate::reading::{Reading, Source};
+use bilux_import::FormatError;
+use bilux_import::reading::{Reading, Source};
 use bilux_scene::Span;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -84,7 +83,9 @@ impl Gathering<'_, '_> {
 
 fn is_of_another_format(file: &str) -> bool {
     let extension = Path::new(file).extension().map(|extension| extension.to_string_lossy().into_owned());
-    extension.and_then(|extension| format_named(&extension)).is_some_and(|row| row.entry.name != "toml")
+    extension
+        .and_then(|extension| crate::format_named(&extension))
+        .is_some_and(|row| row.entry.name != "toml")
 }
 
 /// Wraps a scene of another format as the only model of a part, with its lights and cameras.

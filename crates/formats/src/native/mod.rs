@@ -25,7 +25,7 @@ pub use overlay::overlay;
 pub use schema::toml_schema;
 pub use shapes::{SHAPES, ShapeEntry};
 
-use crate::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 

@@ -6,10 +6,9 @@ use super::place::{self, motion};
 use super::plain::{missing, plain_value};
 use super::reader::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
-use crate::FormatError;
-use crate::displacement::Moved;
-use crate::files::read_file;
-use crate::formats::{format_named, unknown};
+use bilux_import::FormatError;
+use bilux_import::displacement::Moved;
+use bilux_import::files::read_file;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_math::{DMat4, Motion, Transform};
 use bilux_scene::generators::GENERATORS;
@@ -147,8 +146,8 @@ impl Native<'_, '_> {
         let name = item.text("file")?;
         let extension =
             Path::new(name).extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-        let Some(row) = format_named(&extension).filter(|row| row.reads()) else {
-            return Err(unknown(Path::new(name), "read", |row| row.reads()));
+        let Some(row) = self.reading.formats.named(&extension).filter(|row| row.reads()) else {
+            return Err(self.reading.formats.unknown(Path::new(name), "read", |row| row.reads()));
         };
         self.reading.enter(path, &item.at)?;
         let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();

@@ -5,10 +5,9 @@ use super::include::Part as FilePart;
 use super::plain::{missing, plain_value};
 use super::reader::Native;
 use super::words::{is_bare, number, quoted};
-use crate::FormatError;
-use crate::files::read_file;
-use crate::formats::{format_named, unknown};
-use crate::reading::Reading;
+use bilux_import::FormatError;
+use bilux_import::files::read_file;
+use bilux_import::reading::Reading;
 use bilux_scene::change::{Change, Part, Which};
 use bilux_scene::{Parameters, SceneBuilder, SceneError, Value};
 use std::path::Path;
@@ -38,8 +37,8 @@ pub(super) fn base(
         return Err(FormatError::malformed(message, item.at.clone()));
     }
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-    let Some(row) = format_named(&extension).filter(|row| row.reads()) else {
-        return Err(unknown(Path::new(name), "read", |row| row.reads()));
+    let Some(row) = reading.formats.named(&extension).filter(|row| row.reads()) else {
+        return Err(reading.formats.unknown(Path::new(name), "read", |row| row.reads()));
     };
     reading.enter(&path, &item.at)?;
     let shown = Path::new(&*item.at.file).with_file_name(name).display().to_string();

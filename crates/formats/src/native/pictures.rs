@@ -2,7 +2,7 @@
 
 use super::document::Table;
 use super::plain::plain_value;
-use crate::FormatError;
+use bilux_import::FormatError;
 use bilux_math::Vec2;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_math::transcendental::{cos, sin};

@@ -2,7 +2,7 @@
 
 use super::document::{Item, Table, TomlValue};
 use super::plain::missing;
-use crate::FormatError;
+use bilux_import::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3, Motion, MotionKey, Transform};

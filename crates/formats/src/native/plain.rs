@@ -1,7 +1,7 @@
 //! Values without tables, and tables without values.
 
 use super::document::{Item, Table, TomlValue};
-use crate::FormatError;
+use bilux_import::FormatError;
 use bilux_scene::{SceneError, Value};
 
 /// A value that contains no table.

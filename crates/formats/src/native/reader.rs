@@ -2,9 +2,9 @@
 
 use super::document::Item;
 use super::include::Part;
-use crate::FormatError;
-use crate::displacement::{Displacement, Moved};
-use crate::reading::{Reading, default_material};
+use bilux_import::FormatError;
+use bilux_import::displacement::{Displacement, Moved};
+use bilux_import::reading::{Reading, default_material};
 use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
 use std::path::PathBuf;

@@ -3,7 +3,7 @@
 use super::document::Table;
 use super::plain::missing;
 use super::reader::{MAX_NAMES, Native};
-use crate::FormatError;
+use bilux_import::FormatError;
 use bilux_scene::SceneError;
 use std::collections::BTreeSet;
 

@@ -5,9 +5,9 @@ use super::include::{Part, gather};
 use super::overlay;
 use super::plain::plain_value;
 use super::reader::Native;
-use crate::FormatError;
-use crate::reading::{Reading, Source};
-use crate::text::whole_file;
+use bilux_import::FormatError;
+use bilux_import::reading::{Reading, Source};
+use bilux_import::text::whole_file;
 use bilux_scene::presets::mentions_light;
 use bilux_scene::{SceneBuilder, SceneError};
 

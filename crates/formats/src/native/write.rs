@@ -2,14 +2,14 @@
 
 use super::pictures::placement_keys;
 use super::words::{is_bare, number, quoted};
-use crate::FormatError;
-use crate::bake::name_of;
-use crate::grids::file_of;
-use crate::luminaires;
-use crate::ply::encode;
-use crate::text::whole_file;
-use crate::writing::{UnusedNames, Writing};
+use bilux_import::FormatError;
+use bilux_import::bake::name_of;
+use bilux_import::grids::file_of;
+use bilux_import::luminaires;
+use bilux_import::text::whole_file;
+use bilux_import::writing::{UnusedNames, Writing};
 use bilux_math::{Motion, MotionKey, Rgb};
+use bilux_meshes::ply::encode;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value, Visibility};

@@ -1,12 +1,13 @@
 //! Archives with a model and its textures, as people upload them. See `docs/formats/archives.md`.
 
-use crate::FormatError;
-use crate::archive::{Archive, Member, is_archive};
-use crate::files::read_file;
-use crate::formats::{ReadFormat, SCENE_FORMATS, SceneFormatEntry, extension, format_named};
-use crate::gzip::plain_name;
-use crate::reading::{Reading, Source};
-use crate::text::whole_file;
+use crate::{SCENE_FORMATS, format_named};
+use bilux_import::FormatError;
+use bilux_import::archive::{Archive, Member, is_archive};
+use bilux_import::files::read_file;
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, extension};
+use bilux_import::gzip::plain_name;
+use bilux_import::reading::{Reading, Source};
+use bilux_import::text::whole_file;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint, Warning};
 use std::cmp::Reverse;

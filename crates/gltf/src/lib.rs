@@ -1,0 +1,82 @@
+//! glTF 2.0, as GLB or as JSON with external files. See `docs/formats/gltf.md`.
+
+mod accessor;
+mod alpha;
+mod animation;
+mod area_lights;
+mod cameras;
+mod container;
+mod data;
+mod document;
+#[cfg(feature = "draco")]
+mod draco;
+mod draft;
+mod extensions;
+mod extras;
+mod glass;
+mod glossiness;
+mod graph;
+mod instances;
+mod json;
+mod lights;
+mod material;
+mod meshes;
+mod meshopt;
+mod pictures;
+mod place;
+mod posed;
+mod primitive;
+mod reader;
+mod remapped;
+mod scatter;
+mod skin;
+mod soundness;
+mod tangents;
+mod textures;
+mod topology;
+mod uri;
+mod validate;
+mod variants;
+mod write;
+
+use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
+
+/// Row of the table of formats.
+pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "gltf",
+        summary: "Khronos glTF 2.0, with its binary and image files or all in one GLB",
+        source: "glTF 2.0",
+        parameters: &[],
+    },
+    extensions: &["gltf", "glb"],
+    capabilities: &[
+        "points and lines",
+        "triangles",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "objects",
+        "instances",
+        "materials",
+        "textures",
+        "moved textures",
+        "cameras",
+        "lights",
+        "animation",
+        "variants",
+    ],
+    sniff,
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Whole(reader::read)),
+    write: Some(write::write),
+};
+
+/// True for the magic bytes, or for a JSON object with an "asset" key near its start.
+fn sniff(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(4096)];
+    let is_object = start.trim_ascii_start().starts_with(b"{");
+    bytes.starts_with(container::MAGIC) || is_object && start.windows(7).any(|word| word == b"\"asset\"")
+}

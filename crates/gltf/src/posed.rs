@@ -1,0 +1,34 @@
+//! A document as it is shown at one time.
+
+use super::animation::Pose;
+use super::data::DataReader;
+use super::document::Document;
+use super::graph::Graph;
+use super::variants::Variants;
+use bilux_import::reading::Reading;
+use bilux_import::{FormatError, oddities::Oddities};
+
+/// What is read of a document before anything is placed.
+pub(super) struct Posed<'d> {
+    pub(super) document: &'d Document<'d>,
+    pub(super) variants: Variants,
+    pub(super) pose: Pose,
+    pub(super) graph: Graph<'d>,
+}
+
+impl<'d> Posed<'d> {
+    /// The document at a time in seconds, with the variant and the animation that the options name.
+    pub(super) fn read(
+        document: &'d Document<'d>,
+        time: f32,
+        reading: &mut Reading,
+        oddities: &mut Oddities,
+    ) -> Result<Posed<'d>, FormatError> {
+        let options = reading.options;
+        let variants = Variants::read(document.root, options.variant.as_deref())?;
+        let mut data = DataReader::new(document, &mut reading.budget, oddities);
+        let pose = Pose::read(time, options.animation.as_deref(), &mut data)?;
+        let graph = Graph::read(&pose, reading.origin, &mut data)?;
+        Ok(Posed { document, variants, pose, graph })
+    }
+}

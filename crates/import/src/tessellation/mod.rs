@@ -1,0 +1,5 @@
+//! Turns curved shapes into triangles.
+
+pub mod grid;
+pub mod sphere;
+pub mod tubes;

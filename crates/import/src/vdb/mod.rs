@@ -1,0 +1,20 @@
+//! OpenVDB and NanoVDB: smoke, clouds and fire as trees of voxels. See `docs/formats/vdb.md`. [Museth 2013; Museth 2021]
+
+mod archive;
+mod level_sets;
+mod maps;
+mod nano;
+mod nano_tree;
+mod packing;
+mod tree;
+
+use crate::grids::GridFormatEntry;
+
+pub const OPEN: GridFormatEntry = GridFormatEntry {
+    sniff: |bytes| bytes.starts_with(&archive::SIGNATURE),
+    list: archive::list,
+    read: tree::read,
+};
+
+pub const NANO: GridFormatEntry =
+    GridFormatEntry { sniff: nano::is_nano, list: nano::list, read: nano::read };

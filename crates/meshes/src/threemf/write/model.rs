@@ -1,0 +1,171 @@
+//! The model: resources, then the items to build.
+
+use super::meshes::Welded;
+use bilux_import::FormatError;
+use bilux_import::bake::name_of;
+use bilux_import::writing::Writing;
+use bilux_import::xml::escaped;
+use bilux_math::{DMat4, DVec3, Rgb};
+use bilux_scene::{Axis, Mesh, Object, SceneBuilder, Texture, UpHint};
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::sync::Arc;
+
+pub(super) struct Model<'s> {
+    pub(super) scene: &'s SceneBuilder,
+    pub(super) resources: String,
+    items: String,
+    /// The last identifier of a resource.
+    last: usize,
+    pub(super) looks: HashMap<usize, Look>,
+    /// Objects by mesh and material; `None` for those without a triangle.
+    pub(super) meshes: HashMap<(*const Mesh, usize), Option<usize>>,
+    /// Meshes that are not closed.
+    pub(super) open: usize,
+    /// From the scene to millimetres with z upwards.
+    to_print: DMat4,
+}
+
+/// What a mesh has from its material.
+#[derive(Clone)]
+pub(super) struct Look {
+    /// The group of its base material, of which there is one.
+    pub(super) group: usize,
+    pub(super) colour: Rgb,
+    /// Its texture, and the resource that this is.
+    pub(super) picture: Option<(Arc<Texture>, usize)>,
+}
+
+/// The properties of the corners of all triangles, and their group.
+pub(super) type Properties = (usize, Vec<[usize; 3]>);
+
+impl<'s> Model<'s> {
+    pub(super) fn new(scene: &'s SceneBuilder) -> Model<'s> {
+        let (unit, up) = conventions(scene);
+        let (looks, meshes) = Default::default();
+        let to_print = upwards(up) * DMat4::from_scale(DVec3::splat(unit));
+        Model {
+            scene,
+            resources: String::new(),
+            items: String::new(),
+            last: 0,
+            looks,
+            meshes,
+            open: 0,
+            to_print,
+        }
+    }
+
+    /// The identifier of the next resource.
+    pub(super) fn id(&mut self) -> usize {
+        self.last += 1;
+        self.last
+    }
+
+    /// Adds an object, whose mesh is written on first use.
+    pub(super) fn object(&mut self, object: &Object, writing: &mut Writing) -> Result<(), FormatError> {
+        if object.mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        if !object.motion.is_still() {
+            writing.warn("the format cannot store motion: objects are written as they are at 0 seconds");
+        }
+        let key = (Arc::as_ptr(&object.mesh), object.material);
+        let id = match self.meshes.get(&key) {
+            Some(known) => *known,
+            None => {
+                let made = self.mesh(object, writing)?;
+                self.meshes.insert(key, made);
+                made
+            }
+        };
+        let Some(id) = id else { return Ok(()) };
+        let place = self.to_print * object.motion.at(0.0).matrix().as_dmat4();
+        let columns = [place.x_axis, place.y_axis, place.z_axis, place.w_axis].map(|axis| axis.truncate());
+        let numbers: Vec<String> =
+            columns.iter().flat_map(|c| c.to_array()).map(|x| (x as f32).to_string()).collect();
+        let name = escaped(name_of(object));
+        let _ = writeln!(
+            self.items,
+            "    <item objectid=\"{id}\" transform=\"{}\" partnumber=\"{name}\"/>",
+            numbers.join(" ")
+        );
+        Ok(())
+    }
+
+    fn mesh(&mut self, object: &Object, writing: &mut Writing) -> Result<Option<usize>, FormatError> {
+        let welded = Welded::of(&object.mesh);
+        if welded.dropped > 0 {
+            writing
+                .warn("3MF files cannot store triangles whose corners coincide or are not finite: left out");
+        }
+        if welded.triangles.is_empty() {
+            return Ok(None);
+        }
+        let look = self.look(object.material, writing)?;
+        let properties = self.properties(&object.mesh, &welded, &look, writing);
+        let id = self.id();
+        let is_closed = welded.is_closed();
+        self.open += usize::from(!is_closed);
+        let kind = if is_closed { "model" } else { "surface" };
+        let name = escaped(if object.mesh.name.is_empty() { &object.name } else { &object.mesh.name });
+        let out = &mut self.resources;
+        let _ = writeln!(
+            out,
+            "    <object id=\"{id}\" type=\"{kind}\" name=\"{name}\" pid=\"{}\" pindex=\"{}\"><mesh><vertices>",
+            look.group, 0
+        );
+        for p in &welded.positions {
+            let _ = writeln!(out, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>", p.x, p.y, p.z);
+        }
+        out.push_str("</vertices><triangles>\n");
+        for (i, (triangle, _)) in welded.triangles.iter().enumerate() {
+            let [a, b, c] = triangle;
+            let _ = write!(out, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"");
+            if let Some((group, corners)) = &properties {
+                let [a, b, c] = corners[i];
+                let _ = write!(out, " pid=\"{group}\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"");
+            }
+            out.push_str("/>\n");
+        }
+        out.push_str("</triangles></mesh></object>\n");
+        Ok(Some(id))
+    }
+
+    pub(super) fn finish(self) -> Vec<u8> {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+             <model unit=\"millimeter\" xml:lang=\"en-US\" \
+             xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
+             xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n\
+             <metadata name=\"Application\">Bilux</metadata>\n<resources>\n{}</resources>\n<build>\n{}</build>\n</model>\n",
+            self.resources, self.items
+        )
+        .into_bytes()
+    }
+}
+
+/// Millimetres in a unit of a scene, and the axis that points up. What states neither is taken as slicers take it: in
+/// millimetres, with z upwards.
+fn conventions(scene: &SceneBuilder) -> (f64, Axis) {
+    match scene.up {
+        _ if scene.unit > 0.0 && scene.unit.is_finite() => {
+            let UpHint::Is(axis) = scene.up else { return (scene.unit * 1000.0, Axis::Z) };
+            (scene.unit * 1000.0, axis)
+        }
+        UpHint::Is(axis) => (1000.0, axis),
+        UpHint::Usually(_) => (1.0, Axis::Z),
+    }
+}
+
+/// The rotation that makes an axis point along z.
+fn upwards(up: Axis) -> DMat4 {
+    let z = up.direction();
+    let x = match up.index() {
+        // From y upwards to z upwards, x stays.
+        1 | 2 => DVec3::X,
+        _ => DVec3::Y,
+    };
+    DMat4::from_cols(x.extend(0.0), z.cross(x).extend(0.0), z.extend(0.0), bilux_math::glam::DVec4::W)
+        .transpose()
+}

@@ -1,0 +1,38 @@
+//! What all prims are added to.
+
+use super::value::Text;
+use bilux_import::FormatError;
+use bilux_import::reading::Reading;
+use bilux_import::sink::Sink;
+use bilux_scene::Mesh;
+
+/// The material of a surface, and what it needs of the surface.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Worn {
+    /// Index of a material of the scene.
+    pub(super) index: usize,
+    /// The primvars that its textures are placed by.
+    pub(super) uvs: [Option<Text>; 2],
+    pub(super) uses_colours: bool,
+    pub(super) uses_opacities: bool,
+    /// It depends on a direction on the surface.
+    pub(super) has_direction: bool,
+}
+
+/// The read, and the scene so far.
+pub(super) struct Context<'r, 'o> {
+    pub(super) reading: &'r mut Reading<'o>,
+    pub(super) sink: Sink,
+}
+
+impl Context<'_, '_> {
+    /// Adds what a material needs.
+    pub(super) fn finish_mesh(&mut self, mesh: &mut Mesh, _: &Worn) -> Result<(), FormatError> {
+        if mesh.positions.iter().any(|p| !p.is_finite()) {
+            let what = "a mesh has positions that are infinite or not numbers (NaN); they are kept";
+            let at = bilux_import::text::whole_file(&mesh.name.as_str().into());
+            self.sink.oddities.note(what, || at);
+        }
+        Ok(())
+    }
+}

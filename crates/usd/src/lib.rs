@@ -1,0 +1,104 @@
+//! Universal Scene Description, as text, as crate files, and in packages. See `docs/formats/usd.md`.
+
+mod cameras;
+mod composition;
+mod context;
+mod copies;
+mod instancer;
+mod labels;
+mod layer;
+mod lights;
+mod list_op;
+mod meshes;
+mod mtlx;
+mod package;
+mod polygons;
+mod primvars;
+mod read;
+mod refined;
+mod scene;
+mod shading;
+mod shapes;
+mod skeletons;
+mod stage;
+mod strokes;
+mod subdivision;
+mod transforms;
+mod usda;
+mod usdc;
+mod value;
+mod volumes;
+mod wearing;
+mod write;
+
+use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
+
+/// What both forms can hold.
+const CAPABILITIES: &[&str] = &[
+    "points and lines",
+    "triangles",
+    "normals",
+    "uv",
+    "vertex-kd",
+    "objects",
+    "instances",
+    "materials",
+    "textures",
+    "moved textures",
+    "cameras",
+    "lights",
+    "grids",
+    "animation",
+    "variants",
+];
+
+/// Row of the table of formats.
+pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usd",
+        summary: "OpenUSD: scenes of layers, references and variants, as text or as crate files",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usd", "usda"],
+    capabilities: CAPABILITIES,
+    // A file of this name may also be a crate file.
+    sniff: |bytes| usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)) || bytes.starts_with(usdc::MAGIC),
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Binary(read::read)),
+    write: Some(write::write),
+};
+
+/// Row of the table of formats.
+pub const CRATE: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usdc",
+        summary: "OpenUSD: the same scenes as crate files, which are smaller than text and read only as far as needed",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usdc"],
+    capabilities: CAPABILITIES,
+    sniff: |bytes| bytes.starts_with(usdc::MAGIC),
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Binary(read::read)),
+    write: None,
+};
+
+/// Row of the table of formats.
+pub const PACKAGE: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "usdz",
+        summary: "OpenUSD in one file with its textures, as phones and browsers show it",
+        source: "OpenUSD",
+        parameters: &[],
+    },
+    extensions: &["usdz"],
+    capabilities: CAPABILITIES,
+    sniff: package::is_package,
+    up: UpHint::Is(Axis::Y),
+    read: Some(ReadFormat::Packed(package::read)),
+    write: Some(write::write_package),
+};

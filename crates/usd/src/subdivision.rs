@@ -1,0 +1,96 @@
+//! What a mesh says of its subdivision.
+
+use super::stage::Stage;
+use super::value::Array;
+use bilux_import::FormatError;
+use bilux_import::budget::Budget;
+use bilux_import::subdivision::Linear;
+use std::sync::Arc;
+
+/// How a mesh is subdivided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scheme {
+    /// Polygons.
+    None,
+    CatmullClark,
+    Loop,
+    Bilinear,
+}
+
+/// A scheme, and where it stays sharp.
+#[derive(Clone, Debug)]
+pub(super) struct Subdivision {
+    pub(super) scheme: Scheme,
+    /// The file says so itself: exporters of polygons with normals forget to.
+    pub(super) is_stated: bool,
+    /// Vertices of creases, those of one crease after those of another.
+    pub(super) crease_indices: Option<Arc<Array>>,
+    /// Vertices in each crease.
+    pub(super) crease_lengths: Option<Arc<Array>>,
+    /// One for each crease, or for each of its edges; 10 and more are as sharp as an edge can be.
+    pub(super) crease_sharpnesses: Option<Arc<Array>>,
+    pub(super) corner_indices: Option<Arc<Array>>,
+    pub(super) corner_sharpnesses: Option<Arc<Array>>,
+    /// Where values of corners are linear.
+    pub(super) linear: Linear,
+    /// Corners of the border are rounded.
+    pub(super) rounds_corners: bool,
+}
+
+impl Scheme {
+    /// The scheme by which the surface is refined, if it is.
+    pub(super) fn refined(self) -> Option<bilux_import::subdivision::Scheme> {
+        match self {
+            Scheme::None | Scheme::Bilinear => None,
+            Scheme::CatmullClark => Some(bilux_import::subdivision::Scheme::CatmullClark),
+            Scheme::Loop => Some(bilux_import::subdivision::Scheme::Loop),
+        }
+    }
+}
+
+impl Subdivision {
+    pub(super) fn read(stage: &Stage, prim: u32, budget: &mut Budget) -> Result<Subdivision, FormatError> {
+        let stated = stage.text(prim, "subdivisionScheme", budget)?;
+        let scheme = match stated.as_deref() {
+            Some("none") => Scheme::None,
+            Some("loop") => Scheme::Loop,
+            Some("bilinear") => Scheme::Bilinear,
+            _ => Scheme::CatmullClark,
+        };
+        let border = stage.text(prim, "interpolateBoundary", budget)?;
+        let linear = match stage.text(prim, "faceVaryingLinearInterpolation", budget)?.as_deref() {
+            Some("none") => Linear::None,
+            Some("cornersOnly") => Linear::Corners,
+            Some("cornersPlus2") => Linear::Darts,
+            Some("boundaries") => Linear::Borders,
+            Some("all") => Linear::All,
+            _ => Linear::Junctions,
+        };
+        let mut list = |name: &str| -> Result<Option<Arc<Array>>, FormatError> {
+            Ok(stage.array(prim, name, budget)?.filter(|list| list.len() > 0))
+        };
+        Ok(Subdivision {
+            scheme,
+            is_stated: stated.is_some(),
+            crease_indices: list("creaseIndices")?,
+            crease_lengths: list("creaseLengths")?,
+            crease_sharpnesses: list("creaseSharpnesses")?,
+            corner_indices: list("cornerIndices")?,
+            corner_sharpnesses: list("cornerSharpnesses")?,
+            linear,
+            rounds_corners: border.as_deref() == Some("edgeOnly"),
+        })
+    }
+
+    /// True if the limit surface is smooth.
+    pub(super) fn is_smooth(&self) -> bool {
+        matches!(self.scheme, Scheme::CatmullClark | Scheme::Loop)
+    }
+
+    /// True if some edges or corners are sharper than others.
+    pub(super) fn has_creases(&self) -> bool {
+        let creases = self.crease_indices.is_some() && self.crease_lengths.is_some();
+        creases && self.crease_sharpnesses.is_some()
+            || self.corner_indices.is_some() && self.corner_sharpnesses.is_some()
+    }
+}
