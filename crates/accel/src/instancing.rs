@@ -21,10 +21,13 @@ use crate::counters::Count;
 use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::slab::SlabRay;
 use bilux_math::glam::{DMat3, DVec3};
+use bilux_math::parallel::table;
 use bilux_math::{Aabb, Motion, Transform, Vec3};
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+
+/// Number of instances that one thread places at a time.
+const TOGETHER: usize = 16;
 
 /// A structure placed in the world. Many instances may share one structure.
 #[derive(Clone)]
@@ -83,13 +86,13 @@ impl TwoLevel {
     /// Builds the top level over these instances, for rays at times while the shutter is open (seconds, both ends
     /// included); a ray's time is clamped to that interval. Instance indices in hits are those of the list.
     pub fn new(instances: &[Instance], shutter: [f32; 2], top: TopLevel) -> TwoLevel {
-        let boxes: Vec<Aabb> = instances
-            .par_iter()
-            .map(|instance| match instance.motion.is_still_over(shutter) {
+        let boxes: Vec<Aabb> = table(instances.len(), TOGETHER, &|i| {
+            let instance = &instances[i];
+            match instance.motion.is_still_over(shutter) {
                 true if instance.motion.at(shutter[0]).is_identity() => instance.accelerator.bounds(),
                 _ => instance.motion.bounds_over(&instance.accelerator.bounds(), shutter),
-            })
-            .collect();
+            }
+        });
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
         let top = match top {
             // A single instance is queried directly: it tests its own box.
@@ -101,7 +104,7 @@ impl TwoLevel {
             }
         };
         drop(boxes);
-        let placed = instances.par_iter().map(|instance| Placed::new(instance, shutter)).collect();
+        let placed = table(instances.len(), TOGETHER, &|i| Placed::new(&instances[i], shutter));
         TwoLevel { placed, shutter, bounds, top }
     }
 

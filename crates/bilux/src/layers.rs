@@ -2,11 +2,11 @@
 
 use crate::{Error, Outcome, labels};
 use bilux_math::Rgb;
+use bilux_math::parallel::table;
 use bilux_pictures::denoise::{DenoiserChoice, Layer, Noisy, Source, repainted};
 use bilux_pictures::{Picture, PictureError};
 use bilux_transport::aovs::Aov;
 use bilux_transport::{Film, push_variance};
-use rayon::prelude::*;
 use std::ops::Range;
 
 impl Outcome {
@@ -63,8 +63,10 @@ impl Source for Outcome {
         let (width, height) = (window.width as usize, rows.len());
         let pixels = rows.start * width..rows.end * width;
         let light = |of: fn(&Film, u32, u32) -> Rgb| {
-            let places = pixels.clone().into_par_iter().map(|i| window.position(i));
-            places.map(|(x, y)| of(&self.rendered.film, x, y)).collect()
+            table(pixels.len(), width, &|i| {
+                let (x, y) = window.position(pixels.start + i);
+                of(&self.rendered.film, x, y)
+            })
         };
         let [camera, light_paths] =
             match self.rendered.batch_means.as_ref().and_then(|b| b.variance(pixels.clone())) {

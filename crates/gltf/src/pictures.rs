@@ -7,9 +7,9 @@ use bilux_import::FormatError;
 use bilux_import::images::SampleMeaning;
 use bilux_import::oddities::Oddities;
 use bilux_import::reading::Reading;
+use bilux_math::parallel::map;
 use bilux_pictures::{Limits, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
-use rayon::prelude::*;
 use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, HashMap};
@@ -52,8 +52,7 @@ impl Pictures {
         // The largest first, each to the next thread that is free, so that all threads end at about the same time.
         let mut largest_first: Vec<usize> = (0..encoded.len()).collect();
         largest_first.sort_by_key(|&i| Reverse(encoded[i].2.1.len()));
-        let each = largest_first.into_iter().par_bridge();
-        let mut decoded: Vec<_> = each.map(|i| (i, decode(&encoded[i].2.1))).collect();
+        let mut decoded = map(largest_first, |i| (i, decode(&encoded[i].2.1)));
         decoded.sort_unstable_by_key(|(i, _)| *i);
         for ((number, node, (name, bytes)), (_, picture)) in encoded.into_iter().zip(decoded) {
             release(bytes, reading);

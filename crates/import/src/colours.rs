@@ -6,7 +6,7 @@
 
 use bilux_math::Rgb;
 use bilux_math::colour::{srgb_decode, srgb_encode};
-use rayon::prelude::*;
+use bilux_math::parallel::for_each;
 
 /// The type of the numbers that colours are stored as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,8 @@ pub fn decode(colours: &mut [Rgb], stored: Stored) {
         return;
     }
     let white = Greatest::of(colours).white(stored);
-    colours.par_iter_mut().with_min_len(1 << 14).for_each(|colour| *colour = decoded(*colour, white));
+    let decode = |some: &mut [Rgb]| some.iter_mut().for_each(|colour| *colour = decoded(*colour, white));
+    for_each(colours.chunks_mut(1 << 14), decode);
 }
 
 /// The numbers that a reflectance is stored as, from 0 to 1.

@@ -1,8 +1,8 @@
 //! Computes normals for meshes without them.
 
+use bilux_math::parallel::{map, table, threads};
 use bilux_math::transcendental::cos;
 use bilux_math::{DVec3, Vec3};
-use rayon::prelude::*;
 
 /// How a face is smoothed with its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a smoothing group.
 pub type Smoothing = u32;
@@ -44,6 +44,9 @@ const MAX_PAIRED: usize = 256;
 
 /// The number of positions that a thread processes at a time.
 const PIECE: usize = 1 << 14;
+
+/// Number of faces whose normals one thread computes at least.
+const LEAST: usize = 1 << 12;
 
 /// The normal of a face, and its area.
 #[derive(Clone, Copy)]
@@ -97,26 +100,23 @@ impl Faces<'_> {
         };
         let mut any_smooth = false;
         // Works in batches, to hold few intermediate results.
-        let batch = PIECE * rayon::current_num_threads();
+        let batch = PIECE * threads();
         for start in (0..count).step_by(batch) {
-            let pieces = (start..(start + batch).min(count)).into_par_iter().step_by(PIECE);
-            let found: Vec<PositionNormals> = pieces
-                .map(|start| {
-                    let mut found = PositionNormals::default();
-                    let mut here = Vec::new();
-                    for position in start..(start + PIECE).min(count) {
-                        here.clear();
-                        let faces = around.corners_at(position).iter().map(|&corner| match &face_of[..] {
-                            [] => corner / 3,
-                            each => each[corner as usize],
-                        });
-                        here.extend(faces);
-                        self.add_position(&here, &facing, &crease, &mut found);
-                        found.positions.resize(found.normals.len(), position as u32);
-                    }
-                    found
-                })
-                .collect();
+            let found = map((start..(start + batch).min(count)).step_by(PIECE), |start| {
+                let mut found = PositionNormals::default();
+                let mut here = Vec::new();
+                for position in start..(start + PIECE).min(count) {
+                    here.clear();
+                    let faces = around.corners_at(position).iter().map(|&corner| match &face_of[..] {
+                        [] => corner / 3,
+                        each => each[corner as usize],
+                    });
+                    here.extend(faces);
+                    self.add_position(&here, &facing, &crease, &mut found);
+                    found.positions.resize(found.normals.len(), position as u32);
+                }
+                found
+            });
             for (found, start) in found.into_iter().zip((start..count).step_by(PIECE)) {
                 let first = all.normals.len() as u32;
                 let corners = around.corners_from(start);
@@ -194,11 +194,11 @@ impl Faces<'_> {
             Facing { unit: normal.normalize_or_zero(), area: normal.length() }
         };
         if self.ends.is_empty() {
-            return self.corners.par_chunks_exact(3).map(facing).collect();
+            let triangles = self.corners.as_chunks::<3>().0;
+            return table(triangles.len(), LEAST, &|face| facing(&triangles[face]));
         }
         let start = |face: usize| if face == 0 { 0 } else { self.ends[face - 1] as usize };
-        let faces = (0..self.ends.len()).into_par_iter();
-        faces.map(|face| facing(&self.corners[start(face)..self.ends[face] as usize])).collect()
+        table(self.ends.len(), LEAST, &|face| facing(&self.corners[start(face)..self.ends[face] as usize]))
     }
 
     /// The face of each corner; empty if all faces are triangles.

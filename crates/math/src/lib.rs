@@ -8,6 +8,7 @@ pub mod colour;
 pub mod frame;
 pub mod hash;
 pub mod motion;
+pub mod parallel;
 pub mod photometry;
 pub mod registry;
 pub mod stream;

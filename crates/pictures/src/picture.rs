@@ -5,8 +5,8 @@ use crate::crop::Crop;
 use crate::limits::MAX_SIDE;
 use bilux_math::Rgb;
 use bilux_math::colour::{srgb_decode, srgb_encode};
+use bilux_math::parallel::for_each;
 use bilux_math::transcendental::powf;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A picture: named planes of `width * height` samples, with row 0 at the top.
@@ -316,8 +316,8 @@ impl Picture {
     fn map_colours(&mut self, f: impl Fn(f32) -> f32 + Sync) {
         let colours: Vec<bool> = self.channels.iter().map(|c| self.is_colour(&c.name)).collect();
         for (channel, _) in self.channels.iter_mut().zip(colours).filter(|&(_, colour)| colour) {
-            let pieces = channel.samples.par_chunks_mut(PIECE);
-            pieces.for_each(|piece| piece.iter_mut().for_each(|sample| *sample = f(*sample)));
+            let pieces = channel.samples.chunks_mut(PIECE);
+            for_each(pieces, |piece| piece.iter_mut().for_each(|sample| *sample = f(*sample)));
         }
     }
 

@@ -3,13 +3,16 @@
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 use bilux_math::hash::mix64;
-use rayon::prelude::*;
+use bilux_math::parallel::{fill, map};
 use std::cmp::Ordering;
 
 /// The width of a crack, over the longest side of the mesh.
 const CRACK: f32 = 1.0 / 2048.0;
 /// How lattices are shifted, in cells: not so that round numbers are between two.
 const LATTICES: [f32; 4] = [0.37, 0.83, 0.11, 0.61];
+
+/// Vertices or triangles that one thread takes at a time.
+const CHUNK: usize = 1 << 14;
 
 impl Mesh {
     /// True if a mesh is closed, but for cracks that nobody sees: along each edge it has as many triangles in one direction
@@ -26,11 +29,12 @@ impl Mesh {
     /// The same for vertices that are in the same cell of a lattice. Edges are told from each other by hashes alone: the sum over all is 0
     /// where each is cancelled by one that runs the other way. Merging vertices never opens what is closed.
     fn is_closed_by(&self, min: Vec3, cell: f32, shift: f32) -> bool {
-        let place = |p: &Vec3| {
-            let at = if cell > 0.0 { ((*p - min) / cell + shift).to_array() } else { [0.0; 3] };
+        let place = |p: Vec3| {
+            let at = if cell > 0.0 { ((p - min) / cell + shift).to_array() } else { [0.0; 3] };
             at.iter().fold(0, |hash, c| mix64(hash ^ *c as u64))
         };
-        let places: Vec<u64> = self.positions.par_iter().map(place).collect();
+        let mut places = vec![0; self.positions.len()];
+        fill(&mut places, CHUNK, |i| place(self.positions[i]));
         let edge = |[from, to]: [u64; 2]| match from.cmp(&to) {
             Ordering::Less => mix64(from ^ to.rotate_left(32)),
             Ordering::Equal => 0,
@@ -40,7 +44,8 @@ impl Mesh {
             let [a, b, c] = triangle.map(|i| places[i as usize]);
             edge([a, b]).wrapping_add(edge([b, c])).wrapping_add(edge([c, a]))
         };
-        self.triangles.par_iter().map(around).reduce(|| 0, u64::wrapping_add) == 0
+        let sum = |some: &[[u32; 3]]| some.iter().map(around).fold(0, u64::wrapping_add);
+        map(self.triangles.chunks(CHUNK), sum).into_iter().fold(0, u64::wrapping_add) == 0
     }
 
     /// True if a mesh is closed and its faces look outwards.

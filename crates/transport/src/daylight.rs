@@ -9,11 +9,11 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::task::{FoundLight, Record, Task};
+use bilux_math::parallel::{for_each, install};
 use bilux_math::transcendental::turns_of_point;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::SensorPoints;
 use bilux_scene::{Scene, Tracer};
-use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// A sky in rows of patches, from the horizon to the zenith, and the ground. Up is +y, north is -z, east is +x.
@@ -88,13 +88,12 @@ pub fn daylight_coefficients(
     let pool = threads(settings)?;
     progress.begin(all as u64 * settings.samples.len() as u64);
     let eye = integrator.camera_rays(scene, points, settings);
-    pool.install(|| {
-        table.par_chunks_exact_mut(patches.count()).enumerate().for_each(|(i, row)| {
-            if !progress.is_cancelled() {
-                add_point(integrator, &eye, points.pixel(i), patches, row, progress);
-            }
-        });
-    });
+    let of_point = |(i, row): (usize, &mut [f32])| {
+        if !progress.is_cancelled() {
+            add_point(integrator, &eye, points.pixel(i), patches, row, progress);
+        }
+    };
+    install(&pool, || for_each(table.chunks_exact_mut(patches.count()).enumerate(), of_point));
     if progress.is_cancelled() { Ok(None) } else { Ok(Some(table)) }
 }
 

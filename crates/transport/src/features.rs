@@ -23,10 +23,10 @@ use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::sight::Sight;
 use crate::window::{TILE, Window};
+use bilux_math::parallel::{for_each, install};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, ClassicMaterial, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
@@ -89,13 +89,12 @@ pub fn features(
     let samples = if integrator.is_random() { FEATURE_SAMPLES } else { settings.spp.min(FEATURE_SAMPLES) };
     let mut done = 0;
     while done < samples {
-        pool.install(|| {
-            tiles.par_iter_mut().for_each(|(tile, sums)| {
-                if !progress.is_cancelled() {
-                    look(&eye, tile, sums, done);
-                }
-            });
-        });
+        let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
+            if !progress.is_cancelled() {
+                look(&eye, tile, sums, done);
+            }
+        };
+        install(&pool, || for_each(&mut tiles, each));
         done += 1;
         if progress.is_cancelled() {
             return Ok(None);
@@ -144,8 +143,8 @@ pub fn coverage(
             *coverage = (0..samples).map(of_sample).sum::<f32>() / samples.max(1) as f32;
         }
     };
-    threads(settings)?
-        .install(|| coverage.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
+    let rows = coverage.chunks_mut(window.width as usize).enumerate();
+    install(&threads(settings)?, || for_each(rows, of_row));
     Ok(coverage)
 }
 

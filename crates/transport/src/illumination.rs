@@ -7,10 +7,10 @@
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
 use bilux_math::frame::reflect;
+use bilux_math::parallel::map;
 use bilux_math::transcendental::cos;
 use bilux_math::{Frame, Vec2, Vec3, warp};
 use bilux_scene::{Camera, CameraSample, ClassicMaterial, Ray, Scene, Surface, Tracer};
-use rayon::prelude::*;
 
 /// Rows and columns of points on the film.
 const GRID: u32 = 40;
@@ -60,7 +60,7 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera, gets_surroundings: bool)
         let mut tracer = Tracer::new(scene, false);
         (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, gets_surroundings, [x, y])).collect()
     };
-    let rows: Vec<Vec<Seen>> = (0..GRID).into_par_iter().map(of_row).collect();
+    let rows: Vec<Vec<Seen>> = map(0..GRID, of_row);
     let (mut surfaces, mut emitters) = (Vec::new(), Vec::new());
     for seen in rows.into_iter().flatten() {
         match seen {

@@ -19,9 +19,9 @@ use crate::task::{FoundLight, Record, Task};
 use crate::techniques::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::way::{LengthBins, Place, Way};
 use crate::window::{TILE, Window};
+use bilux_math::parallel::{install, try_for_each};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Camera, Scene, Tracer};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -77,7 +77,7 @@ pub fn light_parts(
 ) -> Result<Option<LightParts>, RenderError> {
     settings.check()?;
     let pool = threads(settings)?;
-    let plan = pool.install(|| integrator.plan(scene, camera, &settings.for_planning()));
+    let plan = install(&pool, || integrator.plan(scene, camera, &settings.for_planning()));
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     if !integrator.has_light_parts() {
         return Ok(None);
@@ -87,12 +87,12 @@ pub fn light_parts(
     progress.begin(settings.sample_count(integrator));
     let sums = Sums::new(scene, settings, division)?;
     for samples in iterations(integrator, &settings.samples) {
-        pool.install(|| {
+        install(&pool, || {
             let rays = || integrator.camera_rays(scene, camera, settings).by_light();
             let photons = sums.photons(integrator, &rays(), &whole.tiles(TILE), samples.start)?;
             let mut eye = rays();
             eye.context.photons = photons.as_ref();
-            tiles.par_iter().try_for_each(|tile| sums.add_tile(integrator, &eye, *tile, &samples, progress))
+            try_for_each(&tiles, |tile| sums.add_tile(integrator, &eye, *tile, &samples, progress))
         })?;
     }
     if progress.is_cancelled() { Ok(None) } else { Ok(Some(sums.parts(integrator)?)) }

@@ -15,9 +15,9 @@ use crate::settings::{RenderSettings, threads};
 use crate::sight::Sight;
 use crate::window::{TILE, Window};
 use bilux_accel::Hit;
+use bilux_math::parallel::{install, map};
 use bilux_scene::media::mean;
 use bilux_scene::{Camera, Ray, Scene, Tracer};
-use rayon::prelude::*;
 
 /// The camera rays of each pixel: at least this many, even where the picture has fewer samples, since coverage is
 /// counted in them.
@@ -55,9 +55,8 @@ pub fn mattes(
     };
     let window = settings.window();
     let of_tile = |tile: Window| (!progress.is_cancelled()).then(|| look.tile(tile));
-    let tiles: Option<Vec<Vec<Vec<Ranks>>>> =
-        threads(settings)?.install(|| window.tiles(TILE).into_par_iter().map(of_tile).collect());
-    let Some(tiles) = tiles else { return Ok(None) };
+    let tiles = install(&threads(settings)?, || map(window.tiles(TILE), of_tile));
+    let Some(tiles) = tiles.into_iter().collect::<Option<Vec<Vec<Vec<Ranks>>>>>() else { return Ok(None) };
     let mut planes = Vec::new();
     for _ in ids {
         planes.push(zeroed::<Ranks>(window.pixels())?);

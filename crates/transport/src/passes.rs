@@ -13,6 +13,7 @@ use crate::splats::{Iterations, Splats};
 use crate::task::Task;
 use crate::window::{Coverage, Window};
 use bilux_accel::Counters;
+use bilux_math::parallel::ThreadPool;
 use bilux_scene::Tracer;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashSet};
@@ -49,7 +50,7 @@ impl Passes {
 
 /// Runs some passes over all tiles of the `sampled` window, on all threads.
 pub(crate) fn all_passes(
-    pool: &rayon::ThreadPool,
+    pool: &ThreadPool,
     integrator: &dyn PixelIntegrator,
     eye: CameraRays,
     sampled: Window,

@@ -3,7 +3,7 @@
 use crate::limits::MAX_DEPTH;
 use bilux_math::Vec3;
 use bilux_math::hash::mix64;
-use rayon::prelude::*;
+use bilux_math::parallel::{fill, for_each};
 
 /// The position of a light subpath's vertex: the only part of most photons that is read.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +47,9 @@ impl PhotonPosition {
     }
 }
 
+/// Photons that one thread sorts at a time.
+const CHUNK: usize = 4096;
+
 /// Photons in a grid whose cells are two radii wide.
 ///
 /// Cells that are adjacent along the x axis are adjacent in memory.
@@ -63,8 +66,8 @@ impl<P: Copy + Send + Sync> PhotonGrid<P> {
     /// each place.
     pub(crate) fn new(given: Vec<(PhotonPosition, P)>, radius: f32) -> (PhotonGrid<P>, Vec<u32>) {
         let mask = given.len().next_power_of_two().max(MIN_BUCKETS) as u32 - 1;
-        let buckets: Vec<u32> =
-            given.par_iter().map(|(position, _)| bucket(cell(position.p, radius), mask)).collect();
+        let mut buckets = vec![0; given.len()];
+        fill(&mut buckets, CHUNK, |i| bucket(cell(given[i].0.p, radius), mask));
         // Photons before each bucket; after the loop that fills `order`, photons up to its end.
         let mut starts = vec![0; mask as usize + 2];
         for &bucket in &buckets {
@@ -81,7 +84,16 @@ impl<P: Copy + Send + Sync> PhotonGrid<P> {
         }
         starts.rotate_right(1);
         starts[0] = 0;
-        let (positions, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
+        let (mut positions, mut photons) =
+            given.first().map_or_else(Default::default, |&(position, photon)| {
+                (vec![position; given.len()], vec![photon; given.len()])
+            });
+        let places = positions.chunks_mut(CHUNK).zip(photons.chunks_mut(CHUNK)).zip(order.chunks(CHUNK));
+        for_each(places, |((positions, photons), order)| {
+            for ((position, photon), &i) in positions.iter_mut().zip(photons).zip(order) {
+                (*position, *photon) = given[i as usize];
+            }
+        });
         (PhotonGrid { radius, positions, photons, starts }, order)
     }
 

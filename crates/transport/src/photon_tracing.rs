@@ -8,8 +8,8 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::splats::IterationSplats;
 use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, TechniqueCounts};
 use crate::window::Window;
+use bilux_math::parallel::map;
 use bilux_scene::{Counters, Scene, Tracer};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The samples that can be taken together: where subpaths are merged, one of each pixel, since each iteration has photons of
@@ -154,12 +154,11 @@ impl<const N: usize> Photons<N> {
             }
             (traced, tracer.counters)
         };
-        let (parts, counters): (Vec<TracedPhotons<N>>, Vec<Counters>) =
-            tiles.par_iter().enumerate().map(of_tile).unzip();
-        let mut all = TracedPhotons::NONE;
-        parts.into_iter().for_each(|part| all.append(part));
-        let mut counted = Counters::default();
-        counters.into_iter().for_each(|counters| counted += counters);
+        let (mut all, mut counted) = (TracedPhotons::NONE, Counters::default());
+        for (part, counters) in map(tiles.iter().enumerate(), of_tile) {
+            all.append(part);
+            counted += counters;
+        }
         (Photons::new(all, radius, techniques), counted)
     }
 }

@@ -9,9 +9,9 @@ use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::task::Task;
 use bilux_math::Rgb;
+use bilux_math::parallel::{for_each, install};
 use bilux_scene::cameras::SensorPoints;
 use bilux_scene::{Scene, Tracer};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::time::Instant;
@@ -54,7 +54,7 @@ pub fn received(
     settings.check()?;
     let settings = &RenderSettings { interval: true, ..settings.clone() };
     let pool = threads(settings)?;
-    let plan = pool.install(|| integrator.plan(scene, points, &settings.for_planning()));
+    let plan = install(&pool, || integrator.plan(scene, points, &settings.for_planning()));
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     if !integrator.receives() {
         return Err(RenderError::Receives);
@@ -71,11 +71,10 @@ pub fn received(
     let mut kept = None;
     loop {
         let samples = taken..next;
-        pool.install(|| {
-            sums.par_iter_mut().enumerate().for_each(|(i, sums)| {
-                sums.add(integrator, &eye, points.pixel(i), samples.clone(), progress);
-            });
-        });
+        let of_point = |(i, sums): (usize, &mut Sums)| {
+            sums.add(integrator, &eye, points.pixel(i), samples.clone(), progress);
+        };
+        install(&pool, || for_each(sums.iter_mut().enumerate(), of_point));
         if progress.is_cancelled() {
             return Ok(kept);
         }

@@ -17,6 +17,7 @@ use crate::settings::{RenderSettings, threads};
 use crate::splats::IterationSplats;
 use crate::window::{TILE, Window};
 use bilux_accel::Counters;
+use bilux_math::parallel::{ThreadPool, install};
 use bilux_scene::{Camera, Scene};
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -53,7 +54,7 @@ pub fn plan(
 ) -> Result<Option<Plan>, RenderError> {
     settings.check()?;
     let pool = threads(settings)?;
-    Ok(pool.install(|| integrator.plan(scene, camera, &settings.for_planning())))
+    Ok(install(&pool, || integrator.plan(scene, camera, &settings.for_planning())))
 }
 
 /// Renders the requested samples.
@@ -89,7 +90,7 @@ pub fn render_from(
     let scale = scale_exponent(scene);
     let film = Film::windowed(settings.width, settings.height, settings.window(), scale)?;
     let pool = threads(settings)?;
-    let plan = pool.install(|| integrator.plan(scene, camera, &settings.for_planning()));
+    let plan = install(&pool, || integrator.plan(scene, camera, &settings.for_planning()));
     let (choice, planned, counters) = match plan {
         Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
         None => (None, None, Counters::default()),
@@ -123,7 +124,7 @@ struct Run<'a> {
     settings: &'a RenderSettings,
     progress: &'a dyn Progress,
     observer: &'a dyn Observer,
-    pool: rayon::ThreadPool,
+    pool: ThreadPool,
     scale: i32,
 }
 
@@ -242,7 +243,7 @@ impl<'a> Run<'a> {
         let splats = splats_photons.then(|| IterationSplats::of_film(film, settings, whole.len()));
         let mut splats = splats.transpose()?;
         let trace = |splats: Option<&IterationSplats>| {
-            pool.install(|| Photons::of_iteration(self.integrator, &self.eye(), &whole, iteration, splats))
+            install(pool, || Photons::of_iteration(self.integrator, &self.eye(), &whole, iteration, splats))
         };
         let photons = trace(splats.as_ref().filter(|_| splatted.is_none()));
         if let Some(failures) = splatted {

@@ -5,6 +5,7 @@ use crate::filters::Filter;
 use crate::limits::{DEFAULT_MAX_DEPTH, MAX_DEPTH, MAX_SAMPLES};
 use crate::window::Window;
 use bilux_math::Vec2;
+use bilux_math::parallel::{self, ThreadPool};
 use std::ops::Range;
 use std::time::Duration;
 
@@ -157,10 +158,7 @@ impl Stop {
 }
 
 /// A pool of the requested number of threads.
-pub(crate) fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, RenderError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads)
-        .stack_size(STACK_BYTES)
-        .build()
+pub(crate) fn threads(settings: &RenderSettings) -> Result<ThreadPool, RenderError> {
+    parallel::pool(settings.threads, Some(STACK_BYTES))
         .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })
 }

@@ -13,12 +13,12 @@ use crate::pixel_integrator::PixelIntegrator;
 use crate::sampler::PixelSampler;
 use crate::settings::{RenderSettings, threads};
 use crate::sight::Sight;
+use bilux_math::parallel::{for_each, install};
 use bilux_math::{Rgb, Vec3};
 use bilux_pictures::PictureError;
 use bilux_pictures::denoise::{Denoiser, Layer, Noisy, Source};
 use bilux_scene::media::mean;
 use bilux_scene::{Camera, LightSample, Ray, Scene, Surface, Tracer};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -96,7 +96,7 @@ pub fn shadow_alpha(
         }
     };
     let width = window.width as usize;
-    threads(settings)?.install(|| pixels.par_chunks_mut(width).enumerate().for_each(of_row));
+    install(&threads(settings)?, || for_each(pixels.chunks_mut(width).enumerate(), of_row));
     let smooth = match denoiser {
         Some(denoiser) => denoiser.denoise(&Shadow { width, pixels: &pixels }).map_err(FilmError::from)?,
         None => Vec::new(),

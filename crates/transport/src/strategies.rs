@@ -16,8 +16,8 @@ use crate::splats::Iterations;
 use crate::task::Task;
 use crate::window::{TILE, Window};
 use bilux_math::Rgb;
+use bilux_math::parallel::{install, try_for_each};
 use bilux_scene::{Camera, Counters, Scene, Tracer};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Range;
@@ -76,9 +76,9 @@ pub fn strategies(
     let mut sums = Sums::default();
     for samples in iterations(integrator, &settings.samples) {
         let mut eye = integrator.camera_rays(scene, camera, settings);
-        let photons = pool.install(|| Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
+        let photons = install(&pool, || Photons::of_iteration(integrator, &eye, &tiles, samples.start, None));
         eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
-        pool.install(|| sums.add(integrator, &eye, &tiles, samples, progress))?;
+        install(&pool, || sums.add(integrator, &eye, &tiles, samples, progress))?;
     }
     if progress.is_cancelled() {
         return Ok(None);
@@ -110,7 +110,7 @@ impl Sums {
         let both_ends = integrator.light_subpaths().and_then(|subpaths| subpaths.both_ends(photons));
         let Some(both_ends) = both_ends.map(BothEnds::splatting) else { return Ok(()) };
         let sums = Mutex::new(self);
-        tiles.par_iter().try_for_each(|tile| {
+        try_for_each(tiles, |tile| {
             let mut tracer = Tracer::new(eye.context.scene, eye.settings.count_work);
             let mut layers = Layers::new(eye.settings, *tile, scale_exponent(eye.context.scene));
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {

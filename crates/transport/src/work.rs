@@ -16,8 +16,8 @@ use crate::settings::{RenderSettings, threads};
 use crate::splats::Splats;
 use crate::task::Task;
 use crate::window::{TILE, Window};
+use bilux_math::parallel::{for_each, install};
 use bilux_scene::{Camera, Scene, Tracer};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// The mean work of a sample of each pixel; planes of the window in rows, the top row first.
@@ -56,7 +56,7 @@ pub fn work(
 ) -> Result<Option<Work>, RenderError> {
     settings.check()?;
     let pool = threads(settings)?;
-    let plan = pool.install(|| integrator.plan(scene, camera, &settings.for_planning()));
+    let plan = install(&pool, || integrator.plan(scene, camera, &settings.for_planning()));
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let (window, whole) = (settings.window(), Window::whole(settings.width, settings.height));
     progress.begin(window.pixels() as u64 * settings.samples.len() as u64);
@@ -66,14 +66,12 @@ pub fn work(
         let mut eye = integrator.camera_rays(scene, camera, settings);
         let of_whole = whole.tiles(TILE);
         let photons =
-            pool.install(|| Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None));
+            install(&pool, || Photons::of_iteration(integrator, &eye, &of_whole, samples.start, None));
         eye.context.photons = photons.as_ref().map(|(photons, _)| photons);
-        pool.install(|| {
-            let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
-                count(integrator, &eye, tile, sums, &samples, with_accel, progress);
-            };
-            tiles.par_iter_mut().for_each(each);
-        });
+        let each = |(tile, sums): &mut (Window, Vec<Sums>)| {
+            count(integrator, &eye, tile, sums, &samples, with_accel, progress);
+        };
+        install(&pool, || for_each(&mut tiles, each));
     }
     if progress.is_cancelled() { Ok(None) } else { Work::of(window, tiles, settings.samples.len()).map(Some) }
 }

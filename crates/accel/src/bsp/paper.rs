@@ -21,6 +21,7 @@ use super::tree::{Branch, BspTree, MAX_DEPTH};
 use crate::mesh::TriangleMesh;
 use crate::registry::{AcceleratorEntry, BspGroup, BspSplit, BuildError, BuildOptions};
 use bilux_math::DVec3;
+use bilux_math::parallel::join;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
 
@@ -109,7 +110,7 @@ fn grow<P: Partition>(partition: P, split: BspSplit, growth: f64, depth: usize) 
     let grow_left = || grow(left, split, growth, depth + 1);
     let grow_right = || grow(right, split, growth, depth + 1);
     let (left, right) =
-        if before > PARALLEL { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
+        if before > PARALLEL { join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
     Branch::Fork { plane, on: on.into_triangles(), children: Box::new([left, right]) }
 }
 

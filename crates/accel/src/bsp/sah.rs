@@ -18,6 +18,7 @@ use super::sweep;
 use super::tree::{Branch, BspTree, MAX_DEPTH};
 use crate::mesh::TriangleMesh;
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions, Quality};
+use bilux_math::parallel::join;
 use bilux_math::{DVec3, registry::Entry};
 use std::sync::Arc;
 
@@ -110,7 +111,7 @@ impl Grower<'_> {
         let grow_left = || self.grow(left, left_cell, growth, depth + 1);
         let grow_right = || self.grow(right, right_cell, growth, depth + 1);
         let (left, right) =
-            if before > PARALLEL { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
+            if before > PARALLEL { join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
         Branch::Fork { plane, on: Vec::new(), children: Box::new([left, right]) }
     }
 

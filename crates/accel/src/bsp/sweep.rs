@@ -4,6 +4,7 @@ use super::choice::{AXIS_STEP, Choice};
 use super::pieces::Pieces;
 use super::plane::Plane;
 use bilux_math::DVec3;
+use bilux_math::parallel::join;
 
 /// The cheapest axis-aligned plane of a box that leaves at most `most` references; among equally cheap ones, the
 /// first.
@@ -16,7 +17,7 @@ pub(super) fn cheapest(
 ) -> Option<Choice> {
     let sweep = |axis| Sweep::new(pieces, axis, low, high, tolerance).cheapest(most);
     let axes = if pieces.len() > PARALLEL {
-        let (x, (y, z)) = rayon::join(|| sweep(0), || rayon::join(|| sweep(1), || sweep(2)));
+        let (x, (y, z)) = join(|| sweep(0), || join(|| sweep(1), || sweep(2)));
         [x, y, z]
     } else {
         [sweep(0), sweep(1), sweep(2)]

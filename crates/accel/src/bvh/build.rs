@@ -5,7 +5,8 @@
 
 use super::tree::{BvhNode, EMPTY, MAX_DEPTH, Pair, Tree, planes_of, union};
 use bilux_math::Aabb;
-use rayon::prelude::*;
+use bilux_math::parallel::{join, map, ranges};
+use std::ops::Range;
 
 /// Bins per axis.
 const BINS: usize = 16;
@@ -34,13 +35,13 @@ impl Tree {
     /// Builds a tree over items `0..len`, and the order that its leaves' ranges refer to. Items with an empty box are
     /// left out.
     pub(crate) fn over(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
-        let mut items: Vec<Item> = (0..len as u32)
-            .into_par_iter()
-            .filter_map(|index| {
-                let bounds = bounds(index);
-                (!bounds.is_empty()).then(|| Item { planes: planes_of(&bounds), index })
-            })
-            .collect();
+        let item = |index: usize| {
+            let index = index as u32;
+            let bounds = bounds(index);
+            (!bounds.is_empty()).then(|| Item { planes: planes_of(&bounds), index })
+        };
+        let of = |some: Range<usize>| some.filter_map(item).collect::<Vec<_>>();
+        let mut items = map(ranges(len, PARALLEL), of).concat();
         if items.is_empty() {
             return (Tree { root: BvhNode::default(), pairs: Vec::new() }, Vec::new());
         }
@@ -97,7 +98,7 @@ fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
         depth: depth + 1,
     };
     pair.0 = if left.items.len() + right.items.len() >= PARALLEL {
-        let (a, b) = rayon::join(|| subtree(left, halves[0]), || subtree(right, halves[1]));
+        let (a, b) = join(|| subtree(left, halves[0]), || subtree(right, halves[1]));
         [a, b]
     } else {
         [subtree(left, halves[0]), subtree(right, halves[1])]
@@ -193,7 +194,7 @@ fn grid_over(items: &[Item]) -> Grid {
         })
     };
     let [least, greatest] = if items.len() >= PARALLEL * 8 {
-        items.par_chunks(PARALLEL).map(of).reduce(|| EMPTY, |a, b| union(&a, &b))
+        map(items.chunks(PARALLEL), of).iter().fold(EMPTY, |a, b| union(&a, b))
     } else {
         of(items)
     };
@@ -216,11 +217,11 @@ fn fill_bins(items: &[Item], grid: &Grid) -> Bins {
         }
         bins
     };
-    let merge = |a: Bins, b: Bins| {
+    let merge = |a: Bins, b: &Bins| {
         std::array::from_fn(|axis| std::array::from_fn(|bin| a[axis][bin].with(&b[axis][bin])))
     };
     if items.len() >= PARALLEL * 8 {
-        items.par_chunks(PARALLEL).map(fill).reduce(|| [[NO_ITEMS; BINS]; 3], merge)
+        map(items.chunks(PARALLEL), fill).iter().fold([[NO_ITEMS; BINS]; 3], merge)
     } else {
         fill(items)
     }

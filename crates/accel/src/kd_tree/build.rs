@@ -5,7 +5,8 @@ use super::split::{Split, best_split};
 use super::tree::{KdNode, MAX_DEPTH, MAX_NODES, Tree};
 use crate::mesh::TriangleMesh;
 use crate::registry::BuildError;
-use rayon::prelude::*;
+use bilux_math::parallel::{join, map, ranges};
+use std::ops::Range;
 
 /// Maximum number of references over all leaves, per triangle.
 const MAX_REFERENCES_EACH: usize = 6;
@@ -15,14 +16,14 @@ const PARALLEL: usize = 8192;
 /// A tree over a mesh's finite triangles. Its references are indices of the mesh's triangles.
 pub(super) fn build(mesh: &TriangleMesh) -> Result<Tree, BuildError> {
     let bounds = mesh.bounds();
-    let references: Vec<Reference> = (0..mesh.len() as u32)
-        .into_par_iter()
-        .filter_map(|index| {
-            let bounds = mesh.triangle_bounds(index);
-            let planes = [bounds.min.to_array(), bounds.max.to_array()];
-            (!bounds.is_empty()).then_some(Reference { planes, index })
-        })
-        .collect();
+    let reference = |index: usize| {
+        let index = index as u32;
+        let bounds = mesh.triangle_bounds(index);
+        let planes = [bounds.min.to_array(), bounds.max.to_array()];
+        (!bounds.is_empty()).then_some(Reference { planes, index })
+    };
+    let of = |some: Range<usize>| some.filter_map(reference).collect::<Vec<_>>();
+    let references = map(ranges(mesh.len(), PARALLEL), of).concat();
     if references.is_empty() {
         return Ok(Tree::default());
     }
@@ -82,7 +83,7 @@ impl Builder<'_> {
                 self.grow(task, &mut tree);
                 tree
             };
-            let (below, above) = rayon::join(|| alone(below), || alone(above));
+            let (below, above) = join(|| alone(below), || alone(above));
             append(tree, below);
             tree.nodes[node] = KdNode::inner(split.axis, split.plane, tree.nodes.len());
             append(tree, above);
@@ -136,7 +137,7 @@ impl Builder<'_> {
         if references.len() < PARALLEL * 4 {
             return of(references);
         }
-        let parts: Vec<_> = references.par_chunks(PARALLEL).map(of).collect();
+        let parts = map(references.chunks(PARALLEL), of);
         let all = |side: usize| parts.iter().flat_map(|part| &part[side]).copied().collect();
         [all(0), all(1)]
     }

@@ -30,10 +30,10 @@ pub use blob::Blob;
 pub use error::EncodingError;
 pub use hash::ContentHash;
 
+use bilux_math::parallel::for_each;
 use bilux_scene::texture::Texels;
 use bilux_scene::{SceneBuilder, Spec};
 use code::{Coded, Decoder, Encoder};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tables::ReadTables;
@@ -136,7 +136,7 @@ fn hash_images(scene: &SceneBuilder) {
     images.retain(|image| !matches!(image.texels, Texels::Formula(_)));
     images.sort_by_key(|image| Arc::as_ptr(image));
     images.dedup_by_key(|image| Arc::as_ptr(image));
-    images.into_par_iter().with_max_len(1).for_each(|image| {
+    for_each(images, |image| {
         Blob::Image(image.clone()).hash();
     });
 }

@@ -13,8 +13,8 @@ use bilux_import::reading::{Reading, Source};
 use bilux_import::sink::Sink;
 use bilux_import::text::{Cursor, Places, TextPosition, no_text, unquoted, whole_file};
 use bilux_math::Rgb;
+use bilux_math::parallel::{map, threads};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
@@ -79,7 +79,7 @@ impl Obj<'_, '_, '_> {
         let mut spare: Vec<Block> = Vec::new();
         loop {
             let mut texts = Vec::new();
-            while texts.len() < rayon::current_num_threads() {
+            while texts.len() < threads() {
                 let failed =
                     |source| FormatError::Io { path: Path::new(&**file).into(), action: "read it", source };
                 let Some(text) = blocks.next(self.reading.budget.left()).map_err(failed)? else { break };
@@ -92,7 +92,7 @@ impl Obj<'_, '_, '_> {
             let parts: Vec<Block> = match texts.len() {
                 0 => return Ok(()),
                 1 => spare.drain(..).zip(&texts).map(parse).collect(),
-                _ => spare.par_drain(..).zip(&texts).map(parse).collect(),
+                _ => map(spare.drain(..).zip(&texts), parse),
             };
             for (mut block, text) in parts.into_iter().zip(texts) {
                 self.join(&mut block, &text)?;

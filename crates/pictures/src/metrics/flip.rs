@@ -7,9 +7,9 @@ use super::convolution::{Plane, kernel, normalised};
 use super::{MetricEntry, Pair};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
+use bilux_math::parallel::{fill, join};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{exp_f64, powf_f64};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The row of `flip`.
@@ -50,10 +50,10 @@ const FEATURE_WIDTH: f64 = 0.082;
 pub(super) fn map(pair: &Pair) -> Vec<f32> {
     let seen = |side: &[Rgb]| {
         let side = opponent(side, pair.width);
-        rayon::join(|| filtered_lab(&side), || Features::new(&side[0]))
+        join(|| filtered_lab(&side), || Features::new(&side[0]))
     };
     let [a, b] = &pair.shown;
-    let ((lab_a, features_a), (lab_b, features_b)) = rayon::join(|| seen(a), || seen(b));
+    let ((lab_a, features_a), (lab_b, features_b)) = join(|| seen(a), || seen(b));
     let (lab, features) = ([lab_a, lab_b], [features_a, features_b]);
     let most = powf_f64(hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0])), COLOUR_EXPONENT);
     let error = |i: usize| {
@@ -61,7 +61,9 @@ pub(super) fn map(pair: &Pair) -> Vec<f32> {
         let feature = features[0].difference(&features[1], i);
         powf_f64(colour, 1.0 - feature) as f32
     };
-    (0..pair.width * pair.height).into_par_iter().map(error).collect()
+    let mut errors = vec![0.0; pair.width * pair.height];
+    fill(&mut errors, 1 << 10, error);
+    errors
 }
 
 /// Rec. 709 primaries and D65, (0.31271, 0.32902), as rows for X, Y and Z.

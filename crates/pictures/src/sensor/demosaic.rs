@@ -1,7 +1,7 @@
 //! Colours of a mosaic of filters.
 
 use super::Pattern;
-use rayon::prelude::*;
+use bilux_math::parallel::for_each;
 
 /// For each pixel, red, green and blue: its own number, and of the other two channels the mean of the neighbours that have them, in rows,
 /// columns and diagonals. With a mosaic of squares that is bilinear interpolation. A channel that no neighbour has is 0.
@@ -13,7 +13,7 @@ pub(super) fn bilinear(
 ) -> Vec<[f32; 3]> {
     let height = mosaic.len() / width;
     let mut pixels = vec![[0.0; 3]; mosaic.len()];
-    pixels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    for_each(pixels.chunks_mut(width).enumerate(), |(y, row)| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let (mut sums, mut counts) = ([0.0f64; 3], [0u32; 3]);
             let channel = |x: usize, y: usize| pattern.channel(left + x as u64, top + y as u64, 0);

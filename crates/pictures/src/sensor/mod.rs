@@ -11,11 +11,11 @@ mod pattern;
 
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
+use bilux_math::parallel::for_each;
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_math::{Stream, poisson};
 pub use parameters::SENSOR;
 pub use pattern::Pattern;
-use rayon::prelude::*;
 
 /// Planck's constant, in J s. [SI 2019]
 const PLANCK: f64 = 6.626_070_15e-34;
@@ -93,7 +93,7 @@ impl Sensor {
         let mut saturated = 0;
         for (plane, name) in planes.iter().enumerate() {
             let mut samples = vec![0.0; picture.pixel_count()];
-            samples.par_chunks_mut(width).enumerate().for_each(|(row, samples)| {
+            for_each(samples.chunks_mut(width).enumerate(), |(row, samples)| {
                 for (column, sample) in samples.iter_mut().enumerate() {
                     let (x, y) = (left + column as u64, top + row as u64);
                     let light = self.seen(x, y, plane, colours[row * width + column]);

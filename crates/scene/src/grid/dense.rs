@@ -5,7 +5,7 @@ use super::faults::Faults;
 use super::grid::{EMPTY, Grid};
 use super::half::{half, scale_of};
 use bilux_math::Transform;
-use rayon::prelude::*;
+use bilux_math::parallel::{self, for_each_with, map_with};
 
 /// Rows of voxels in a row of blocks.
 const ROWS: usize = BLOCK * BLOCK;
@@ -39,12 +39,10 @@ impl Grid {
             faults
         };
         let buffer = || vec![0.0; width * ROWS];
-        let strips = (0..deep * high).into_par_iter();
-        let found = strips.map_init(buffer, |values, strip| {
+        let found: Vec<(Faults, Vec<f32>)> = map_with(0..deep * high, buffer, |values, strip| {
             let faults = values_of(strip, values);
             (faults, largest_of_blocks(values, width))
         });
-        let found: Vec<(Faults, Vec<f32>)> = found.collect();
         let largest = found.iter().flat_map(|(_, blocks)| blocks).copied().fold(0.0, f32::max);
         let faults = found.iter().fold(Faults::default(), |all, (faults, _)| all.and(*faults));
         let scale = scale_of(largest);
@@ -64,7 +62,7 @@ impl Grid {
         }
         // A power of two: products with its inverse are exact.
         let inverse = 1.0 / scale;
-        stored.into_par_iter().enumerate().for_each_init(buffer, |values, (strip, (places, voxels))| {
+        for_each_with(stored.into_iter().enumerate(), buffer, |values, (strip, (places, voxels))| {
             if voxels.is_empty() {
                 return;
             }
@@ -87,7 +85,7 @@ impl Grid {
     pub fn bytes_to_make(size: [usize; 3]) -> u64 {
         let [nx, ny, nz] = size.map(|side| side.next_multiple_of(BLOCK) as u64);
         let halves = nx.saturating_mul(ny).saturating_mul(nz).saturating_mul(2);
-        let threads = rayon::current_num_threads() as u64;
+        let threads = parallel::threads() as u64;
         halves.saturating_add(halves / 64).saturating_add(threads * nx * 4 * ROWS as u64)
     }
 

@@ -4,8 +4,8 @@ use super::blocks::{BLOCK, BLOCK_VOXELS, Block, GridError, all, blocks_of, check
 use super::half::{from_half, half, scale_of};
 use super::line::{GridLine, for_each_block};
 use super::origin::Origin;
+use bilux_math::parallel::fill;
 use bilux_math::{Transform, Vec3};
-use rayon::prelude::*;
 use std::fmt;
 
 /// Marks a block of zeros.
@@ -258,7 +258,9 @@ impl Grid {
             let at = [index % nx, index / nx % ny, index / (nx * ny)];
             from_half(self.largest_around(at, blocks)) * self.scale
         };
-        (0..self.places.len()).into_par_iter().map(bound).collect::<Vec<f32>>().into()
+        let mut bounds = vec![0.0; self.places.len()];
+        fill(&mut bounds, 1 << 8, bound);
+        bounds.into()
     }
 
     /// The largest half of a block and of the voxels beside it. Halves without a sign are in the order of their bits.

@@ -9,8 +9,8 @@ use super::parts::SceneParts;
 use crate::placed::Placed;
 use crate::surface::Surface;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
+use bilux_math::parallel::any;
 use bilux_math::{Aabb, Vec3};
-use rayon::prelude::*;
 
 /// The maximum distance of a sheet's shells, relative to the extent of the object whose back is seen through,
 const PART_OF_OBJECT: f32 = 1.0 / 1024.0;
@@ -71,7 +71,7 @@ impl Sheets {
         let one_sided: Vec<u32> = (0..objects.len() as u32).filter(|&object| is_one_sided(object)).collect();
         let probes = (MAX_PROBES_OF_ALL / one_sided.len().max(1)).clamp(1, MAX_PROBES);
         let has_shell = |object: &u32| sheets.has_shell(parts, accelerator, *object, probes, time);
-        one_sided.par_iter().any(has_shell).then_some(sheets)
+        any(&one_sided, has_shell).then_some(sheets)
     }
 
     /// True when some triangle of an object, of which `probes` are tested, faces the other shell of a sheet.

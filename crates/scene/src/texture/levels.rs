@@ -4,7 +4,7 @@
 use super::image::{Image, Texels};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
-use rayon::prelude::*;
+use bilux_math::parallel::for_each;
 use std::sync::{Arc, LazyLock, OnceLock};
 
 /// The coarser levels of a texture's image, finest first; empty until a render asks for them.
@@ -183,7 +183,7 @@ fn each<S: Copy + Sync, T: Default + Copy + Send>(
     let [width, height] = size.map(|side| side / 2);
     let is_even = size.iter().all(|side| side.is_multiple_of(2));
     let mut texels = vec![T::default(); width * height];
-    texels.par_chunks_mut(width).with_min_len(PIECE.div_ceil(width)).enumerate().for_each(|(y, texels)| {
+    let of_row = |(y, texels): (usize, &mut [T])| {
         let row = |y: usize| fine.get(y * size[0]..(y + 1) * size[0]).unwrap_or(&[]);
         let rows = [row(2 * y), row(2 * y + 1), row(2 * y + 2)];
         if is_even {
@@ -198,6 +198,10 @@ fn each<S: Copy + Sync, T: Default + Copy + Send>(
             let rows = rows.map(|row| row.get(2 * x..).unwrap_or(&[]));
             *texel = mean(Covered::Parts { rows, down, across: parts(x, size[0]) });
         }
+    };
+    let together = PIECE.div_ceil(width);
+    for_each(texels.chunks_mut(width * together).enumerate(), |(piece, texels)| {
+        (piece * together..).zip(texels.chunks_mut(width)).for_each(of_row);
     });
     texels
 }

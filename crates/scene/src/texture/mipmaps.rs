@@ -1,7 +1,7 @@
 //! Which textures get coarser levels, and when.
 
 use super::{Filter, Texture, levels};
-use rayon::prelude::*;
+use bilux_math::parallel::for_each;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub(crate) fn build(textures: &[&Arc<Texture>]) {
         pictures.entry(key(texture)).or_default().push(texture);
     }
     let pictures: Vec<_> = pictures.into_values().collect();
-    pictures.par_iter().for_each(|sharers| {
+    for_each(&pictures, |sharers| {
         let levels = levels::of(&sharers[0].image, sharers[0].is_data);
         for texture in sharers.iter() {
             texture.levels.fill(levels.clone());

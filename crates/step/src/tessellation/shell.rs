@@ -11,7 +11,7 @@ use crate::surfaces::{Scale, Surface, plane, surface};
 use bilux_import::FormatError;
 use bilux_import::reading::Reading;
 use bilux_math::DVec3;
-use rayon::prelude::*;
+use bilux_math::parallel::map;
 use std::collections::{HashMap, HashSet};
 
 /// A face of a shape.
@@ -116,8 +116,8 @@ impl<'t, 'b> Shape<'t, 'b> {
         ids.dedup();
         let mut edges: HashMap<u64, Edge> = HashMap::new();
         for some in ids.chunks(AT_ONCE) {
-            let read: Vec<(u64, Edge)> =
-                some.par_iter().filter_map(|&id| Some((id, Edge::read(table, id, unit)?))).collect();
+            let read = map(some, |&id| Some((id, Edge::read(table, id, unit)?)));
+            let read: Vec<(u64, Edge)> = read.into_iter().flatten().collect();
             let bytes: usize = read.iter().map(|(_, edge)| edge.size()).sum();
             reading.budget.take_bytes(bytes as u64, &table.file())?;
             edges.extend(read);
@@ -132,11 +132,8 @@ impl<'t, 'b> Shape<'t, 'b> {
         let size = (high - low).length().max(f64::MIN_POSITIVE);
         let far = low.abs().max(high.abs()).max_element();
         let accuracy = Accuracy { distance: CHORD * size, angle: ANGLE };
-        let sampled: Vec<(u64, Vec<DVec3>)> = edges
-            .par_iter()
-            .map(|(&id, edge)| (id, edge.points(accuracy)))
-            .filter(|(_, p)| p.len() > 1)
-            .collect();
+        let mut sampled = map(&edges, |(&id, edge)| (id, edge.points(accuracy)));
+        sampled.retain(|(_, points)| points.len() > 1);
         let count: usize = sampled.iter().map(|(_, points)| points.len()).sum();
         reading.budget.take::<DVec3>(count + ids.len(), &table.file())?;
         let scale = Scale { angle: unit, size: 4.0 * (size + far) };
@@ -151,7 +148,7 @@ impl<'t, 'b> Shape<'t, 'b> {
     ) -> Result<Vec<Option<Patch>>, FormatError> {
         let mut patches = Vec::with_capacity(faces.len());
         for some in faces.chunks(AT_ONCE) {
-            let made: Vec<Option<Patch>> = some.par_iter().map(|face| self.patch(face)).collect();
+            let made = map(some, |face| self.patch(face));
             for patch in made.iter().flatten() {
                 let bytes = 48 * patch.positions.len() + 12 * patch.triangles.len() + patch.surface_bytes;
                 reading.budget.take_bytes(bytes as u64, &self.table.file())?;

@@ -21,13 +21,13 @@ use crate::film::zeroed;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
 use crate::window::{TILE, Window};
+use bilux_math::parallel::{install, map};
 use bilux_math::{DVec2, Mat4, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, Scene, Tracer};
 use channels::{CHANNELS, Channel, Label, Value};
 use flow::Flow;
 pub use flow::Moment;
-use rayon::prelude::*;
 pub use silhouettes::{Mask, Silhouette, silhouettes};
 pub(crate) use surface::visible_normal;
 use surface::{LabelRays, Labelled};
@@ -71,9 +71,8 @@ pub fn labels(
         wanted,
     };
     let of_tile = |tile: Window| (!progress.is_cancelled()).then(|| look.tile(tile));
-    let tiles: Option<Vec<Vec<u32>>> =
-        threads(settings)?.install(|| window.tiles(TILE).into_par_iter().map(of_tile).collect());
-    let Some(tiles) = tiles else { return Ok(None) };
+    let tiles = install(&threads(settings)?, || map(window.tiles(TILE), of_tile));
+    let Some(tiles) = tiles.into_iter().collect::<Option<Vec<Vec<u32>>>>() else { return Ok(None) };
     Ok(Some(look.assembled(window, &tiles)?))
 }
 

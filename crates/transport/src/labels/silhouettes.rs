@@ -5,8 +5,8 @@ use crate::error::{FilmError, RenderError};
 use crate::limits::MAX_SIDE;
 use crate::progress::Progress;
 use crate::settings::{RenderSettings, threads};
+use bilux_math::parallel::{install, map};
 use bilux_scene::{Camera, Scene, Tracer};
-use rayon::prelude::*;
 
 /// The columns of pixels that are looked at before their runs are put together.
 const COLUMNS: i64 = 128;
@@ -62,11 +62,9 @@ pub fn silhouettes(
     let mut first = 0;
     while first < i64::from(width) {
         let last = (first + COLUMNS).min(width.into());
-        let columns: Option<Vec<Vec<Run>>> = pool.install(|| {
-            let of_column = |column| (!progress.is_cancelled()).then(|| look.column(column));
-            (first..last).into_par_iter().map(of_column).collect()
-        });
-        let Some(columns) = columns else { return Ok(None) };
+        let of_column = |i| (!progress.is_cancelled()).then(|| look.column(first + i as i64));
+        let columns = install(&pool, || map(0..(last - first) as usize, of_column));
+        let Some(columns) = columns.into_iter().collect::<Option<Vec<Vec<Run>>>>() else { return Ok(None) };
         for (column, runs) in (first..).zip(columns) {
             for run in runs {
                 if let Some(grown) = growing.get_mut(run.group as usize) {

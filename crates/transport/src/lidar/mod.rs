@@ -10,9 +10,9 @@ mod parameters;
 mod returns;
 
 use bilux_math::Vec3;
+use bilux_math::parallel::map;
 use bilux_scene::{Scene, Tracer};
 pub use parameters::{Keep, LIDAR};
-use rayon::prelude::*;
 
 /// A firing of the laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ const BATCH: usize = 256;
 
 /// The returns of pulses, in their order, and of each by distance. They depend on neither threads nor on other pulses.
 pub fn scan(scene: &Scene, pulses: &[Pulse], scanner: &Scanner) -> Vec<Return> {
-    let batches = pulses.par_chunks(BATCH).enumerate().map(|(batch, pulses)| {
+    let batches = map(pulses.chunks(BATCH).enumerate(), |(batch, pulses)| {
         let (mut tracer, mut echoes, mut found) = (Tracer::new(scene, false), Vec::new(), Vec::new());
         for (i, pulse) in pulses.iter().enumerate() {
             echoes.clear();
@@ -83,5 +83,5 @@ pub fn scan(scene: &Scene, pulses: &[Pulse], scanner: &Scanner) -> Vec<Return> {
         }
         found
     });
-    batches.collect::<Vec<_>>().concat()
+    batches.concat()
 }

@@ -8,6 +8,7 @@ use super::item::{Bounds, Item};
 use super::spatial::Cutter;
 use super::split::{Halves, around, best_split, halve, partition};
 use crate::bvh8::layout::{LANES, Planes};
+use bilux_math::parallel::join;
 use std::ops::Range;
 
 /// Maximum number of nodes on a path from the root to a leaf.
@@ -194,7 +195,7 @@ fn subtree(
     let (a, b, used) = if count >= PARALLEL {
         let (left_pairs, right_pairs) = rest.split(left.items.len() - 1);
         let used = left_pairs.nodes.len() / 2 + right_pairs.nodes.len() / 2;
-        let (a, b) = rayon::join(
+        let (a, b) = join(
             || subtree(left, left_pairs, &halves[0], &centres[0], cutter),
             || subtree(right, right_pairs, &halves[1], &centres[1], cutter),
         );

@@ -8,7 +8,7 @@ use crate::bvh8::layout::{
 };
 use crate::mesh::TriangleMesh;
 use crate::registry::BuildError;
-use rayon::prelude::*;
+use bilux_math::parallel::{map, table};
 
 /// From this many items on, a subtree is measured and written by many threads.
 const PARALLEL: usize = 1 << 14;
@@ -38,8 +38,7 @@ pub(super) fn emit(
         return Err(BuildError::TooManyNodes);
     }
     // On all threads, because the first touch of memory is the expensive one.
-    let mut units: Vec<Unit> =
-        (0..plan.units).into_par_iter().with_min_len(1 << 14).map(|_| Unit::default()).collect();
+    let mut units = table(plan.units, PARALLEL, &|_| Unit::default());
     let (_, root) = writer.write(&binary.root, &plan, &mut units, 0);
     Ok((units, root))
 }
@@ -63,7 +62,7 @@ impl Writer<'_> {
             let child = self.binary.node(child);
             (child, self.plan(&child))
         };
-        plan.parts = children.par_iter().map(part).collect();
+        plan.parts = map(&children, part);
         plan.units = NODE_UNITS + plan.parts.iter().map(|(_, part)| part.units).sum::<usize>();
         plan
     }
@@ -117,10 +116,7 @@ impl Writer<'_> {
             tasks.push((child, part, stretch, at_child));
             (rest, at_child) = (behind, at_child + part.units);
         }
-        let written: Vec<_> = tasks
-            .into_par_iter()
-            .map(|(child, part, units, at)| self.write(child, part, units, at))
-            .collect();
+        let written = map(tasks, |(child, part, units, at)| self.write(child, part, units, at));
         write_node(own, &written);
         (node.planes(), Ref::node(at))
     }

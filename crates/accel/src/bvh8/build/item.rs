@@ -4,7 +4,8 @@ use crate::bvh8::layout::Planes;
 use crate::mesh::TriangleMesh;
 use bilux_math::Vec3;
 use bilux_math::glam::Vec4;
-use rayon::prelude::*;
+use bilux_math::parallel::{map, ranges, table};
+use std::ops::Range;
 
 /// The bounding box of a triangle. The fourth components hold the two halves of its index, as integer-valued floats:
 /// the raw bits of an index would be denormal numbers, which are slow.
@@ -56,7 +57,7 @@ impl Bounds {
 
     pub(super) fn of(items: &[Item]) -> Bounds {
         if items.len() > MANY {
-            return items.par_chunks(MANY).map(Bounds::of).reduce(|| Bounds::EMPTY, Bounds::union);
+            return map(items.chunks(MANY), Bounds::of).into_iter().fold(Bounds::EMPTY, Bounds::union);
         }
         items.iter().fold(Bounds::EMPTY, |all, item| all.with(item))
     }
@@ -95,17 +96,20 @@ impl Bounds {
 
 /// One item for each finite triangle, in their order.
 pub(super) fn items_of(mesh: &TriangleMesh) -> Vec<Item> {
-    let item = |(index, corners): (usize, &[[f32; 3]; 3])| {
-        let [a, b, c] = corners.map(Vec3::from);
+    let triangles = mesh.triangles();
+    let item = |index: usize| {
+        let [a, b, c] = triangles[index].map(Vec3::from);
         let planes = [a.min(b).min(c).to_array(), a.max(b).max(c).to_array()];
         // Zero times a finite number is zero, and NaN otherwise.
         let finite = ((a * 0.0 + b * 0.0) + c * 0.0).cmpeq(Vec3::ZERO).all();
         (Item::new(&planes, index as u32), finite)
     };
-    let all = mesh.triangles().par_iter().enumerate().with_min_len(4096).map(item);
-    if mesh.triangles().par_iter().with_min_len(4096).all(|t| t.iter().flatten().all(|x| x.is_finite())) {
-        all.map(|(item, _)| item).collect()
-    } else {
-        all.filter_map(|(item, finite)| finite.then_some(item)).collect()
+    let is_finite = |some: &[[[f32; 3]; 3]]| some.iter().flatten().flatten().all(|x| x.is_finite());
+    if map(triangles.chunks(MANY), is_finite).into_iter().all(|is_finite| is_finite) {
+        return table(triangles.len(), MANY, &|index| item(index).0);
     }
+    let of = |some: Range<usize>| {
+        some.map(item).filter_map(|(item, finite)| finite.then_some(item)).collect::<Vec<_>>()
+    };
+    map(ranges(triangles.len(), MANY), of).concat()
 }

@@ -6,11 +6,15 @@ use super::item::{Bounds, Item};
 use super::split::around;
 use crate::bvh8::layout::LANES;
 use bilux_math::glam::Vec4;
-use rayon::prelude::*;
+use bilux_math::parallel::{fill, join, table};
+use rayon::slice::ParallelSliceMut;
 
 /// Bits per axis: cells are a millionth of the whole extent wide, so that small things in large scenes are
 /// distinguished.
 const BITS: u32 = 20;
+
+/// Number of items that one thread places at a time.
+const CHUNK: usize = 4096;
 
 /// Up to this many items are split at block boundaries.
 const FEW: usize = 4 * LANES;
@@ -25,14 +29,15 @@ pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
     let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
     let scale = Vec4::splat((1u32 << (BITS - 1)) as f32 * 0.999_999) / extent;
     let scale = Vec4::new(sound(scale.x), sound(scale.y), sound(scale.z), 0.0);
-    let place = |(k, item): (usize, &Item)| {
+    let place = |item: &Item| {
         let cell = (item.centre() * 0.5 - centres.low * 0.5) * scale * 2.0;
         let spread = |x: f32| spread((x as u32).min((1 << BITS) - 1));
-        (spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z), k as u32)
+        spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z)
     };
-    let mut places: Vec<PlaceCode> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
+    let mut places: Vec<PlaceCode> = vec![(0, 0); items.len()];
+    fill(&mut places, CHUNK, |k| (place(&items[k]), k as u32));
     places.par_sort_unstable();
-    *items = places.par_iter().with_min_len(4096).map(|&(_, k)| items[k as usize]).collect();
+    *items = table(items.len(), CHUNK, &|k| items[places[k].1 as usize]);
     let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
     let pairs = NodePairs { nodes: &mut nodes, first_pair: 0 };
     let (_, root, _) = subtree(items, &places, 0, pairs, 1);
@@ -79,7 +84,7 @@ fn subtree(
     let (a, b, used) = if count >= PARALLEL {
         let (left_pairs, right_pairs) = rest.split(middle - 1);
         let used = count - 2;
-        let (a, b) = rayon::join(
+        let (a, b) = join(
             || subtree(left.0, right.0, first, left_pairs, depth + 1),
             || subtree(left.1, right.1, next, right_pairs, depth + 1),
         );

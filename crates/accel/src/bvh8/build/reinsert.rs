@@ -7,7 +7,7 @@ use super::binary::{Binary, BinaryNode, MAX_DEPTH};
 use super::costs::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::Bounds;
 use bilux_math::glam::Vec4;
-use rayon::prelude::*;
+use bilux_math::parallel::map;
 
 /// Number of rounds, and the fraction of all subtrees that are tried: those with the largest boxes, which have the
 /// most to gain.
@@ -49,13 +49,11 @@ pub(super) fn improve(binary: Binary) -> Binary {
     let mut tree = Tree::of(&binary);
     for _ in 0..ROUNDS {
         let candidates = tree.largest(tree.below.len() / TRIED);
-        let mut moves: Vec<Move> = candidates
-            .par_chunks(256)
-            .flat_map_iter(|chunk| {
-                let mut stack = Vec::new();
-                chunk.iter().filter_map(|&from| tree.search(from, &mut stack)).collect::<Vec<_>>()
-            })
-            .collect();
+        let of = |some: &[u32]| {
+            let mut stack = Vec::new();
+            some.iter().filter_map(|&from| tree.search(from, &mut stack)).collect::<Vec<Move>>()
+        };
+        let mut moves = map(candidates.chunks(256), of).concat();
         if moves.is_empty() {
             break;
         }

@@ -8,7 +8,7 @@
 use super::item::{Bounds, Item};
 use super::split::{Halves, around, blocks};
 use bilux_math::glam::Vec4;
-use rayon::prelude::*;
+use bilux_math::parallel::map;
 
 /// Bins per axis.
 const BINS: usize = 16;
@@ -111,8 +111,8 @@ impl<'a> Cutter<'a> {
         let least = cost * MAX_COST;
         let grid = Grid::new(bounds, items.len());
         let bins = if items.len() >= PARALLEL_PASS {
-            let parts = items.par_chunks(CHUNK).map(|items| Box::new(self.fill(items, &grid)));
-            *parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge)
+            let parts = map(items.chunks(CHUNK), |items| Box::new(self.fill(items, &grid)));
+            *parts.into_iter().fold(Box::new([[NO_ITEMS; BINS]; 3]), merge)
         } else {
             self.fill(items, &grid)
         };

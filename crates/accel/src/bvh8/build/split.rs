@@ -3,7 +3,7 @@
 use super::item::{Bounds, Item};
 use crate::bvh8::layout::LANES;
 use bilux_math::glam::Vec4;
-use rayon::prelude::*;
+use bilux_math::parallel::map;
 
 /// Bins per axis, for many items.
 pub(super) const BINS: usize = 16;
@@ -81,8 +81,8 @@ pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
         return None;
     }
     if items.len() >= PARALLEL_PASS {
-        let parts = items.par_chunks(CHUNK).map(|items| Box::new(fill::<BINS>(items, &grid)));
-        cheapest(&parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge), grid)
+        let parts = map(items.chunks(CHUNK), |items| Box::new(fill::<BINS>(items, &grid)));
+        cheapest(&*parts.into_iter().fold(Box::new([[NO_ITEMS; BINS]; 3]), merge), grid)
     } else if grid.bins <= FEW {
         // Most nodes are small, and initialising many bins would take more time than filling them.
         cheapest(&fill::<FEW>(items, &grid), grid)
@@ -185,7 +185,7 @@ pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
 /// The bounds of the centres of items.
 pub(super) fn around(items: &[Item]) -> Bounds {
     if items.len() >= PARALLEL_PASS {
-        return items.par_chunks(CHUNK).map(around).reduce(|| Bounds::EMPTY, Bounds::union);
+        return map(items.chunks(CHUNK), around).into_iter().fold(Bounds::EMPTY, Bounds::union);
     }
     let mut some = [Bounds::EMPTY; 4];
     let mut fours = items.chunks_exact(4);

@@ -10,10 +10,13 @@ use super::guides::{ALBEDO, Guides, INVERSE, NORMAL};
 use super::planes::{MARGIN, Planes};
 use crate::PictureError;
 use crate::limits::reserved;
-use rayon::prelude::*;
+use bilux_math::parallel::{fill, for_each};
 
 /// How often edges are reconstructed.
 const ROUNDS: usize = 2;
+
+/// Groups of pixels that one thread rebuilds at a time.
+const GROUPS: usize = 16;
 /// The distance over which one pixel affects another.
 pub(super) const REACH: usize = ROUNDS * RADIUS;
 
@@ -33,12 +36,14 @@ pub(super) fn rebuild(colours: &mut Planes, guides: &Guides) -> Result<(), Pictu
     pixels.extend((0..is_edge.len()).filter(|&i| is_edge[i]));
     for _ in 0..ROUNDS {
         colours.pad();
-        let rebuilt = |pixels: &[usize]| {
+        let of = |group: usize| {
             // What is missing at the end is the first pixel once more.
-            let lanes = std::array::from_fn(|lane| *pixels.get(lane).unwrap_or(&pixels[0]));
+            let first = group * LANES;
+            let lanes = std::array::from_fn(|lane| *pixels.get(first + lane).unwrap_or(&pixels[first]));
             Fits::around(colours, guides, lanes).blended(colours, lanes)
         };
-        let rebuilt: Vec<[[f32; LANES]; 4]> = pixels.par_chunks(LANES).map(rebuilt).collect();
+        let mut rebuilt = vec![[[0.0; LANES]; 4]; pixels.len().div_ceil(LANES)];
+        fill(&mut rebuilt, GROUPS, of);
         for (pixels, rebuilt) in pixels.chunks(LANES).zip(rebuilt) {
             for (plane, lanes) in colours.planes.iter_mut().zip(rebuilt) {
                 pixels.iter().zip(lanes).for_each(|(&i, light)| plane[i] = light);
@@ -55,7 +60,7 @@ fn edges(guides: &Guides) -> Vec<bool> {
     let (stride, width) = (planes.stride(), planes.width);
     let mut edges = vec![false; planes.planes[ALBEDO].len()];
     let (first, last) = (planes.index(0, 0) - MARGIN, planes.index(0, planes.height) - MARGIN);
-    edges[first..last].par_chunks_mut(stride).enumerate().for_each(|(y, row)| {
+    for_each(edges[first..last].chunks_mut(stride).enumerate(), |(y, row)| {
         let p = planes.index(0, y);
         for offset in [1, stride - 1, stride, stride + 1] {
             for q in [p - offset, p + offset] {

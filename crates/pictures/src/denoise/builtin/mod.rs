@@ -18,12 +18,11 @@ use super::task::{Denoiser, DenoiserEntry};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
+use bilux_math::parallel::{self, ThreadPool, for_each, install};
 use bilux_math::registry::Entry;
 use guides::Guides;
 use pass::pass;
 use planes::{Light, Planes};
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Duration;
 
 pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
@@ -57,8 +56,7 @@ pub(super) struct Builtin {
 
 impl Builtin {
     pub(super) fn new(threads: usize) -> Result<Builtin, PictureError> {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool
+        let pool = parallel::pool(threads, None)
             .map_err(|why| PictureError::NoDenoiser { what: format!("cannot start its threads: {why}") })?;
         Ok(Builtin { pool })
     }
@@ -76,7 +74,7 @@ impl Denoiser for Builtin {
         for strip in 0..strips {
             let rows = height * strip / strips..height * (strip + 1) / strips;
             let around = rows.start.saturating_sub(REACH)..(rows.end + REACH).min(height);
-            let smooth = self.pool.install(|| smoothed(source.rows(around.clone())?))?;
+            let smooth = install(&self.pool, || smoothed(source.rows(around.clone())?))?;
             let kept = (rows.start - around.start) * width..(rows.end - around.start) * width;
             all.extend_from_slice(&smooth[kept]);
         }
@@ -119,7 +117,7 @@ fn smoothed(mut noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
 /// Multiplies light by the albedo that it was divided by.
 fn multiply(light: &mut Planes, guides: &Guides) {
     let first = |y: usize| guides.planes.index(0, y);
-    light.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
+    for_each(light.rows_mut().iter_mut().enumerate(), |(y, row)| {
         let [r, g, b, variance] = &mut row[..] else { return };
         for x in 0..r.len() {
             let back = planes::divisor(guides.albedo(first(y) + x));

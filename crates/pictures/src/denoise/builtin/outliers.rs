@@ -4,7 +4,7 @@
 //! be too dark. Highlights stay too: their brightness is the same in all samples.
 
 use bilux_math::Rgb;
-use rayon::prelude::*;
+use bilux_math::parallel::{fill, for_each};
 
 /// Number of pixels around a firefly that may be as bright by chance.
 const BRIGHT: usize = 2;
@@ -22,9 +22,10 @@ pub(super) fn without(
     pixels: Vec<(Rgb, f32)>,
     haze: Option<&[f32]>,
 ) -> Vec<(Rgb, f32)> {
-    let lights: Vec<f32> = pixels.par_iter().map(|(colour, _)| colour.luminance()).collect();
+    let mut lights = vec![0.0; pixels.len()];
+    fill(&mut lights, 1 << 14, |i| pixels[i].0.luminance());
     let mut without = pixels;
-    without.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    for_each(without.chunks_mut(width).enumerate(), |(y, row)| {
         for (x, (colour, variance)) in row.iter_mut().enumerate() {
             let light = lights[y * width + x];
             if let Some(j) = brightest((width, height), &lights, x, y)

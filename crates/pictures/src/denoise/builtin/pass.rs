@@ -3,7 +3,7 @@
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
 use super::linear::Moments;
 use super::planes::{Light, MARGIN, Planes};
-use rayon::prelude::*;
+use bilux_math::parallel::for_each;
 
 /// Rows that one thread processes at a time.
 const BAND: usize = 16;
@@ -33,7 +33,7 @@ const LAST_LINEAR: usize = 4;
 /// Applies one pass to the light, and stores the result in `smooth`, which has the same size.
 pub(super) fn pass(light: &Light, guides: &Guides, step: usize, smooth: &mut Light) {
     let width = light.planes.width;
-    smooth.planes.rows_mut().par_chunks_mut(BAND).enumerate().for_each(|(i, rows)| {
+    for_each(smooth.planes.rows_mut().chunks_mut(BAND).enumerate(), |(i, rows)| {
         let mut band = Band::new(light, guides, step, i * BAND..i * BAND + rows.len());
         band.take_all();
         for (plane, samples) in band.finish().iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::PictureError;
 use crate::denoise::Layer;
 use crate::limits::zeroed;
 use bilux_math::Rgb;
-use rayon::prelude::*;
+use bilux_math::parallel::{for_each, map, table};
 
 /// The maximum reach of a pass: two steps and half a patch.
 pub(super) const MARGIN: usize = 2 * 8 + 1;
@@ -22,8 +22,7 @@ impl Planes {
     /// Planes of zeros.
     pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
         let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
-        let planes =
-            (0..count).into_par_iter().map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
+        let planes = map(0..count, |_| zeroed("denoising", size)).into_iter().collect::<Result<_, _>>()?;
         Ok(Planes { width, height, planes })
     }
 
@@ -33,7 +32,7 @@ impl Planes {
         at: impl Fn(usize) -> [f32; N] + Sync,
     ) -> Result<Planes, PictureError> {
         let mut all = Planes::new(width, height, N)?;
-        all.rows_mut().par_iter_mut().enumerate().for_each(|(y, row)| {
+        for_each(all.rows_mut().iter_mut().enumerate(), |(y, row)| {
             for x in 0..width {
                 row.iter_mut().zip(at(y * width + x)).for_each(|(plane, sample)| plane[x] = sample);
             }
@@ -71,7 +70,7 @@ impl Planes {
 
     /// Adds planes of the same size.
     pub(super) fn add(&mut self, more: &Planes) {
-        self.planes.par_iter_mut().zip(&more.planes).for_each(|(plane, more)| {
+        for_each(self.planes.iter_mut().zip(&more.planes), |(plane, more)| {
             plane.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         });
     }
@@ -79,7 +78,7 @@ impl Planes {
     /// Repeats the edges in the margins.
     pub(super) fn pad(&mut self) {
         let (stride, width, height) = (self.stride(), self.width, self.height);
-        self.planes.par_iter_mut().for_each(|plane| {
+        for_each(&mut self.planes, |plane| {
             for row in plane.chunks_exact_mut(stride).skip(MARGIN).take(height) {
                 let (first, last) = (row[MARGIN], row[MARGIN + width - 1]);
                 row[..MARGIN].fill(first);
@@ -127,8 +126,7 @@ impl Light {
             }
             None => guessed[i],
         };
-        let pixels = (0..size.0 * size.1).into_par_iter().map(|i| (colour(i), variance(i)));
-        let pixels: Vec<(Rgb, f32)> = pixels.collect();
+        let pixels: Vec<(Rgb, f32)> = table(size.0 * size.1, 1 << 12, &|i| (colour(i), variance(i)));
         drop((layer, guessed));
         let pixels = outliers::without(size, pixels, haze);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
@@ -166,7 +164,7 @@ fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec
 fn blur(pixels: &[(Rgb, f32)], width: usize, coverage: Option<&[f32]>) -> Vec<f32> {
     let height = pixels.len() / width;
     let mut all = vec![0.0; pixels.len()];
-    all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    for_each(all.chunks_mut(width).enumerate(), |(y, row)| {
         let rows = [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| y * width);
         let weight = |i: usize| coverage.map_or(1.0, |coverage| if coverage[i] > 0.0 { 1.0 } else { 0.0 });
         for (x, mean) in row.iter_mut().enumerate() {

@@ -3,9 +3,9 @@
 use crate::error::SceneError;
 use crate::grid::{BLOCK, BLOCK_VOXELS, Grid, GridError, MAX_SIDE, Origin};
 use crate::parameters::{Reader, Spec};
+use bilux_math::parallel::for_each;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Transform, Vec3};
-use rayon::prelude::*;
 
 /// A density as a function of position.
 pub trait Density: Send + Sync {
@@ -118,7 +118,7 @@ impl ComputedDensity {
 /// The values of a layer of blocks, with what lies beyond the last voxels.
 fn layer_of(density: &dyn Density, row: [usize; 2], block: usize, to_object: &Transform) -> Vec<f32> {
     let mut layer = vec![0.0; row[0] * row[1] * BLOCK];
-    layer.par_chunks_mut(row[0]).enumerate().for_each(|(run, line)| {
+    for_each(layer.chunks_mut(row[0]).enumerate(), |(run, line)| {
         let [y, z] = [run % row[1], block * BLOCK + run / row[1]];
         for (x, value) in line.iter_mut().enumerate() {
             *value = density.at(to_object.point(Vec3::new(x as f32, y as f32, z as f32) + 0.5));

@@ -15,8 +15,8 @@ use crate::photons::{MergeCounts, Merging};
 use crate::sampler::PixelSampler;
 use crate::techniques::{Contribution, LightPathVisitor, PerSet, Tally, Technique, TechniqueCounts};
 use bilux_math::Vec2;
+use bilux_math::parallel::{map, ranges};
 use bilux_scene::Counters;
-use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Number of light subpaths of an iteration: one for so many of the film's pixels, within these limits.
@@ -122,9 +122,10 @@ fn starts(round: &PilotRound, cells: usize) -> Vec<f64> {
         let (u_light, u) = (sampler.next_1d(), (sampler.next_2d(), sampler.next_2d()));
         Some(round.eye.context.emission.sample(scene, scene.shutter()[0], u_light, u)?.cell)
     };
-    let begun: Vec<Option<u16>> = (0..STARTS).into_par_iter().map(cell).collect();
+    let begun =
+        map(ranges(STARTS as usize, 256), |some| some.map(|i| cell(i as u32)).collect::<Vec<Option<u16>>>());
     let mut counts = vec![0.0; cells];
-    for cell in begun.into_iter().flatten() {
+    for cell in begun.into_iter().flatten().flatten() {
         counts[usize::from(cell)] += 1.0 / f64::from(STARTS);
     }
     counts

@@ -20,8 +20,8 @@ use crate::techniques::{Contribution, LightPathVisitor, Step, Tally, Technique, 
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;
+use bilux_math::parallel::map_with;
 use bilux_scene::{Counters, Tracer};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The pilot takes two rounds, to separate what changes between them from what does not; and one before these, to learn
@@ -278,10 +278,12 @@ where
         let of_tile = |tile: &Window| tallies.by_ref().take(tile.pixels()).collect();
         (tiles.iter().map(of_tile).collect(), tracer.counters)
     };
-    let (found, counters): (Vec<Vec<Vec<T>>>, Vec<Counters>) =
-        tiles.par_chunks(TOGETHER).map_init(BothEndsQueue::default, look).unzip();
-    counters.into_iter().for_each(|counters| counted += counters);
-    (found.into_iter().flatten().collect(), counted)
+    let mut all = Vec::with_capacity(tiles.len());
+    for (found, counters) in map_with(tiles.chunks(TOGETHER), BothEndsQueue::default, look) {
+        all.extend::<Vec<Vec<T>>>(found);
+        counted += counters;
+    }
+    (all, counted)
 }
 
 /// Samples per pixel in both rounds.
