@@ -19,6 +19,7 @@ mod python;
 mod strips;
 mod test;
 mod tidy;
+mod verdicts;
 mod viewer;
 mod workspace;
 
@@ -73,6 +74,11 @@ const CHORES: &[Chore] = &[
         name: "python-cluster",
         summary: "test bilux.cluster on a Ray cluster of two nodes (downloads Ray; minutes)",
         run: python::cluster,
+    },
+    Chore {
+        name: "verdicts",
+        summary: "run the statistical tests whole, and compare their verdicts (minutes; `--write` records them)",
+        run: verdicts::run,
     },
     Chore { name: "viewer", summary: "test the viewer in a browser, and take screenshots", run: viewer::run },
     Chore { name: "instructions", summary: "count the instructions per ray", run: instructions::run },

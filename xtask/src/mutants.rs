@@ -28,6 +28,7 @@ const SUITES: &[(&str, &[&str])] = &[
     ("bench", &["bilux-bench"]),
     ("cli", &["bilux-cli"]),
     ("validation", &["bilux-validation"]),
+    ("testing", &["bilux-testing"]),
     ("viewer", &["bilux-viewer"]),
 ];
 

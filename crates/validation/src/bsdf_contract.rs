@@ -1,5 +1,6 @@
 //! The contract of every BSDF, as checks that run on any of them: `docs/trust.md` lists what each check finds.
 
+use crate::SUITE;
 use crate::chi_square::{p_value, uniforms};
 use crate::tally::Tally;
 use bilux_math::transcendental::sin_cos;
@@ -66,8 +67,62 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("lobes with zero probability give no samples", samples_are_sound),
 ];
 
+/// Those of many samples, whose verdicts are remembered.
+const OF_MANY_SAMPLES: [&str; 3] = ["samples follow the pdf", "radiance and importance agree", "energy"];
+
 /// One check; an error describes what is wrong.
 pub type Check = fn(&Scatterer, Promise) -> Result<(), String>;
+
+/// Runs some of the checks: those of many samples by the record of this case, where the first of their samples are as they were.
+///
+/// # Errors
+/// What the first check says that fails, after its name.
+pub fn keeps(case: &str, names: &[&str], s: &Scatterer, promise: Promise) -> Result<(), String> {
+    let named = CHECKS.into_iter().filter(|(name, _)| names.contains(name));
+    let (many, few): (Vec<_>, Vec<_>) = named.partition(|(name, _)| OF_MANY_SAMPLES.contains(name));
+    let run = |checks: &[(&str, Check)]| {
+        let mut checks = checks.iter();
+        checks.try_for_each(|(name, run)| run(s, promise).map_err(|wrong| format!("{name}: {wrong}")))
+    };
+    run(&few)?;
+    let names: Vec<&str> = many.iter().map(|(name, _)| *name).collect();
+    let asked = format!("{} of {SAMPLES} samples, p > {SIGNIFICANCE}, {promise:?}", names.join(", "));
+    if many.is_empty() {
+        Ok(())
+    } else {
+        SUITE.check(case, &asked, || first_samples(s, &names), || run(&many))
+    }
+}
+
+/// The first of the samples that these checks draw, and densities all around.
+fn first_samples(s: &Scatterer, names: &[&str]) -> Vec<f32> {
+    const FIRST: u64 = SAMPLES / 16;
+    let mut numbers = Vec::new();
+    let mut add = |sample: Option<BsdfSample>| {
+        let Some(x) = sample else { return numbers.push(f32::NAN) };
+        numbers.extend(x.wi.to_array().into_iter().chain(x.weight.to_array()));
+        numbers.extend([
+            x.pdf_solid_angle,
+            f32::from(u8::from(x.is_delta)),
+            f32::from(u8::from(x.transmits)),
+        ]);
+    };
+    let streams = [("samples follow the pdf", 0, RADIANCE), ("energy", 300, IMPORTANCE)];
+    for (_, stream, mode) in streams.into_iter().filter(|(name, ..)| names.contains(name)) {
+        for (i, wo) in (stream..).zip(known_directions()) {
+            (0..FIRST).for_each(|k| add(draw(s, wo, i, k, mode)));
+        }
+    }
+    for (end, mode) in [RADIANCE, IMPORTANCE].into_iter().enumerate() {
+        let known = ENDS[end][..FIRST as usize].iter();
+        known.for_each(|known| add((s.sample)(known.direction, known.choice, known.u, mode)));
+    }
+    for wo in known_directions().into_iter().filter(|_| names.contains(&streams[0].0)) {
+        let around = (0..FIRST).map(|k| warp::sample_sphere(uniforms(604, k).1));
+        numbers.extend(around.map(|wi| (s.pdf)(wo, wi, RADIANCE)));
+    }
+    numbers
+}
 
 const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;

@@ -6,8 +6,11 @@ pub mod bsdf_contract;
 pub mod camera_contract;
 pub mod chi_square;
 pub mod course_oracle;
-#[path = "../../accel/tests/suite/support/effort.rs"]
-pub mod effort;
 pub mod light_contract;
 pub mod statistics;
 pub mod tally;
+
+use bilux_testing::verdicts::Suite;
+
+/// The comparisons of this crate.
+pub const SUITE: Suite = Suite::new(env!("CARGO_PKG_NAME"));

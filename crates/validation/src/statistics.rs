@@ -1,34 +1,8 @@
 //! Whether two methods of rendering have the same mean, estimated from pictures with different seeds. [Jung 2020]
 
-use bilux_math::transcendental::{exp_f64, powf_f64};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use bilux_math::transcendental::exp_f64;
 
-/// Mean and variance of the mean.
-pub fn estimate(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    (mean, values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0) / n)
-}
-
-/// Probability that two sets of values with the same mean differ by as much as these; each has at least two values.
-/// `None` where nothing varies and nothing differs, which is no evidence. [Welch 1947]
-pub fn welch(a: &[f64], b: &[f64]) -> Option<f64> {
-    let ((mean_a, va), (mean_b, vb)) = (estimate(a), estimate(b));
-    if va + vb == 0.0 {
-        return (mean_a != mean_b).then_some(0.0);
-    }
-    let freedom =
-        (va + vb) * (va + vb) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0));
-    let t = (mean_a - mean_b).abs() / (va + vb).sqrt();
-    StudentsT::new(0.0, 1.0, freedom).ok().map(|student| 2.0 * student.sf(t))
-}
-
-/// The minimum of `count` p-values as one p-value, corrected for their number. [Šidák 1967]
-pub fn sidak(least: f64, count: usize) -> f64 {
-    let n = count as f64;
-    // Where the power would round to 1.
-    if least * n < 1e-9 { least * n } else { 1.0 - powf_f64(1.0 - least, n) }
-}
+pub use bilux_testing::statistics::{estimate, sidak, welch};
 
 /// True where the mean is not normally distributed, because the variance comes from a few rare, large values: skewness
 /// over the root of the number of values, which is 1 where one value alone differs from the rest.
@@ -74,7 +48,7 @@ pub fn uniformity_p(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::chi_square::uniforms;
-    use bilux_math::transcendental::ln_f64;
+    use bilux_math::transcendental::{ln_f64, powf_f64};
 
     /// Sums of this many numbers of a distribution, each from a uniform number in 0..1.
     fn sums(stream: u64, groups: usize, of: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -111,19 +85,6 @@ mod tests {
                 (0..n).map(|i| ((f64::from(i) + 0.5) / f64::from(n) - shift).max(0.0)).collect();
             assert!((uniformity_p(&values) / wanted - 1.0).abs() < 0.05, "{}", uniformity_p(&values));
         }
-    }
-
-    #[test]
-    fn the_minimum_of_many_is_corrected() {
-        assert!((sidak(0.01, 100) - 0.633_967_658_7).abs() < 1e-9);
-        assert!((sidak(1e-12, 100) / 1e-10 - 1.0).abs() < 1e-6);
-        assert_eq!(sidak(1.0, 5), 1.0);
-    }
-
-    #[test]
-    fn no_evidence_is_not_agreement() {
-        assert_eq!(welch(&[0.0; 4], &[0.0; 4]), None);
-        assert_eq!(welch(&[0.0; 4], &[1.0; 4]), Some(0.0));
     }
 
     #[test]

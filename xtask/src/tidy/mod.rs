@@ -23,6 +23,7 @@ mod repository;
 mod rust_text;
 mod test_suites;
 mod unsafe_code;
+mod verdicts;
 mod violation;
 
 use anyhow::{Result, bail};
@@ -42,6 +43,7 @@ const RULES: &[Rule] = &[
     Rule { name: "forbidden", check: forbidden::check },
     Rule { name: "ignored-tests", check: ignored_tests::check },
     Rule { name: "test-suites", check: test_suites::check },
+    Rule { name: "verdicts", check: verdicts::check },
     Rule { name: "unsafe-code", check: unsafe_code::check },
     Rule { name: "portable", check: portable::check },
     Rule { name: "citations", check: citations::check },

@@ -1,8 +1,8 @@
 //! In a batch, each ray gets the same hit as on its own, bit for bit, whatever else is in the batch.
 
-use crate::support::effort::effort;
 use crate::support::{Numbers, bits, build_variant, meshes, queries, rays, variants};
 use bilux_accel::{Accelerator, BuildOptions, Hit, Query, Ray};
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -1,12 +1,12 @@
 //! Trees over parts of a mesh answer as brute force over the whole mesh does, bit for bit, one ray at a time and in
 //! batches.
 
-use crate::support::effort::effort;
 use crate::support::{Numbers, Truth, bits, build_variant, is_blocker, meshes, queries, rays, variants};
 use bilux_accel::{
     Accelerator, BuildOptions, Counters, Forest, Hit, Primitive, Query, Ray, TriangleMesh, build,
 };
 use bilux_math::Aabb;
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;

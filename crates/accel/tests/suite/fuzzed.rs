@@ -1,9 +1,9 @@
 //! Every structure agrees on a mesh and rays made from arbitrary bytes: the fuzzer's seeds, and as many random ones
 //! as time allows. `fuzz/run.sh rays` continues from here.
 
-use crate::support::effort::effort;
 use crate::support::fuzzed;
 use bilux_math::hash::hash_words;
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! Every structure gives the hits of `brute`, bit for bit, on input that has broken ray tracers.
 
-use crate::support::effort::effort;
 use crate::support::{Truth, build_variant, meshes, rays, variants};
 use bilux_accel::registry::Quality;
 use bilux_accel::{ACCELERATORS, BuildOptions, Bvh, Bvh8, Query, RefitError, TriangleMesh};
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Instances found by a tree give the same hits as instances tested one by one, bit for bit.
 
-use crate::support::effort::effort;
 use crate::support::{Numbers, Truth, build_variant, closed, meshes, rays, variants};
 use bilux_accel::{Accelerator, BuildOptions, Instance, Query, Ray, TopLevel, TriangleMesh, TwoLevel};
 use bilux_math::glam::{DMat4, Quat};
 use bilux_math::{Motion, MotionKey, Transform, Vec3};
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::sync::Arc;
 

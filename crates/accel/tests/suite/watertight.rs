@@ -1,8 +1,8 @@
 //! Rays from inside closed meshes always hit: a fraction of what `cargo run --release --example leak_hunt` does.
 
-use crate::support::effort::effort;
 use crate::support::{build_variant, closed, variants};
 use bilux_accel::{BuildOptions, Query};
+use bilux_testing::effort;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! `bilux bench render`: its rows, its references, its page, and the scenes that it measures on.
 
-use crate::effort::effort;
 use bilux::scene::{Parameters, Spec, Value};
 use bilux::{Job, Quiet};
 use bilux_bench::render::{Options, Reference, SCENES, SIZE, run};
 use bilux_math::Rgb;
+use bilux_testing::effort;
 use tempfile::TempDir;
 
 fn quick() -> Options {

@@ -1,6 +1,5 @@
 //! glTF that Bilux writes: its contents survive a round trip.
 
-use crate::effort::effort;
 use crate::round_trips::corners;
 use crate::shared_files::{files, scenes};
 use crate::{read_text, warnings};
@@ -9,6 +8,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::generators::shapes;
 use bilux_scene::texture::UvPair;
 use bilux_scene::{Object, SceneBuilder, Spec, Texture, Value};
+use bilux_testing::effort;
 use std::path::Path;
 use std::sync::Arc;
 

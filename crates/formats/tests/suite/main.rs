@@ -9,8 +9,6 @@ mod clouds;
 mod colours;
 mod dae;
 mod displacement;
-#[path = "../../../accel/tests/suite/support/effort.rs"]
-mod effort;
 mod fbx;
 mod fbx_truth;
 mod foreign;

@@ -1,8 +1,6 @@
 //! Scenes, from what describes them to what rays meet.
 
 mod conventions;
-#[path = "../../../accel/tests/suite/support/effort.rs"]
-mod effort;
 mod generators;
 mod irradiance;
 mod normal_maps;

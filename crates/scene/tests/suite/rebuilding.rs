@@ -1,7 +1,6 @@
 //! A scene that is built with what earlier builds left equals one that is built from nothing, bit for bit, whatever was
 //! edited in between; and what was not edited is not built again.
 
-use crate::effort::effort;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{Rgb, Transform, Vec2, Vec3, glam::Quat, hash};
 use bilux_scene::cameras::CameraSpec;
@@ -9,6 +8,7 @@ use bilux_scene::{
     AccelChoice, BuiltParts, Mesh, Object, Ray, Scene, SceneBuilder, Spec, StrokeWidths, Texture, Tracer,
     TreeWork, Value,
 };
+use bilux_testing::effort;
 use std::sync::Arc;
 
 const SHUTTER: [f32; 2] = [0.0, 0.5];

@@ -1,7 +1,7 @@
 //! Light inside an absorbing medium: a block of index 1, whose surface neither refracts nor reflects, around the light,
 //! the surfaces and the camera. Beer's law attenuates every edge of a path, whichever technique found it.
 
-use crate::common::statistics::{UNLIKELY, agreement, blocks};
+use crate::common::statistics::{UNLIKELY, agreement, blocks, difference, recorded};
 use crate::common::{ball, built, diffuse, effort, floor, look, put, quad, shoot, sky};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
@@ -38,8 +38,12 @@ fn integrator(name: &str) -> Box<dyn PixelIntegrator> {
 }
 
 fn mean(scene: &Scene, name: &str, settings: &RenderSettings) -> Rgb {
-    let pixels = shoot(scene, &*integrator(name), settings).film.to_rgb();
-    pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32
+    let mean = |pixels: &[Rgb]| {
+        let mean = pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32;
+        mean.to_array().map(f64::from).to_vec()
+    };
+    let found = recorded(name, "mean", (scene, &*integrator(name), settings), mean);
+    Rgb::from_array([0, 1, 2].map(|channel| found[channel] as f32))
 }
 
 /// Radiance of a small piece of diffuse floor below a point light, averaged over the film: albedo / π · I cosθ / d²,
@@ -115,21 +119,22 @@ fn indirect(sigma: Rgb, has_priority: bool) -> Scene {
 /// BSDF sampling alone makes no connections: the light that it finds is attenuated along each ray that it traces.
 #[test]
 fn connections_are_attenuated_like_traced_rays() {
-    let followed = blocks(&indirect(SIGMA, true), &*integrator("path scattering"), 0);
+    let followed = blocks(indirect(SIGMA, true), integrator("path scattering"), 0);
     for has_priority in [true, false] {
         let scene = indirect(SIGMA, has_priority);
         let names = ["path", "path lights", "light", "bdpt", "vcm"].into_iter().enumerate();
         // In the short form, each with one of the two.
         for (i, name) in names.skip(effort(usize::from(has_priority), 0)).step_by(effort(2, 1)) {
-            let p = agreement(&followed, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
-            assert!(p > UNLIKELY, "scattering and {name}, priority {has_priority}: p = {p}");
+            let case = format!("scattering and {name}, priority {has_priority}");
+            let p = agreement(&case, &followed, &blocks(&scene, integrator(name), 100 * (i as u64 + 1)));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
         }
     }
     // Negative control: a block that absorbs a tenth less.
-    let wrong = blocks(&indirect(SIGMA * 0.9, true), &*integrator("bdpt"), 700);
-    assert!(agreement(&followed, &wrong) < UNLIKELY);
-    let unhindered = blocks(&indirect(Rgb::BLACK, true), &*integrator("path scattering"), 800);
-    assert!(unhindered[11].iter().sum::<f64>() > 4.0 * followed[11].iter().sum::<f64>());
+    let wrong = blocks(indirect(SIGMA * 0.9, true), integrator("bdpt"), 700);
+    assert!(difference(&followed, &wrong) < UNLIKELY);
+    let unhindered = blocks(indirect(Rgb::BLACK, true), integrator("path scattering"), 800);
+    assert!(unhindered.cells()[11].iter().sum::<f64>() > 4.0 * followed.cells()[11].iter().sum::<f64>());
 }
 
 /// The boundary of what absorbs and has no surface absorbs what comes from the sky behind it too.

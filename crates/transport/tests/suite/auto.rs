@@ -1,11 +1,11 @@
 //! `auto`: its pilot's predictions come true, and it chooses what it should.
 
-use crate::common::statistics::{agreement, blocks};
+use crate::common::statistics::{SUITE, UNLIKELY, agreement, blocks};
 use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, mixed, put, shoot, sky, still_life,
     without_mirrors,
 };
-use bilux_math::Vec3;
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Scene, SceneBuilder, Spec};
 use bilux_transport::{Choice, PixelIntegrator, RenderSettings, integrators};
 
@@ -43,15 +43,21 @@ fn film(seed: u64) -> RenderSettings {
     RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 8, 8) }
 }
 
-/// The relative variance of a pixel, times its samples, as in [`Choice`].
-fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f64 {
+/// The relative variance of a pixel, times its samples, as in [`Choice`]: by the record of this case, where the first of the pictures are
+/// as they were.
+fn measured(case: &str, scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u32) -> f64 {
+    let shot = |seed| shoot(scene, integrator, &film(seed)).film.to_rgb();
+    let shots = |count: u32| (0..u64::from(count)).map(shot).collect();
+    SUITE.numbers(case, "variance by pictures", pictures, shots, |all| vec![relative_variance(all)])[0]
+}
+
+fn relative_variance(all: &Vec<Vec<Rgb>>) -> f64 {
+    let pictures = all.len();
     let (mut sums, mut squares) = (vec![0.0; PIXELS], vec![0.0; PIXELS]);
-    for seed in 0..pictures {
-        for (i, pixel) in shoot(scene, integrator, &film(seed)).film.to_rgb().into_iter().enumerate() {
-            let light = f64::from(pixel.luminance());
-            sums[i] += light / pictures as f64;
-            squares[i] += light * light / pictures as f64;
-        }
+    for (i, pixel) in all.iter().flat_map(|picture| picture.iter().enumerate()) {
+        let light = f64::from(pixel.luminance());
+        sums[i] += light / pictures as f64;
+        squares[i] += light * light / pictures as f64;
     }
     let dark = 0.3 * sums.iter().sum::<f64>() / PIXELS as f64;
     let of_block = |block: usize| {
@@ -67,16 +73,17 @@ fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f
 fn the_noise_of_every_set_is_predicted() {
     let scene = built(&corner());
     let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
-    let mut predicted = vec![0.0; SETS.len()];
     let pictures = effort(30, 60);
-    for seed in 0..pictures {
-        for (sum, candidate) in predicted.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
-            *sum += candidate.error / pictures as f64;
-        }
-    }
+    let errors = |seed| choice(&scene, &spec, &film(seed)).candidates.iter().map(|c| c.error).collect();
+    let pilots = |count: u32| (0..u64::from(count)).map(errors).collect();
+    let predicted =
+        SUITE.numbers("predicted", "errors by pilots", pictures, pilots, |all: &Vec<Vec<f64>>| {
+            let mean = |set: usize| all.iter().map(|errors| errors[set] / f64::from(pictures)).sum();
+            (0..SETS.len()).map(mean).collect()
+        });
     // In the short form, those that have one part each of what the others join: camera paths, light paths, photons.
     for (set, predicted) in SETS.into_iter().zip(predicted).step_by(effort(3, 1)) {
-        let measured = measured(&scene, &*reported(set, false), pictures);
+        let measured = measured(set, &scene, &*reported(set, false), pictures);
         let ratio = predicted / measured;
         assert!((0.8..1.25).contains(&ratio), "{set}: predicted {predicted}, measured {measured}");
     }
@@ -110,8 +117,8 @@ fn without_merging_it_has_the_same_mean_as_path() {
     builder.lights.retain(|light| light.kind != "spot");
     let scene = built(&builder);
     let auto = integrators::build(&auto().with("merge", "never")).unwrap();
-    let p = agreement(&blocks(&scene, &*integrator("path"), 0), &blocks(&scene, &*auto, 100));
-    assert!(p > 1e-4, "p = {p}");
+    let p = agreement("path and auto", &blocks(&scene, integrator("path"), 0), &blocks(&scene, auto, 100));
+    assert!(p > UNLIKELY, "p = {p}");
 }
 
 #[test]
@@ -177,15 +184,18 @@ fn aimed_light_paths_find_the_same_light_with_less_noise() {
         let scene = built(&lit_by(light));
         // `path` is no reference for what only light subpaths find.
         let p = agreement(
-            &blocks(&scene, &*reported("bdpt", false), 0),
-            &blocks(&scene, &*reported("bdpt", true), 100),
+            light,
+            &blocks(&scene, reported("bdpt", false), 0),
+            &blocks(&scene, reported("bdpt", true), 100),
         );
-        assert!(p > 1e-4, "{light}: p = {p}");
+        assert!(p > UNLIKELY, "{light}: p = {p}");
         if ["sphere", "spot"].contains(&light) {
             continue;
         }
-        let [plain, aimed] =
-            [false, true].map(|aim| measured(&scene, &*reported("path-light", aim), effort(12, 24)));
+        let [plain, aimed] = [false, true].map(|aim| {
+            let case = format!("{light}, aim: {aim}");
+            measured(&case, &scene, &*reported("path-light", aim), effort(12, 24))
+        });
         // A sky has no caustics that camera subpaths would not find with less noise.
         let bound = if light == "sky" { 2.0 } else { 1.05 };
         assert!(aimed < bound * plain, "{light}: {aimed} with aim, {plain} without");

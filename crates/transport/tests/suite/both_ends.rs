@@ -1,6 +1,8 @@
 //! Light traced from both ends: `light` and `bdpt` against `path`, wherever they find the same paths.
 
-use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, blocks};
+use crate::common::statistics::{
+    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, blocks, difference, recorded,
+};
 use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, mixed, put, quad, shoot, sky, still_life,
     without_mirrors,
@@ -56,9 +58,9 @@ fn a_lamp_that_moves_lights_both_sides_of_its_way() {
         let (left, right) = (half(0), half(16));
         assert!(left > 1.0 && (0.75..1.33).contains(&(left / right)), "{name}: {left} and {right}");
     }
-    let path = blocks(&scene, &*integrator("path"), 0);
+    let path = blocks(&scene, integrator("path"), 0);
     for (i, name) in ["light", "bdpt"].into_iter().enumerate() {
-        let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
+        let p = agreement(name, &path, &blocks(&scene, integrator(name), 100 * (i as u64 + 1)));
         assert!(p > UNLIKELY, "{name}: p = {p}");
     }
 }
@@ -121,11 +123,12 @@ fn spheres_in_glass_and_mirrors_look_the_same_from_both_ends() {
 #[test]
 fn spheres_and_photons_agree() {
     let scene = built(&without_mirrors(sphere(Vec3::new(-0.5, 2.0, 0.5), 0.5)));
-    let path = blocks(&scene, &*integrator("path"), 0);
+    let path = blocks(&scene, integrator("path"), 0);
     for (i, name) in ["vcm", "sppm"].into_iter().enumerate() {
-        let found = blocks(&scene, &*with_radius(name, 0.01), 100 * (i as u64 + 1));
-        let p = agreement(&path, &found);
-        assert!(p > UNLIKELY, "path and {name}: p = {p}");
+        let found = blocks(&scene, with_radius(name, 0.01), 100 * (i as u64 + 1));
+        let case = format!("path and {name}");
+        let p = agreement(&case, &path, &found);
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
 }
 
@@ -173,9 +176,10 @@ fn rough_metal_and_glass_look_the_same_from_both_ends() {
     {
         let scene = built(&panel_over(material));
         assert_like_path(name, &scene, &["light", "bdpt"]);
-        let path = blocks(&scene, &*integrator("path"), 0);
-        let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
-        assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
+        let path = blocks(&scene, integrator("path"), 0);
+        let case = format!("{name}: path and vcm");
+        let p = agreement(&case, &path, &blocks(&scene, with_radius("vcm", 0.01), 300));
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
 }
 
@@ -238,9 +242,10 @@ fn normals_that_face_away_look_the_same_from_both_ends() {
             builder.objects.push(Object::new("coarse", coarse, last));
         }
         assert_like_path_in_turn(turn, name, &built(&builder), &["light", "bdpt"]);
-        let path = blocks(&built(&builder), &*integrator("path"), 0);
-        let p = agreement(&path, &blocks(&built(&builder), &*with_radius("vcm", 0.01), 300));
-        assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
+        let path = blocks(built(&builder), integrator("path"), 0);
+        let case = format!("{name}: path and vcm");
+        let p = agreement(&case, &path, &blocks(built(&builder), with_radius("vcm", 0.01), 300));
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
 }
 
@@ -275,9 +280,10 @@ fn a_mixture_with_a_mirror_in_it_looks_the_same_from_both_ends() {
     assert_eq!(builder.materials[inner].kind, "mix");
     let scene = built(&builder);
     assert_like_path("enamel", &scene, &["bdpt"]);
-    let path = blocks(&scene, &*integrator("path"), 0);
-    let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
-    assert!(p > UNLIKELY, "enamel: path and vcm: p = {p}");
+    let path = blocks(&scene, integrator("path"), 0);
+    let case = "enamel: path and vcm";
+    let p = agreement(case, &path, &blocks(&scene, with_radius("vcm", 0.01), 300));
+    assert!(p > UNLIKELY, "{case}: p = {p}");
 }
 
 /// No camera subpath finds the light that a mirror reflects from a light without extent.
@@ -409,8 +415,12 @@ fn every_filter_spreads_splats_as_it_spreads_samples() {
     for row in FILTERS {
         let profile = |name: &str, spp| {
             let settings = RenderSettings { filter: Filter::new(row), ..RenderSettings::new(8, 8, spp) };
-            let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
-            [2, 3, 4, 5].map(|x| (0..8).map(|y| pixels[y * 8 + x].g).sum::<f32>() / 8.0)
+            let case = format!("{}, {name}", row.entry.name);
+            let found = recorded(&case, "profile", (&scene, &*integrator(name), &settings), |pixels| {
+                let column = |x: usize| (0..8).map(|y| pixels[y * 8 + x].g).sum::<f32>() / 8.0;
+                (2..6).map(|x| f64::from(column(x))).collect()
+            });
+            [0, 1, 2, 3].map(|i| found[i] as f32)
         };
         let (path, light) = (profile("path", 256), profile("light", 1 << 12));
         for (a, b) in path.into_iter().zip(light) {
@@ -454,13 +464,18 @@ fn an_evenly_lit_picture_is_even_up_to_its_corners_with_every_filter() {
         for (row, name) in cases {
             let settings =
                 RenderSettings { filter: Filter::new(row), ..RenderSettings::new(SIDE, SIDE, 1024) };
-            let film = shoot(&scene, &*integrator(name), &settings).film;
-            for (kind, noise) in NOISE.iter().enumerate() {
+            let case = format!("{name}, {}, {camera}, pane: {has_pane}", row.entry.name);
+            let mean = |all: &[Rgb], kind: usize| {
                 let places = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE)).filter(|&at| edges(at) == kind);
-                let pixels: Vec<f32> = places.map(|(x, y)| film.pixel(x, y).g * PI).collect();
-                let mean = pixels.iter().sum::<f32>() / pixels.len() as f32;
-                let case = format!("{name}, {}, {camera}, pane: {has_pane}", row.entry.name);
-                assert!((mean - 1.0).abs() < *noise, "{case}: {mean} at {kind} edges");
+                let pixels: Vec<f32> = places.map(|(x, y)| all[(y * SIDE + x) as usize].g * PI).collect();
+                pixels.iter().sum::<f32>() / pixels.len() as f32
+            };
+            let rendered = (&scene, &*integrator(name), &settings);
+            let means = recorded(&case, "means by edges", rendered, |all| {
+                (0..NOISE.len()).map(|kind| f64::from(mean(all, kind))).collect()
+            });
+            for (kind, (noise, mean)) in NOISE.iter().zip(means).enumerate() {
+                assert!((mean - 1.0).abs() < f64::from(*noise), "{case}: {mean} at {kind} edges");
             }
         }
     }
@@ -483,7 +498,7 @@ fn merging_agrees_with_path() {
     let scene = built(&without_mirrors(
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
     ));
-    let path = blocks(&scene, &*integrator("path"), 0);
+    let path = blocks(&scene, integrator("path"), 0);
     let spec = |name: &str| Spec::new("", name).with("radius", 0.01f32);
     let unconnected = spec("vcm").with("connections", false);
     // Light subpaths for only a part of the pixels, connected with the camera on behalf of all.
@@ -494,9 +509,10 @@ fn merging_agrees_with_path() {
     let direct = switched.clone().map(|spec| spec.with("direct", true));
     let all = [spec("vcm"), spec("vcm").with("direct", true), spec("sppm"), few];
     for (i, spec) in all.iter().chain(&switched).chain(&direct).enumerate() {
-        let found = blocks(&scene, &*integrators::build(spec).unwrap(), 100 * (i as u64 + 1));
-        let p = agreement(&path, &found);
-        assert!(p > UNLIKELY, "path and {spec:?}: p = {p}");
+        let found = blocks(&scene, integrators::build(spec).unwrap(), 100 * (i as u64 + 1));
+        let case = format!("path and {}, {i}", spec.kind);
+        let p = agreement(&case, &path, &found);
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
 }
 
@@ -554,8 +570,9 @@ impl LightSubpaths for Wrong {
 #[test]
 fn a_technique_with_a_wrong_weight_is_detected() {
     let scene = built(&without_small_lights(mixed()));
-    let path = blocks(&scene, &*integrator("path"), 0);
-    let p = agreement(&path, &blocks(&scene, &Wrong(integrator("bdpt")), 100));
+    let path = blocks(&scene, integrator("path"), 0);
+    let wrong: Box<dyn PixelIntegrator> = Box::new(Wrong(integrator("bdpt")));
+    let p = difference(&path, &blocks(&scene, wrong, 100));
     assert!(p < UNLIKELY, "camera paths that are too bright pass: p = {p}");
 }
 

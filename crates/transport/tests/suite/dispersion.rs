@@ -1,6 +1,6 @@
 //! Dispersion: light that glass splits by wavelength goes where theory says, and both ends of a path agree on it.
 
-use crate::common::statistics::{UNLIKELY, agreement, blocks, estimate};
+use crate::common::statistics::{UNLIKELY, agreement, blocks, difference, estimate, recorded};
 use crate::common::{ball, built, diffuse, effort, integrator, look, put, quad, shoot, sky, still_life};
 use bilux_math::transcendental::{asin_f64, sin_cos_f64, sin_f64, tan_f64};
 use bilux_math::{Aabb, DVec3, Rgb, Vec3};
@@ -74,11 +74,13 @@ fn spectrum(nm: f64, dispersion: f64) -> Scene {
     built(&builder)
 }
 
+fn settings() -> RenderSettings {
+    RenderSettings { max_depth: 2, ..RenderSettings::new(8, 8, 4096) }
+}
+
 /// The mean light of a film, by channel.
-fn means(scene: &Scene, name: &str) -> [f64; 3] {
-    let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(8, 8, 4096) };
-    let pixels = shoot(scene, &*integrator(name), &settings).film.to_rgb();
-    [0, 1, 2].map(|c| pixels.iter().map(|pixel| f64::from(pixel[c])).sum::<f64>() / 64.0)
+fn means(pixels: &[Rgb]) -> Vec<f64> {
+    (0..3).map(|c| pixels.iter().map(|pixel| f64::from(pixel[c])).sum::<f64>() / 64.0).collect()
 }
 
 /// The light that theory predicts there.
@@ -99,15 +101,17 @@ fn wanted(nm: f64) -> [f64; 3] {
 
 #[test]
 fn a_prism_turns_each_wavelength_by_its_angle() {
-    let off = |nm: f64, dispersion: f64, name: &str| {
-        let (found, wanted) = (means(&spectrum(nm, dispersion), name), wanted(nm));
+    let off = |nm: f64, found: Vec<f64>| {
+        let wanted = wanted(nm);
         (0..3).map(|c| (found[c] - wanted[c]).abs()).fold(0.0, f64::max)
     };
     let names = ["path", "bdpt", "vcm", "sppm"];
     for (i, nm) in [450.0, 500.0, 550.0, 600.0, 650.0].into_iter().enumerate() {
         // In the short form, each in turn.
         for name in &names[effort(i % 4..i % 4 + 1, 0..4)] {
-            let off = off(nm, 20.0 / ABBE, name);
+            let (scene, integrator) = (spectrum(nm, 20.0 / ABBE), integrator(name));
+            let rendered = (&scene, &*integrator, &settings());
+            let off = off(nm, recorded(&format!("{name}, {nm} nm"), "means", rendered, means));
             // In the middle of the spectrum this is as much as light of 0.3 nm.
             assert!(off < 4e-3, "{name}, {nm} nm: {off}");
         }
@@ -116,7 +120,8 @@ fn a_prism_turns_each_wavelength_by_its_angle() {
     let [red, green, blue] = wanted(550.0);
     assert!(red < 0.1 && (0.2..0.8).contains(&green) && blue > 0.7, "{red}, {green}, {blue}");
     // Negative control: glass that disperses a fiftieth less.
-    let off = off(620.0, 20.0 / (ABBE * 1.02), "path");
+    let other = spectrum(620.0, 20.0 / (ABBE * 1.02));
+    let off = off(620.0, means(&shoot(&other, &*integrator("path"), &settings()).film.to_rgb()));
     assert!(off > 4e-3, "other glass passes: {off}");
 }
 
@@ -188,16 +193,17 @@ fn dispersed_light_is_the_same_from_both_ends() {
     ];
     for (kind, light_spec, glass, names) in ends {
         let scene = on_a_wall(light_spec.clone(), glass.clone(), STRONG);
-        let path = blocks(&scene, &*integrator("path"), 0);
+        let path = blocks(&scene, integrator("path"), 0);
         for (i, name) in names.iter().enumerate() {
             let other = if *name == "vcm" { merging(name) } else { integrator(name) };
-            let p = agreement(&path, &blocks(&scene, &*other, 100 * (i as u64 + 1)));
-            assert!(p > UNLIKELY, "{kind}: path and {name}: p = {p}");
+            let case = format!("{kind}: path and {name}");
+            let p = agreement(&case, &path, &blocks(&scene, other, 100 * (i as u64 + 1)));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
         }
         // Otherwise the test could not distinguish it from glass without dispersion.
         let plain = on_a_wall(light_spec, glass, 0.0);
-        let right = blocks(&scene, &*integrator("bdpt"), 800);
-        let p = agreement(&right, &blocks(&plain, &*integrator("bdpt"), 900));
+        let right = blocks(&scene, integrator("bdpt"), 800);
+        let p = difference(&right, &blocks(&plain, integrator("bdpt"), 900));
         assert!(p < UNLIKELY, "{kind}: plain glass passes: p = {p}");
     }
 }
@@ -226,16 +232,17 @@ fn dispersed_light_in_water_is_the_same_from_both_ends() {
         built(&builder)
     };
     let scene = under_water(1.33, STRONG);
-    let path = blocks(&scene, &*integrator("path"), 0);
+    let path = blocks(&scene, integrator("path"), 0);
     // Not `light`: too few of its paths come through for their mean to be normally distributed.
     for (i, name) in ["bdpt", "vcm"].into_iter().enumerate() {
-        let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
-        assert!(p > UNLIKELY, "path and {name}: p = {p}");
+        let case = format!("path and {name}");
+        let p = agreement(&case, &path, &blocks(&scene, integrator(name), 100 * (i as u64 + 1)));
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
     // Where the two indices are equal, they are equal at every wavelength, and the prism is invisible.
-    let same = blocks(&under_water(1.6, STRONG), &*integrator("path"), 0);
-    let p = agreement(&same, &blocks(&under_water(1.6, 0.0), &*integrator("path"), 400));
-    let q = agreement(&path, &blocks(&under_water(1.33, 0.0), &*integrator("path"), 500));
+    let same = blocks(under_water(1.6, STRONG), integrator("path"), 0);
+    let p = difference(&same, &blocks(under_water(1.6, 0.0), integrator("path"), 400));
+    let q = difference(&path, &blocks(under_water(1.33, 0.0), integrator("path"), 500));
     assert!(p < UNLIKELY && q < UNLIKELY, "water that parts nothing passes: p = {p}, {q}");
 }
 
@@ -268,11 +275,12 @@ impl LightSubpaths for Wrong {
 #[test]
 fn wavelength_bugs_are_detected() {
     let scene = on_a_wall(spot(), Spec::new("", "dielectric"), STRONG);
-    let light = blocks(&scene, &*integrator("light"), 0);
+    let light = blocks(&scene, integrator("light"), 0);
     let others = [("bdpt", integrator("bdpt")), ("vcm", merging("vcm")), ("sppm", merging("sppm"))];
     for (i, (name, other)) in others.iter().enumerate() {
-        let p = agreement(&light, &blocks(&scene, &**other, 100 * (i as u64 + 6)));
-        assert!(p > UNLIKELY, "light and {name}: p = {p}");
+        let case = format!("light and {name}");
+        let p = agreement(&case, &light, &blocks(&scene, other, 100 * (i as u64 + 6)));
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
     let twice = |task: &mut Task| task.sample.wavelength.weight *= task.sample.wavelength.weight;
     let forgotten = |task: &mut Task| task.sample.wavelength.weight = Rgb::WHITE;
@@ -280,13 +288,13 @@ fn wavelength_bugs_are_detected() {
         task.sample.sampler.enter(1 << 40);
         task.sample.wavelength = Wavelength::sample(task.sample.sampler.next_1d());
     };
-    let wrong: [(&str, Wrong); 3] = [
-        ("a colour that counts twice", Wrong(integrator("light"), twice)),
-        ("a colour that is forgotten", Wrong(integrator("light"), forgotten)),
-        ("photons of another wavelength", Wrong(merging("sppm"), another)),
+    let wrong: [(&str, Box<dyn PixelIntegrator>); 3] = [
+        ("a colour that counts twice", Box::new(Wrong(integrator("light"), twice))),
+        ("a colour that is forgotten", Box::new(Wrong(integrator("light"), forgotten))),
+        ("photons of another wavelength", Box::new(Wrong(merging("sppm"), another))),
     ];
     for (i, (name, wrong)) in wrong.iter().enumerate() {
-        let p = agreement(&light, &blocks(&scene, wrong, 100 * (i as u64 + 1)));
+        let p = difference(&light, &blocks(&scene, wrong, 100 * (i as u64 + 1)));
         assert!(p < UNLIKELY, "{name} passes: p = {p}");
     }
 }

@@ -1,6 +1,6 @@
 //! Textures filtered over half a pixel: less noise, the same picture, from both ends.
 
-use crate::common::statistics::{assert_like_path, assert_unlike_path};
+use crate::common::statistics::{SUITE, assert_like_path, assert_unlike_path};
 use crate::common::{ball, built, diffuse, effort, floor, integrator, look, put, shoot, sky};
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -56,14 +56,16 @@ fn mean_square(a: &[f64], b: &[f64]) -> f64 {
 fn a_far_board_has_a_third_of_the_noise_at_most_and_the_same_mean() {
     for side in effort(vec![1000], vec![512, 1000]) {
         let [plain, filtered] = both(&far_floor(board(side)), 64);
-        let wanted = pixels(&plain, 64, 1024);
-        let [noise, less] = [&plain, &filtered].map(|scene| mean_square(&pixels(scene, 64, 1), &wanted));
+        let pictures = |spp| [&plain, &filtered].map(|scene| pixels(scene, 64, spp));
+        let asked = "noise and means of plain and filtered, their distance, of samples a pixel";
+        let numbers = SUITE.numbers(&format!("{side}"), asked, 1024, pictures, |[wanted, found]| {
+            let [noise, less] = pictures(1).map(|one| mean_square(&one, wanted));
+            vec![noise, less, mean(wanted), mean(found), mean_square(found, wanted).sqrt()]
+        });
+        let [noise, less, b, a, off] = [0, 1, 2, 3, 4].map(|i| numbers[i]);
         assert!(less < noise / 3.0, "{less} beside {noise}");
-        let found = pixels(&filtered, 64, 1024);
-        let (a, b) = (mean(&found), mean(&wanted));
         assert!((a / b - 1.0).abs() < 0.01, "{a}, not {b}");
         // With many samples the picture is the same, pixel by pixel.
-        let off = mean_square(&found, &wanted).sqrt();
         assert!(off < 0.02 * b, "{off} of {b}");
     }
 }

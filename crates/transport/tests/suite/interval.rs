@@ -1,10 +1,11 @@
 //! How often the error that is stated for a picture is true.
 
-use crate::common::statistics::estimate;
+use crate::common::statistics::{SUITE, estimate};
 use crate::common::{ball, built, diffuse, effort, floor, integrator, look, put, shoot};
 use bilux_math::transcendental::powf_f64;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Scene, SceneBuilder, Spec};
+use bilux_testing::verdicts::{Bits, Hash};
 use bilux_transport::{
     Estimate, Interval, PixelIntegrator, REPLICATES, RenderError, RenderSettings, Silent, Stop, Window,
     integrators, render,
@@ -16,7 +17,7 @@ use std::sync::LazyLock;
 const SIDE: u32 = 16;
 
 /// Number of seeds whose pictures are compared with the truth.
-const SEEDS: u64 = 100;
+const SEEDS: u32 = 100;
 
 /// A diffuse and a glossy ball on a table under a panel: all of the light is found from both ends.
 fn two_balls() -> Scene {
@@ -34,6 +35,20 @@ fn two_balls() -> Scene {
 
 fn settings(seed: u64, spp: u32) -> RenderSettings {
     RenderSettings { seed, interval: true, max_depth: 4, threads: 2, ..RenderSettings::new(SIDE, SIDE, spp) }
+}
+
+/// Pictures with their intervals.
+struct Pictures(Vec<Interval>);
+
+impl Bits for Pictures {
+    fn add_to(&self, hash: &mut Hash) {
+        for (picture, pixel) in
+            self.0.iter().flat_map(|p| p.window().tiles(1).into_iter().map(move |w| (p, w)))
+        {
+            let Estimate { mean, half_width } = picture.luminance(&pixel);
+            [mean, half_width].add_to(hash);
+        }
+    }
 }
 
 fn take(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSettings) -> Interval {
@@ -78,22 +93,21 @@ fn is_honest(share: f64) -> bool {
 
 #[test]
 fn nineteen_of_twenty_intervals_hold_the_truth() {
-    let (scene, truth) = &*KNOWN;
-    let hold = |(name, integrator): (&str, Box<dyn PixelIntegrator>)| {
-        let one = |seed| take(scene, &*integrator, &settings(seed, SPP));
-        let pictures: Vec<Interval> = (0..SEEDS).map(one).collect();
-        let [blocks, pixels] = [4, 1].map(|side| coverage(&pictures, truth, side, 1.0));
+    let scene = two_balls();
+    for (name, integrator) in unbiased().into_iter().take(effort(2, 4)) {
+        let one = |seed| take(&scene, &*integrator, &settings(seed, SPP));
+        let pictures = |count: u32| Pictures((0..u64::from(count)).map(one).collect());
+        let shares = SUITE.numbers(name, "shares of blocks, pixels, by pictures", SEEDS, pictures, |all| {
+            let of = |(side, width)| coverage(&all.0, &KNOWN.1, side, width);
+            [(4, 1.0), (1, 1.0), (4, 0.8)].map(of).to_vec()
+        });
+        let [blocks, pixels, narrow] = [0, 1, 2].map(|i| shares[i]);
         assert!(is_honest(blocks), "{name}: {blocks} of the blocks, {pixels} of the pixels");
         // A pixel's few samples may all miss a rare contribution.
         assert!((0.9..=0.97).contains(&pixels), "{name}: {pixels} of the pixels");
         // Negative control: intervals that are too narrow.
-        let narrow = coverage(&pictures, truth, 4, 0.8);
         assert!(!is_honest(narrow), "{name}: {narrow} with four fifths of the width");
-    };
-    // A film this small is one tile, and keeps one thread busy.
-    std::thread::scope(|threads| {
-        unbiased().into_iter().take(effort(2, 4)).for_each(|each| drop(threads.spawn(|| hold(each))));
-    });
+    }
 }
 
 /// So few samples that their even distribution makes most of the difference.
@@ -123,7 +137,7 @@ fn as_if_independent(scene: &Scene, integrator: &dyn PixelIntegrator, seed: u64)
 fn runs_of_one_sequence_are_not_independent() {
     let ((scene, truth), path) = (&*KNOWN, integrator("path"));
     let (mut held, mut all) = (0, 0);
-    for seed in 0..SEEDS {
+    for seed in 0..u64::from(SEEDS) {
         let reported = as_if_independent(scene, &*path, seed);
         for (window, reported) in Window::whole(SIDE, SIDE).tiles(4).iter().zip(reported) {
             if reported.half_width > 1e-5 * reported.mean {
@@ -191,32 +205,71 @@ fn agreement_with(truth: &Interval, blocks: &[Vec<f64>]) -> f64 {
     1.0 - powf_f64(1.0 - p, blocks.len() as f64)
 }
 
-#[test]
-fn a_rule_that_ends_the_whole_film_does_not_shift_its_mean() {
-    let ((scene, truth), path) = (&*KNOWN, integrator("path"));
-    let tiles = truth.window().tiles(4);
-    let mut ends = BTreeMap::<u32, u64>::new();
-    let (mut ended, mut chosen) = (vec![Vec::new(); tiles.len()], vec![Vec::new(); tiles.len()]);
-    for seed in 0..SEEDS {
+/// Pictures that a rule ended, and the numbers of their samples.
+struct Ended(Pictures, Vec<u32>);
+
+impl Bits for Ended {
+    fn add_to(&self, hash: &mut Hash) {
+        self.0.add_to(hash);
+        self.1.iter().for_each(|spp| f64::from(*spp).add_to(hash));
+    }
+}
+
+fn ended(scene: &Scene, count: u32) -> Ended {
+    let path = integrator("path");
+    let end = |seed| {
         let stop = Stop { noise: Some(0.1), time_limit: None };
         let rendered = shoot(scene, &*path, &RenderSettings { stop, ..settings(seed, 1024) });
         let reached = rendered.reached.unwrap();
-        *ends.entry(reached.spp).or_default() += 1;
         assert_eq!(reached.bias, Some(2.0 / SIDE as f32));
-        let interval = rendered.interval.unwrap();
-        tiles.iter().zip(&mut ended).for_each(|(tile, all)| all.push(interval.luminance(tile).mean));
-        // Negative control: each block is taken twice, and the one that looks better is kept.
-        let twice = [seed, seed + SEEDS].map(|seed| take(scene, &*path, &settings(seed, 4)));
+        (rendered.interval.unwrap(), reached.spp)
+    };
+    let (pictures, ends) = (0..u64::from(count)).map(end).unzip();
+    Ended(Pictures(pictures), ends)
+}
+
+/// The means of each block over pictures.
+fn block_means(pictures: &[Interval]) -> Vec<Vec<f64>> {
+    let mean = |tile: &Window| pictures.iter().map(|picture| picture.luminance(tile).mean).collect();
+    Window::whole(SIDE, SIDE).tiles(4).iter().map(mean).collect()
+}
+
+#[test]
+fn a_rule_that_ends_the_whole_film_does_not_shift_its_mean() {
+    let scene = two_balls();
+    let asked = "p, how many ends, and Σ √(P(1 - P)) over them, by pictures";
+    let found = SUITE.numbers(
+        "path",
+        asked,
+        SEEDS,
+        |count| ended(&scene, count),
+        |Ended(pictures, all)| {
+            let mut ends = BTreeMap::<u32, u64>::new();
+            all.iter().for_each(|spp| *ends.entry(*spp).or_default() += 1);
+            let share = |n: &u64| *n as f64 / f64::from(SEEDS);
+            let sum: f64 = ends.values().map(|n| (share(n) * (1.0 - share(n))).sqrt()).sum();
+            vec![agreement_with(&KNOWN.1, &block_means(&pictures.0)), ends.len() as f64, sum]
+        },
+    );
+    let [film, ends, sum] = [0, 1, 2].map(|i| found[i]);
+    assert!(film > 1e-3, "{film}; pictures have {ends} numbers of samples");
+    // The stated bound holds for the observed distribution: the sum is at most 2.
+    assert!(ends > 1.0 && sum <= 2.0, "{sum}: {ends}");
+}
+
+/// Planted bug: each block is taken twice, and the one that looks better is kept.
+#[test]
+fn a_rule_that_chooses_blocks_is_detected() {
+    let ((scene, truth), path) = (&*KNOWN, integrator("path"));
+    let tiles = truth.window().tiles(4);
+    let mut chosen = vec![Vec::new(); tiles.len()];
+    for seed in 0..u64::from(SEEDS) {
+        let twice = [seed, seed + u64::from(SEEDS)].map(|seed| take(scene, &*path, &settings(seed, 4)));
         for (tile, all) in tiles.iter().zip(&mut chosen) {
             let [a, b] = [0, 1].map(|i| twice[i].luminance(tile));
             all.push(if a.half_width < b.half_width { a.mean } else { b.mean });
         }
     }
-    let (film, blocks) = (agreement_with(truth, &ended), agreement_with(truth, &chosen));
-    assert!(film > 1e-3, "{film}; pictures by their number of samples: {ends:?}");
+    let blocks = agreement_with(truth, &chosen);
     assert!(blocks < 1e-3, "{blocks}");
-    // The stated bound holds for the observed distribution: Σ √(P(1 - P)) is at most 2.
-    let share = |n: &u64| *n as f64 / SEEDS as f64;
-    let sum: f64 = ends.values().map(|n| (share(n) * (1.0 - share(n))).sqrt()).sum();
-    assert!(ends.len() > 1 && sum <= 2.0, "{sum}: {ends:?}");
 }

@@ -2,6 +2,7 @@
 //! lamp can be exchanged.
 
 use crate::common::media::{any, boxed, grid_in, smoke};
+use crate::common::statistics::SUITE;
 use crate::common::{ball, built, diffuse, effort, look, put, shoot, sky};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -32,12 +33,12 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
 /// What the box takes of the light that falls on it from everywhere, over all directions, per radiance: the light that is missing in
 /// parallel projections of it, integrated over their area. No light is sampled: what a path brings is what has not been absorbed, with next to
 /// no noise.
-fn absorbed(body: &Spec, spp: u32) -> f64 {
+fn absorbed(case: &str, body: &Spec, spp: u32) -> f64 {
     const COUNT: usize = 24;
     const HEIGHT: f32 = 1.5;
     let path = Spec::new("", "path").with("roulette_depth", 1000).with("sampling", "scattering");
     let integrator = integrators::build(&path).unwrap();
-    let missing = directions(COUNT).enumerate().map(|(seed, direction)| {
+    let picture = |spp, (seed, direction): (usize, Vec3)| {
         let mut builder = SceneBuilder::default();
         put(&mut builder, "body", boxed(MIN, MAX), body.clone());
         sky(&mut builder, 1.0);
@@ -46,10 +47,16 @@ fn absorbed(body: &Spec, spp: u32) -> f64 {
         builder.cameras = vec![CameraSpec { spec: camera.with("height", HEIGHT), keyframes: Vec::new() }];
         let settings =
             RenderSettings { max_depth: 1000, seed: seed as u64, ..RenderSettings::new(24, 24, spp) };
-        let pixels = shoot(&built(&builder), &*integrator, &settings).film.to_rgb();
-        pixels.iter().map(|pixel| 1.0 - f64::from(pixel.g)).sum::<f64>() / pixels.len() as f64
+        shoot(&built(&builder), &*integrator, &settings).film.to_rgb()
+    };
+    let pictures = |spp| directions(COUNT).enumerate().map(|at| picture(spp, at)).collect();
+    let found = SUITE.numbers(case, "absorbed, by samples a pixel", spp, pictures, |all: &Vec<Vec<Rgb>>| {
+        let missing = all.iter().map(|pixels| {
+            pixels.iter().map(|pixel| 1.0 - f64::from(pixel.g)).sum::<f64>() / pixels.len() as f64
+        });
+        vec![missing.sum::<f64>() / COUNT as f64 * f64::from(HEIGHT * HEIGHT)]
     });
-    missing.sum::<f64>() / COUNT as f64 * f64::from(HEIGHT * HEIGHT)
+    found[0]
 }
 
 /// Walks through a body on which as much light falls from everywhere have a mean length of 4V/S, however they are scattered
@@ -67,8 +74,8 @@ fn walks_are_as_long_as_volume_and_surface_say() {
         let lumps = smoke(ABSORPTION, scattering, grid.clone()).with("scattering_anisotropy", 0.6f32);
         for (body, density) in [(even, 1.0), (lumps, density)] {
             let wanted = f64::from(ABSORPTION) * density * volume;
-            let found = absorbed(&body, effort(8, 128));
             let what = format!("scattering {scattering}, mean density {density}");
+            let found = absorbed(&what, &body, effort(8, 128));
             assert!((found / wanted - 1.0).abs() < 0.02, "{what}: {found}, not {wanted}");
         }
     }
@@ -92,31 +99,39 @@ fn bodies(camera: Vec3, lamp: Vec3) -> Scene {
 }
 
 /// All light that arrives at the camera, over solid angle, and the standard error of its mean over seeds.
-fn fluence(scene: &Scene, name: &str, spp: u32) -> (Rgb, f32) {
+fn fluence(case: &str, scene: &Scene, name: &str, spp: u32) -> (Rgb, f32) {
     const SIDE: u32 = 40;
     const SEEDS: u64 = 4;
     let integrator = integrators::build(&Spec::new("", name)).unwrap();
     let half = bilux_math::transcendental::tan(25f32.to_radians());
-    let all: Vec<Rgb> = (0..SEEDS)
-        .map(|seed| {
-            let settings = RenderSettings { seed, max_depth: 64, ..RenderSettings::new(SIDE, SIDE, spp) };
-            let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
-            let side = 2.0 * half / SIDE as f32;
-            let along = |i: u32| (i as f32 + 0.5) * side - half;
-            let angle = |x: f32, y: f32| {
-                let square = 1.0 + x * x + y * y;
-                side * side / (square * square.sqrt())
-            };
-            let sum = |sum: Rgb, (i, pixel): (usize, &Rgb)| {
-                let (x, y) = (along(i as u32 % SIDE), along(i as u32 / SIDE));
-                sum + *pixel * angle(x, y)
-            };
-            pixels.iter().enumerate().fold(Rgb::BLACK, sum)
-        })
-        .collect();
-    let mean = all.iter().fold(Rgb::BLACK, |sum, one| sum + *one) * (1.0 / SEEDS as f32);
-    let spread = all.iter().map(|one| (*one * (1.0 / mean.g)).g - 1.0).map(|off| off * off).sum::<f32>();
-    (mean, (spread / (SEEDS * (SEEDS - 1)) as f32).sqrt())
+    let picture = |spp, seed| {
+        let settings = RenderSettings { seed, max_depth: 64, ..RenderSettings::new(SIDE, SIDE, spp) };
+        shoot(scene, &*integrator, &settings).film.to_rgb()
+    };
+    let over_angles = |pixels: &Vec<Rgb>| {
+        let side = 2.0 * half / SIDE as f32;
+        let along = |i: u32| (i as f32 + 0.5) * side - half;
+        let angle = |x: f32, y: f32| {
+            let square = 1.0 + x * x + y * y;
+            side * side / (square * square.sqrt())
+        };
+        let sum = |sum: Rgb, (i, pixel): (usize, &Rgb)| {
+            let (x, y) = (along(i as u32 % SIDE), along(i as u32 / SIDE));
+            sum + *pixel * angle(x, y)
+        };
+        pixels.iter().enumerate().fold(Rgb::BLACK, sum)
+    };
+    let numbers = |all: &Vec<Vec<Rgb>>| {
+        let all: Vec<Rgb> = all.iter().map(over_angles).collect();
+        let mean = all.iter().fold(Rgb::BLACK, |sum, one| sum + *one) * (1.0 / SEEDS as f32);
+        let spread = all.iter().map(|one| (*one * (1.0 / mean.g)).g - 1.0).map(|off| off * off).sum::<f32>();
+        let error = (spread / (SEEDS * (SEEDS - 1)) as f32).sqrt();
+        [mean.r, mean.g, mean.b, error].map(f64::from).to_vec()
+    };
+    let pictures = |spp| (0..SEEDS).map(|seed| picture(spp, seed)).collect();
+    let found = SUITE.numbers(case, "fluence and error, by samples a pixel", spp, pictures, numbers);
+    let [r, g, b, error] = [0, 1, 2, 3].map(|i| found[i] as f32);
+    (Rgb::new(r, g, b), error)
 }
 
 /// Camera and lamp are exchanged: light that goes the other way.
@@ -124,8 +139,9 @@ fn fluence(scene: &Scene, name: &str, spp: u32) -> (Rgb, f32) {
 fn camera_and_lamp_can_be_exchanged() {
     let [near, far] = [Vec3::new(0.4, 1.1, 1.3), Vec3::new(1.6, -0.4, -1.4)];
     for name in ["path", "bdpt"] {
-        let [there, back] = [(near, far), (far, near)]
-            .map(|(camera, lamp)| fluence(&bodies(camera, lamp), name, effort(32, 512)));
+        let [there, back] = [("there", near, far), ("back", far, near)].map(|(way, camera, lamp)| {
+            fluence(&format!("{name}, {way}"), &bodies(camera, lamp), name, effort(32, 512))
+        });
         let error = (there.1 * there.1 + back.1 * back.1).sqrt();
         assert!(error < 0.02, "{name}: the standard error is {error}");
         for channel in 0..3 {

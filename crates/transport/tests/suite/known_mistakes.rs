@@ -1,7 +1,7 @@
 //! Mistakes that other renderers have made, tested for here. `docs/trust.md` lists them all, including those that other
 //! tests cover.
 
-use crate::common::statistics::{UNLIKELY, agreement, blocks};
+use crate::common::statistics::{UNLIKELY, agreement, blocks, difference};
 use crate::common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky, without_mirrors};
 use bilux_math::glam::DVec3;
 use bilux_math::{DMat4, Motion, Rgb, Transform, Vec3};
@@ -115,13 +115,14 @@ fn under_a_mesh(stretch: f64, instanced: bool) -> SceneBuilder {
 fn emissive_meshes_look_the_same_from_both_ends() {
     for instanced in [false, true] {
         let scene = built(&under_a_mesh(1.0, instanced));
-        let path = blocks(&scene, &*integrator("path"), 0);
+        let path = blocks(&scene, integrator("path"), 0);
         for (i, name) in ["light", "bdpt"].into_iter().enumerate() {
-            let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
-            assert!(p > UNLIKELY, "{name}, instanced: {instanced}: p = {p}");
+            let case = format!("{name}, instanced: {instanced}");
+            let p = agreement(&case, &path, &blocks(&scene, integrator(name), 100 * (i as u64 + 1)));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
             // Negative control: areas as if from before a stretch, with which light subpaths bring more.
             let other = built(&under_a_mesh(1.15, instanced));
-            let p = agreement(&path, &blocks(&other, &*integrator(name), 100 * (i as u64 + 3)));
+            let p = difference(&path, &blocks(&other, integrator(name), 100 * (i as u64 + 3)));
             assert!(p < UNLIKELY, "{name} passes with other areas: p = {p}");
         }
     }
@@ -131,15 +132,15 @@ fn emissive_meshes_look_the_same_from_both_ends() {
 #[test]
 fn the_sky_is_found_by_connections_and_light_paths_too() {
     let mut builder = without_mirrors(Spec::new("", "environment").with("zenith", 1.0f32));
-    let path = blocks(&built(&builder), &*integrator("path"), 0);
+    let path = blocks(built(&builder), integrator("path"), 0);
     for (i, name) in ["light", "bdpt", "vcm"].into_iter().enumerate() {
         let scene = built(&builder);
-        let p = agreement(&path, &blocks(&scene, &*unmerged(name), 100 * (i as u64 + 1)));
+        let p = agreement(name, &path, &blocks(&scene, unmerged(name), 100 * (i as u64 + 1)));
         assert!(p > UNLIKELY, "{name}: p = {p}");
     }
     // Negative control: a sky that is a tenth darker is detected.
     builder.lights[0] = Spec::new("", "environment").with("zenith", 0.9f32);
-    let p = agreement(&path, &blocks(&built(&builder), &*integrator("bdpt"), 500));
+    let p = difference(&path, &blocks(built(&builder), integrator("bdpt"), 500));
     assert!(p < UNLIKELY, "p = {p}");
 }
 
@@ -169,13 +170,14 @@ fn in_glass(eta: f32, inside: bool) -> Scene {
 fn cameras_inside_glass_look_the_same_from_both_ends() {
     for inside in [true, false] {
         let scene = in_glass(1.5, inside);
-        let path = blocks(&scene, &*integrator("path"), 0);
+        let path = blocks(&scene, integrator("path"), 0);
         for (i, name) in ["light", "bdpt"].into_iter().enumerate() {
-            let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
-            assert!(p > UNLIKELY, "{name}, inside: {inside}: p = {p}");
+            let case = format!("{name}, inside: {inside}");
+            let p = agreement(&case, &path, &blocks(&scene, integrator(name), 100 * (i as u64 + 1)));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
         }
         // Negative control: a factor of (1.5 / 1.4)² is detected.
-        let p = agreement(&path, &blocks(&in_glass(1.4, inside), &*integrator("bdpt"), 500));
+        let p = difference(&path, &blocks(in_glass(1.4, inside), integrator("bdpt"), 500));
         assert!(!inside || p < UNLIKELY, "another index passes: p = {p}");
     }
 }

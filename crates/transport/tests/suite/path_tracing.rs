@@ -1,6 +1,6 @@
 //! `path` against closed forms, and its sampling techniques against each other.
 
-use crate::common::statistics::{agreement, blocks, channel, estimate};
+use crate::common::statistics::{UNLIKELY, agreement, blocks, channel, difference, estimate};
 use crate::common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec};
@@ -129,13 +129,15 @@ fn a_coarse_smooth_ball_has_no_black_edge() {
 #[test]
 fn all_sampling_techniques_agree() {
     let scene = built(&mixed());
-    let mis = blocks(&scene, &*path("mis"), 0);
+    let mis = blocks(&scene, path("mis"), 0);
     for (sampling, seed) in [("lights", 100), ("scattering", 200)] {
-        let p = agreement(&mis, &blocks(&scene, &*path(sampling), seed));
-        assert!(p > 1e-4, "mis and {sampling}: p = {p}");
+        let case = format!("mis and {sampling}");
+        let p = agreement(&case, &mis, &blocks(&scene, path(sampling), seed));
+        assert!(p > UNLIKELY, "{case}: p = {p}");
     }
     // Negative control: light that is five hundredths too bright is detected.
-    let p = agreement(&mis, &blocks(&scene, &Wrong(path("lights"), 1.05), 300));
+    let wrong: Box<dyn PixelIntegrator> = Box::new(Wrong(path("lights"), 1.05));
+    let p = difference(&mis, &blocks(&scene, wrong, 300));
     assert!(p < 1e-4, "a wrong density passes: p = {p}");
 }
 

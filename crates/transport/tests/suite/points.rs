@@ -1,7 +1,7 @@
 //! Photons at points of dense media: behind smooth boundaries nothing else finds small lamps.
 
-use crate::common::statistics::{assert_like_path, assert_unlike_path, estimate};
-use crate::common::{ball, built, diffuse, effort, floor, look, put, shoot, sky};
+use crate::common::statistics::{assert_like_path, assert_unlike_path, recorded_means};
+use crate::common::{ball, built, diffuse, effort, floor, look, put, sky};
 use bilux_math::Vec3;
 use bilux_scene::{SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, integrators};
@@ -39,8 +39,8 @@ fn white_wax_vanishes_in_a_furnace_by_photons() {
     // Balls of half a mean free path, without connections that share the work.
     let spec = Spec::new("", "vcm").with("radius", 0.04f32).with("connections", false);
     let settings = RenderSettings { max_depth: 500, ..RenderSettings::new(32, 32, effort(16, 256)) };
-    let pixels = shoot(&scene, &*integrators::build(&spec).unwrap(), &settings).film.to_rgb();
-    let (mean, error) = estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>());
+    let (mean, error) =
+        recorded_means("white wax", &scene, &*integrators::build(&spec).unwrap(), &settings)[1];
     // Pixels share photons, so their scatter says too little. Balls that count what is beyond the wax lose a twentieth.
     assert!((mean - 1.0).abs() < 0.015 && error < 0.01, "{mean} ± {error}");
 }

@@ -1,7 +1,7 @@
 //! No random number decides two things. Where one does, the joint probability is not the product of the two, and the
 //! mean is wrong in scenes that reveal the correlation.
 
-use crate::common::statistics::estimate;
+use crate::common::statistics::{SUITE, estimate};
 use crate::common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
@@ -25,14 +25,16 @@ fn found(scene: &Scene, kind: &str, sampling: &str, settings: &RenderSettings) -
     let spec = Spec::new("", kind).with("roulette_depth", Value::Integer(0));
     let spec = if sampling.is_empty() { spec } else { spec.with("sampling", sampling) };
     let integrator = integrators::build(&spec).unwrap();
-    let means: Vec<Rgb> = (0..12)
-        .map(|seed| {
-            let pixels =
-                shoot(scene, &*integrator, &RenderSettings { seed, ..settings.clone() }).film.to_rgb();
-            pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32
-        })
-        .collect();
-    [0, 1, 2].map(|c| estimate(&means.iter().map(|mean| f64::from(mean[c])).collect::<Vec<_>>()))
+    let shot = |seed| shoot(scene, &*integrator, &RenderSettings { seed, ..settings.clone() }).film.to_rgb();
+    let shots = |count: u32| (0..u64::from(count)).map(shot).collect();
+    let case = format!("{kind} {sampling}");
+    let found = SUITE.numbers(&case, "means and errors by pictures", 12, shots, |all: &Vec<Vec<Rgb>>| {
+        let mean = |pixels: &Vec<Rgb>| pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32;
+        let means: Vec<Rgb> = all.iter().map(mean).collect();
+        let of = |c: usize| estimate(&means.iter().map(|mean| f64::from(mean[c])).collect::<Vec<_>>());
+        (0..3).flat_map(|c| <[f64; 2]>::from(of(c))).collect()
+    });
+    [0, 1, 2].map(|c| (found[2 * c], found[2 * c + 1]))
 }
 
 #[track_caller]

@@ -1,10 +1,11 @@
 //! Rolling shutters: rows that are exposed one after the other.
 
-use crate::common::statistics::{UNLIKELY, agreement};
+use crate::common::statistics::{UNLIKELY, agreement, difference};
 use crate::common::{along, diffuse, effort, integrator, moving, put, quad, shoot};
 use bilux_math::Vec3;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{AccelChoice, Scene, SceneBuilder, Spec};
+use bilux_testing::verdicts::{Picture, Side};
 use bilux_transport::RenderSettings;
 
 /// A scene whose shutter is open from 0 until this time.
@@ -36,16 +37,15 @@ fn an_edge_that_moves_leans() {
 }
 
 /// The means of quarters of the film, of pictures with other seeds.
-fn quarters(scene: &Scene, name: &str, first_seed: u64, readout: f32) -> Vec<Vec<f64>> {
-    let mut quarters = vec![Vec::new(); 8];
-    for seed in first_seed..first_seed + 12 {
+fn quarters<'a>(scene: &'a Scene, name: &str, first_seed: u64, readout: f32) -> Side<'a> {
+    let integrator = integrator(name);
+    Side::new(first_seed..first_seed + 12, move |seed| {
         let settings = RenderSettings { seed, readout, max_depth: 4, ..RenderSettings::new(16, 16, 64) };
-        let pixels = shoot(scene, &*integrator(name), &settings).film.to_rgb();
-        let mut sums = [0.0; 8];
+        let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
+        let mut sums = vec![0.0; 8];
         pixels.iter().enumerate().for_each(|(i, pixel)| sums[i / 64 * 2 + i % 16 / 8] += f64::from(pixel.g));
-        quarters.iter_mut().zip(sums).for_each(|(quarter, sum)| quarter.push(sum));
-    }
-    quarters
+        Picture::new(&pixels, sums)
+    })
 }
 
 /// With exposures of rows that are longer and shorter than it takes to read them all.
@@ -56,11 +56,12 @@ fn both_ends_see_rows_when_they_are_exposed() {
         let scene = open(&builder, 1.0);
         let path = quarters(&scene, "path", 0, readout);
         for (i, name) in ["light", "bdpt", "vcm"].into_iter().enumerate() {
-            let p = agreement(&path, &quarters(&scene, name, 100 * (i as u64 + 1), readout));
-            assert!(p > UNLIKELY, "{name}, {readout} s: p = {p}");
+            let case = format!("{name}, {readout} s");
+            let p = agreement(&case, &path, &quarters(&scene, name, 100 * (i as u64 + 1), readout));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
         }
         // And it matters: what is exposed all at once looks different.
-        let p = agreement(&path, &quarters(&scene, "path", 900, 0.0));
+        let p = difference(&path, &quarters(&scene, "path", 900, 0.0));
         assert!(p < UNLIKELY, "{readout} s: p = {p}");
     }
 }

@@ -3,8 +3,8 @@
 
 use crate::common::media::boxed;
 use crate::common::statistics::{
-    UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
-    blocks_of_depth, estimate,
+    SUITE, UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path,
+    assert_vanishes, blocks_of_depth, channel, channel_means, estimate, least_p, recorded_means,
 };
 use crate::common::{
     ball, built, diffuse, effort, floor, integrator, look, put, quad, shoot, sky, without_mirrors,
@@ -15,7 +15,9 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::Grid;
 use bilux_scene::media::slab::Slab;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
-use bilux_transport::{LightDivision, RenderError, RenderSettings, Silent, integrators, light_parts, render};
+use bilux_transport::{
+    LightDivision, PixelIntegrator, RenderError, RenderSettings, Silent, integrators, light_parts, render,
+};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -29,15 +31,33 @@ fn parallel(builder: &mut SceneBuilder, from: Vec3, at: Vec3, up: Vec3, height: 
     builder.cameras = vec![CameraSpec { spec: camera.with("height", height), keyframes: Vec::new() }];
 }
 
-/// The mean over a picture of one value, in green, and its standard error.
-fn mean(scene: &Scene, name: &str, max_depth: u32, side: u32, spp: u32) -> (f64, f64) {
-    let integrator = integrators::build(&Spec::new("", name).with("roulette_depth", 1000)).unwrap();
-    let settings = RenderSettings { max_depth, ..RenderSettings::new(side, side, spp) };
-    let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
-    estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
+/// An integrator by which no path ends early by chance.
+fn patient(name: &str) -> Box<dyn PixelIntegrator> {
+    integrators::build(&Spec::new("", name).with("roulette_depth", 1000)).unwrap()
 }
 
-/// Fails unless the mean is this, within three standard errors and these are at most `error`.
+fn settings(max_depth: u32, side: u32, spp: u32) -> RenderSettings {
+    RenderSettings { max_depth, ..RenderSettings::new(side, side, spp) }
+}
+
+/// The mean over a picture of one value, in green, and its standard error.
+fn mean(scene: &Scene, name: &str, max_depth: u32, side: u32, spp: u32) -> (f64, f64) {
+    channel_means(scene, &*patient(name), &settings(max_depth, side, spp))[1]
+}
+
+/// Fails unless the mean over a picture of 64 × 64 pixels, in green, is this.
+fn assert_mean(
+    what: &str,
+    (scene, name): (&Scene, &str),
+    [max_depth, spp]: [u32; 2],
+    wanted: f64,
+    largest: f64,
+) {
+    let found = recorded_means(what, scene, &*patient(name), &settings(max_depth, 64, spp));
+    assert_is(what, found[1], wanted, largest);
+}
+
+/// Fails unless the mean is this, within three standard errors and these are at most `largest`.
 fn assert_is(what: &str, (mean, error): (f64, f64), wanted: f64, largest: f64) {
     assert!(error <= largest, "{what}: the standard error is {error}, more than {largest}");
     assert!((mean - wanted).abs() < 3.0 * error + 2e-6, "{what}: {mean} ± {error}, not {wanted}");
@@ -83,12 +103,12 @@ fn slabs_reflect_and_pass_what_discrete_ordinates_say() {
         for (from_above, wanted) in [(true, reflected), (false, passed)] {
             let scene = slab(albedo, tau, &[("scattering_anisotropy", g)], from_above);
             let what = format!("albedo {albedo}, thickness {tau}, mean cosine {g}, from above {from_above}");
-            assert_is(&what, mean(&scene, "path", 200, 64, spp), wanted, error);
+            assert_mean(&what, (&scene, "path"), [200, spp], wanted, error);
         }
     }
     for (from_above, wanted) in [(true, 0.3639935), (false, 0.3601731)] {
         let scene = slab(0.9, 2.0, &[("rayleigh", 0.0)], from_above);
-        assert_is("air", mean(&scene, "path", 200, 64, spp), wanted, error);
+        assert_mean("air", (&scene, "path"), [200, spp], wanted, error);
     }
 }
 
@@ -99,8 +119,8 @@ fn connections_in_slabs_find_the_same() {
         let (spp, error) = effort((4, 5e-3), (100, 1e-3));
         for name in ["bdpt", "vcm"] {
             let of = |from_above| slab(*albedo, *tau, &[("scattering_anisotropy", *g)], from_above);
-            assert_is(name, mean(&of(true), name, 60, 64, spp), reflected, error);
-            assert_is(name, mean(&of(false), name, 60, 64, spp), passed, error);
+            assert_mean(&format!("{name} above"), (&of(true), name), [60, spp], reflected, error);
+            assert_mean(&format!("{name} below"), (&of(false), name), [60, spp], passed, error);
         }
     }
 }
@@ -128,12 +148,17 @@ fn airlight(sigma_s: f64, sigma_t: f64, half: f64) -> f64 {
 }
 
 /// The mean over a picture of light that scatters at most once, in green, and its standard error.
-fn mean_of_direct_light(scene: &Scene, name: &str, spp: u32) -> (f64, f64) {
-    let (camera, settings) = (&*scene.cameras()[0].1, RenderSettings::new(64, 64, spp));
+fn mean_of_direct_light(what: &str, scene: &Scene, name: &str, spp: u32) -> (f64, f64) {
     let division = LightDivision { by_events: true, ..LightDivision::default() };
-    let parts = light_parts(scene, camera, &*integrator(name), &settings, &division, &Silent);
-    let [direct, _] = parts.unwrap().unwrap().by_events.unwrap();
-    estimate(&direct.to_rgb().iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
+    let direct = |spp| {
+        let (camera, settings) = (&*scene.cameras()[0].1, RenderSettings::new(64, 64, spp));
+        let parts = light_parts(scene, camera, &*integrator(name), &settings, &division, &Silent);
+        let [direct, _] = parts.unwrap().unwrap().by_events.unwrap();
+        direct.to_rgb()
+    };
+    let numbers = |pixels: &Vec<Rgb>| <[f64; 2]>::from(estimate(&channel(pixels, 1))).to_vec();
+    let found = SUITE.numbers(what, "mean and error of samples a pixel", spp, direct, numbers);
+    (found[0], found[1])
 }
 
 #[test]
@@ -150,8 +175,9 @@ fn light_in_fog_is_what_the_closed_form_says() {
         let scene = built(&builder);
         let wanted = airlight(f64::from(sigma_s), f64::from(sigma_t), 5.0);
         for name in ["path", "bdpt"] {
-            let found = mean_of_direct_light(&scene, name, effort(16, 256));
-            assert_is(&format!("{name}, {sigma_s} of {sigma_t}"), found, wanted, 0.02 * wanted);
+            let what = format!("{name}, {sigma_s} of {sigma_t}");
+            let found = mean_of_direct_light(&what, &scene, name, effort(16, 256));
+            assert_is(&what, found, wanted, 0.02 * wanted);
         }
         for name in ["vcm", "sppm"] {
             // All pixels of an iteration cross the same beams.
@@ -160,13 +186,11 @@ fn light_in_fog_is_what_the_closed_form_says() {
                 let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
                 pixels.iter().map(|pixel| f64::from(pixel.g)).sum::<f64>() / pixels.len() as f64
             };
-            let found: Vec<f64> = (0..effort(16, 256)).map(found).collect();
-            assert_is(
-                &format!("{name}, {sigma_s} of {sigma_t}"),
-                estimate(&found),
-                wanted,
-                effort(0.05, 0.01) * wanted,
-            );
+            let means = |pictures| (0..u64::from(pictures)).map(found).collect();
+            let what = format!("{name}, {sigma_s} of {sigma_t}");
+            let numbers = |means: &Vec<f64>| <[f64; 2]>::from(estimate(means)).to_vec();
+            let found = SUITE.numbers(&what, "mean and error of pictures", effort(16, 256), means, numbers);
+            assert_is(&what, (found[0], found[1]), wanted, effort(0.05, 0.01) * wanted);
         }
     }
 }
@@ -233,7 +257,10 @@ fn white_media_vanish_in_a_furnace() {
             continue;
         }
         // Beams alone: among almost parallel ones, as in droplets, they have rare bright pairs.
-        let p = agreement(&blocks_of_depth(&scene, &*integrator("sppm"), 0, 100), &vec![vec![64.0; 12]; 12]);
+        let sppm = blocks_of_depth(&scene, integrator("sppm"), 0, 100);
+        let p = SUITE.agreement("sppm", "least p beside 64", [&sppm, &sppm], |sums, _| {
+            least_p(sums, &vec![vec![64.0; 12]; 12])
+        });
         assert!(p > UNLIKELY, "phase function {i}, sppm: p = {p}");
     }
 }
@@ -295,12 +322,13 @@ fn paths_of_limited_depth_are_the_same_from_both_ends() {
     put(&mut builder, "milk", ball(Vec3::new(0.0, 0.5, 1.6), 0.4, 10, true), milk.with("roughness", 0.3f32));
     let scene = built(&builder);
     for max_depth in 1..=3 {
-        let path = blocks_of_depth(&scene, &*integrator("path"), 0, max_depth);
+        let path = blocks_of_depth(&scene, integrator("path"), 0, max_depth);
         let names = ["bdpt", "light", "vcm"];
         let short = max_depth as usize - 1;
         for name in &names[effort(short..short + 1, 0..3)] {
-            let p = agreement(&path, &blocks_of_depth(&scene, &*integrator(name), 100, max_depth));
-            assert!(p > UNLIKELY, "path and {name} to a depth of {max_depth}: p = {p}");
+            let case = format!("path and {name} to a depth of {max_depth}");
+            let p = agreement(&case, &path, &blocks_of_depth(&scene, integrator(name), 100, max_depth));
+            assert!(p > UNLIKELY, "{case}: p = {p}");
         }
     }
 }
@@ -346,8 +374,7 @@ fn long_walks_through_milk_do_not_end_early() {
         let scene = built(&builder);
         for name in names {
             let settings = RenderSettings::new(24, 24, effort(8, 64));
-            let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
-            let (mean, error) = estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>());
+            let (mean, error) = recorded_means(name, &scene, &*integrator(name), &settings)[1];
             assert!(error < 0.04, "{name}: {mean} ± {error}");
             assert!((mean - 1.0).abs() < 3.5 * error + 2e-3, "{name}: {mean} ± {error}");
         }

@@ -7,6 +7,7 @@ use crate::common::{
 use bilux_math::transcendental::atan;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
+use bilux_testing::verdicts::Side;
 use bilux_transport::{RenderSettings, integrators};
 use std::sync::Arc;
 
@@ -140,16 +141,17 @@ fn merging(radius: f32) -> Spec {
 fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
     for (name, material) in of_sheets() {
         let one = stage(|builder| one_surface(builder, &material));
-        let wanted = blocks(&one, &*integrator("path"), 0);
+        let wanted = blocks(&one, integrator("path"), 0);
         for gap in [0.0, 1e-4] {
             let two = stage(|builder| sheet(builder, gap, &material));
             for (i, other) in ["path"].iter().chain(&ALL).enumerate() {
                 let spec =
                     if (name, *other) == ("sign", "auto") { merging(0.0125) } else { Spec::new("", other) };
                 let integrator = integrators::build(&spec).unwrap();
-                let found = blocks(&two, &*integrator, 100 * (i as u64 + 1));
-                let p = agreement(&wanted, &found);
-                assert!(p > UNLIKELY, "{name}, {gap} apart, by {other}: p = {p}");
+                let found = blocks(&two, integrator, 100 * (i as u64 + 1));
+                let case = format!("{name}, {gap} apart, by {other}");
+                let p = agreement(&case, &wanted, &found);
+                assert!(p > UNLIKELY, "{case}: p = {p}");
             }
         }
     }
@@ -166,13 +168,15 @@ fn merging_blurs_as_much_around_two_shells_as_around_one_surface() {
         let fifth = Spec::new("", "rect").with("position", Vec3::Y * 2.6).with("intensity", 1e-4f32);
         builder.lights.push(fifth);
     });
-    let found = |scene: &Scene, spec: &Spec, seed| blocks(scene, &*integrators::build(spec).unwrap(), seed);
+    fn found<'a>(scene: &'a Scene, spec: &Spec, seed: u64) -> Side<'a> {
+        blocks(scene, integrators::build(spec).unwrap(), seed)
+    }
     let wide = found(&two, &merging(0.1), 100);
-    let p = agreement(&wide, &found(&one, &merging(0.1), 200));
+    let p = agreement("wide", &wide, &found(&one, &merging(0.1), 200));
     assert!(p > UNLIKELY, "p = {p}");
-    let light = |blocks: &[Vec<f64>]| blocks.iter().flatten().sum::<f64>();
+    let light = |blocks: &Side| blocks.cells().iter().flatten().sum::<f64>();
     let unblurred = light(&found(&two, &Spec::new("", "path"), 0));
-    let dark = |blocks: &[Vec<f64>]| 1.0 - light(blocks) / unblurred;
+    let dark = |blocks: &Side| 1.0 - light(blocks) / unblurred;
     let (much, little) = (dark(&wide), dark(&found(&two, &merging(0.025), 300)));
     assert!(much > 0.01 && little.abs() < 0.25 * much, "{much} by a tenth, {little} by a fortieth");
 }

@@ -1,7 +1,7 @@
 //! Light below the surface of `principled`: a body has the colour that was asked for, and the same one from both ends.
 
-use crate::common::statistics::{assert_like_path, assert_unlike_path, estimate};
-use crate::common::{ball, built, effort, integrator, put, quad, shoot, sky, without_mirrors};
+use crate::common::statistics::{assert_like_path, assert_unlike_path, recorded_means};
+use crate::common::{ball, built, effort, integrator, put, quad, sky, without_mirrors};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::cuboid;
@@ -39,9 +39,8 @@ fn slab(depth: f32) -> Arc<Mesh> {
 }
 
 /// The means and standard errors of the channels of a picture.
-fn means(scene: &Scene, name: &str, spp: u32) -> [(f64, f64); 3] {
-    let pixels = shoot(scene, &*integrator(name), &RenderSettings::new(32, 32, spp)).film.to_rgb();
-    std::array::from_fn(|c| estimate(&pixels.iter().map(|pixel| f64::from(pixel[c])).collect::<Vec<_>>()))
+fn means(what: &str, scene: &Scene, name: &str, spp: u32) -> [(f64, f64); 3] {
+    recorded_means(what, scene, &*integrator(name), &RenderSettings::new(32, 32, spp))
 }
 
 /// Light that a surface of index 1.5 reflects at once.
@@ -55,7 +54,9 @@ fn a_thick_body_has_its_colour() {
     for (anisotropy, spp) in [(0.0f32, effort(24, 400)), (0.6, effort(24, 400))] {
         let material = body(colour, 0.01).with("subsurface_scatter_anisotropy", anisotropy);
         let scene = from_above(slab(1.0), material, Vec3::ZERO, 0.5);
-        for (c, (mean, error)) in means(&scene, "path", spp).into_iter().enumerate() {
+        for (c, (mean, error)) in
+            means(&format!("anisotropy {anisotropy}"), &scene, "path", spp).into_iter().enumerate()
+        {
             let wanted = SPECULAR + (1.0 - SPECULAR) * f64::from(colour[c]);
             assert!(error < 6e-3, "{error}");
             assert!(
@@ -70,7 +71,7 @@ fn a_thick_body_has_its_colour() {
 #[test]
 fn a_body_without_highlights_has_its_colour() {
     let scene = from_above(slab(1.0), body(0.6f32, 0.01).with("specular_weight", 0.0f32), Vec3::ZERO, 0.5);
-    let (mean, error) = means(&scene, "path", effort(16, 200))[1];
+    let (mean, error) = means("body", &scene, "path", effort(16, 200))[1];
     assert!(error < 5e-3 && (mean - 0.6).abs() < 3.5 * error + 1.5e-3, "{mean} ± {error}");
 }
 
@@ -86,7 +87,7 @@ fn a_thin_body_shines_as_a_slab_does() {
         Slab { absorbed, thickness: f64::from(depth / radius), anisotropy: anisotropy.into(), eta: 1.5 };
     let light = slab.light(24);
     let wanted = light.at_surface + light.from_inside + light.passed;
-    let (mean, error) = means(&scene, "path", effort(16, 200))[1];
+    let (mean, error) = means("body", &scene, "path", effort(16, 200))[1];
     assert!(error < 4e-3 && (mean - wanted).abs() < 3.5 * error + 1e-3, "{mean} ± {error}, not {wanted}");
 }
 
@@ -101,7 +102,7 @@ fn a_white_body_vanishes_in_a_furnace() {
     for (i, material) in [body(1.0f32, 0.1), mixed].into_iter().enumerate() {
         let scene = from_above(ball(Vec3::ZERO, 1.0, 12, false), material, Vec3::ZERO, 1.2);
         for name in ["path", "bdpt"] {
-            for (mean, error) in means(&scene, name, effort(6, 100)) {
+            for (mean, error) in means(&format!("{i}, {name}"), &scene, name, effort(6, 100)) {
                 // The rough boundary loses a little, as glass does.
                 let lost = if i == 1 { 0.03 } else { 2e-3 };
                 assert!(
@@ -152,7 +153,9 @@ fn a_textured_body_has_the_colour_of_each_place() {
         sky(&mut builder, 1.0);
         above(&mut builder, Vec3::X * side, 0.2);
         let scene = built(&builder);
-        for (c, (mean, error)) in means(&scene, "path", effort(24, 300)).into_iter().enumerate() {
+        for (c, (mean, error)) in
+            means(&format!("side {side}"), &scene, "path", effort(24, 300)).into_iter().enumerate()
+        {
             let wanted = SPECULAR + (1.0 - SPECULAR) * f64::from(wanted[c]);
             assert!(
                 (mean - wanted).abs() < 3.5 * error + 4e-3,
@@ -177,7 +180,7 @@ fn thin_walls_reflect_and_transmit() {
         let glow = Spec::new("", "diffuse").with("reflectance", 0.0f32).with("emission", 1.0f32);
         put(&mut builder, "panel", panel, glow);
         above(&mut builder, Vec3::ZERO, 0.5);
-        let (mean, error) = means(&built(&builder), "path", 16)[1];
+        let (mean, error) = means(&format!("anisotropy {anisotropy}"), &built(&builder), "path", 16)[1];
         assert!((mean - 0.5 * passed).abs() < 3.5 * error + 2e-3, "{anisotropy}: {mean} ± {error}");
     }
 }
@@ -189,8 +192,8 @@ fn a_dense_body_is_a_diffuse_surface() {
         Spec::new("", "principled").with("subsurface_weight", 1.0f32).with("subsurface_color", 0.7f32);
     let dense = dense.with("subsurface_radius", 0.0f32);
     let plain = Spec::new("", "principled").with("base_color", 0.7f32);
-    let mean = |material| means(&from_above(slab(1.0), material, Vec3::ZERO, 0.5), "path", 64)[1];
-    let ((a, error_a), (b, error_b)) = (mean(dense), mean(plain));
+    let mean = |what, material| means(what, &from_above(slab(1.0), material, Vec3::ZERO, 0.5), "path", 64)[1];
+    let ((a, error_a), (b, error_b)) = (mean("dense", dense), mean("plain", plain));
     assert!((a - b).abs() < 3.5 * (error_a + error_b) + 1e-4, "{a} {b}");
 }
 

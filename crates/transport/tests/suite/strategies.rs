@@ -1,6 +1,6 @@
 //! Pictures of single techniques: weighted they add up to the picture, and unweighted they all have the same mean.
 
-use crate::common::statistics::{UNLIKELY, agreement, channel, estimate};
+use crate::common::statistics::{UNLIKELY, channel, estimate, least_p};
 use crate::common::{ball, built, diffuse, effort, floor, integrator, look, mixed, put, quad, shoot};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -57,7 +57,7 @@ fn least(all: &Blocks, picked: &Blocks) -> (f64, Option<Strategy>) {
     let (mut least, mut count, mut which) = (1.0, 0, None);
     for (strategy, blocks) in all {
         let standard = &picked[&Strategy { edges: strategy.edges, merges: false, s: 1 }];
-        let p = agreement(blocks, standard);
+        let p = least_p(blocks, standard);
         count += 1;
         if p < least {
             (least, which) = (p, Some(*strategy));

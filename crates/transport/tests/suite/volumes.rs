@@ -3,9 +3,9 @@
 use crate::common::media::{any, boxed, grid_in, smoke};
 use crate::common::statistics::{
     UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
-    blocks, estimate,
+    blocks, recorded_means,
 };
-use crate::common::{built, diffuse, effort, floor, look, put, shoot, sky, without_mirrors};
+use crate::common::{built, diffuse, effort, floor, look, put, sky, without_mirrors};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Quat, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -44,20 +44,23 @@ fn layered(albedo: f32, tau: f32, from_above: bool) -> Scene {
     built(&builder)
 }
 
-/// The mean over a picture, in green, and its standard error.
-fn mean(scene: &Scene, name: &str, side: u32, spp: u32) -> (f64, f64) {
-    mean_with_roulette(1000, scene, name, side, spp)
+/// Fails unless the mean over a picture, in green, is this.
+fn assert_is(what: &str, (scene, name): (&Scene, &str), spp: u32, wanted: f64, largest: f64) {
+    assert_is_with_roulette(1000, what, (scene, name), spp, wanted, largest);
 }
 
 /// The same with Russian roulette after so many events.
-fn mean_with_roulette(free: i32, scene: &Scene, name: &str, side: u32, spp: u32) -> (f64, f64) {
+fn assert_is_with_roulette(
+    free: i32,
+    what: &str,
+    (scene, name): (&Scene, &str),
+    spp: u32,
+    wanted: f64,
+    largest: f64,
+) {
     let integrator = integrators::build(&Spec::new("", name).with("roulette_depth", free)).unwrap();
-    let settings = RenderSettings { max_depth: 200, ..RenderSettings::new(side, side, spp) };
-    let pixels = shoot(scene, &*integrator, &settings).film.to_rgb();
-    estimate(&pixels.iter().map(|pixel| f64::from(pixel.g)).collect::<Vec<_>>())
-}
-
-fn assert_is(what: &str, (mean, error): (f64, f64), wanted: f64, largest: f64) {
+    let settings = RenderSettings { max_depth: 200, ..RenderSettings::new(64, 64, spp) };
+    let (mean, error) = recorded_means(what, scene, &*integrator, &settings)[1];
     assert!(error <= largest, "{what}: the standard error is {error}, more than {largest}");
     assert!((mean - wanted).abs() < 3.0 * error + 2e-6, "{what}: {mean} ± {error}, not {wanted}");
 }
@@ -72,10 +75,10 @@ fn layers_reflect_and_pass_what_a_slab_of_their_thickness_does() {
             let scene = layered(albedo, tau, from_above);
             let what = format!("albedo {albedo}, thickness {tau}, from above {from_above}");
             let (spp, error) = effort((16, 2e-3), (600, 3e-4));
-            assert_is(&what, mean(&scene, "path", 64, spp), wanted, error);
+            assert_is(&what, (&scene, "path"), spp, wanted, error);
             let (spp, error) = effort((3, 6e-3), (100, 1e-3));
             for name in ["bdpt", "vcm"].iter().skip(usize::from(from_above)) {
-                assert_is(&format!("{what}, {name}"), mean(&scene, name, 64, spp), wanted, error);
+                assert_is(&format!("{what}, {name}"), (&scene, name), spp, wanted, error);
             }
         }
     }
@@ -88,7 +91,7 @@ fn roulette_keeps_the_light_of_a_slab() {
     for (name, (spp, error)) in
         [("path", effort((16, 2e-3), (600, 4e-4))), ("vcm", effort((3, 6e-3), (100, 1e-3)))]
     {
-        assert_is(name, mean_with_roulette(0, &scene, name, 64, spp), reflected, error);
+        assert_is_with_roulette(0, name, (&scene, name), spp, reflected, error);
     }
 }
 
@@ -97,7 +100,7 @@ fn roulette_keeps_the_light_of_a_slab() {
 fn what_only_absorbs_passes_by_its_thickness() {
     let scene = layered(0.0, 1.5, false);
     for name in ["path", "light", "bdpt", "vcm"] {
-        assert_is(name, mean(&scene, name, 64, effort(16, 256)), exp_f64(-1.5), 2e-3);
+        assert_is(name, (&scene, name), effort(16, 256), exp_f64(-1.5), 2e-3);
     }
 }
 
@@ -184,8 +187,8 @@ fn a_grid_of_ones_changes_nothing() {
         built(&builder)
     };
     let ones = grid_in(min, max, [9, 3, 20], |_| 1.0);
-    let path = integrators::build(&Spec::new("", "path")).unwrap();
-    let p = agreement(&blocks(&of(None), &*path, 0), &blocks(&of(Some(ones)), &*path, 100));
+    let path = || integrators::build(&Spec::new("", "path")).unwrap();
+    let p = agreement("ones", &blocks(of(None), path(), 0), &blocks(of(Some(ones)), path(), 100));
     assert!(p > UNLIKELY, "{p}");
 }
 
@@ -206,7 +209,7 @@ fn fire_that_scatters_nothing_shines_by_its_thickness() {
     let scene = built(&builder);
     for name in ["path", "bdpt", "vcm", "auto"] {
         let wanted = 3.0 * (1.0 - exp_f64(-1.2));
-        assert_is(name, mean(&scene, name, 64, effort(16, 256)), wanted, 1e-2);
+        assert_is(name, (&scene, name), effort(16, 256), wanted, 1e-2);
     }
 }
 

@@ -6,14 +6,16 @@ use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::{cuboid, disc, icosphere, quad};
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, Scene, SceneBuilder, Spec, Value};
+use bilux_testing::effort;
 use bilux_transport::{FILTERS, Filter, RenderSettings, Silent, integrators, render};
-use bilux_validation::effort::effort;
+use bilux_validation::SUITE;
+use bilux_validation::statistics::estimate;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// Number of pictures for each mean and its standard error.
-const SEEDS: u64 = 16;
+const SEEDS: u32 = 16;
 /// A p-value below this means an error, not chance.
 const UNLIKELY: f64 = 1e-5;
 /// The fraction of a mean that rounding may explain.
@@ -39,8 +41,8 @@ fn built(builder: &SceneBuilder) -> Scene {
     builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
 }
 
-/// Pictures with different seeds, each as its pixels.
-fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Vec<Vec<Rgb>> {
+/// As many pictures with different seeds, each as its pixels.
+fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings, count: u32) -> Vec<Vec<Rgb>> {
     let integrator = integrators::build(integrator).unwrap();
     let box_filter = FILTERS.iter().find(|row| row.entry.name == "box").unwrap();
     let of_seed = |seed| {
@@ -48,38 +50,55 @@ fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Vec<
         let camera = &*scene.cameras()[0].1;
         render(scene, camera, &*integrator, &settings, &Silent).unwrap().film.to_rgb()
     };
-    (0..SEEDS).map(of_seed).collect()
+    (0..u64::from(count)).map(of_seed).collect()
 }
 
-/// The mean of a channel over each picture.
-fn means(pictures: &[Vec<Rgb>], channel: usize) -> Vec<f64> {
-    let mean = |pixels: &Vec<Rgb>| {
-        pixels.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>() / pixels.len() as f64
-    };
-    pictures.iter().map(mean).collect()
+/// What is found for `numbers` of all pictures: by the record of this case, where the first picture is as it was.
+fn found(
+    case: &str,
+    asked: &str,
+    (scene, integrator, settings): (&Scene, &Spec, &RenderSettings),
+    numbers: impl FnOnce(&[Vec<Rgb>]) -> Vec<f64>,
+) -> Vec<f64> {
+    let render = |count| pictures(scene, integrator, settings, count);
+    SUITE.numbers(case, &format!("{asked} of pictures"), SEEDS, render, |pictures| numbers(pictures))
+}
+
+/// A mean over all pictures, and its variance.
+type Mean = (f64, f64);
+
+/// The mean of each channel.
+fn means(case: &str, rendered: (&Scene, &Spec, &RenderSettings)) -> [Mean; 3] {
+    let found = found(case, "means and their variances", rendered, |pictures| {
+        let of_channel = |channel: usize| {
+            let mean = |pixels: &Vec<Rgb>| {
+                pixels.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>() / pixels.len() as f64
+            };
+            <[f64; 2]>::from(estimate(&pictures.iter().map(mean).collect::<Vec<_>>()))
+        };
+        (0..3).flat_map(of_channel).collect()
+    });
+    [0, 1, 2].map(|channel| (found[2 * channel], found[2 * channel + 1]))
 }
 
 /// The probability that values whose true mean is `exact` have a mean at least as far from it. [Student 1908]
-fn p_value(values: &[f64], exact: f64) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+fn p_value((mean, variance): Mean, exact: f64) -> f64 {
     let off = ((mean - exact).abs() - ROUNDING * exact.abs()).max(0.0);
     if off == 0.0 {
         return 1.0;
     }
-    2.0 * StudentsT::new(0.0, 1.0, n - 1.0).unwrap().sf(off / (variance / n).sqrt().max(f64::MIN_POSITIVE))
+    let student = StudentsT::new(0.0, 1.0, f64::from(SEEDS - 1)).unwrap();
+    2.0 * student.sf(off / variance.sqrt().max(f64::MIN_POSITIVE))
 }
 
 /// The mean is `exact`, and neither 3% more nor less would pass; with photons, whose merging is noisy, neither would
 /// 10%.
-fn assert_mean(name: &str, values: &[f64], exact: f64) {
+fn assert_mean(name: &str, found: Mean, exact: f64) {
     let more = if name.contains("sppm") { 0.1 } else { 0.03 };
-    let p = p_value(values, exact);
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let (p, mean) = (p_value(found, exact), found.0);
     assert!(p > UNLIKELY, "{name}: {mean}, not {exact}: p = {p:.1e}");
     for wrong in [1.0 - more, 1.0 + more] {
-        let p = p_value(values, exact * wrong);
+        let p = p_value(found, exact * wrong);
         assert!(p < UNLIKELY, "{name}: {mean} would pass for {wrong} times {exact}: p = {p:.1e}");
     }
 }
@@ -111,17 +130,14 @@ fn light_in_a_furnace_sums_to_the_geometric_series() {
         let is_deep = effort(["path", "bdpt"].contains(&integrator.kind.as_str()), true);
         for (depth, spp) in [(2, 16 * more), (20, 16 * more)].into_iter().take(1 + usize::from(is_deep)) {
             let settings = RenderSettings { max_depth: depth, ..RenderSettings::new(16, 16, spp) };
-            let pictures = pictures(&scene, &integrator, &settings);
+            let name = format!("{} to depth {depth}", integrator.kind);
+            let means = means(&name, (&scene, &integrator, &settings));
             for channel in 0..3 {
                 let a = f64::from(albedo[channel]);
                 let series: f64 =
                     (0..=depth).scan(1.0, |power, _| Some(std::mem::replace(power, *power * a))).sum();
                 assert!(depth < 20 || (series - 1.0 / (1.0 - a)).abs() < 1e-3, "{series}");
-                assert_mean(
-                    &format!("{} to depth {depth}", integrator.kind),
-                    &means(&pictures, channel),
-                    series,
-                );
+                assert_mean(&name, means[channel], series);
             }
         }
     }
@@ -169,8 +185,9 @@ fn check_direct(turn: usize, name: &str, x: f32, irradiance: f64, add: impl Fn(&
             _ => 16,
         };
         let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(16, 16, spp) };
-        let found = means(&pictures(&scene, &integrator, &settings), 1);
-        assert_mean(&format!("{name}, {x} m aside, {}", integrator.kind), &found, 0.5 / PI * irradiance);
+        let name = format!("{name}, {x} m aside, {}", integrator.kind);
+        let [_, green, _] = means(&name, (&scene, &integrator, &settings));
+        assert_mean(&name, green, 0.5 / PI * irradiance);
     }
 }
 
@@ -245,16 +262,16 @@ fn a_slab_of_glass_absorbs_by_beer_and_reflects_by_fresnel() {
         let scene = built(&builder);
         for integrator in named(&["path", "bdpt", "vcm", "sppm", "auto"]) {
             let settings = RenderSettings { max_depth: 60, ..RenderSettings::new(16, 16, 64) };
-            let pictures = pictures(&scene, &integrator, &settings);
+            let name = format!("{}, {degrees} degrees", integrator.kind);
+            let means = means(&name, (&scene, &integrator, &settings));
             for channel in 0..3 {
                 let sigma_a = f64::from(absorption[channel]);
                 let exact = through_slab(f64::from(eta), f64::from(thickness), sigma_a, angle);
-                let name = format!("{}, {degrees} degrees, channel {channel}", integrator.kind);
-                let values = means(&pictures, channel);
-                assert_mean(&name, &values, exact);
+                let name = format!("{name}, channel {channel}");
+                assert_mean(&name, means[channel], exact);
                 // Nor would it pass to forget the slant in the glass.
                 let straight = through_slab(f64::from(eta), f64::from(thickness) * 0.85, sigma_a, angle);
-                let p = p_value(&values, straight);
+                let p = p_value(means[channel], straight);
                 assert!(sigma_a == 0.0 || p < UNLIKELY, "{name} passes for {straight}: p = {p:.1e}");
             }
         }
@@ -300,7 +317,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
             let spp = if integrator.kind == "light" { 512 } else { 32 };
             let settings =
                 RenderSettings { max_depth: 1, ..RenderSettings::new(COLUMNS as u32, COLUMNS as u32, spp) };
-            let pictures = pictures(&scene, &integrator, &settings);
+            let pictures = pictures(&scene, &integrator, &settings, SEEDS);
             let least = |aperture: f64| {
                 let of_column = |i: usize| {
                     let mean = |pixels: &Vec<Rgb>| {
@@ -308,7 +325,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
                         column.map(|pixel| f64::from(pixel.g)).sum::<f64>() / COLUMNS as f64
                     };
                     let values: Vec<f64> = pictures.iter().map(mean).collect();
-                    p_value(&values, column(i, aperture))
+                    p_value(estimate(&values), column(i, aperture))
                 };
                 // Not where hardly any ray passes the edge on either side: such values are not normally distributed.
                 let is_rare = |i: usize| {
@@ -410,18 +427,21 @@ fn a_ring_of_metal_draws_the_nephroid() {
     let wrong = [0.95, 1.05].map(|ring| (ring, in_ring(ring, BINS, 0.05)));
     for integrator in named(&["bdpt", "light", "sppm", "vcm"][..effort(1, 4)]) {
         let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(BINS as u32, BINS as u32, 64) };
-        let pictures = pictures(&scene, &integrator, &settings);
         // The two central rows.
-        let strip = |i: usize| -> Vec<f64> {
+        let strip = |pictures: &[Vec<Rgb>], i: usize| {
             let mean = |p: &Vec<Rgb>| {
                 [BINS / 2 - 1, BINS / 2].map(|y| f64::from(p[y * BINS + i].g)).iter().sum::<f64>() / 2.0
             };
-            pictures.iter().map(mean).collect()
+            <[f64; 2]>::from(estimate(&pictures.iter().map(mean).collect::<Vec<_>>()))
         };
-        let found: Vec<f64> = (0..BINS).map(|i| strip(i).iter().sum::<f64>() / SEEDS as f64).collect();
+        let rendered = (&scene, &integrator, &settings);
+        let strips = found(&integrator.kind, "means and their variances", rendered, |pictures| {
+            (0..BINS).flat_map(|i| strip(pictures, i)).collect()
+        });
+        let found: Vec<f64> = strips.iter().copied().step_by(2).collect();
         let least = |expected: &[f64]| {
             // Skips the wall itself.
-            let of_bin = |i: usize| p_value(&strip(i), expected[i]);
+            let of_bin = |i: usize| p_value((strips[2 * i], strips[2 * i + 1]), expected[i]);
             (1..BINS - 1).map(of_bin).fold(1.0, f64::min) * BINS as f64
         };
         let (name, p) = (&integrator.kind, least(&expected));
@@ -511,18 +531,24 @@ fn a_ball_of_glass_gathers_light_at_its_focus_and_spreads_it_behind() {
         for integrator in named(&["light", "bdpt", "vcm"][effort(turn..turn + 1, 0..3)]) {
             let settings =
                 RenderSettings { max_depth: 3, ..RenderSettings::new(SIDE as u32, SIDE as u32, 64) };
-            let pictures = pictures(&scene, &integrator, &settings);
             let mean_of = |g: usize, pixels: &Vec<Rgb>| {
                 let sum = pixels.iter().enumerate().filter(|(i, _)| groups[*i] == g);
                 sum.map(|(_, pixel)| f64::from(pixel.g)).sum::<f64>() / sizes[g]
             };
-            let of_group = |g: usize| pictures.iter().map(|p| mean_of(g, p)).collect::<Vec<f64>>();
-            let least = |expected: &[f64; GROUPS]| {
-                (0..GROUPS).map(|g| p_value(&of_group(g), expected[g])).fold(1.0, f64::min) * GROUPS as f64
+            let of_group = |pictures: &[Vec<Rgb>], g: usize| {
+                <[f64; 2]>::from(estimate(&pictures.iter().map(|p| mean_of(g, p)).collect::<Vec<f64>>()))
             };
-            let (name, p) = (&integrator.kind, least(&right));
-            let found: Vec<f64> =
-                (0..GROUPS).map(|g| of_group(g).iter().sum::<f64>() / SEEDS as f64).collect();
+            let (name, rendered) = (&integrator.kind, (&scene, &integrator, &settings));
+            let case = format!("{name} at {height} m");
+            let means = found(&case, "means and their variances", rendered, |pictures| {
+                (0..GROUPS).flat_map(|g| of_group(pictures, g)).collect()
+            });
+            let least = |expected: &[f64; GROUPS]| {
+                let of_group = |g: usize| p_value((means[2 * g], means[2 * g + 1]), expected[g]);
+                (0..GROUPS).map(of_group).fold(1.0, f64::min) * GROUPS as f64
+            };
+            let p = least(&right);
+            let found: Vec<f64> = means.iter().copied().step_by(2).collect();
             assert!(p > UNLIKELY, "{name} at {height} m: {found:.3?}, not {right:.3?}: p = {p:.1e}");
             for (eta, wrong) in &wrong {
                 let p = least(wrong);

@@ -1,8 +1,8 @@
 //! Every exact algorithm gives the image of ray casting.
 
-use crate::effort::effort;
 use bilux_accel::{BuildOptions, Culling, TriangleMesh, build};
 use bilux_math::{hash, transcendental};
+use bilux_testing::effort;
 use bilux_visibility::{
     BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
 };

@@ -2,7 +2,6 @@
 #![allow(dead_code, unreachable_pub)] // Each test uses a part of it.
 
 pub mod closed;
-pub mod effort;
 pub mod fuzzed;
 pub mod meshes;
 pub mod rays;

@@ -1,13 +1,11 @@
 //! Scenes and shapes that several tests share.
 #![allow(dead_code, unreachable_pub)]
 
-#[path = "../../../../accel/tests/suite/support/effort.rs"]
-mod effort;
 pub mod labelled;
 pub mod media;
 pub mod statistics;
 
-pub use effort::effort;
+pub use bilux_testing::effort;
 
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::sin_cos;
