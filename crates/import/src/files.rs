@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// # Errors
 /// A [`FormatError`] with its location.
 pub fn read(formats: Formats, path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
-    let mut reading = Reading::of_scenes(formats, options, path.parent());
+    let mut reading = Reading::new(options, path.parent());
     let row = formats.to_read(path);
     let name = path.display().to_string().into();
     if let Some(archive) = archive_of(path) {
@@ -34,7 +34,7 @@ pub fn read(formats: Formats, path: &Path, options: &ReadOptions) -> Result<Scen
         reading.mount(archive, &archive.display().to_string().into())?;
     }
     reading.open.extend(std::fs::canonicalize(path));
-    let scene = read_file(row, &mut reading, path, &name)?;
+    let scene = read_file(formats, row, &mut reading, path, &name)?;
     reading.complete(scene)
 }
 
@@ -49,12 +49,13 @@ pub fn archive_of(path: &Path) -> Option<&Path> {
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
 pub fn read_file(
+    formats: Formats,
     row: Option<&'static SceneFormatEntry>,
     reading: &mut Reading,
     path: &Path,
     name: &Arc<str>,
 ) -> Result<SceneBuilder, FormatError> {
-    keeping_digits(reading, |reading| read_file_once(row, reading, path, name))
+    keeping_digits(reading, |reading| read_file_once(formats, row, reading, path, name))
 }
 
 /// Reads a scene, and once more if it lies far from zero, relative to an origin near it.
@@ -89,6 +90,7 @@ fn far_origin(row: &SceneFormatEntry, scene: &SceneBuilder) -> Option<DVec3> {
 }
 
 fn read_file_once(
+    formats: Formats,
     row: Option<&'static SceneFormatEntry>,
     reading: &mut Reading,
     path: &Path,
@@ -107,12 +109,15 @@ fn read_file_once(
         return Ok((row, read_archive(row, reading, path, name)?));
     }
     let bytes = reading.load(path)?;
-    let row = row.or_else(|| reading.formats.sniffed(&bytes));
+    let row = row.or_else(|| formats.sniffed(&bytes));
     let row = row.ok_or_else(|| {
         not_a_scene(name, &bytes)
             .or_else(|| picture_by_name(path))
-            .unwrap_or_else(|| reading.formats.unknown(path, "read", SceneFormatEntry::reads))
+            .unwrap_or_else(|| formats.unknown(path, "read", SceneFormatEntry::reads))
     })?;
+    if !row.reads() {
+        return Err(formats.unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
+    }
     if row.is_packed() {
         reading.release(bytes);
         return Ok((row, read_archive(row, reading, path, name)?));
@@ -159,7 +164,7 @@ pub fn read_bytes(
     name: &str,
     options: &ReadOptions,
 ) -> Result<SceneBuilder, FormatError> {
-    let mut reading = Reading::of_scenes(formats, options, base);
+    let mut reading = Reading::new(options, base);
     let bytes = plain_bytes(bytes, &mut reading, name)?;
     let bytes = &*bytes;
     let found = if format.is_empty() { formats.sniffed(bytes) } else { formats.named(format) };
@@ -168,6 +173,9 @@ pub fn read_bytes(
         not_a_scene(name, bytes)
             .unwrap_or_else(|| formats.unknown(Path::new(asked), "read", SceneFormatEntry::reads))
     })?;
+    if !row.reads() {
+        return Err(formats.unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
+    }
     reading.budget.take_bytes(bytes.len() as u64, name)?;
     let name = Arc::from(name);
     let mut source = Source { bytes, name: &name, folder: base };
@@ -263,7 +271,7 @@ fn flow(
     from: &mut dyn Read,
 ) -> Result<SceneBuilder, FormatError> {
     let Some(read) = row.read else {
-        return Err(reading.formats.unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
+        return Err(Formats(&[]).unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
     };
     if source.bytes.is_empty() {
         return Err(FormatError::malformed("the file is empty", whole_file(source.name)));

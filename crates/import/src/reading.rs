@@ -3,7 +3,6 @@
 use crate::archive::OpenMember;
 use crate::budget::Budget;
 use crate::displacement::{Displacement, Moved};
-use crate::formats::Formats;
 use crate::gzip;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
@@ -50,8 +49,6 @@ pub enum Texels {
 
 /// The state that all readers of one read share.
 pub struct Reading<'o> {
-    /// The formats of the scenes that a scene may name; none for files that are no scenes.
-    pub formats: Formats,
     pub options: &'o ReadOptions,
     pub budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
@@ -101,15 +98,8 @@ pub struct MemoryHeld {
 const MAX_CHAIN: usize = 16;
 
 impl<'o> Reading<'o> {
-    /// For a file that is no scene.
     pub fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
-        Reading::of_scenes(Formats(&[]), options, folder)
-    }
-
-    /// For a scene in one of these formats, and the scenes that it names.
-    pub fn of_scenes(formats: Formats, options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
         Reading {
-            formats,
             options,
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,

@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn a_folder_and_its_files_make_no_circle_except_by_a_table() {
         let row = "use super::LightEntry;\npub const ENTRY: LightEntry = LightEntry;\n";
-        let table = "mod sun;\npub struct LightEntry;\npub const LIGHTS: &[LightEntry] = &[sun::ENTRY];\n";
+        let table = "mod sun;\npub struct LightEntry;\npub static LIGHTS: &[LightEntry] = &[sun::ENTRY];\n";
         let lib = ("lib.rs", "pub mod lights;\n");
         assert!(check_files(&[lib, ("lights/mod.rs", table), ("lights/sun.rs", row)]).is_empty());
         let built = format!("{table}fn build() {{ sun::build() }}\n");

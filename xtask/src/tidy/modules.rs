@@ -200,14 +200,14 @@ fn outside_tests(tokens: Vec<Token<'_>>) -> (Vec<Token<'_>>, Vec<String>) {
     (kept, files)
 }
 
-/// Leaves out the rows of tables: `const NAMES: &[NameEntry] = …;` and the variants of [`CLOSED_SETS`].
+/// Leaves out the rows of tables: `static NAMES: &[NameEntry] = …;` and the variants of [`CLOSED_SETS`].
 fn outside_tables<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     let (mut kept, mut at) = (Vec::new(), 0);
     while at < tokens.len() {
         let rest = &tokens[at..];
         let words: Vec<_> = rest.iter().take(7).map(|token| token.text).collect();
         let is_table = match words[..] {
-            ["const", _, ":", "&", "[", ..] => {
+            ["static", _, ":", "&", "[", ..] => {
                 let kind = rest[5..].iter().take_while(|token| token.text != "]").last();
                 kind.is_some_and(|kind| kind.text.ends_with("Entry"))
             }

@@ -6,6 +6,7 @@ use super::place::{self, motion};
 use super::plain::{missing, plain_value};
 use super::reader::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
+use crate::FORMATS;
 use bilux_import::FormatError;
 use bilux_import::displacement::Moved;
 use bilux_import::files::read_file;
@@ -146,12 +147,12 @@ impl Native<'_, '_> {
         let name = item.text("file")?;
         let extension =
             Path::new(name).extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-        let Some(row) = self.reading.formats.named(&extension).filter(|row| row.reads()) else {
-            return Err(self.reading.formats.unknown(Path::new(name), "read", |row| row.reads()));
+        let Some(row) = FORMATS.named(&extension).filter(|row| row.reads()) else {
+            return Err(FORMATS.unknown(Path::new(name), "read", |row| row.reads()));
         };
         self.reading.enter(path, &item.at)?;
         let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();
-        let mut model = read_file(Some(row), self.reading, path, &shown.into())?;
+        let mut model = read_file(FORMATS, Some(row), self.reading, path, &shown.into())?;
         self.reading.leave();
         // A placed model keeps the coordinates of its file.
         let origin = std::mem::take(&mut model.origin);

@@ -5,6 +5,7 @@ use super::include::Part as FilePart;
 use super::plain::{missing, plain_value};
 use super::reader::Native;
 use super::words::{is_bare, number, quoted};
+use crate::FORMATS;
 use bilux_import::FormatError;
 use bilux_import::files::read_file;
 use bilux_import::reading::Reading;
@@ -37,12 +38,12 @@ pub(super) fn base(
         return Err(FormatError::malformed(message, item.at.clone()));
     }
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-    let Some(row) = reading.formats.named(&extension).filter(|row| row.reads()) else {
-        return Err(reading.formats.unknown(Path::new(name), "read", |row| row.reads()));
+    let Some(row) = FORMATS.named(&extension).filter(|row| row.reads()) else {
+        return Err(FORMATS.unknown(Path::new(name), "read", |row| row.reads()));
     };
     reading.enter(&path, &item.at)?;
     let shown = Path::new(&*item.at.file).with_file_name(name).display().to_string();
-    let scene = read_file(Some(row), reading, &path, &shown.into())?;
+    let scene = read_file(FORMATS, Some(row), reading, &path, &shown.into())?;
     reading.leave();
     Ok(scene)
 }

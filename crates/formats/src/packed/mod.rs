@@ -1,5 +1,6 @@
 //! Archives with a model and its textures, as people upload them. See `docs/formats/archives.md`.
 
+use crate::FORMATS;
 use crate::{SCENE_FORMATS, format_named};
 use bilux_import::FormatError;
 use bilux_import::archive::{Archive, Member, is_archive};
@@ -51,7 +52,7 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     let others: Vec<String> = found[1..].iter().take(LISTED).map(|other| other.member.name.clone()).collect();
     let at = whole_file(source.name);
     reading.enter(&path, &at)?;
-    let mut scene = read_file(Some(row), reading, &path, &path.display().to_string().into())?;
+    let mut scene = read_file(FORMATS, Some(row), reading, &path, &path.display().to_string().into())?;
     reading.leave();
     if let Some(other) = others.first() {
         let message = format!(
