@@ -47,11 +47,11 @@ fn film(seed: u64) -> RenderSettings {
 /// as they were.
 fn measured(case: &str, scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u32) -> f64 {
     let shot = |seed| shoot(scene, integrator, &film(seed)).film.to_rgb();
-    let shots = |count: u32| (0..u64::from(count)).map(shot).collect();
+    let shots = |count: u32| (0..u64::from(count)).map(shot).collect::<Vec<_>>();
     SUITE.numbers(case, "variance by pictures", pictures, shots, |all| vec![relative_variance(all)])[0]
 }
 
-fn relative_variance(all: &Vec<Vec<Rgb>>) -> f64 {
+fn relative_variance(all: &[Vec<Rgb>]) -> f64 {
     let pictures = all.len();
     let (mut sums, mut squares) = (vec![0.0; PIXELS], vec![0.0; PIXELS]);
     for (i, pixel) in all.iter().flat_map(|picture| picture.iter().enumerate()) {
