@@ -2,8 +2,10 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod build_time;
 mod command_pages;
 mod contact_sheet;
+mod cores;
 mod cpu_levels;
 mod dist;
 mod docs;
@@ -11,18 +13,21 @@ mod gallery;
 mod instructions;
 mod licences;
 mod manual;
+mod misuse;
 mod mutants;
 mod package;
 mod performance;
 mod process;
 mod python;
 mod strips;
+mod suites;
 mod test;
 mod tidy;
 mod verdicts;
 mod viewer;
 mod workspace;
 
+use misuse::Misuse;
 use std::process::ExitCode;
 
 /// One chore.
@@ -69,6 +74,11 @@ const CHORES: &[Chore] = &[
         summary: "measure the figures of the README and of docs/performance.md again (half an hour)",
         run: performance::run,
     },
+    Chore {
+        name: "build-time",
+        summary: "measure the first build and builds after one changed line, in a clone (half an hour)",
+        run: build_time::run,
+    },
     Chore { name: "wheel", summary: "build the wheel of the Python package", run: python::wheel },
     Chore {
         name: "python-cluster",
@@ -106,7 +116,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("xtask {name}: {error:#}");
-            ExitCode::FAILURE
+            if error.is::<Misuse>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -40,14 +40,18 @@ static IS_FRESH: LazyLock<bool> = LazyLock::new(|| {
 
 /// Builds all libraries, tests and what these run by one command. Cargo chooses the features of shared dependencies for all
 /// that a command builds, so another choice of packages would build nearly everything a second time.
-pub(crate) fn build_all() -> Result<()> {
-    run(&mut cargo(&["build", "--locked", "--workspace", "--lib", "--tests"]))
-}
+pub(crate) const BUILD_ALL: &[&str] = &["build", "--locked", "--workspace", "--lib", "--tests"];
 
 /// The time that this process and its children that have ended spent on all cores, on Linux.
 pub(crate) fn cpu_time() -> Option<Duration> {
+    cpu_time_of(std::process::id())
+}
+
+/// The time that a process and those of its children that it has waited for spent on all cores, on Linux. A process that has
+/// ended still has it until it is waited for.
+pub(crate) fn cpu_time_of(process: u32) -> Option<Duration> {
     // In hundredths of a second, after a name in parentheses: user and system time, and those of the children.
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = fields.get(11..15)?.iter().map(|field| field.parse::<u64>().ok()).sum::<Option<u64>>()?;
     Some(Duration::from_millis(10 * ticks))
@@ -78,6 +82,13 @@ pub(crate) fn run_watched(command: &mut Command, mut watch: impl FnMut(&str)) ->
         line.clear();
     }
     Ok(child.wait()?.success())
+}
+
+/// Whether a process that was started here has ended; its number and its CPU time remain until it is waited for. Where the
+/// system does not tell, it may have.
+pub(crate) fn has_ended(process: u32) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat"));
+    stat.map_or(true, |stat| stat.rsplit_once(") ").is_none_or(|(_, rest)| rest.starts_with('Z')))
 }
 
 /// A command as a user would type it.

@@ -1,7 +1,7 @@
 //! The Python package: `cargo xtask wheel` builds it as it is handed out, and the step `python` of `cargo xtask test`
 //! builds, installs and tests it. Both work in virtual environments in the target folder.
 
-use crate::process::{build_all, output, root, run as run_process, target_folder};
+use crate::process::{BUILD_ALL, cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -55,14 +55,24 @@ pub(crate) fn wheel(_: &[String]) -> Result<()> {
     Ok(())
 }
 
+/// Makes the virtual environments that the tests need, which takes a while: they are downloaded. The tests say what is
+/// missing.
+pub(crate) fn prepare() -> Result<()> {
+    drop(environments());
+    Ok(())
+}
+
+/// What builds the package, and what tests it.
+fn environments() -> Result<(Environment, Environment)> {
+    let python = python()?;
+    let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
+    Ok((builders(&python)?, testers))
+}
+
 /// Builds the package with the development profile, installs it, and runs its tests and the checks of its types. Skips
 /// all that, and says so, where Python or the packages for it cannot be had.
-pub(crate) fn test() -> Result<()> {
-    let environments = python().and_then(|python| {
-        let testers = Environment::new(&python, "test", TESTERS, EXTRAS)?;
-        Ok((builders(&python)?, testers))
-    });
-    let (builders, testers) = match environments {
+pub(crate) fn test(is_built: bool) -> Result<()> {
+    let (builders, testers) = match environments() {
         Ok(environments) => environments,
         Err(error) => {
             println!("SKIPPED: the Python package is not tested: {error:#}");
@@ -71,7 +81,9 @@ pub(crate) fn test() -> Result<()> {
     };
     println!("SKIPPED: {CLUSTER_TESTS} needs Ray, which is large: `cargo xtask python-cluster` runs it");
     // The tests compare with what the command line writes.
-    build_all()?;
+    if !is_built {
+        run_process(&mut cargo(BUILD_ALL))?;
+    }
     place(&builders, &testers)?;
     let mut pytest = pytest(&testers, "");
     run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
@@ -142,7 +154,7 @@ fn install(builders: &Environment, testers: &Environment) -> Result<()> {
     )
 }
 
-/// Installs the package as a wheel would, from the library that [`build_all`] has left: a wheel is built with other features
+/// Installs the package as a wheel would, from the library that [`BUILD_ALL`] has left: a wheel is built with other features
 /// of shared dependencies, so all libraries below would be built a second time.
 fn place(builders: &Environment, testers: &Environment) -> Result<()> {
     if !cfg!(target_os = "linux") {

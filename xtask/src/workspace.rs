@@ -19,6 +19,8 @@ pub(crate) struct Package {
     pub(crate) member: bool,
     /// The names of the packages that it depends on, for any purpose and platform.
     pub(crate) dependencies: Vec<String>,
+    /// The names of those among them that are not for tests and examples alone.
+    pub(crate) shipped: Vec<String>,
     /// Cargo's unique id for this package, version and source.
     pub(crate) id: String,
     /// The packages, by their `id`, that end up in whatever is built from this one.
@@ -62,6 +64,7 @@ fn read_package(package: &Value) -> Result<Package> {
     let text = |key: &str| package[key].as_str().map(str::to_owned);
     let needed = |key: &str| text(key).with_context(|| format!("a package of cargo metadata has no '{key}'"));
     let dependencies = package["dependencies"].as_array().into_iter().flatten();
+    let shipped = dependencies.clone().filter(|d| d["kind"] != "dev");
     Ok(Package {
         name: needed("name")?,
         version: needed("version")?,
@@ -70,6 +73,7 @@ fn read_package(package: &Value) -> Result<Package> {
         folder: PathBuf::from(needed("manifest_path")?).parent().map(PathBuf::from).unwrap_or_default(),
         member: package["source"].is_null(),
         dependencies: dependencies.filter_map(|d| d["name"].as_str().map(str::to_owned)).collect(),
+        shipped: shipped.filter_map(|d| d["name"].as_str().map(str::to_owned)).collect(),
         id: needed("id")?,
         parts: Vec::new(),
     })

@@ -22,19 +22,17 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
             }
         }
     }
-    let uncited = |key: &&str| !repository.rust().any(|(file, _)| is_named(&file.text, key));
-    for key in keys.iter().filter(|key| uncited(key)) {
+    let code: Vec<String> = repository.rust().map(|(file, _)| in_one_line(&file.text)).collect();
+    for key in keys.iter().filter(|key| !code.iter().any(|text| text.contains(**key))) {
         violations.push(Violation::new(LIST, 0, format!("[{key}] is cited by no code")));
     }
     violations
 }
 
-/// Whether a text contains a key, which a comment may break after any of its words.
-fn is_named(text: &str, key: &str) -> bool {
-    text.contains(key) || {
-        let words: Vec<_> = text.split_whitespace().filter(|word| !word.starts_with("//")).collect();
-        words.join(" ").contains(key)
-    }
+/// A text without the breaks between the lines of comments, which may stand after any word of a key.
+fn in_one_line(text: &str) -> String {
+    let lines = text.lines().map(|line| line.trim().trim_start_matches(['/', '!']).trim_start());
+    lines.fold(String::with_capacity(text.len()), |whole, line| whole + line + " ")
 }
 
 /// The keys of the list; a key that appears twice is a violation.

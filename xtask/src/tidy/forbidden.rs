@@ -53,9 +53,9 @@ const EXEMPT: &[&str] = &["xtask/src/tidy/forbidden.rs", "Cargo.lock", "fuzz/Car
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let mut violations = Vec::new();
     for file in repository.files.iter().filter(|file| !EXEMPT.contains(&file.path.as_str())) {
-        for (number, line) in file.text.lines().enumerate() {
-            let is_history = |why: &str| why == OLD_NAME && file.path == "CHANGELOG.md";
-            for (word, why) in WORDS.iter().filter(|(word, why)| line.contains(word) && !is_history(why)) {
+        let is_history = |why: &str| why == OLD_NAME && file.path == "CHANGELOG.md";
+        for (word, why) in WORDS.iter().filter(|(word, why)| file.text.contains(word) && !is_history(why)) {
+            for (number, _) in file.text.lines().enumerate().filter(|(_, line)| line.contains(word)) {
                 violations.push(Violation::new(&file.path, number + 1, format!("'{word}': {why}")));
             }
         }

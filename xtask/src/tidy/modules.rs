@@ -2,7 +2,7 @@
 
 use super::repository::{Repository, TextFile};
 use super::rust_text::RustText;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Enums that are tables: each variant holds the type of one file, which registers itself there.
 const CLOSED_SETS: &[&str] = &["Lobe", "Phase"];
@@ -49,11 +49,11 @@ impl Modules {
         let mut tests = Vec::new();
         let mut modules = BTreeMap::new();
         for (place, file, rust) in files {
-            let children =
-                |name: &str| places.iter().any(|p| p.strip_prefix(&*place) == Some(&[name.into()]));
+            let children: BTreeSet<&str> =
+                places.iter().filter_map(|child| child_of(&place, child)).collect();
             let (tokens, of_tests) = outside_tests(tokens(rust));
             tests.extend(of_tests.into_iter().map(|name| [&place[..], &[name]].concat()));
-            modules.insert(place.clone(), Module::new(place.clone(), &file.path, &tokens, children));
+            modules.insert(place.clone(), Module::new(place.clone(), &file.path, &tokens, &children));
         }
         modules.retain(|place, _| !tests.iter().any(|test| place.starts_with(test)));
         Modules(modules)
@@ -116,7 +116,7 @@ impl Modules {
 }
 
 impl Module {
-    fn new(place: Vec<String>, file: &str, tokens: &[Token], has_child: impl Fn(&str) -> bool) -> Module {
+    fn new(place: Vec<String>, file: &str, tokens: &[Token], children: &BTreeSet<&str>) -> Module {
         let (imports, rest) = imports(tokens);
         let rest = outside_tables(&rest);
         // A name in a path, a field, a declaration or the scope of a visibility is none; after `..` it is one.
@@ -130,8 +130,8 @@ impl Module {
         let starts: Vec<usize> = (0..rest.len()).filter(|&at| is_start(at)).collect();
         let mut paths = Vec::new();
         for &at in &starts {
-            let leads = matches!(rest[at].text, "crate" | "self" | "super") || has_child(rest[at].text);
-            if leads && rest.get(at + 1).is_some_and(|next| next.text == "::") {
+            let leads = |text| matches!(text, "crate" | "self" | "super") || children.contains(text);
+            if rest.get(at + 1).is_some_and(|next| next.text == "::") && leads(rest[at].text) {
                 paths.push(Mention { segments: path(&rest[at..]), line: rest[at].line });
             }
         }
@@ -140,7 +140,8 @@ impl Module {
         let is_folder = file.ends_with("/mod.rs") || file.ends_with("/lib.rs");
         let imports = imports.into_iter().map(|(is_public, mut import)| {
             let first = import.path.segments.first().map_or("", String::as_str);
-            let passes_on = is_public && is_folder && (first == "self" || has_child(first) || is_root);
+            let passes_on =
+                is_public && is_folder && (first == "self" || children.contains(first) || is_root);
             let here = starts.iter().any(|&at| rest[at].text == import.name);
             // A trait may be needed for its methods only, and a glob for anything.
             let is_silent = everywhere(&import.name) <= 1;
@@ -156,6 +157,14 @@ fn place(file: &str) -> Vec<String> {
     let mut parts: Vec<_> = file.trim_end_matches(".rs").split('/').map(str::to_owned).collect();
     parts.pop_if(|last| last == "mod" || last == "lib" || last == "main");
     parts
+}
+
+/// The name of a module's file or folder, if it lies in that of another.
+fn child_of<'a>(place: &[String], child: &'a [String]) -> Option<&'a str> {
+    match child.strip_prefix(place)? {
+        [name] => Some(name),
+        _ => None,
+    }
 }
 
 #[derive(Clone, Copy)]

@@ -38,11 +38,13 @@ impl Splitter<'_> {
         } else if let Some(length) = character(rest) {
             self.literal(length);
         } else {
-            let length = rest.chars().next().map_or(0, char::len_utf8);
-            let (code, comments) = (&rest[..length], blank(&rest[..length]));
+            let first = rest.chars().next().map_or(0, char::len_utf8);
+            // Nothing begins before one of these.
+            let length = rest[first..].find(['/', '"', '\'', 'r', 'b']).map_or(rest.len(), |at| first + at);
+            let (code, rest) = rest.split_at(length);
             self.code.push_str(code);
-            self.comments.push_str(&comments);
-            self.rest = &rest[length..];
+            self.comments.push_str(&blank(code));
+            self.rest = rest;
         }
     }
 

@@ -4,6 +4,7 @@ mod bad_input;
 mod command_line;
 mod denoising;
 mod farm;
+mod hang_up;
 mod layers;
 mod manual;
 mod output;

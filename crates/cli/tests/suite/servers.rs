@@ -2,6 +2,7 @@
 //! give a message, and a sandbox that a link does not lead out of.
 #![cfg(unix)]
 
+use crate::hang_up;
 use serde_json::Value;
 use std::fs;
 use std::os::unix::process::ExitStatusExt;
@@ -175,6 +176,7 @@ fn a_picture_that_is_written_is_no_failure_whatever_ends_the_rest() {
 
 #[test]
 fn a_terminal_that_closes_ends_it_as_ctrl_c_does_but_not_under_nohup() {
+    hang_up::is_not_ignored();
     let folder = folder();
     let path = folder.path();
     let line = "render box.toml --size 48x48 -i path --spp 100000 --checkpoint 0.05 -o a.png";

@@ -1,5 +1,7 @@
 //! If Mitsuba 3's Python package is installed, it renders the same boxes for comparison: `witness/cornell.py`; and the scenes of others,
-//! if a folder of them is named: `witness/scenes.py`. `witness/smallvcm.py`, which no test starts, compares means and errors with SmallVCM.
+//! if a folder of them is named: `witness/scenes.py`. The boxes take more than ten minutes and say little about a change, so they
+//! run in the long form of the suites, and if they are named: `cargo test -p bilux-cli --test suite witness`.
+//! `witness/smallvcm.py`, which no test starts, compares means and errors with SmallVCM.
 //!
 //! `BILUX_MITSUBA=FOLDER cargo test -p bilux-cli --test suite scenes_of_mitsuba -- --nocapture` prints a table of them.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
@@ -15,6 +17,20 @@ fn agrees(options: &[&str]) -> bool {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/cornell.py");
     let status = python().args([script, env!("CARGO_BIN_EXE_bilux"), "--seeds", "6"]).args(options).status();
     status.unwrap().success()
+}
+
+/// Whether the witness was asked for, and is there; if not, says how to have it.
+fn is_wanted() -> bool {
+    // `cargo xtask test` names every test.
+    let is_whole = std::env::var_os("BILUX_WHOLE").is_some();
+    let is_named = std::env::args().skip(1).any(|word| word.contains("witness") || word.contains("mitsuba"));
+    if std::env::var_os("BILUX_LONG").is_none() && (is_whole || !is_named) {
+        eprintln!(
+            "skipped: Mitsuba is asked with `--long` and by `cargo test -p bilux-cli --test suite witness`"
+        );
+        return false;
+    }
+    has_mitsuba()
 }
 
 /// Whether Mitsuba is there; if not, says how to install it.
@@ -44,7 +60,7 @@ fn scenes_of_mitsuba_are_as_bright_as_there() {
 
 #[test]
 fn mitsuba_renders_the_same_cornell_boxes() {
-    if !has_mitsuba() {
+    if !is_wanted() {
         return;
     }
     assert!(agrees(&["--spp", "64", "--integrators", "path,bdpt,vcm"]));
@@ -53,7 +69,7 @@ fn mitsuba_renders_the_same_cornell_boxes() {
 
 #[test]
 fn mitsuba_renders_what_is_written_for_it() {
-    if !has_mitsuba() {
+    if !is_wanted() {
         return;
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/written.py");

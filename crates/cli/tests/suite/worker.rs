@@ -1,6 +1,7 @@
 //! `bilux worker`: jobs in, results out, one process.
 #![cfg(unix)]
 
+use crate::hang_up;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -221,6 +222,7 @@ fn kill(signal: &str, processes: &[String]) {
 /// Ctrl-C of a terminal and SIGTERM of systemd come to both processes, others only to the worker.
 #[test]
 fn a_signal_ends_the_stream_with_a_result_for_the_job_under_way() {
+    hang_up::is_not_ignored();
     for (signal, to_both, status) in [
         ("-TERM", false, 143),
         ("-TERM", true, 143),

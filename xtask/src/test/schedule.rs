@@ -1,0 +1,93 @@
+//! The order of the steps: those of the front one after the other, and beside them those that would leave a core idle.
+
+use super::beside;
+use super::report::Report;
+use super::steps::{BUILD, Context, Lane, Place, Step};
+use crate::process::cpu_time;
+use crate::suites::Totals;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Runs the steps, and returns a report about each, in the order of the table.
+pub(super) fn run(steps: &[&'static Step], context: Context) -> (Vec<Report>, Totals) {
+    let (front, lanes) = divide(steps);
+    let (done, gate) = (Mutex::new(Done::default()), Mutex::new(()));
+    let has_build = front.iter().any(|step| step.name == BUILD);
+    thread::scope(|scope| {
+        // Whoever locks the gate waits until this is dropped.
+        let mut closed = has_build.then(|| lock(&gate));
+        for lane in lanes {
+            let (gate, done) = (&gate, &done);
+            scope.spawn(move || lane.into_iter().for_each(|step| run_beside(step, has_build, gate, done)));
+        }
+        let mut context = context;
+        for step in front {
+            run_in_front(step, &mut context, &done);
+            if step.name == BUILD {
+                (closed, context.is_built) = (None, true);
+            }
+        }
+        drop(closed);
+        lock(&done).totals += context.totals;
+    });
+    let Done { mut reports, totals, .. } = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    reports.sort_by_key(|report| steps.iter().position(|step| step.name == report.name));
+    (reports, totals)
+}
+
+/// What has ended so far.
+#[derive(Default)]
+struct Done {
+    reports: Vec<Report>,
+    totals: Totals,
+    /// The CPU time of the steps that ran beside.
+    beside: Duration,
+}
+
+/// The steps of the front, and those of each lane. Without a front they are the front: there is nothing to run beside.
+fn divide(steps: &[&'static Step]) -> (Vec<&'static Step>, Vec<Vec<&'static Step>>) {
+    let of = |lane| steps.iter().copied().filter(move |step| lane_of(step) == lane).collect::<Vec<_>>();
+    match of(None) {
+        front if front.is_empty() => (steps.to_vec(), Vec::new()),
+        front => (front, [Lane::Python, Lane::Valgrind, Lane::Documents].map(|lane| of(Some(lane))).into()),
+    }
+}
+
+fn lane_of(step: &Step) -> Option<Lane> {
+    match step.place {
+        Place::Front => None,
+        Place::Beside(lane) | Place::BesideBuilt(lane) => Some(lane),
+    }
+}
+
+fn run_in_front(step: &'static Step, context: &mut Context, done: &Mutex<Done>) {
+    println!("==> {}", step.name);
+    let start = (Instant::now(), cpu_time());
+    let beside = lock(done).beside;
+    let result = (step.run)(context);
+    if let Err(error) = &result {
+        println!("{error:#}");
+    }
+    let mut done = lock(done);
+    let mut report = Report::since(step.name, start, result.is_ok());
+    report.cpu = report.cpu.map(|cpu| cpu.saturating_sub(done.beside.saturating_sub(beside)));
+    done.reports.push(report);
+}
+
+fn run_beside(step: &'static Step, has_build: bool, gate: &Mutex<()>, done: &Mutex<Done>) {
+    if matches!(step.place, Place::BesideBuilt(_)) {
+        drop(lock(gate));
+    }
+    let _core = crate::cores::take();
+    let ended = beside::run(step, has_build);
+    let mut done = lock(done);
+    print!("==> {} ran beside these\n{}", step.name, ended.said);
+    done.beside += ended.report.cpu.unwrap_or_default();
+    done.totals += ended.totals;
+    done.reports.push(ended.report);
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
