@@ -82,7 +82,8 @@ pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
     }
     if items.len() >= PARALLEL_PASS {
         let parts = map(items.chunks(CHUNK), |items| Box::new(fill::<BINS>(items, &grid)));
-        cheapest(&*parts.into_iter().fold(Box::new([[NO_ITEMS; BINS]; 3]), merge), grid)
+        let bins: Box<Bins<BINS>> = parts.into_iter().fold(Box::new([[NO_ITEMS; BINS]; 3]), merge);
+        cheapest(&bins, grid)
     } else if grid.bins <= FEW {
         // Most nodes are small, and initialising many bins would take more time than filling them.
         cheapest(&fill::<FEW>(items, &grid), grid)
