@@ -1,8 +1,10 @@
 //! `cargo xtask docs`: the library documentation, and the reference pages in `docs/reference/`, which are generated
 //! from the tables that the binary lists. `--check` only checks whether those pages are up to date.
 
+use crate::build;
 use crate::command_pages;
-use crate::process::{cargo, output, root, run as run_process, target_folder};
+use crate::library_docs;
+use crate::process::{output, root, target_folder};
 use crate::strips;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -47,7 +49,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         _ => bail!("the only option is `--check`"),
     };
     say("building `bilux` and the tests of the tables, as `cargo xtask test` builds them");
-    run_process(&mut cargo(&["test", "--locked", "--workspace", "--no-run", "--test", "suite"]))?;
+    build::all()?;
     if check {
         say(&format!("comparing the pages in {FOLDER} with the tables"));
         return check_reference();
@@ -56,9 +58,9 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     write(&pages()?)?;
     say("writing the types of materials and lights, and the settings of requests");
     let types = &["test", "--quiet", "--locked", "--workspace", "--test", "suite", "typed::every_"];
-    output(cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
+    output(build::cargo(types).env("BILUX_WRITE_TYPES", "1"))?;
     say("writing the documentation of the libraries to target/doc");
-    library()
+    library_docs::build()
 }
 
 /// A line of progress, before each thing that takes long.
@@ -69,13 +71,6 @@ fn say(what: &str) {
 /// Checks the reference pages against the binary that the tests have built.
 pub(crate) fn check_reference() -> Result<()> {
     compare(&pages()?)
-}
-
-/// Builds the documentation of the libraries; a warning is an error. Public items may link to private ones that explain
-/// them: anyone who wants the explanation reads the source.
-pub(crate) fn library() -> Result<()> {
-    let mut command = cargo(&["doc", "--locked", "--workspace", "--no-deps", "--quiet"]);
-    run_process(command.env("RUSTDOCFLAGS", "--deny warnings --allow rustdoc::private_intra_doc_links"))
 }
 
 /// Every page by its file name.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod build;
 mod build_time;
 mod command_pages;
 mod contact_sheet;
@@ -11,6 +12,7 @@ mod dist;
 mod docs;
 mod gallery;
 mod instructions;
+mod library_docs;
 mod licences;
 mod manual;
 mod misuse;
@@ -19,6 +21,7 @@ mod package;
 mod performance;
 mod process;
 mod python;
+mod stamp;
 mod strips;
 mod suites;
 mod test;

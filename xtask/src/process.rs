@@ -32,15 +32,11 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
 
 /// Whether nobody has developed here yet. Code that can be compiled in increments takes longer to compile, which is wasted
 /// where all is compiled once; but whoever develops keeps their increments.
-static IS_FRESH: LazyLock<bool> = LazyLock::new(|| {
+pub(crate) static IS_FRESH: LazyLock<bool> = LazyLock::new(|| {
     let increments = std::fs::read_dir(target_folder().join("debug/incremental"));
     let mut folders = increments.into_iter().flatten().flatten();
     !folders.any(|folder| folder.file_name().to_string_lossy().starts_with("bilux"))
 });
-
-/// Builds all libraries, tests and what these run by one command. Cargo chooses the features of shared dependencies for all
-/// that a command builds, so another choice of packages would build nearly everything a second time.
-pub(crate) const BUILD_ALL: &[&str] = &["build", "--locked", "--workspace", "--lib", "--tests"];
 
 /// The time that this process and its children that have ended spent on all cores, on Linux.
 pub(crate) fn cpu_time() -> Option<Duration> {

@@ -1,7 +1,8 @@
 //! The Python package: `cargo xtask wheel` builds it as it is handed out, and the step `python` of `cargo xtask test`
 //! builds, installs and tests it. Both work in virtual environments in the target folder.
 
-use crate::process::{BUILD_ALL, cargo, output, root, run as run_process, target_folder};
+use crate::process::{output, root, run as run_process, target_folder};
+use crate::stamp::Stamp;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,6 +37,9 @@ const CLUSTER_TESTERS: &[&str] = &["numpy", "pytest", "ray>=2.9"];
 
 /// The tests of clusters.
 const CLUSTER_TESTS: &str = "test_cluster.py";
+
+/// The tests of the examples.
+const EXAMPLE_TESTS: &str = "test_examples.py";
 
 /// The largest wheel that is handed out, in bytes.
 const LARGEST: u64 = 15_000_000;
@@ -82,17 +86,45 @@ pub(crate) fn test(is_built: bool) -> Result<()> {
     println!("SKIPPED: {CLUSTER_TESTS} needs Ray, which is large: `cargo xtask python-cluster` runs it");
     // The tests compare with what the command line writes.
     if !is_built {
-        run_process(&mut cargo(BUILD_ALL))?;
+        crate::build::all()?;
     }
     place(&builders, &testers)?;
+    let binary = target_folder().join("debug").join(format!("bilux{}", std::env::consts::EXE_SUFFIX));
+    let package = root().join(PACKAGE);
+    let inputs = [package.clone(), library(), binary.clone()];
+    let examples = Stamp::new("examples", &inputs.into_iter().chain(testers.marks()).collect::<Vec<_>>())?;
     let mut pytest = pytest(&testers, "");
-    run_process(pytest.env("BILUX_BINARY", target_folder().join("debug/bilux")))?;
-    let settings = root().join(PACKAGE).join("pyproject.toml");
+    if examples.is_fresh() {
+        println!("left out: the examples, since neither they nor what they run have changed");
+        pytest.arg("--ignore").arg(package.join("tests").join(EXAMPLE_TESTS));
+    }
+    run_process(pytest.env("BILUX_BINARY", binary))?;
+    examples.write()?;
+    check_types(&testers)
+}
+
+/// Checks the types within the package, and that they are those of the library.
+fn check_types(testers: &Environment) -> Result<()> {
+    let package = root().join(PACKAGE);
+    let settings = package.join("pyproject.toml");
+    let inputs = [package.join("python"), package.join("src"), settings.clone()];
+    let stamp = Stamp::new("types", &inputs.into_iter().chain(testers.marks()).collect::<Vec<_>>())?;
+    if stamp.is_fresh() {
+        println!("left out: the types, since nothing of the package has changed");
+        return Ok(());
+    }
     let cache = target_folder().join("python/mypy");
     let mut mypy = testers.python();
     mypy.args(["-m", "mypy", "-p", "bilux", "--config-file"]).arg(&settings).arg("--cache-dir").arg(&cache);
     run_process(&mut mypy)?;
-    run_process(testers.python().args(["-m", "mypy.stubtest", "bilux"]))
+    run_process(testers.python().args(["-m", "mypy.stubtest", "bilux"]))?;
+    stamp.write()
+}
+
+/// The library of the package, as the development profile builds it.
+fn library() -> PathBuf {
+    let (before, after) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    target_folder().join("debug").join(format!("{before}_bilux{after}"))
 }
 
 /// Builds a wheel with the development profile, installs it, and runs the tests of the package itself.
@@ -154,7 +186,7 @@ fn install(builders: &Environment, testers: &Environment) -> Result<()> {
     )
 }
 
-/// Installs the package as a wheel would, from the library that [`BUILD_ALL`] has left: a wheel is built with other features
+/// Installs the package as a wheel would, from the library that [`crate::build::all`] has left: a wheel is built with other features
 /// of shared dependencies, so all libraries below would be built a second time.
 fn place(builders: &Environment, testers: &Environment) -> Result<()> {
     if !cfg!(target_os = "linux") {
@@ -173,7 +205,7 @@ fn place(builders: &Environment, testers: &Environment) -> Result<()> {
     let package = root().join(PACKAGE);
     let placed = site.join("bilux");
     copy(&package.join("python/bilux"), &placed)?;
-    let library = target_folder().join("debug/lib_bilux.so");
+    let library = library();
     fs::copy(&library, placed.join("_bilux.abi3.so"))
         .with_context(|| format!("cannot copy {}", library.display()))?;
     output(testers.python().args(["-m", "compileall", "-q"]).arg(&placed))?;
@@ -270,18 +302,29 @@ impl Environment {
         made.context("cannot make a virtual environment: install Python's module venv")?;
         // What is imported is compiled then, once; most of it never is.
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"];
-        let installed = output(environment.python().args(install).args(packages));
-        installed.with_context(|| format!("pip cannot install {}", packages.join(", ")))?;
-        let lacks =
-            |group: &&&str| output(environment.python().args(install).args(group.split(' '))).is_err();
-        let lacking: Vec<&&str> = extras.iter().filter(lacks).collect();
-        if !lacking.is_empty() {
-            // Without the stamp, the next run tries again.
-            println!("SKIPPED: pip cannot install {lacking:?}: tests that use them are skipped");
-            return Ok(environment);
+        let can_install = |names: &[&str]| {
+            let words = names.iter().flat_map(|group| group.split(' '));
+            output(environment.python().args(install).args(words))
+        };
+        // All at once takes half the time of one after the other.
+        if can_install(&[packages, extras].concat()).is_err() {
+            let installed = can_install(packages);
+            installed.with_context(|| format!("pip cannot install {}", packages.join(", ")))?;
+            let lacking: Vec<&&str> = extras.iter().filter(|group| can_install(&[group]).is_err()).collect();
+            if !lacking.is_empty() {
+                // Without the stamp, the next run tries again.
+                println!("SKIPPED: pip cannot install {lacking:?}: tests that use them are skipped");
+                return Ok(environment);
+            }
         }
         fs::write(&stamp, wanted).with_context(|| format!("cannot write {}", stamp.display()))?;
         Ok(environment)
+    }
+
+    /// The files that say which Python it is, and which packages it has.
+    fn marks(&self) -> impl Iterator<Item = PathBuf> {
+        let folder = self.interpreter.ancestors().nth(2).unwrap_or(Path::new(""));
+        ["pyvenv.cfg", "packages.txt"].map(|name| folder.join(name)).into_iter().filter(|path| path.exists())
     }
 
     /// Its Python, in the root of the repository, without influence from the user's own packages.

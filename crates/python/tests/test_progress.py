@@ -57,7 +57,7 @@ def test_other_threads_run_during_a_render():
 
     thread = threading.Thread(target=tick)
     thread.start()
-    bilux.generate("cornell").render(size=128, spp=64, threads=1)
+    bilux.generate("cornell").render(size=128, spp=8, threads=1)
     done.set()
     thread.join()
     assert ticks > 10

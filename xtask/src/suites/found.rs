@@ -1,6 +1,6 @@
 //! The binaries of tests that cargo builds, and the tests in each.
 
-use crate::process::{self, cargo};
+use crate::{build, process};
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -32,8 +32,7 @@ impl Suite {
 
 /// Builds the binaries of all packages, and lists the tests in those of some packages, or of all if none is named.
 pub(super) fn build_and_list(packages: &[String]) -> Result<Vec<Suite>> {
-    let mut build = cargo(&[process::BUILD_ALL, &["--message-format=json-render-diagnostics"]].concat());
-    let mut suites = read(&process::output(&mut build)?);
+    let mut suites: Vec<Suite> = build::all()?.artifacts.iter().filter_map(suite).collect();
     suites.retain(|suite| packages.is_empty() || packages.contains(&suite.package));
     for suite in &mut suites {
         let listed = process::output(suite.command().args(["--list", "--format", "terse"]));
@@ -47,14 +46,9 @@ pub(super) fn build_and_list(packages: &[String]) -> Result<Vec<Suite>> {
     Ok(suites)
 }
 
-/// The binaries of tests among the artifacts in cargo's messages.
-fn read(messages: &str) -> Vec<Suite> {
-    let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    messages.filter_map(|message| suite(&message)).collect()
-}
-
+/// The binary of tests that one of cargo's messages is about.
 fn suite(message: &Value) -> Option<Suite> {
-    if message["reason"] != "compiler-artifact" || message["profile"]["test"] != true {
+    if message["profile"]["test"] != true {
         return None;
     }
     let folder = Path::new(message["manifest_path"].as_str()?).parent()?;
@@ -86,9 +80,8 @@ mod tests {
     #[test]
     fn binaries_of_tests_are_found_among_artifacts() {
         let artifact = |id: &str, kind: &str, is_test: bool, program: Value| {
-            json!({ "reason": "compiler-artifact", "package_id": id, "manifest_path": "/r/crates/cli/Cargo.toml",
+            json!({ "package_id": id, "manifest_path": "/r/crates/cli/Cargo.toml",
                 "target": { "kind": [kind], "name": "suite" }, "profile": { "test": is_test }, "executable": program })
-            .to_string()
         };
         let cli = "path+file:///r/crates/cli#bilux-cli@0.1.0";
         let messages = [
@@ -97,10 +90,8 @@ mod tests {
             artifact(cli, "lib", false, Value::Null),
             artifact(cli, "bin", false, json!("/t/bilux")),
             artifact("path+file:///r/crates/cli#0.1.0", "test", true, json!("/t/suite-2")),
-            "{ \"reason\": \"build-finished\", \"success\": true }".to_owned(),
-            "no JSON".to_owned(),
         ];
-        let found = read(&messages.join("\n"));
+        let found: Vec<Suite> = messages.iter().filter_map(suite).collect();
         let names: Vec<_> =
             found.iter().map(|suite| (&*suite.name, suite.program.to_str().unwrap())).collect();
         assert_eq!(

@@ -21,7 +21,7 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> (Vec<Report>, To
             let (gate, done) = (&gate, &done);
             scope.spawn(move || lane.into_iter().for_each(|step| run_beside(step, has_build, gate, done)));
         }
-        let mut context = context;
+        let mut context = Context { builds: has_build, ..context };
         for step in front {
             run_in_front(step, &mut context, &done);
             if step.name == BUILD {

@@ -1,5 +1,6 @@
 //! The steps of `cargo xtask test`, as two tables.
 
+use crate::build;
 use crate::process::{cargo, run_watched};
 use crate::suites::{self, Options, Totals};
 use anyhow::{Context as _, Result, bail};
@@ -37,7 +38,9 @@ pub(super) struct Context {
     pub(super) totals: Totals,
     /// The packages whose tests run; all, if there are none here.
     pub(super) packages: Vec<String>,
-    /// Whether the step `build` has run.
+    /// Whether the step `build` runs too.
+    pub(super) builds: bool,
+    /// Whether it has run.
     pub(super) is_built: bool,
 }
 
@@ -74,7 +77,7 @@ pub(super) static STEPS: &[Step] = &[
         place: Place::BesideBuilt(Lane::Documents),
         run: |_| crate::manual::run(&["--check".to_owned()]),
     },
-    Step { name: "doc", place: Place::BesideBuilt(Lane::Documents), run: |_| crate::docs::library() },
+    Step { name: "doc", place: Place::BesideBuilt(Lane::Documents), run: |_| crate::library_docs::build() },
 ];
 
 /// The long forms, which `--long` adds: `docs/trust.md` says what each does beyond its short form.
@@ -112,16 +115,20 @@ fn deny(_: &mut Context) -> Result<()> {
         .context("see deny.toml for what is allowed")
 }
 
-fn clippy(_: &mut Context) -> Result<()> {
+fn clippy(context: &mut Context) -> Result<()> {
     component("clippy", "clippy")?;
+    if context.builds && build::lints() {
+        println!("the step {BUILD} lints what it compiles");
+        return Ok(());
+    }
     run_step(&["clippy", "--locked", "--workspace", "--all-targets", "--", "--deny", "warnings"])
 }
 
 fn build(_: &mut Context) -> Result<()> {
-    run_step(crate::process::BUILD_ALL)
+    build::all()?.without_warnings()
 }
 
-/// Examples are left out: clippy has seen that they compile, and these do not run.
+/// Examples are left out: it is clear that they compile, and these do not run.
 fn tests(context: &mut Context) -> Result<()> {
     suites::run(Options { packages: &context.packages, is_long: false }, &mut context.totals)
 }
@@ -134,7 +141,7 @@ fn long_suites(context: &mut Context) -> Result<()> {
 /// The examples in the documentation of the libraries.
 fn examples(context: &mut Context) -> Result<()> {
     let mut sum = Totals::default();
-    let mut command = cargo(&["test", "--locked", "--workspace", "--doc", "--no-fail-fast"]);
+    let mut command = build::cargo(&["test", "--locked", "--workspace", "--doc", "--no-fail-fast"]);
     let ok = run_watched(&mut command, |line| sum += Totals::read_closing(line).unwrap_or_default())?;
     context.totals += sum;
     match (ok, sum.passed + sum.failed) {
