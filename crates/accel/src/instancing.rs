@@ -86,7 +86,7 @@ impl TwoLevel {
     /// Builds the top level over these instances, for rays at times while the shutter is open (seconds, both ends
     /// included); a ray's time is clamped to that interval. Instance indices in hits are those of the list.
     pub fn new(instances: &[Instance], shutter: [f32; 2], top: TopLevel) -> TwoLevel {
-        let boxes: Vec<Aabb> = table(instances.len(), TOGETHER, &|i| {
+        let boxes: Vec<Aabb> = table(instances.len(), TOGETHER, |i| {
             let instance = &instances[i];
             match instance.motion.is_still_over(shutter) {
                 true if instance.motion.at(shutter[0]).is_identity() => instance.accelerator.bounds(),
@@ -104,7 +104,7 @@ impl TwoLevel {
             }
         };
         drop(boxes);
-        let placed = table(instances.len(), TOGETHER, &|i| Placed::new(&instances[i], shutter));
+        let placed = table(instances.len(), TOGETHER, |i| Placed::new(&instances[i], shutter));
         TwoLevel { placed, shutter, bounds, top }
     }
 

@@ -63,7 +63,7 @@ impl Source for Outcome {
         let (width, height) = (window.width as usize, rows.len());
         let pixels = rows.start * width..rows.end * width;
         let light = |of: fn(&Film, u32, u32) -> Rgb| {
-            table(pixels.len(), width, &|i| {
+            table(pixels.len(), width, |i| {
                 let (x, y) = window.position(pixels.start + i);
                 of(&self.rendered.film, x, y)
             })

@@ -195,10 +195,10 @@ impl Faces<'_> {
         };
         if self.ends.is_empty() {
             let triangles = self.corners.as_chunks::<3>().0;
-            return table(triangles.len(), LEAST, &|face| facing(&triangles[face]));
+            return table(triangles.len(), LEAST, |face| facing(&triangles[face]));
         }
         let start = |face: usize| if face == 0 { 0 } else { self.ends[face - 1] as usize };
-        table(self.ends.len(), LEAST, &|face| facing(&self.corners[start(face)..self.ends[face] as usize]))
+        table(self.ends.len(), LEAST, |face| facing(&self.corners[start(face)..self.ends[face] as usize]))
     }
 
     /// The face of each corner; empty if all faces are triangles.

@@ -109,11 +109,11 @@ pub fn fill<T: Send>(table: &mut [T], size: usize, of: impl Fn(usize) -> T + Syn
 /// The results for all numbers from 0 up to `count`, in their order: a large table, of which each thread writes ranges of at `least` so
 /// many where they stay, since the first touch of memory is the expensive one.
 ///
-/// Only rayon can write so, and it is compiled again for each type of result. [`map`] serves if there are few, and
+/// Only rayon can write so, and it is compiled again for each use. [`map`] serves if there are few, and
 /// [`fill`] for a table of zeros, which the system touches late.
-pub fn table<T: Send>(count: usize, least: usize, of: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+pub fn table<T: Send>(count: usize, least: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let mut table = Vec::new();
-    (0..count).into_par_iter().with_min_len(least).map(of).collect_into_vec(&mut table);
+    (0..count).into_par_iter().with_min_len(least).map(&of).collect_into_vec(&mut table);
     table
 }
 

@@ -56,11 +56,14 @@ const FEW_BLOCKS: u64 = 1 << 22;
 /// One of so many blocks has values, or they are too scattered for a table of all blocks.
 const SCATTERED: u64 = 1000;
 
-impl Sparse {
-    pub fn new() -> Sparse {
+impl Default for Sparse {
+    /// The tree without values.
+    fn default() -> Sparse {
         Sparse { parts: Vec::new(), blocks: 0, low: [i64::MAX; 3], high: [i64::MIN; 3] }
     }
+}
 
+impl Sparse {
     /// Adds a leaf; `at` is where its values are.
     pub fn leaf(
         &mut self,

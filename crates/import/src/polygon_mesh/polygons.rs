@@ -49,6 +49,11 @@ impl Polygons {
         Ok(())
     }
 
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
     /// The number of polygons.
     pub fn len(&self) -> usize {
         self.ends.len()

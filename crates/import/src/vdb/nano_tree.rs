@@ -91,7 +91,8 @@ impl<'r> Tree<'r> {
         source: &'r Source<'r>,
         budget: &'r mut Budget,
     ) -> Result<(Sparse, f32), FormatError> {
-        let mut tree = Tree { numbers, source, budget, sparse: Sparse::new(), leaves: 0, background: 0.0 };
+        let mut tree =
+            Tree { numbers, source, budget, sparse: Sparse::default(), leaves: 0, background: 0.0 };
         tree.root(bytes)?;
         Ok((tree.sparse, tree.background))
     }

@@ -76,7 +76,7 @@ fn nodes<'a>(
     budget: &mut Budget,
 ) -> Result<(Leaves<'a>, Sparse), FormatError> {
     let (tiles, children) = (bytes.u32()?, bytes.u32()?);
-    let mut reader = Nodes { encoding, source, budget, leaves: Vec::new(), sparse: Sparse::new() };
+    let mut reader = Nodes { encoding, source, budget, leaves: Vec::new(), sparse: Sparse::default() };
     for _ in 0..tiles {
         let origin = bytes.i32s()?;
         let value = encoding.value(bytes)?;

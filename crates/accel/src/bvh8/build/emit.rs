@@ -38,7 +38,7 @@ pub(super) fn emit(
         return Err(BuildError::TooManyNodes);
     }
     // On all threads, because the first touch of memory is the expensive one.
-    let mut units = table(plan.units, PARALLEL, &|_| Unit::default());
+    let mut units = table(plan.units, PARALLEL, |_| Unit::default());
     let (_, root) = writer.write(&binary.root, &plan, &mut units, 0);
     Ok((units, root))
 }

@@ -106,7 +106,7 @@ pub(super) fn items_of(mesh: &TriangleMesh) -> Vec<Item> {
     };
     let is_finite = |some: &[[[f32; 3]; 3]]| some.iter().flatten().flatten().all(|x| x.is_finite());
     if map(triangles.chunks(MANY), is_finite).into_iter().all(|is_finite| is_finite) {
-        return table(triangles.len(), MANY, &|index| item(index).0);
+        return table(triangles.len(), MANY, |index| item(index).0);
     }
     let of = |some: Range<usize>| {
         some.map(item).filter_map(|(item, finite)| finite.then_some(item)).collect::<Vec<_>>()

@@ -37,7 +37,7 @@ pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
     let mut places: Vec<PlaceCode> = vec![(0, 0); items.len()];
     fill(&mut places, CHUNK, |k| (place(&items[k]), k as u32));
     places.par_sort_unstable();
-    *items = table(items.len(), CHUNK, &|k| items[places[k].1 as usize]);
+    *items = table(items.len(), CHUNK, |k| items[places[k].1 as usize]);
     let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
     let pairs = NodePairs { nodes: &mut nodes, first_pair: 0 };
     let (_, root, _) = subtree(items, &places, 0, pairs, 1);

@@ -168,7 +168,7 @@ impl Builder {
 
     /// The mesh; `None` if it has no polygons.
     pub(super) fn finish(self, geometry: Element, workshop: &mut Workshop) -> Option<PolygonMesh> {
-        if self.polygons.len() == 0 || self.positions.values().is_empty() {
+        if self.polygons.is_empty() || self.positions.values().is_empty() {
             return None;
         }
         if self.positions.values().iter().any(|p| !p.is_finite()) {

@@ -32,7 +32,7 @@ pub(in crate::fbx) fn read(
         workshop.oddities.note(what, || vertices.at());
     }
     let polygons = polygons::read(indices, positions.len(), workshop)?;
-    if polygons.len() == 0 {
+    if polygons.is_empty() {
         return Ok(None);
     }
     let surface = Surface { corners: &polygons.corners, positions: positions.len() };

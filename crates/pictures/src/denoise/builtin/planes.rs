@@ -126,7 +126,7 @@ impl Light {
             }
             None => guessed[i],
         };
-        let pixels: Vec<(Rgb, f32)> = table(size.0 * size.1, 1 << 12, &|i| (colour(i), variance(i)));
+        let pixels: Vec<(Rgb, f32)> = table(size.0 * size.1, 1 << 12, |i| (colour(i), variance(i)));
         drop((layer, guessed));
         let pixels = outliers::without(size, pixels, haze);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
