@@ -23,7 +23,7 @@ impl Hash {
         }
     }
 
-    /// Reads what [`Hash`] displays.
+    /// Reads what [`struct@Hash`] displays.
     pub fn parse(text: &str) -> Option<Hash> {
         if text.len() != 32 {
             return None;
