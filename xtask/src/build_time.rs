@@ -37,7 +37,7 @@ const EDITS: &[Edit] = &[
     },
     Edit {
         place: "a reader",
-        file: "crates/formats/src/off/columns.rs",
+        file: "crates/meshes/src/off/columns.rs",
         before: "let is_off = takes(b\"OFF\")",
         after: "let is_off = takes(b\"off\")",
     },
