@@ -35,8 +35,13 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
 pub(crate) static IS_FRESH: LazyLock<bool> = LazyLock::new(|| {
     let increments = std::fs::read_dir(target_folder().join("debug/incremental"));
     let mut folders = increments.into_iter().flatten().flatten();
-    !folders.any(|folder| folder.file_name().to_string_lossy().starts_with("bilux"))
+    !folders.any(|folder| is_of_a_developer(&folder.file_name().to_string_lossy()))
 });
+
+/// Whether increments are of a crate that this program is not built from: its own are there in any case.
+fn is_of_a_developer(folder: &str) -> bool {
+    folder.starts_with("bilux") && !folder.starts_with("bilux_testing-")
+}
 
 /// The time that this process and its children that have ended spent on all cores, on Linux.
 pub(crate) fn cpu_time() -> Option<Duration> {
@@ -102,4 +107,19 @@ pub(crate) fn output(command: &mut Command) -> Result<String> {
         bail!("{} failed ({})", spoken(command), output.status);
     }
     String::from_utf8(output.stdout).with_context(|| format!("{} wrote no UTF-8", spoken(command)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn increments_of_this_program_are_nobodys_work() {
+        assert!(is_of_a_developer("bilux_scene-0abc") && is_of_a_developer("bilux-0abc"));
+        assert!(!is_of_a_developer("xtask-0abc") && !is_of_a_developer("bilux_testing-0abc"));
+        // Those crates are what the manifest names.
+        let manifest = std::fs::read_to_string(root().join("xtask/Cargo.toml")).unwrap();
+        let own: Vec<_> = manifest.lines().filter(|line| line.starts_with("bilux")).collect();
+        assert_eq!(own, ["bilux-testing.workspace = true"]);
+    }
 }

@@ -115,9 +115,6 @@ fn read_file_once(
             .or_else(|| picture_by_name(path))
             .unwrap_or_else(|| formats.unknown(path, "read", SceneFormatEntry::reads))
     })?;
-    if !row.reads() {
-        return Err(formats.unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
-    }
     if row.is_packed() {
         reading.release(bytes);
         return Ok((row, read_archive(row, reading, path, name)?));
@@ -173,9 +170,6 @@ pub fn read_bytes(
         not_a_scene(name, bytes)
             .unwrap_or_else(|| formats.unknown(Path::new(asked), "read", SceneFormatEntry::reads))
     })?;
-    if !row.reads() {
-        return Err(formats.unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
-    }
     reading.budget.take_bytes(bytes.len() as u64, name)?;
     let name = Arc::from(name);
     let mut source = Source { bytes, name: &name, folder: base };
