@@ -7,6 +7,7 @@ use crate::process::{cpu_time_of, has_ended};
 use crate::suites::Totals;
 use anyhow::{Context as _, Result, bail};
 use std::io::{Read, pipe};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -20,18 +21,19 @@ pub(super) struct Ended {
     pub(super) said: String,
 }
 
-/// Runs a step in a process of its own.
-pub(super) fn run(step: &'static Step, is_built: bool) -> Ended {
+/// Runs a step in a process of this program. Its path must have been asked for before anything was built: a program that has been
+/// linked again since does not know where it is.
+pub(super) fn run(program: &Path, step: &'static Step, is_built: bool) -> Ended {
     let begun = Instant::now();
     let (said, cpu, ok) =
-        start(step.name, is_built).unwrap_or_else(|error| (format!("{error:#}\n"), None, false));
+        start(program, step.name, is_built).unwrap_or_else(|error| (format!("{error:#}\n"), None, false));
     let totals = said.lines().rev().find_map(Totals::read).unwrap_or_default();
     Ended { report: Report { name: step.name, time: begun.elapsed(), cpu, ok }, totals, said }
 }
 
-fn start(name: &str, is_built: bool) -> Result<(String, Option<Duration>, bool)> {
+fn start(program: &Path, name: &str, is_built: bool) -> Result<(String, Option<Duration>, bool)> {
     let (mut reader, writer) = pipe().context("there is no pipe left")?;
-    let mut command = Command::new(std::env::current_exe()?);
+    let mut command = Command::new(program);
     command.args(["test", FLAG, name]).args(is_built.then_some(BUILT));
     command.stdin(Stdio::null()).stdout(writer.try_clone()?).stderr(writer);
     let mut child = command.spawn().with_context(|| format!("cannot start the step {name}"))?;

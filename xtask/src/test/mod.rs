@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
             context.packages = reached.packages;
         }
     }
-    let (mut reports, totals) = schedule::run(&chosen.steps, context);
+    let (mut reports, totals) = schedule::run(&chosen.steps, context)?;
     let failed: Vec<_> = reports.iter().filter(|report| !report.ok).map(|report| report.name).collect();
     reports.push(Report::since("all", start, failed.is_empty()));
     println!();

@@ -5,12 +5,15 @@ use super::report::Report;
 use super::steps::{BUILD, Context, Lane, Place, Step};
 use crate::process::cpu_time;
 use crate::suites::Totals;
+use anyhow::{Context as _, Result};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// Runs the steps, and returns a report about each, in the order of the table.
-pub(super) fn run(steps: &[&'static Step], context: Context) -> (Vec<Report>, Totals) {
+pub(super) fn run(steps: &[&'static Step], context: Context) -> Result<(Vec<Report>, Totals)> {
+    let program = std::env::current_exe().context("cannot find this program")?;
     let (front, lanes) = divide(steps);
     let (done, gate) = (Mutex::new(Done::default()), Mutex::new(()));
     let has_build = front.iter().any(|step| step.name == BUILD);
@@ -18,8 +21,10 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> (Vec<Report>, To
         // Whoever locks the gate waits until this is dropped.
         let mut closed = has_build.then(|| lock(&gate));
         for lane in lanes {
-            let (gate, done) = (&gate, &done);
-            scope.spawn(move || lane.into_iter().for_each(|step| run_beside(step, has_build, gate, done)));
+            let (gate, done, program) = (&gate, &done, &program);
+            scope.spawn(move || {
+                lane.into_iter().for_each(|step| run_beside(program, step, has_build, gate, done))
+            });
         }
         let mut context = Context { builds: has_build, ..context };
         for step in front {
@@ -33,7 +38,7 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> (Vec<Report>, To
     });
     let Done { mut reports, totals, .. } = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     reports.sort_by_key(|report| steps.iter().position(|step| step.name == report.name));
-    (reports, totals)
+    Ok((reports, totals))
 }
 
 /// What has ended so far.
@@ -75,12 +80,12 @@ fn run_in_front(step: &'static Step, context: &mut Context, done: &Mutex<Done>) 
     done.reports.push(report);
 }
 
-fn run_beside(step: &'static Step, has_build: bool, gate: &Mutex<()>, done: &Mutex<Done>) {
+fn run_beside(program: &Path, step: &'static Step, has_build: bool, gate: &Mutex<()>, done: &Mutex<Done>) {
     if matches!(step.place, Place::BesideBuilt(_)) {
         drop(lock(gate));
     }
     let _core = crate::cores::take();
-    let ended = beside::run(step, has_build);
+    let ended = beside::run(program, step, has_build);
     let mut done = lock(done);
     print!("==> {} ran beside these\n{}", step.name, ended.said);
     done.beside += ended.report.cpu.unwrap_or_default();

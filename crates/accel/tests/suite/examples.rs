@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 #[path = "../../examples/ambient_occlusion.rs"]
 mod ambient_occlusion;
+#[path = "../../examples/closest_hit.rs"]
+mod closest_hit;
 #[path = "../../examples/moving.rs"]
 mod moving;
-#[path = "../../examples/pick.rs"]
-mod pick;
 
 #[test]
 fn every_example_runs() {
-    pick::main().unwrap();
+    closest_hit::main().unwrap();
     ambient_occlusion::main().unwrap();
     moving::main().unwrap();
 }

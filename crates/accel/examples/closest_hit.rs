@@ -1,7 +1,7 @@
 //! Picking: a ray from the eye through the pixel under the mouse, and its first hit.
 //!
 //! ```text
-//! cargo run -p bilux-accel --example pick
+//! cargo run -p bilux-accel --example closest_hit
 //! ```
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
