@@ -68,6 +68,8 @@ def test_every_example_of_the_pages_runs(page, folder, monkeypatch):
     assert blocks
     if any("import trimesh" in block for block in blocks):
         pytest.importorskip("trimesh")
+    if page in LARGE:
+        monkeypatch.setattr(bilux.Scene, "render", in_small(bilux.Scene.render))
     # Without a display, OpenGL draws by EGL.
     monkeypatch.setenv("PYOPENGL_PLATFORM", os.environ.get("PYOPENGL_PLATFORM", "egl"))
     space = {}
@@ -81,6 +83,22 @@ def test_every_example_of_the_pages_runs(page, folder, monkeypatch):
                 raise
             warnings.warn(f"SKIPPED: {page}, example {number + 1}: {other}: {error!r}", stacklevel=1)
     check_against_pyrender(space)
+
+
+# Pages whose first picture takes seconds; nothing there depends on its size.
+LARGE = ["README.md", "crates/python/README.md", "docs/tutorials/python.md"]
+
+
+def in_small(render):
+    """Renders large pictures with a sixteenth of their pixels."""
+
+    def rendered(scene, *arguments, **settings):
+        if settings.get("size") in [(320, 240), (640, 480)]:
+            settings["size"] = tuple(side // 4 for side in settings["size"])
+            settings.setdefault("spp", 4)
+        return render(scene, *arguments, **settings)
+
+    return rendered
 
 
 OTHERS = ["mitsuba", "pyrender", "bpy", "pyradiance"]

@@ -49,7 +49,7 @@ pub(super) const BUILD: &str = "build";
 
 pub(super) static STEPS: &[Step] = &[
     Step { name: "fmt", place: Place::Front, run: fmt },
-    Step { name: "tidy", place: Place::Front, run: |_| crate::tidy::run(&[]) },
+    Step { name: "tidy", place: Place::Beside(Lane::Documents), run: |_| crate::tidy::run(&[]) },
     Step { name: "licences", place: Place::Front, run: |_| crate::licences::run(&[]) },
     Step { name: "deny", place: Place::Front, run: deny },
     Step { name: "clippy", place: Place::Front, run: clippy },

@@ -41,7 +41,7 @@ fn check_budgets(repository: &Repository, records: &Records, text: &str) -> Vec<
     };
     let mut violations = Vec::new();
     for (name, folder) in crates(repository) {
-        let count = tests_in(repository, &folder).count();
+        let count = files_in(repository, &folder).flat_map(tests_in).count();
         match budgets.iter().find(|budget| budget.name == name) {
             None if count > 0 => violations.push(wrong(format!("{name} has {count} tests and no budget"))),
             Some(budget) => violations.extend(check_budget(budget, count, records).map(wrong)),
@@ -81,37 +81,36 @@ fn crates(repository: &Repository) -> impl Iterator<Item = (&str, String)> {
     })
 }
 
-/// The tests of a crate, each with the module path of its file: `suite/both_ends.rs` is `both_ends`.
-fn tests_in<'a>(
-    repository: &'a Repository,
-    folder: &'a str,
-) -> impl Iterator<Item = (&'a str, &'a TextFile)> + 'a {
-    let files = repository.files.iter().filter(move |file| file.path.starts_with(folder));
-    files.flat_map(|file| {
-        let lines = file.rust.iter().flat_map(|rust| rust.code.lines());
-        let mut is_test = false;
-        lines.filter_map(move |line| {
-            let line = line.trim();
-            let name = line.split_once("fn ").map(|(_, rest)| rest.split('(').next().unwrap_or(rest));
-            let found = name.filter(|_| is_test);
-            is_test = line.starts_with("#[test]") || (is_test && name.is_none());
-            found.map(|name| (name, file))
-        })
+/// The files in the folder of a crate.
+fn files_in<'a>(repository: &'a Repository, folder: &'a str) -> impl Iterator<Item = &'a TextFile> + 'a {
+    repository.files.iter().filter(move |file| file.path.starts_with(folder))
+}
+
+/// The names of the tests in a file.
+fn tests_in(file: &TextFile) -> impl Iterator<Item = &str> {
+    let lines = file.rust.iter().flat_map(|rust| rust.code.lines());
+    let mut is_test = false;
+    lines.filter_map(move |line| {
+        let line = line.trim();
+        let name = line.split_once("fn ").map(|(_, rest)| rest.split('(').next().unwrap_or(rest));
+        let found = name.filter(|_| is_test);
+        is_test = line.starts_with("#[test]") || (is_test && name.is_none());
+        found
     })
 }
 
-/// Whether a crate has a test at this path.
+/// Whether a crate has a test at this path: those of `suite/both_ends.rs` are in `both_ends`.
 fn is_there(repository: &Repository, suite: &str, test: &str) -> bool {
     let (module, name) = test.rsplit_once("::").unwrap_or(("", test));
     let Some((_, folder)) = crates(repository).find(|(known, _)| *known == suite) else { return false };
-    let is_in = |file: &TextFile| {
+    let is_in = |file: &&TextFile| {
         let inside = file.path.strip_prefix(&folder).unwrap_or_default();
         let place = inside.strip_prefix("tests/suite/").or_else(|| inside.strip_prefix("src/"));
         let place = place.unwrap_or_default().trim_end_matches(".rs").trim_end_matches("/mod");
         let place = if ["main", "lib"].contains(&place) { String::new() } else { place.replace('/', "::") };
         module == place || module.strip_suffix("::tests").unwrap_or(module) == place
     };
-    tests_in(repository, &folder).any(|(known, file)| known == name && is_in(file))
+    files_in(repository, &folder).filter(is_in).flat_map(tests_in).any(|known| known == name)
 }
 
 #[cfg(test)]

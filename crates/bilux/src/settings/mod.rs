@@ -5,6 +5,7 @@ mod accel;
 mod background;
 mod idle;
 mod memory;
+mod names;
 mod same_samples;
 mod shutter;
 mod size;
@@ -20,6 +21,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value};
 use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+use names::{find_integrator, tone_curve};
 pub(crate) use shutter::shutter_of;
 use size::calibrated_size;
 pub use size::{parse_size, size_error};
@@ -347,7 +349,7 @@ impl Settings {
             states_exposure: reader.is_given("exposure"),
             own_light: None,
             auto_exposure: reader.bool("auto_exposure"),
-            tonemap: reader.text("tonemap"),
+            tonemap: tone_curve(&reader)?,
             denoise: reader.text("denoise"),
             linear_transfer: reader.text("transfer") == "linear",
             given: all.clone(),
@@ -361,13 +363,6 @@ const MAX_SPP: u32 = 1 << 16;
 fn stop(reader: &Reader) -> Stop {
     let above_zero = |key: &str| Some(reader.number(key)).filter(|&x| x > 0.0);
     Stop { noise: above_zero("noise"), time_limit: above_zero("time_limit").map(Duration::from_secs_f32) }
-}
-
-fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
-    let name = reader.text("integrator");
-    let names = INTEGRATORS.iter().map(|row| row.entry.name);
-    let found = INTEGRATORS.iter().find(|row| row.entry.name == name);
-    Ok(found.ok_or_else(|| SceneError::unknown("integrator", &name, names, reader.span("integrator")))?)
 }
 
 /// The keys that belong to the chosen integrator. Keys of other integrators are dropped, so that one file can serve

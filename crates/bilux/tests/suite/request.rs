@@ -56,6 +56,8 @@ fn what_is_asked_for_is_checked() {
     let small = || JobRequest::new().size(8, 8);
     assert!(refused(small().seed(u64::MAX)).contains("seed"), "{}", refused(small().seed(u64::MAX)));
     assert!(refused(small().integrator("pathh")).contains("'path'"));
+    // Not after the render, which would be lost.
+    assert!(refused(small().set("tonemap", "agxx")).contains("'agx'"));
     assert!(refused(small().max_memory(1000)).contains("memory"));
     assert!(refused(small().integrator("whitted").layers(&[Aov::Interval])).contains("interval"));
     assert!(refused(small().set("exposre", 1.0f32)).contains("exposure"));

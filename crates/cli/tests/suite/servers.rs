@@ -122,7 +122,7 @@ fn an_interrupted_render_says_what_was_taken_and_leaves_nothing_else() {
     // Without --checkpoint and --resume, a server finds the picture and nothing beside it.
     for (more, is_kept) in [("", false), ("--checkpoint 60", true), ("--resume", true)] {
         let line = format!(
-            "render box.toml --size 48x48 -i path --spp 100000 --timeout 1.5 -o a.exr --json {more} --stats s.json"
+            "render box.toml --size 48x48 -i path --threads 1 --spp 100000 --timeout 1.5 -o a.exr --json {more} --stats s.json"
         );
         let (status, out, said) = answer(path, &line);
         assert_eq!(status, 124, "{said}");

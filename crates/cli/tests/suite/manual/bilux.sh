@@ -25,7 +25,7 @@ case " $* " in
     " render "*) set -- "$@" --size 48x32 ;;
 esac
 case " $* " in
-    " render "*" --spp "* | " render "*" --noise "* | " render "*" --time-limit "* | " render "*" --samples "* | " render "*" --fast "*) ;;
+    " render "*" --spp "* | " render "*" --noise "* | " render "*" --time-limit "* | " render "*" --samples "*) ;;
     " render "*) set -- "$@" --time-limit 0.05 ;;
 esac
 # A server runs until somebody ends it: here as soon as it has printed its address, or has ended by itself.
