@@ -42,13 +42,13 @@ const CLUSTER_TESTS: &str = "test_cluster.py";
 const EXAMPLE_TESTS: &str = "test_examples.py";
 
 /// The largest wheel that is handed out, in bytes.
-const LARGEST: u64 = 15_000_000;
+const LARGEST: u64 = 8_000_000;
 
 /// Builds the wheel into `target/wheels`, and prints its size.
 pub(crate) fn wheel(_: &[String]) -> Result<()> {
     let python = python()?;
     let builders = builders(&python)?;
-    let wheel = build(&builders, "dist", &target_folder().join("wheels"))?;
+    let wheel = build(&builders, &["--release", "--strip"], &target_folder().join("wheels"))?;
     let bytes = fs::metadata(&wheel)?.len();
     println!("{bytes} bytes  {}", wheel.display());
     if bytes > LARGEST {
@@ -179,7 +179,7 @@ pub(crate) fn cluster(_: &[String]) -> Result<()> {
 
 /// Builds the package with the development profile, and installs it.
 fn install(builders: &Environment, testers: &Environment) -> Result<()> {
-    let wheel = build(builders, "dev", &target_folder().join("python/wheels"))?;
+    let wheel = build(builders, &["--profile", "dev"], &target_folder().join("python/wheels"))?;
     let mut install = testers.python();
     run_process(
         install.args(["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"]).arg(&wheel),
@@ -242,13 +242,15 @@ fn pytest(testers: &Environment, file: &str) -> Command {
 }
 
 /// Builds a wheel into a folder that then holds no other, and returns its path.
-fn build(builders: &Environment, profile: &str, folder: &Path) -> Result<PathBuf> {
+fn build(builders: &Environment, how: &[&str], folder: &Path) -> Result<PathBuf> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("cannot empty {}", folder.display()))?;
     }
     let mut maturin = builders.python();
     maturin
-        .args(["-m", "maturin", "build", "--quiet", "--locked", "--profile", profile, "--out"])
+        .args(["-m", "maturin", "build", "--quiet", "--locked"])
+        .args(how)
+        .arg("--out")
         .arg(folder);
     maturin.arg("--manifest-path").arg(root().join(PACKAGE).join("Cargo.toml"));
     maturin.arg("--target-dir").arg(target_folder());

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 
 import numpy as np
@@ -29,11 +30,19 @@ def command_line():
     return run
 
 
+@pytest.fixture(scope="session")
+def model(tmp_path_factory):
+    """A file of a model, which is made once."""
+    path = tmp_path_factory.mktemp("model") / "model.glb"
+    bilux.generate("trio").save(path)
+    return path
+
+
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
+def folder(tmp_path, monkeypatch, model):
     """An empty working directory with a model in it."""
     monkeypatch.chdir(tmp_path)
-    bilux.generate("trio").save("model.glb")
+    shutil.copy(model, "model.glb")
     return tmp_path
 
 

@@ -1,6 +1,6 @@
 //! `cargo xtask dist`: the binary as it is released, static where possible, in an archive with its licences,
 //! completions, man pages and scenes, in a package for Debian, and with the description of an image for containers; the
-//! SHA-256 of both next to them. Each is unpacked and started. The profile is `dist` of `Cargo.toml`.
+//! SHA-256 of both next to them. Each is unpacked and started. It is the program that `cargo build --release` makes, for another target.
 //!
 //! The archive and the package depend only on the sources and the tools: they contain no time, owner or path of the machine that
 //! builds them.
@@ -92,10 +92,10 @@ fn install(triple: &str) -> bool {
 fn build(target: &Target) -> Result<PathBuf> {
     let triple = target.triple.as_str();
     let mut command =
-        cargo(&["build", "--locked", "--profile", "dist", "--package", "bilux-cli", "--target", triple]);
+        cargo(&["build", "--locked", "--release", "--package", "bilux-cli", "--target", triple]);
     let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
     run_process(command.env(variable, flags(target.is_static)))?;
-    Ok(target_folder().join(triple).join("dist").join("bilux"))
+    Ok(target_folder().join(triple).join("release").join("bilux"))
 }
 
 /// Panic messages name source files: these flags make the paths relative to the repository's root and to cargo's home,

@@ -26,6 +26,7 @@ case " $* " in
 esac
 case " $* " in
     " render "*" --spp "* | " render "*" --noise "* | " render "*" --time-limit "* | " render "*" --samples "*) ;;
+    " render "*" --fast "*) set -- "$@" --set time_limit=0.05 ;;
     " render "*) set -- "$@" --time-limit 0.05 ;;
 esac
 # A server runs until somebody ends it: here as soon as it has printed its address, or has ended by itself.
