@@ -1,16 +1,19 @@
 //! Grids of smoke, clouds and flames: shapes with edges of noise.
 
 use crate::grid::Grid;
-use bilux_math::hash::hash_words;
+use bilux_math::hash::{hash_more, hash_words};
+use bilux_math::parallel;
 use bilux_math::{Aabb, Transform, Vec3};
 use std::sync::Arc;
 
 /// A grid that fills a box, from a function of position.
-pub(super) fn grid(name: &str, bounds: Aabb, size: [usize; 3], of: impl Fn(Vec3) -> f32) -> Arc<Grid> {
+pub(super) fn grid(name: &str, bounds: Aabb, size: [usize; 3], of: impl Fn(Vec3) -> f32 + Sync) -> Arc<Grid> {
     let voxel = bounds.extent() / Vec3::from(size.map(|n| n as f32));
     let at = |[x, y, z]: [usize; 3]| bounds.min + voxel * (Vec3::new(x as f32, y as f32, z as f32) + 0.5);
     let [nx, ny, nz] = size;
-    let values: Vec<f32> = (0..nx * ny * nz).map(|i| of(at([i % nx, i / nx % ny, i / (nx * ny)]))).collect();
+    let value = |i| of(at([i % nx, i / nx % ny, i / (nx * ny)]));
+    let mut values = vec![0.0; nx * ny * nz];
+    parallel::fill(&mut values, 1 << 12, value);
     // A box with a volume and as many values as voxels always makes a grid.
     let place =
         Transform::scale(voxel).and_then(|scale| Some(scale.then(&Transform::translate(bounds.min)?)));
@@ -43,11 +46,13 @@ fn noise(at: Vec3, seed: u64) -> f32 {
     let cell = [corner.x as i64, corner.y as i64, corner.z as i64];
     let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let [u, v, w] = inside.to_array().map(fade);
-    let value = |x: i64, y: i64, z: i64| {
-        let hash = hash_words([seed, (cell[0] + x) as u64, (cell[1] + y) as u64, (cell[2] + z) as u64]);
-        (hash >> 40) as f32 / 8_388_608.0 - 1.0
-    };
+    // The hash of the seed and the corner. Its beginning is common to several corners.
+    let more = |hash: u64, axis: usize, step: i64| hash_more(hash, (cell[axis] + step) as u64);
+    let seed = hash_words([seed]);
+    let of_x = [0, 1].map(|x| more(seed, 0, x));
+    let of_y = [0, 1].map(|y| of_x.map(|hash| more(hash, 1, y)));
+    let value = |hash: u64, z: i64| (more(hash, 2, z) >> 40) as f32 / 8_388_608.0 - 1.0;
     let lerp = |a: f32, b: f32, t: f32| a + (b - a) * t;
-    let along_x = |y: i64, z: i64| lerp(value(0, y, z), value(1, y, z), u);
+    let along_x = |y: usize, z: i64| lerp(value(of_y[y][0], z), value(of_y[y][1], z), u);
     lerp(lerp(along_x(0, 0), along_x(1, 0), v), lerp(along_x(0, 1), along_x(1, 1), v), w)
 }
