@@ -17,7 +17,7 @@ use crate::materials::{Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec, Value};
 use crate::placed::Visibility;
-use crate::scene::{LightSurfaces, Scene, SceneLight, SceneParts};
+use crate::scene::{LightSurfaces, MAX_NESTED, Scene, SceneLight, SceneParts};
 use crate::sides::Sides;
 use crate::spheres::PlacedSphere;
 use crate::strokes::StrokeWidths;
@@ -224,6 +224,15 @@ impl SceneBuilder {
         let of_lights = LightSurfaces { panels: &panels, spheres: &sphere_lights };
         let known = &mut parts.mesh_lights;
         let mut all = SceneParts::new(geometry, materials, lights, of_lights, cameras, filtered, known);
+        if let Some((object, around)) = all.too_deep() {
+            let name = self.objects.get(object).map_or("", name_of);
+            let message = format!(
+                "'{name}' lies within {around} other media that have a priority, of which {} are possible: join some of \
+                 them, or give priority 0 to glass that touches no other",
+                MAX_NESTED - 1
+            );
+            fail(message)?;
+        }
         all.group_surfaces(|object| match self.objects.get(object) {
             Some(object) => [name_of(object), self.group_of(object)].map(str::to_owned),
             None => groups.get(object - self.objects.len()).cloned().unwrap_or_default(),

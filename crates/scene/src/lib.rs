@@ -62,7 +62,7 @@ pub use mesh::Mesh;
 pub use orientation::{Orientation, OrientationSource};
 pub use parameters::{Parameters, Reader, Spec, Value};
 pub use placed::Visibility;
-pub use scene::{Enclosure, Scene, Shading, Tracer};
+pub use scene::{Enclosure, MAX_NESTED, Scene, Shading, Tracer};
 pub use span::Span;
 pub use strokes::StrokeWidths;
 pub use surface::Surface;

@@ -17,17 +17,15 @@ mod enclosed;
 mod fog;
 mod nested;
 mod passage;
+mod start;
 
 use crate::interaction::Interaction;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Draws, Flight, FreePath, MediumEvent, MediumLine, WalkChannel};
 use bilux_scene::{Bsdf, Medium, Ray, Scene, Surface, Tracer, Wavelength};
 use coincident::Coincident;
-use nested::{NONE, Overlap, strength};
+use nested::{NONE, Overlap};
 pub(crate) use passage::{Arrival, MediumPart, Passage, Travelled, behind, draws_along};
-
-/// Maximum number of surfaces that a ray passes to find the media that it starts in.
-const MAX_SURFACES: usize = 64;
 
 /// The media that a path is in.
 #[derive(Clone, Copy, Debug)]
@@ -43,44 +41,6 @@ pub(crate) struct Media {
 impl Media {
     /// No media.
     pub(crate) const AIR: Media = Media { overlap: Overlap::NOTHING, inside: NONE, channel: 0 };
-
-    /// The media that a path starts in: those that it would leave without having entered them.
-    pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
-        let (mut media, scene) = (Media::AIR, tracer.scene);
-        let t_max = match scene.absorption_distance(ray) {
-            _ if scene.has_nested() => ray.t_max,
-            Some(t) => t.min(ray.t_max),
-            // Outside the bounds of everything that absorbs there is no medium.
-            None => return media,
-        };
-        let (mut ray, mut seen, mut innermost) = (Ray { t_max, ..*ray }, [NONE; MAX_SURFACES], None);
-        let mut count = 0;
-        while count < MAX_SURFACES {
-            let Some(closest) = tracer.closest(&ray) else { break };
-            let coincident = Coincident::with(tracer, &ray, &closest);
-            for surface in std::iter::once(&closest).chain(&coincident.others).take(MAX_SURFACES - count) {
-                let is_first = !seen.contains(&surface.object);
-                seen[count] = surface.object;
-                count += 1;
-                if surface.n_geom.dot(Vec3::from(ray.direction)) <= 0.0 || !is_first {
-                    continue;
-                }
-                let material = scene.material(surface);
-                if material.nested().is_some() {
-                    media.overlap.add(surface.object);
-                } else if material.medium().is_some() && media.overlap == Overlap::NOTHING {
-                    // What the ray leaves first is innermost. One without a priority replaces what surrounds it.
-                    let inside = *innermost.get_or_insert(surface.object);
-                    if !scene.has_nested() {
-                        return Media { inside, ..media };
-                    }
-                }
-            }
-            ray = behind(&ray, &Surface { t: coincident.t, ..closest });
-        }
-        media.inside = innermost.unwrap_or_else(|| media.overlap.strongest_object(scene));
-        media
-    }
 
     /// What the path travels through, as far as it is known.
     #[inline]
@@ -275,7 +235,7 @@ impl Media {
         let outside = if is_left() { self.overlap.with_all_together() } else { self.overlap };
         let around = if is_nested { outside.without(surface.object).strongest(scene) } else { None };
         match around {
-            Some((_, outside)) => {
+            Some(outside) => {
                 let bsdf = bsdf.refracting(wavelength, outside.index(wavelength));
                 bsdf.splitting(outside.dispersion != 0.0)
             }
@@ -337,11 +297,11 @@ impl Media {
         others.iter().for_each(|other| self.meet(scene, other, Vec3::from(ray.direction)));
         let all = || std::iter::once(&surface).chain(&others);
         let behind = all().fold(self.overlap, |overlap, face| overlap.changed(face.object));
-        let strongest = [self.overlap.strongest(scene), behind.strongest(scene)];
-        let strongest =
-            strongest.into_iter().flatten().max_by_key(|(object, nested)| strength(*object, nested));
+        let strongest = [self.overlap, behind].map(|overlap| overlap.strongest_object(scene));
+        let strongest = strongest.into_iter().filter(|&object| object != NONE);
+        let strongest = strongest.max_by_key(|&object| scene.nesting(object));
         // The stronger one is left or entered here, unless it is the same in front and behind.
-        let separating = all().find(|face| strongest.is_some_and(|(object, _)| object == face.object));
+        let separating = all().find(|face| strongest == Some(face.object));
         let surface = *separating.unwrap_or(&surface);
         let rest = all().map(|face| face.object).filter(|object| *object != surface.object);
         self.overlap.cross_together(rest);

@@ -80,8 +80,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 
 pub(super) const PRIORITY: Parameter = Parameter {
     name: "priority",
-    summary: "nested dielectrics: where two overlap, the one with the higher priority fills the overlap, and eta is \
-              relative to air; 0 ignores overlaps",
+    summary: "nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones \
+              the one inside the other, and eta is relative to air; 0 ignores overlaps",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
     default: "0",

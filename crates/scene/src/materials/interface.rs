@@ -1,6 +1,5 @@
 //! `interface`: the boundary of a medium, without a surface of its own: fog, smoke, a cloud.
 
-use super::dielectric::PRIORITY;
 use super::{ABSORPTION, Material, MaterialEntry, Nested};
 use crate::bsdf::{Bsdf, Dielectric, Lobe};
 use crate::classic::ClassicMaterial;
@@ -11,8 +10,18 @@ use crate::media::{
 };
 use crate::surface::Surface;
 use bilux_math::Rgb;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
+
+/// It has one in any case: without, it would be a surface that others refract against.
+const PRIORITY: Parameter = Parameter {
+    name: "priority",
+    summary: "where media overlap, the one with the higher priority fills the overlap, of equal ones the one inside the \
+              other; 0 is the same as 1",
+    unit: "",
+    kind: ParameterKind::Integer { min: 0, max: 1000 },
+    default: "1",
+};
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
@@ -37,7 +46,6 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, _| {
         let medium = Medium::read(reader, reader.colour(ABSORPTION.name))?;
-        // Without a priority it would be a surface that others refract against.
         let priority = (reader.integer(PRIORITY.name) as u32).max(1);
         let (density, glow) = (reader.grid(DENSITY.name), Glow::read(reader));
         Ok(Arc::new(Interface { medium, density, glow, priority }))

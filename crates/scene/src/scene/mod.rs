@@ -4,6 +4,7 @@ mod clearance;
 mod enclosure;
 mod may_pass;
 mod mesh_lights;
+mod nesting;
 mod parts;
 mod scene_light;
 mod shading;
@@ -28,6 +29,7 @@ use bilux_math::{Aabb, Rgb, Transform, Vec3};
 pub use enclosure::Enclosure;
 use may_pass::MayPass;
 pub(crate) use mesh_lights::MeshLights;
+pub use nesting::MAX_NESTED;
 pub(crate) use parts::{LightSurfaces, SceneParts};
 pub use scene_light::SceneLight;
 pub use shading::Shading;
@@ -210,7 +212,14 @@ impl Scene {
     /// True when some object's medium has a priority.
     #[inline]
     pub fn has_nested(&self) -> bool {
-        self.parts.has_nested
+        !self.parts.nesting.ranks.is_empty()
+    }
+
+    /// Of media that overlap, the one whose object has the highest of these numbers exists; 0 for an object whose material takes no part
+    /// in that. Higher for a higher priority, and of equal ones for what lies within the other.
+    #[inline]
+    pub fn nesting(&self, object: u32) -> u32 {
+        self.parts.nesting.ranks.get(object as usize).copied().unwrap_or(0)
     }
 
     /// How far a ray may travel inside an object whose medium changes light and has no priority, if it begins in
@@ -295,7 +304,7 @@ impl Scene {
     /// True when no medium changes what light carries: none absorbs, scatters, has a priority or disperses.
     #[inline]
     pub fn has_clear_media(&self) -> bool {
-        !self.parts.absorbs && !self.parts.has_nested && !self.parts.disperses
+        !self.parts.absorbs && !self.has_nested() && !self.parts.disperses
     }
 
     /// The instruction set of the acceleration structures, which loops over many paths use too.

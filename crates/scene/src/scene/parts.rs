@@ -4,6 +4,7 @@ use super::clearance::Clearance;
 use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
 use super::mesh_lights::{MeshLights, max_pieces};
+use super::nesting::Nesting;
 use super::scene_light::SceneLight;
 use super::shading::ObjectShading;
 use crate::cameras::Camera;
@@ -30,7 +31,9 @@ pub(crate) struct SceneParts {
     pub(super) has_surroundings: bool,
     /// Indices of the infinite lights.
     pub(super) infinite: Vec<usize>,
-    pub(super) has_nested: bool,
+    pub(super) nesting: Nesting,
+    /// For each object of triangles, whether its material has an inside of its own.
+    pub(super) bounds_medium: Vec<bool>,
     pub(super) has_holes: bool,
     pub(super) hides_backs: bool,
     /// For each object, then for each sphere.
@@ -57,6 +60,11 @@ pub(crate) struct LightSurfaces<'a> {
 }
 
 impl SceneParts {
+    /// The object that lies within more media than a path may be in, and how many these are.
+    pub(crate) fn too_deep(&self) -> Option<(usize, usize)> {
+        self.nesting.too_deep
+    }
+
     pub(crate) fn new(
         geometry: Geometry,
         materials: Vec<Arc<dyn Material>>,
@@ -92,7 +100,12 @@ impl SceneParts {
             |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
         let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
-        let has_nested = geometry.objects().iter().any(|o| materials[o.material as usize].nested().is_some());
+        let nesting = Nesting::of(geometry.objects(), &materials);
+        let bounds_medium = |o: &Placed| {
+            let material = &materials[o.material as usize];
+            material.medium().is_some() || material.nested().is_some()
+        };
+        let bounds_medium = geometry.objects().iter().map(bounds_medium).collect();
         let passes = MayPass::of_all(&geometry, &materials);
         let hides_backs = passes.iter().any(|passes| passes.is_one_sided || passes.hides_from_camera);
         let has_holes = passes.iter().any(|passes| passes.has_holes);
@@ -116,7 +129,8 @@ impl SceneParts {
             has_backdrop,
             has_surroundings,
             infinite,
-            has_nested,
+            nesting,
+            bounds_medium,
             has_holes,
             hides_backs,
             passes,

@@ -177,6 +177,19 @@ impl<'s> Tracer<'s> {
         Some(self.surface(ray, &hit))
     }
 
+    /// The closest hit of a ray with the boundary of a medium, past everything else.
+    pub fn closest_boundary(&mut self, ray: &Ray) -> Option<Surface> {
+        let (scene, end) = (self.scene, self.end);
+        let (parts, sheets) = (&scene.parts, scene.sheets.as_ref());
+        let may_pass = parts.may_pass(ray) || sheets.is_some();
+        let stops = |hit: &Hit| {
+            let is_boundary = parts.bounds_medium.get(parts.geometry.object_of(hit) as usize) == Some(&true);
+            is_boundary && (!may_pass || parts.stops(ray, hit, sheets, end))
+        };
+        let hit = self.closest_hit(ray, &Query { filter: Some(&stops), ..scene.query })?;
+        Some(self.surface(ray, &hit))
+    }
+
     /// The closest hit of a ray, as [`Tracer::surface`] takes it.
     #[inline]
     pub fn hit(&mut self, ray: &Ray) -> Option<Hit> {

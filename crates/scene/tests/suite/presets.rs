@@ -148,10 +148,17 @@ fn only_missing_parts_are_added() {
     luminous.materials[0].parameters.set("emission", 1.0f32);
     complete(&mut luminous, &Studio::default());
     assert_eq!((luminous.lights.len(), luminous.cameras.len()), (0, 1));
-    let mut dark = teapot();
-    dark.materials[0].parameters.set("emission", Value::triple([0.0; 3]));
-    complete(&mut dark, &Studio::default());
-    assert_eq!((dark.lights.len(), dark.cameras.len()), (3, 1));
+    for emission in ["emission", "medium_emission"] {
+        let mut dark = teapot();
+        dark.materials[0].parameters.set(emission, Value::triple([0.0; 3]));
+        complete(&mut dark, &Studio::default());
+        assert_eq!((dark.lights.len(), dark.cameras.len()), (3, 1), "{emission}");
+        // Fire is light, however dim.
+        dark.lights.clear();
+        dark.materials[0].parameters.set(emission, Value::triple([0.0, 0.01, 0.0]));
+        complete(&mut dark, &Studio::default());
+        assert_eq!(dark.lights.len(), 0, "{emission}");
+    }
 
     let mut seen = teapot();
     let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };

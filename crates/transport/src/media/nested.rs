@@ -1,10 +1,7 @@
 //! Which of the media that overlap exists: the one of the highest priority. [Schmidt 2002]
 
 use super::coincident::MAX_COINCIDENT;
-use bilux_scene::{Nested, Scene, Surface};
-
-/// Maximum number of nested media; further ones are ignored.
-const MAX_NESTED: usize = 4;
+use bilux_scene::{MAX_NESTED, Nested, Scene, Surface};
 
 /// No object.
 pub(super) const NONE: u32 = u32::MAX;
@@ -40,35 +37,39 @@ impl Overlap {
         self.together = [NONE; MAX_COINCIDENT];
     }
 
-    /// False for the surface of a medium inside one of higher priority. Of equal priorities the object that comes first
-    /// in the scene wins, so that the result is the same from both ends of a path.
+    /// False for the surface of a medium inside a [stronger](Scene::nesting) one.
     #[inline]
     pub(super) fn separates(&self, scene: &Scene, surface: &Surface) -> bool {
         if !scene.has_nested() {
             return true;
         }
         let material = scene.material(surface);
-        let Some(own) = material.nested() else { return true };
+        if material.nested().is_none() {
+            return true;
+        }
         if material.is_interface() {
             return false;
         }
-        let separates = |media: &Overlap| match media.without(surface.object).strongest(scene) {
-            Some((object, other)) => strength(surface.object, &own) > strength(object, &other),
-            None => true,
+        let separates = |media: &Overlap| {
+            let strongest = media.without(surface.object).strongest_object(scene);
+            strongest == NONE || scene.nesting(surface.object) > scene.nesting(strongest)
         };
         separates(self) && (self.together[0] == NONE || separates(&self.with_all_together()))
     }
 
-    /// The medium of highest priority.
-    pub(super) fn strongest(&self, scene: &Scene) -> Option<(u32, Nested)> {
-        let media = self.around.iter().filter(|&&object| object != NONE);
-        let media = media.filter_map(|&object| Some((object, scene.material_of(object).nested()?)));
-        media.max_by_key(|(object, nested)| strength(*object, nested))
+    /// The object of the strongest medium.
+    #[inline]
+    pub(super) fn strongest_object(&self, scene: &Scene) -> u32 {
+        let media = self.around.iter().copied().filter(|&object| object != NONE);
+        media.max_by_key(|&object| scene.nesting(object)).unwrap_or(NONE)
     }
 
-    /// The object of that medium.
-    pub(super) fn strongest_object(&self, scene: &Scene) -> u32 {
-        self.strongest(scene).map_or(NONE, |(object, _)| object)
+    /// The strongest medium.
+    pub(super) fn strongest(&self, scene: &Scene) -> Option<Nested> {
+        match self.strongest_object(scene) {
+            NONE => None,
+            object => scene.material_of(object).nested(),
+        }
     }
 
     /// These media on the other side of the surfaces that are crossed together.
@@ -101,9 +102,4 @@ impl Overlap {
         self.around.iter_mut().filter(|slot| **slot == object).for_each(|slot| *slot = NONE);
         self
     }
-}
-
-/// Greater for the medium that wins where two overlap: by priority, and of equal ones for the object that comes first.
-pub(super) fn strength(object: u32, nested: &Nested) -> (u32, std::cmp::Reverse<u32>) {
-    (nested.priority, std::cmp::Reverse(object))
 }

@@ -20,6 +20,7 @@ mod light_parts;
 mod many_lights;
 mod mattes;
 mod nested;
+mod nesting;
 mod occlusion;
 mod one_picture;
 mod path_tracing;

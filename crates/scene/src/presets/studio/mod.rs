@@ -108,7 +108,7 @@ pub fn may_be_lit(scene: &SceneBuilder) -> bool {
     scene.environment_unspecified && !has_surroundings(scene) && has_own_light(scene)
 }
 
-/// True when a scene has light sources, or surfaces that emit light, however little.
+/// True when a scene has light sources, or surfaces or media that emit light, however little.
 pub fn has_own_light(scene: &SceneBuilder) -> bool {
     let is_black = |value: &Value| match value {
         Value::Integer(i) => *i == 0,
@@ -117,7 +117,7 @@ pub fn has_own_light(scene: &SceneBuilder) -> bool {
         _ => false,
     };
     scene.lights.iter().any(|light| !light.is_backdrop())
-        || scene.objects.iter().filter_map(|o| emission_of(scene, o)).any(|value| !is_black(value))
+        || scene.objects.iter().flat_map(|o| emissions_of(scene, o)).any(|value| !is_black(value))
 }
 
 /// True when a scene says something of its light, if only that some surface emits none.
@@ -229,6 +229,12 @@ pub fn shadow_catcher(scene: &SceneBuilder, studio: &Studio) -> Option<usize> {
 /// True when a light illuminates the scene from all around.
 fn has_surroundings(scene: &SceneBuilder) -> bool {
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
+}
+
+/// What an object's material emits, from its surface and from its inside, as far as the scene states it.
+fn emissions_of<'a>(scene: &'a SceneBuilder, object: &Object) -> impl Iterator<Item = &'a Value> {
+    let inside = || scene.materials.get(object.material)?.parameters.find("medium_emission");
+    emission_of(scene, object).into_iter().chain(inside().map(|(value, _)| value))
 }
 
 /// The emission of an object's material, if the scene states it.
