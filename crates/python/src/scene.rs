@@ -18,7 +18,7 @@ use bilux::Built;
 use bilux::formats::ReadOptions;
 use bilux::math::Transform;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::{Object, SceneBuilder};
+use bilux::scene::{Object, SceneBuilder, Value};
 use bilux::wording::in_python;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
@@ -150,11 +150,19 @@ impl Scene {
         &self,
         py: Python<'py>,
         index: usize,
+        time: Option<f32>,
     ) -> PyResult<(String, Spec, Bound<'py, PyAny>, usize, usize)> {
         let builder = self.builder(py);
+        // As in a render of which no time is said.
+        let of_file = || match builder.settings.find("time")?.0 {
+            Value::Number(time) => Some(*time as f32),
+            Value::Integer(time) => Some(*time as f32),
+            _ => None,
+        };
+        let time = time.or_else(of_file).unwrap_or(0.0);
         let object = object(&builder, index)?;
         let material = Spec::of(py, "materials", &builder.materials[object.material], &builder)?;
-        let matrix = object.motion.at(0.0).matrix().transpose().to_cols_array();
+        let matrix = object.motion.at(time).matrix().transpose().to_cols_array();
         let matrix = matrix.iter().copied().map(f64::from).collect();
         let matrix = PyArray1::from_vec(py, matrix).call_method1("reshape", ((4, 4),))?;
         let (vertices, triangles) = (object.mesh.positions.len(), object.mesh.triangles.len());

@@ -407,3 +407,35 @@ def test_surroundings_from_an_array():
     picture = scene.render(size=16, spp=4, integrator="path").pixels
     np.testing.assert_allclose(picture[0, 8], [0.2, 0.4, 0.9], rtol=1e-2)
     assert not picture[-1].any()
+
+
+def moving_card(time):
+    """A card that is at x = 3 t and turns by a quarter in a second, and what is seen of it."""
+    scene = bilux.Scene()
+    card = np.array([[-0.3, -0.2, 0], [0.3, -0.2, 0], [0.3, 0.2, 0], [-0.3, 0.2, 0]])
+    moves = np.stack([np.eye(4), np.eye(4)])
+    moves[1, :3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    moves[1, 0, 3] = 3
+    number = scene.add_mesh(card, [[0, 1, 2], [0, 2, 3]], name="card", category="card")
+    scene.set_keyframes(number, [0, 1], moves)
+    # A second one, that stands still.
+    scene.add_mesh(card + [0, -1, 0], [[0, 1, 2], [0, 2, 3]], name="still", category="card")
+    scene.add_camera(bilux.cameras.opencv(K, eye((0.0, 0.0, 6.0)), size=SIZE))
+    scene.add_light(bilux.lights.environment(radiance=1.0))
+    return bilux.labels.instances(scene, size=SIZE, **({} if time is None else {"time": time}))
+
+
+@pytest.mark.parametrize("time", [None, 0.0, 0.25, 0.5])
+def test_places_are_of_the_moment_of_the_masks(time):
+    card, still = moving_card(time)
+    moment = time or 0.0
+    assert np.allclose(card.transform[:3, 3], [3 * moment, 0, 0], atol=1e-5)
+    angle = np.pi / 2 * moment
+    assert np.allclose(card.transform[:2, :2], [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]], atol=1e-5)
+    assert np.allclose(still.transform, np.eye(4))
+    # The middle of what is seen is where the place is in the picture.
+    left, top, width, height = card.masks.visible_box
+    seen = np.array([left + (width - 1) / 2, top + (height - 1) / 2])
+    to_camera = eye((0.0, 0.0, 6.0)) @ card.transform
+    place = K @ to_camera[:3, 3]
+    assert np.abs(seen - (place / place[2])[:2]).max() < 1

@@ -280,6 +280,10 @@ impl Settings {
     /// As [`Settings::resolve`].
     pub fn of(scene: &SceneBuilder, user: &Parameters) -> Result<Settings, Error> {
         let mut all = scene.settings.clone();
+        // Samples that the user asks for are all taken: limits of the scene would make the picture depend on the machine.
+        if user.find("spp").is_some_and(|(value, _)| *value != Value::Integer(0)) {
+            all.0.retain(|(key, ..)| !["noise", "time_limit"].contains(&key.as_str()));
+        }
         for (key, value, span) in &user.0 {
             all.set_at(key, value.clone(), span.clone());
         }

@@ -63,6 +63,26 @@ fn what_is_asked_for_is_checked() {
     assert!(refused(small().set("exposre", 1.0f32)).contains("exposure"));
 }
 
+/// A number of samples that the user asks for counts, and not the scene's limits of noise and time; those of the user do, too.
+#[test]
+fn samples_of_the_user_take_precedence_over_limits_of_the_scene() {
+    let ends = |request: JobRequest| {
+        let mut scene = cornell();
+        scene.settings.set("noise", 0.25f32);
+        scene.settings.set("time_limit", 0.5f32);
+        let job = Job::new(&scene, request.size(8, 8)).unwrap();
+        (
+            job.settings().spp,
+            job.settings().stop.noise,
+            job.settings().stop.time_limit.map(|limit| limit.as_secs_f32()),
+        )
+    };
+    assert_eq!(ends(JobRequest::new().spp(48)), (48, None, None));
+    assert_eq!(ends(JobRequest::new().spp(48).noise(0.125)), (48, Some(0.125), None));
+    assert_eq!(ends(JobRequest::new().set("spp", 0).set("time_limit", 2.0f32)).1, Some(0.25));
+    assert_eq!(ends(JobRequest::new()).1, Some(0.25));
+}
+
 /// Jobs that are made of a job leave it as it is.
 #[test]
 fn a_job_does_not_change() {

@@ -200,8 +200,13 @@ class Scene(_bilux.Scene):
 
     @property
     def objects(self) -> list[Object]:
-        """What is known of each object, by its number."""
-        return [Object(*self._object(index), *_bilux.labels_of(self, index)) for index in range(len(self))]
+        """What is known of each object, by its number; of those that move at time 0."""
+        return self._objects_at(0.0)
+
+    def _objects_at(self, time: float | None) -> list[Object]:
+        """The same at a moment, by default that of a render."""
+        moment = self._time or None if time is None else time
+        return [Object(*self._object(index, moment), *_bilux.labels_of(self, index)) for index in range(len(self))]
 
     @property
     def categories(self) -> list[str]:

@@ -75,13 +75,13 @@ def instances(
         scene: the scene.
         objects: objects in place of those; a list of several in the place of a number makes one instance of them.
         margin: pixels on each side of the picture that masks reach beyond it, for objects that it cuts off.
-        time: the moment, in seconds.
+        time: the moment of masks, places and bounds, in seconds; by default that of a render.
         **settings: `size`, `camera` and others, as for `Scene.render`.
 
     Returns:
         one instance each, also for those of which nothing is visible.
     """
-    known = scene.objects
+    known = scene._objects_at(time)
     if objects is None:
         objects = [number for number, one in enumerate(known) if one.category]
     found = scene.amodal(objects, margin=margin, **settings | ({} if time is None else {"time": time}))

@@ -20,7 +20,7 @@ const PRIORITY: Parameter = Parameter {
               other; 0 is the same as 1",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
-    default: "1",
+    default: "0",
 };
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {

@@ -199,7 +199,7 @@ typed! {
         temperature_scale: f32,
         /// Which maximum counts as 1: of the light of the hottest place, as physics has it; or of each temperature's spectrum (peak), as pbrt has it, where cool fire is brighter: `hottest`, `peak`; default `hottest`.
         temperature_norm: &str,
-        /// Where media overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other; 0 is the same as 1; default `1`.
+        /// Where media overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other; 0 is the same as 1; default `0`.
         priority: i32,
     }
     /// Plastic, metal, paint, glass: one material for nearly everything.
