@@ -96,3 +96,26 @@ fn run_beside(program: &Path, step: &'static Step, has_build: bool, gate: &Mutex
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::bail;
+
+    #[test]
+    fn a_failed_step_fails_and_the_others_run_all_the_same() {
+        static STEPS: [Step; 3] = [
+            Step { name: "first", place: Place::Front, run: |context| count(context, 1) },
+            Step { name: "broken", place: Place::Front, run: |_| bail!("it is broken") },
+            Step { name: "last", place: Place::Front, run: |context| count(context, 2) },
+        ];
+        fn count(context: &mut Context, passed: usize) -> Result<()> {
+            context.totals += Totals { passed, ..Totals::default() };
+            Ok(())
+        }
+        let (reports, totals) = run(&STEPS.each_ref(), Context::default()).unwrap();
+        let found: Vec<_> = reports.iter().map(|report| (report.name, report.ok)).collect();
+        assert_eq!(found, [("first", true), ("broken", false), ("last", true)]);
+        assert_eq!(totals, Totals { passed: 3, ..Totals::default() });
+    }
+}
