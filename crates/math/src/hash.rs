@@ -14,7 +14,7 @@ pub fn hash_words<const N: usize>(words: [u64; N]) -> u64 {
     words.iter().fold(0x9e37_79b9_7f4a_7c15, |state, &word| hash_more(state, word))
 }
 
-/// The hash of the words of another hash and one more: what many hashes begin with is hashed once.
+/// The hash of the words that a hash is of, and one more after them: where many begin with the same words, those are hashed once.
 #[inline]
 pub fn hash_more(hash: u64, word: u64) -> u64 {
     mix64(hash.wrapping_add(0x9e37_79b9_7f4a_7c15) ^ mix64(word.wrapping_add(0x632b_e59b_d9b4_e019)))

@@ -14,12 +14,12 @@ use crate::request::Request;
 use crate::source::Source;
 use crate::surroundings::surround;
 use crate::values::{self, Resolve, Spec, Unresolved};
-use bilux::Built;
 use bilux::formats::ReadOptions;
 use bilux::math::Transform;
 use bilux::scene::cameras::CameraSpec;
-use bilux::scene::{Object, SceneBuilder, Value};
+use bilux::scene::{Object, Parameters, SceneBuilder};
 use bilux::wording::in_python;
+use bilux::{Built, Settings};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -146,20 +146,22 @@ impl Scene {
         self.builder(py).objects.len()
     }
 
+    /// The time of a render that is asked for one, or for none.
+    fn _moment(&self, py: Python<'_>, time: Option<f32>) -> PyResult<f32> {
+        let mut asked = Parameters::default();
+        if let Some(time) = time {
+            asked.set("time", time);
+        }
+        Ok(Settings::of(&self.builder(py), &asked).map_err(exception)?.time)
+    }
+
     fn _object<'py>(
         &self,
         py: Python<'py>,
         index: usize,
-        time: Option<f32>,
+        time: f32,
     ) -> PyResult<(String, Spec, Bound<'py, PyAny>, usize, usize)> {
         let builder = self.builder(py);
-        // As in a render of which no time is said.
-        let of_file = || match builder.settings.find("time")?.0 {
-            Value::Number(time) => Some(*time as f32),
-            Value::Integer(time) => Some(*time as f32),
-            _ => None,
-        };
-        let time = time.or_else(of_file).unwrap_or(0.0);
         let object = object(&builder, index)?;
         let material = Spec::of(py, "materials", &builder.materials[object.material], &builder)?;
         let matrix = object.motion.at(time).matrix().transpose().to_cols_array();

@@ -409,9 +409,13 @@ def test_surroundings_from_an_array():
     assert not picture[-1].any()
 
 
-def moving_card(time):
+def moving_card(time, of_file=None):
     """A card that is at x = 3 t and turns by a quarter in a second, and what is seen of it."""
     scene = bilux.Scene()
+    if of_file:
+        # Of no objects, which is said.
+        with pytest.warns(bilux.SceneWarning):
+            scene = bilux.load(f"[render]\ntime = {of_file}\n".encode(), format="toml")
     card = np.array([[-0.3, -0.2, 0], [0.3, -0.2, 0], [0.3, 0.2, 0], [-0.3, 0.2, 0]])
     moves = np.stack([np.eye(4), np.eye(4)])
     moves[1, :3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
@@ -425,10 +429,12 @@ def moving_card(time):
     return bilux.labels.instances(scene, size=SIZE, **({} if time is None else {"time": time}))
 
 
-@pytest.mark.parametrize("time", [None, 0.0, 0.25, 0.5])
-def test_places_are_of_the_moment_of_the_masks(time):
-    card, still = moving_card(time)
-    moment = time or 0.0
+@pytest.mark.parametrize(
+    ("time", "of_file", "moment"),
+    [(None, None, 0.0), (0.0, None, 0.0), (0.25, None, 0.25), (0.5, 0.25, 0.5), (None, 0.25, 0.25)],
+)
+def test_places_are_of_the_moment_of_the_masks(time, of_file, moment):
+    card, still = moving_card(time, of_file)
     assert np.allclose(card.transform[:3, 3], [3 * moment, 0, 0], atol=1e-5)
     angle = np.pi / 2 * moment
     assert np.allclose(card.transform[:2, :2], [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]], atol=1e-5)

@@ -203,10 +203,8 @@ class Scene(_bilux.Scene):
         """What is known of each object, by its number; of those that move at time 0."""
         return self._objects_at(0.0)
 
-    def _objects_at(self, time: float | None) -> list[Object]:
-        """The same at a moment, by default that of a render."""
-        moment = self._time or None if time is None else time
-        return [Object(*self._object(index, moment), *_bilux.labels_of(self, index)) for index in range(len(self))]
+    def _objects_at(self, time: float) -> list[Object]:
+        return [Object(*self._object(index, time), *_bilux.labels_of(self, index)) for index in range(len(self))]
 
     @property
     def categories(self) -> list[str]:
@@ -754,6 +752,10 @@ class Scene(_bilux.Scene):
         plain = dict.fromkeys(("size", "camera", "time", "exposure"))
         return self._settings(**plain | settings) | {"noise": 0, "time_limit": 0}, _bytes(most)
 
+    def _asked_time(self, time: float | None) -> float | None:
+        """The time that a call asks for: if it says none, that of the pose."""
+        return self._time or None if time is None else time
+
     def _settings(
         self,
         *,
@@ -767,7 +769,7 @@ class Scene(_bilux.Scene):
         """The settings as the tables name them."""
         given = settings | {"size": _size(size), "denoise": _denoise(denoise)}
         given["camera"] = None if camera is None else str(camera)
-        given["time"] = self._time or None if time is None else time
+        given["time"] = self._asked_time(time)
         given |= {"auto_exposure": True} if exposure == "auto" else {"exposure": exposure}
         return {key: value for key, value in given.items() if value is not None}
 

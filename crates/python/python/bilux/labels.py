@@ -81,7 +81,7 @@ def instances(
     Returns:
         one instance each, also for those of which nothing is visible.
     """
-    known = scene._objects_at(time)
+    known = scene._objects_at(scene._moment(scene._asked_time(time)))
     if objects is None:
         objects = [number for number, one in enumerate(known) if one.category]
     found = scene.amodal(objects, margin=margin, **settings | ({} if time is None else {"time": time}))

@@ -38,9 +38,8 @@ impl Nesting {
     pub(super) fn of(objects: &[Placed], materials: &[Arc<dyn Material>]) -> Nesting {
         let mut nested: Vec<Nested> = Vec::new();
         for (index, object) in objects.iter().enumerate() {
-            let bounds = || object.motion.at(0.0).bounds(&object.mesh.bounds());
             if let Some(medium) = materials[object.material as usize].nested() {
-                let bounds = bounds();
+                let bounds = object.motion.at(0.0).bounds(&object.mesh.bounds());
                 let size = bounds.extent().element_sum();
                 nested.push(Nested { index, priority: medium.priority, bounds, size });
             }
@@ -50,16 +49,18 @@ impl Nesting {
         }
         nested.sort_by(|a, b| b.size.total_cmp(&a.size));
         let containers = &nested[..nested.len().min(MAX_CONTAINERS)];
-        let around = |one: &Nested| containers.iter().filter(|other| other.holds(one)).collect::<Vec<_>>();
         let mut too_deep = None;
         let mut order: Vec<(u32, usize, Reverse<usize>)> = Vec::with_capacity(nested.len());
         for one in &nested {
-            let around = around(one);
-            if around.len() >= MAX_NESTED {
-                too_deep = too_deep.max(Some((one.index, around.len())));
+            let (mut around, mut of_its_priority) = (0, 0);
+            for other in containers.iter().filter(|other| other.holds(one)) {
+                around += 1;
+                of_its_priority += usize::from(other.priority == one.priority);
             }
-            let equals = around.iter().filter(|other| other.priority == one.priority);
-            order.push((one.priority, equals.count(), Reverse(one.index)));
+            if around >= MAX_NESTED {
+                too_deep = too_deep.max(Some((one.index, around)));
+            }
+            order.push((one.priority, of_its_priority, Reverse(one.index)));
         }
         order.sort();
         let mut ranks = vec![0; objects.len()];

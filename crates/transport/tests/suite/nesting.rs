@@ -2,7 +2,7 @@
 
 use crate::common::{built, diffuse, floor, integrator, look, put, shoot};
 use bilux_math::transcendental::exp;
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Motion, Rgb, Transform, Vec3};
 use bilux_scene::{AccelChoice, MAX_NESTED, Mesh, SceneBuilder, Spec, Value};
 use bilux_transport::RenderSettings;
 use std::sync::Arc;
@@ -86,6 +86,28 @@ fn the_inner_of_two_media_exists_whatever_their_order() {
     put(&mut builder, "inner", small, fog(INNER, Some(1)));
     put(&mut builder, "outer", large, fog(OUTER, Some(2)));
     assert_seen("outer wins", &builder, passed(&[(OUTER, 1.9)]));
+}
+
+/// The same of blocks that stand somewhere else by themselves: what is inside the other is so where they are placed.
+#[test]
+fn the_inner_of_two_placed_media_exists() {
+    let wanted = passed(&[(OUTER, 1.3), (INNER, 0.6)]);
+    for is_outer_first in [true, false] {
+        let mut builder = bright_floor();
+        // By itself the inner one is larger, and apart.
+        put(&mut builder, "outer", block([0.4, 0.3], 10.01, 10.2), fog(OUTER, None));
+        put(&mut builder, "inner", block([20.0, 25.0], -3.0, 3.0), fog(INNER, None));
+        let place = |scale: f32, y: f32| {
+            let moved = Transform::translate(Vec3::Y * y).unwrap();
+            Motion::still(Transform::scale(Vec3::splat(scale)).unwrap().then(&moved))
+        };
+        builder.objects[1].motion = place(10.0, -100.0);
+        builder.objects[2].motion = place(0.1, 1.0);
+        if !is_outer_first {
+            builder.objects.swap(1, 2);
+        }
+        assert_seen(&format!("outer first: {is_outer_first}"), &builder, wanted);
+    }
 }
 
 /// Of glass of an index of 1.5, all reflections between its faces summed: (1 - r) / (1 + r) with r = 0.04.
