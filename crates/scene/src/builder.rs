@@ -227,7 +227,7 @@ impl SceneBuilder {
         if let Some((object, around)) = all.too_deep() {
             let name = self.objects.get(object).map_or("", name_of);
             let message = format!(
-                "'{name}' lies within {around} other media that have a priority, of which {} are possible: join some of \
+                "'{name}' lies within {around} other media that have a priority, and {} are possible: join some of \
                  them, or give priority 0 to glass that touches no other",
                 MAX_NESTED - 1
             );
