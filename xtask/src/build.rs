@@ -55,14 +55,22 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
 
 /// Builds everything. Warnings are printed, and are no error.
 pub(crate) fn all() -> Result<Built> {
+    watched(|_| Ok(()))
+}
+
+/// Builds everything, and shows each of cargo's messages about a file as soon as the file is built.
+pub(crate) fn watched(mut watch: impl FnMut(&Value) -> Result<()>) -> Result<Built> {
     let rest = if lints() { REST } else { &[] };
     let mut command = cargo(&[ALL, rest, &["--message-format=json"]].concat());
     let mut child = command.stdout(Stdio::piped()).spawn().context("cannot start cargo")?;
     let stdout = child.stdout.take().context("cargo has no standard output")?;
-    let mut built = Built::default();
+    let (mut built, mut watched) = (Built::default(), Ok(()));
     for line in BufReader::new(stdout).lines() {
+        let before = built.artifacts.len();
         built.read(&line?);
+        watched = watched.and_then(|()| built.artifacts[before..].iter().try_for_each(&mut watch));
     }
+    watched?;
     if !child.wait()?.success() {
         bail!("cargo cannot build the workspace: see above");
     }

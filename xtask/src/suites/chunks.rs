@@ -1,10 +1,11 @@
-//! Which tests run in one process, and in which order the processes begin.
+//! Which tests run in one process.
 
 use super::found::Suite;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A process takes about this many CPU seconds, if its tests are known.
 const SECONDS: f64 = 15.0;
@@ -15,30 +16,29 @@ const UNKNOWN: f64 = 0.6;
 /// Tests of one suite that run in one process, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chunk {
-    /// The place of the suite.
-    pub(super) suite: usize,
+    pub(super) suite: Arc<Suite>,
     pub(super) tests: Vec<String>,
-    seconds: f64,
+    /// What they are expected to take.
+    pub(super) seconds: f64,
 }
 
-/// Divides all tests into chunks. The last begins first: it takes longest, so that all cores end together. Tests that stand
-/// together stay together, since those of one file often share what they prepare.
-pub(super) fn divide(suites: &[Suite], times: &Times) -> Vec<Chunk> {
-    let mut chunks: Vec<Chunk> = Vec::new();
-    for (suite, Suite { name, tests, .. }) in suites.iter().enumerate() {
-        let mut chunk = Chunk { suite, tests: Vec::new(), seconds: 0.0 };
-        for test in tests {
-            let seconds = times.of(name, test).unwrap_or(UNKNOWN);
-            if !chunk.tests.is_empty() && chunk.seconds + seconds > SECONDS {
-                let next = Chunk { suite, tests: Vec::new(), seconds: 0.0 };
-                chunks.push(std::mem::replace(&mut chunk, next));
-            }
-            chunk.tests.push(test.clone());
-            chunk.seconds += seconds;
+/// Divides the tests of a suite into chunks. Tests that stand together stay together, since those of one file often share what they
+/// prepare.
+pub(super) fn divide(suite: Suite, times: &Times) -> Vec<Chunk> {
+    let suite = Arc::new(suite);
+    let chunk = || Chunk { suite: suite.clone(), tests: Vec::new(), seconds: 0.0 };
+    let mut chunks = vec![chunk()];
+    for test in &suite.tests {
+        let seconds = times.of(&suite.name, test).unwrap_or(UNKNOWN);
+        let is_full = |last: &Chunk| !last.tests.is_empty() && last.seconds + seconds > SECONDS;
+        if chunks.last().is_none_or(is_full) {
+            chunks.push(chunk());
         }
-        chunks.push(chunk);
+        if let Some(last) = chunks.last_mut() {
+            last.tests.push(test.clone());
+            last.seconds += seconds;
+        }
     }
-    chunks.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     chunks
 }
 
@@ -88,13 +88,13 @@ mod tests {
     }
 
     #[test]
-    fn long_chunks_begin_first_and_no_test_is_lost() {
-        let suites = [suite("a", &["x", "y", "z"]), suite("b", &["u", "v"])];
-        let times = [("a", "x", 9.0), ("a", "y", 8.0), ("b", "u", 40.0)];
-        let chunks = divide(&suites, &Times::default().with(times.into_iter()));
-        let found: Vec<_> = chunks.iter().map(|chunk| (chunk.suite, chunk.tests.join(" "))).collect();
-        let wanted = [(1, "v"), (0, "y z"), (0, "x"), (1, "u")];
-        assert_eq!(found, wanted.map(|(suite, tests)| (suite, tests.to_owned())));
+    fn no_test_is_lost() {
+        let times = [("a", "x", 9.0), ("a", "y", 8.0), ("b", "y", 1.0), ("a", "u", 40.0)];
+        let chunks =
+            divide(suite("a", &["x", "y", "z", "u", "v"]), &Times::default().with(times.into_iter()));
+        let found: Vec<_> = chunks.iter().map(|chunk| (chunk.tests.join(" "), chunk.seconds)).collect();
+        let wanted = [("x", 9.0), ("y z", 8.6), ("u", 40.0), ("v", UNKNOWN)];
+        assert_eq!(found, wanted.map(|(tests, seconds)| (tests.to_owned(), seconds)));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The binaries of tests that cargo builds, and the tests in each.
 
-use crate::{build, process};
-use anyhow::{Context, Result, bail};
+use crate::process;
+use anyhow::{Context, Result};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -30,20 +30,16 @@ impl Suite {
     }
 }
 
-/// Builds the binaries of all packages, and lists the tests in those of some packages, or of all if none is named.
-pub(super) fn build_and_list(packages: &[String]) -> Result<Vec<Suite>> {
-    let mut suites: Vec<Suite> = build::all()?.artifacts.iter().filter_map(suite).collect();
-    suites.retain(|suite| packages.is_empty() || packages.contains(&suite.package));
-    for suite in &mut suites {
-        let listed = process::output(suite.command().args(["--list", "--format", "terse"]));
-        suite.tests =
-            tests(&listed.with_context(|| format!("the tests of {} cannot be listed", suite.name))?);
+/// The binary that one of cargo's messages is about and the tests in it, if it has tests and is of one of the packages; of any, if
+/// none is named.
+pub(super) fn listed(message: &Value, packages: &[String]) -> Result<Option<Suite>> {
+    let Some(mut suite) = suite(message) else { return Ok(None) };
+    if !packages.is_empty() && !packages.contains(&suite.package) {
+        return Ok(None);
     }
-    suites.retain(|suite| !suite.tests.is_empty());
-    if suites.is_empty() {
-        bail!("cargo has built no tests");
-    }
-    Ok(suites)
+    let listed = process::output(suite.command().args(["--list", "--format", "terse"]));
+    suite.tests = tests(&listed.with_context(|| format!("the tests of {} cannot be listed", suite.name))?);
+    Ok(Some(suite).filter(|suite| !suite.tests.is_empty()))
 }
 
 /// The binary of tests that one of cargo's messages is about.

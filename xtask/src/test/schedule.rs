@@ -2,7 +2,7 @@
 
 use super::beside;
 use super::report::Report;
-use super::steps::{BUILD, Context, Lane, Place, Step};
+use super::steps::{BUILD, Context, Lane, Place, Step, TEST};
 use crate::process::cpu_time;
 use crate::suites::Totals;
 use anyhow::{Context as _, Result};
@@ -16,7 +16,8 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> Result<(Vec<Repo
     let program = std::env::current_exe().context("cannot find this program")?;
     let (front, lanes) = divide(steps);
     let (done, gate) = (Mutex::new(Done::default()), Mutex::new(()));
-    let has_build = front.iter().any(|step| step.name == BUILD);
+    let has = |name| front.iter().any(|step| step.name == name);
+    let (has_build, has_tests) = (has(BUILD), has(TEST));
     thread::scope(|scope| {
         // Whoever locks the gate waits until this is dropped.
         let mut closed = has_build.then(|| lock(&gate));
@@ -26,7 +27,7 @@ pub(super) fn run(steps: &[&'static Step], context: Context) -> Result<(Vec<Repo
                 lane.into_iter().for_each(|step| run_beside(program, step, has_build, gate, done))
             });
         }
-        let mut context = Context { builds: has_build, ..context };
+        let mut context = Context { builds: has_build, tests: has_tests, ..context };
         for step in front {
             run_in_front(step, &mut context, &done);
             if step.name == BUILD {
@@ -69,14 +70,15 @@ fn lane_of(step: &Step) -> Option<Lane> {
 fn run_in_front(step: &'static Step, context: &mut Context, done: &Mutex<Done>) {
     println!("==> {}", step.name);
     let start = (Instant::now(), cpu_time());
-    let beside = lock(done).beside;
+    let before = lock(done).beside + context.early;
     let result = (step.run)(context);
     if let Err(error) = &result {
         println!("{error:#}");
     }
     let mut done = lock(done);
     let mut report = Report::since(step.name, start, result.is_ok());
-    report.cpu = report.cpu.map(|cpu| cpu.saturating_sub(done.beside.saturating_sub(beside)));
+    // What ran meanwhile and is not of this step.
+    report.cpu = report.cpu.map(|cpu| (cpu + before).saturating_sub(done.beside + context.early));
     done.reports.push(report);
 }
 

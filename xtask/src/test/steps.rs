@@ -2,8 +2,9 @@
 
 use crate::build;
 use crate::process::{cargo, run_watched};
-use crate::suites::{self, Options, Totals};
+use crate::suites::{self, Options, Running, Totals};
 use anyhow::{Context as _, Result, bail};
+use std::time::Duration;
 
 /// One step.
 pub(super) struct Step {
@@ -32,7 +33,7 @@ pub(super) enum Lane {
 }
 
 /// What steps share.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct Context {
     /// A step may add to it.
     pub(super) totals: Totals,
@@ -42,10 +43,19 @@ pub(super) struct Context {
     pub(super) builds: bool,
     /// Whether it has run.
     pub(super) is_built: bool,
+    /// Whether the step `test` runs too.
+    pub(super) tests: bool,
+    /// The tests that run since the build began.
+    pub(super) running: Option<Running>,
+    /// CPU time that they took before their own step began.
+    pub(super) early: Duration,
 }
 
 /// The step that builds what others run.
 pub(super) const BUILD: &str = "build";
+
+/// The step that runs the suites, each as soon as it is built.
+pub(super) const TEST: &str = "test";
 
 pub(super) static STEPS: &[Step] = &[
     Step { name: "fmt", place: Place::Front, run: fmt },
@@ -54,7 +64,7 @@ pub(super) static STEPS: &[Step] = &[
     Step { name: "deny", place: Place::Front, run: deny },
     Step { name: "clippy", place: Place::Front, run: clippy },
     Step { name: BUILD, place: Place::Front, run: build },
-    Step { name: "test", place: Place::Front, run: tests },
+    Step { name: TEST, place: Place::Front, run: tests },
     Step { name: "python-tools", place: Place::Beside(Lane::Python), run: |_| crate::python::prepare() },
     Step {
         name: "python",
@@ -124,18 +134,33 @@ fn clippy(context: &mut Context) -> Result<()> {
     run_step(&["clippy", "--locked", "--workspace", "--all-targets", "--", "--deny", "warnings"])
 }
 
-fn build(_: &mut Context) -> Result<()> {
-    build::all()?.without_warnings()
+fn build(context: &mut Context) -> Result<()> {
+    if !context.tests {
+        return build::all()?.without_warnings();
+    }
+    let running = Running::start(suites_of(context, false));
+    let built = build::watched(|message| running.add(message))?;
+    context.early = running.cpu_time();
+    context.running = Some(running);
+    built.without_warnings()
 }
 
 /// Examples are left out: it is clear that they compile, and these do not run.
 fn tests(context: &mut Context) -> Result<()> {
-    suites::run(Options { packages: &context.packages, is_long: false }, &mut context.totals)
+    context.early = Duration::ZERO;
+    match context.running.take() {
+        Some(running) => running.finish(&mut context.totals),
+        None => suites::run(suites_of(context, false), &mut context.totals),
+    }
 }
 
 /// The same with more samples, rays, seeds and cases.
 fn long_suites(context: &mut Context) -> Result<()> {
-    suites::run(Options { packages: &context.packages, is_long: true }, &mut context.totals)
+    suites::run(suites_of(context, true), &mut context.totals)
+}
+
+fn suites_of(context: &Context, is_long: bool) -> Options {
+    Options { packages: context.packages.clone(), is_long }
 }
 
 /// The examples in the documentation of the libraries.

@@ -41,7 +41,7 @@ fn a_forest_gives_the_hits_of_brute() {
     for (seed, (mesh_name, mesh)) in meshes::all().into_iter().enumerate() {
         let mesh = Arc::new(mesh);
         let brute = build_variant("brute", &BuildOptions::default(), &mesh);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, effort(80, 300), seed as u64));
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, effort(50, 300), seed as u64));
         variants().par_iter().enumerate().for_each(|(i, (name, accelerator, options))| {
             let trees = [1, 2, 3, 12][(seed + i) % 4];
             let dealt = deal(mesh.len(), trees, seed as u64);

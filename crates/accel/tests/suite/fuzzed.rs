@@ -21,7 +21,7 @@ fn every_structure_agrees_on_the_seeds() {
 
 #[test]
 fn every_structure_agrees_on_random_bytes() {
-    let seeds = effort(400, 1500);
+    let seeds = effort(250, 1500);
     let found: usize = (0..seeds)
         .into_par_iter()
         .map(|seed| {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Rays per mesh; each is queried in about eight variants.
 pub(crate) fn rays_per_mesh() -> usize {
-    effort(120, 400)
+    effort(80, 400)
 }
 
 #[test]

@@ -263,7 +263,7 @@ fn twenty_browsers_of_which_one_stalls_take_no_more_memory_with_time() {
         orbits(&mut client, MOVES).await;
         let early = memory();
         let crowded = orbits(&mut client, MOVES).await;
-        for _ in 0..4 {
+        for _ in 0..2 {
             orbits(&mut client, MOVES).await;
         }
         let grown = memory().saturating_sub(early);

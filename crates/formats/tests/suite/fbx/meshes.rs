@@ -145,8 +145,11 @@ fn subdivision_surfaces_are_smooth_but_for_creases() {
             ],
         );
         let list = vec![p("UnitScaleFactor", &[100.0])];
-        let scene =
-            read_all(&file(list, vec![mesh, model(2, "node", vec![])], vec![link(1, 2, ""), link(2, 0, "")]));
+        // What is far away makes the cube small in the picture, so that it gets few polygons.
+        let far = model(4, "far", vec![p("Lcl Translation", &[20.0, 0.0, 0.0])]);
+        let nodes = vec![mesh, model(2, "node", vec![]), quad(3), far];
+        let links = [(1, 2), (2, 0), (3, 4), (4, 0)].map(|(from, to)| link(from, to, ""));
+        let scene = read_all(&file(list, nodes, links.to_vec()));
         let positions = &scene.objects[0].mesh.positions;
         let furthest = positions.iter().copied().max_by(|a, b| a.element_sum().total_cmp(&b.element_sum()));
         (furthest.unwrap(), scene.objects[0].mesh.triangles.len())
