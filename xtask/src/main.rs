@@ -102,7 +102,7 @@ const CHORES: &[Chore] = &[
     },
     Chore {
         name: "mutants",
-        summary: "which bugs, planted in changed lines, no test notices (minutes to hours)",
+        summary: "which bugs, planted in changed lines or in those whose turn it is, no test notices (minutes to hours)",
         run: mutants::run,
     },
 ];
