@@ -16,6 +16,9 @@ pub enum SampleMeaning {
     Numbers,
 }
 
+/// How a PNG begins.
+const PNG: &[u8] = b"\x89PNG";
+
 /// A picture file's texels, and what is wrong with the file though it could be read.
 pub struct Decoded {
     pub image: Image,
@@ -38,15 +41,16 @@ pub fn decoded(
     }
     let mut picture = read_bytes(bytes, hint, limits)?.with_main(layer)?;
     let warnings = std::mem::take(&mut picture.warnings);
+    // What a PNG says of its colours does not count where a format says what they are.
+    if means == SampleMeaning::SrgbColours && bytes.starts_with(PNG) {
+        picture.colour_space = ColourSpace::Srgb;
+    }
     Ok(image_of(picture, means).map(|image| Decoded { image, warnings }))
 }
 
 /// The texels of a picture, as bytes if it was 8-bit; `None` if it has no colour channels.
 fn image_of(mut picture: Picture, means: SampleMeaning) -> Option<Image> {
     let is_data = means == SampleMeaning::Numbers;
-    if means == SampleMeaning::SrgbColours && matches!(picture.colour_space, ColourSpace::Gamma(_)) {
-        picture.colour_space = ColourSpace::Srgb;
-    }
     let (width, height) = (picture.width(), picture.height());
     let alpha = |picture: &Picture| picture.channel("A").map(<[f32]>::to_vec);
     if picture.colour_space == ColourSpace::Srgb || is_data {

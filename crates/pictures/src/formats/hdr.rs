@@ -3,6 +3,7 @@
 //! A mantissa m under the exponent byte e means m · 2^(e − 136), as in most programs (Radiance itself adds half a
 //! step, since it truncates where we round): so integers up to 255 are preserved exactly.
 
+use super::primaries::{self, Primaries, REC709, are_same, to_rec709};
 use super::{PictureFormatEntry, WriteOptions, require_colour};
 use crate::limits::{reserved, zeroed};
 use crate::picture::clamp_sample;
@@ -59,6 +60,9 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     for (name, plane) in ["R", "G", "B"].into_iter().zip(planes) {
         picture.push_channel(name, plane)?;
     }
+    if !header.xyz {
+        to_rec709(&mut picture, header.primaries);
+    }
     Ok(picture)
 }
 
@@ -66,6 +70,8 @@ struct Header {
     /// The divisor of every channel.
     exposure: [f32; 3],
     xyz: bool,
+    /// Of colours that are no XYZ.
+    primaries: Primaries,
     /// From row to row, then from pixel to pixel.
     axes: [Axis; 2],
 }
@@ -80,13 +86,15 @@ struct Axis {
 
 impl Header {
     fn read(source: &mut Source) -> Result<Header, PictureError> {
-        let (mut exposure, mut xyz) = ([1.0f32; 3], false);
+        let (mut exposure, mut xyz, mut primaries) = ([1.0f32; 3], false, REC709);
         loop {
-            let line = source.line("the header")?.trim();
-            let Some((key, value)) = line.split_once('=') else {
-                if line.is_empty() {
-                    break;
-                }
+            let line = source.line("the header")?;
+            if line.trim().is_empty() {
+                break;
+            }
+            // Lines that begin with a blank are of the pictures from which a program made this one. [Ward 1991]
+            let Some((key, value)) = line.trim().split_once('=').filter(|_| !line.starts_with(['\t', ' ']))
+            else {
                 continue;
             };
             match key.trim() {
@@ -108,11 +116,12 @@ impl Header {
                     let mut next = || number(key, words.next().unwrap_or_default());
                     exposure = multiply(exposure, [next()?, next()?, next()?]);
                 }
+                "PRIMARIES" => primaries = stated(value)?,
                 _ => {}
             }
         }
         let axes = resolution(source.line("the resolution")?)?;
-        Ok(Header { exposure, xyz, axes })
+        Ok(Header { exposure, xyz, primaries, axes })
     }
 
     /// Width and height as shown.
@@ -150,6 +159,17 @@ fn number(key: &str, value: &str) -> Result<f32, PictureError> {
             Err(PictureError::invalid(FORMAT, what))
         }
     }
+}
+
+/// The primaries of Radiance itself, whose green and white differ a little from those of Rec. 709: pictures that state them are read as
+/// those that state nothing. [Ward 1991]
+const OF_RADIANCE: Primaries = [[0.64, 0.33], [0.29, 0.60], [0.15, 0.06], [1.0 / 3.0, 1.0 / 3.0]];
+
+/// The chromaticities of red, green, blue and white.
+fn stated(value: &str) -> Result<Primaries, PictureError> {
+    let what = || format!("its PRIMARIES are '{}', but must be eight numbers", value.trim());
+    let stated = primaries::of_text(value).ok_or_else(|| PictureError::invalid(FORMAT, what()))?;
+    Ok(if are_same(stated, OF_RADIANCE) { REC709 } else { stated })
 }
 
 /// Reads a line such as `-Y 512 +X 768`: rows from the top down, pixels from left to right.

@@ -4,7 +4,7 @@ use super::faults::ktx2::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, Rgba8};
-use crate::{ColourSpace, Limits, Picture, PictureError};
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use bilux_math::registry::Entry;
 
@@ -37,7 +37,12 @@ struct Header<'a> {
     width: usize,
     height: usize,
     is_srgb: bool,
+    is_premultiplied: bool,
     pixels: Pixels<'a>,
+    /// Where the first column and row are, if the file says so: `r` or `l`, and `d` or `u`.
+    orientation: Option<&'a [u8]>,
+    /// The channels of the file that red, green, blue and alpha are, if it says so.
+    swizzle: Option<&'a [u8]>,
 }
 
 /// How pixels are stored in the file.
@@ -51,6 +56,8 @@ enum Pixels<'a> {
 /// Colour models of the format's descriptor. [KTX 2.0]
 const ETC1S: u8 = 163;
 const UASTC: u8 = 166;
+/// The flag of colours that have been multiplied by alpha. [Khronos Data Format 1.3, 5.8]
+const PREMULTIPLIED: u8 = 1;
 
 fn u32_at(bytes: &[u8], at: usize) -> Result<u32, PictureError> {
     let four = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
@@ -74,6 +81,19 @@ fn are_whole(keys: &[u8], start: usize) -> bool {
         at = (start + at + 4 + length as usize).next_multiple_of(4) - start;
     }
     at <= keys.len()
+}
+
+/// The value of a key.
+fn value<'a>(keys: &'a [u8], name: &[u8]) -> Option<&'a [u8]> {
+    let mut rest = keys;
+    loop {
+        let length = u32_at(rest, 0).ok()? as usize;
+        let pair = rest.get(4..4usize.checked_add(length)?)?;
+        if let Some(value) = pair.strip_prefix(name).and_then(|value| value.strip_prefix(b"\0")) {
+            return Some(value);
+        }
+        rest = rest.get((4 + length).next_multiple_of(4)..)?;
+    }
 }
 
 /// The bytes at an offset and length that the file states.
@@ -105,7 +125,7 @@ impl<'a> Header<'a> {
         }
         let descriptor =
             part(bytes, [u32_at(bytes, 48)?.into(), u32_at(bytes, 52)?.into()], "its description")?;
-        let [model, transfer] = [12, 14].map(|at| descriptor.get(at).copied().unwrap_or(0));
+        let [model, transfer, flags] = [12, 14, 15].map(|at| descriptor.get(at).copied().unwrap_or(0));
         let keys = part(bytes, [u32_at(bytes, 56)?.into(), u32_at(bytes, 60)?.into()], "its keys")?;
         if !are_whole(keys, u32_at(bytes, 56)? as usize) {
             return Err(PictureError::truncated(FORMAT, "its keys"));
@@ -147,7 +167,15 @@ impl<'a> Header<'a> {
             }
         };
         let (width, height) = (width as usize, height as usize);
-        Ok(Header { width, height, is_srgb: transfer != 1, pixels })
+        Ok(Header {
+            width,
+            height,
+            is_srgb: transfer != 1,
+            is_premultiplied: flags & PREMULTIPLIED != 0,
+            pixels,
+            orientation: value(keys, b"KTXorientation"),
+            swizzle: value(keys, b"KTXswizzle").filter(|swizzle| !swizzle.starts_with(b"rgba")),
+        })
     }
 
     fn unpacked(&self, bytes: &[u8]) -> Result<Interleaved, PictureError> {
@@ -166,8 +194,35 @@ impl<'a> Header<'a> {
                 samples
             }
         };
-        Ok(Interleaved { width: self.width, height: self.height, samples, warnings: Vec::new() })
+        let (width, height, warnings) = (self.width, self.height, Vec::new());
+        let mut whole = Interleaved { width, height, samples, warnings };
+        if let Some(swizzle) = self.swizzle {
+            whole.samples = swizzled(&whole.samples, whole.channels(), swizzle);
+        }
+        if let Some([x, y, ..]) = self.orientation {
+            whole.flip(*x == b'l', *y == b'u');
+        }
+        Ok(whole)
     }
+}
+
+/// Four channels, each of which is one of the file's, or 0 or 1. A file without green, blue or alpha has 0, 0 and 1. [KTX 2.0, 5.7]
+fn swizzled(samples: &[u8], channels: usize, swizzle: &[u8]) -> Vec<u8> {
+    let stored =
+        |pixel: &[u8], channel: usize| pixel.get(channel).copied().unwrap_or([0, 0, 0, 255][channel]);
+    let letter = |channel: usize| swizzle.get(channel).copied().unwrap_or(b"rgba"[channel]);
+    let one = |pixel: &[u8], channel: usize| match letter(channel) {
+        b'r' => stored(pixel, 0),
+        b'g' => stored(pixel, 1),
+        b'b' => stored(pixel, 2),
+        b'a' => stored(pixel, 3),
+        b'1' => 255,
+        _ => 0,
+    };
+    samples
+        .chunks_exact(channels.max(1))
+        .flat_map(|pixel| [0, 1, 2, 3].map(|channel| one(pixel, channel)))
+        .collect()
 }
 
 /// Bytes per pixel of the supported plain formats: R8, R8G8B8 and R8G8B8A8, linear and sRGB. [KTX 2.0]
@@ -180,10 +235,11 @@ fn channels_of(kind: u32) -> Option<usize> {
     }
 }
 
-/// See [`super::read_rgba8`]; `None` if the file says that its colours are linear.
+/// See [`super::read_rgba8`]; `None` if the file says that its colours are linear, or multiplied by alpha.
 fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let header = Header::read(bytes, limits)?;
-    if header.is_srgb { Ok(header.unpacked(bytes)?.rgba8()) } else { Ok(None) }
+    let is_plain = header.is_srgb && !header.is_premultiplied;
+    if is_plain { Ok(header.unpacked(bytes)?.rgba8()) } else { Ok(None) }
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
@@ -191,6 +247,9 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let mut picture = header.unpacked(bytes)?.picture(FORMAT)?;
     if !header.is_srgb {
         picture.colour_space = ColourSpace::LinearRec709;
+    }
+    if header.is_premultiplied {
+        picture.alpha = Alpha::Premultiplied;
     }
     Ok(picture)
 }

@@ -8,6 +8,7 @@ mod faults;
 mod foreign;
 mod guard;
 mod hdr;
+mod icc;
 mod jpeg;
 #[cfg(feature = "ktx2")]
 mod ktx2;

@@ -2,6 +2,7 @@
 
 use super::faults::png::explain;
 use super::guard::guarded;
+use super::icc;
 use super::orientation::Orientation;
 use super::planes::planes_of;
 use super::rgba8::Interleaved;
@@ -67,8 +68,9 @@ fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<
 /// See [`super::read_rgba8`].
 pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let (reader, frame, samples) = decode(bytes, limits, 8 + 4)?;
-    let is_plain =
-        frame.bit_depth == ::png::BitDepth::Eight && colour_space(reader.info()) == ColourSpace::Srgb;
+    let is_plain = frame.bit_depth == ::png::BitDepth::Eight
+        && colour_space(reader.info()) == ColourSpace::Srgb
+        && not_heeded(reader.info()).is_none();
     if !is_plain {
         return Ok(None);
     }
@@ -98,6 +100,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let mut picture = Picture::new(width as usize, height as usize)?;
     picture.alpha = Alpha::Straight;
     picture.colour_space = colour_space(reader.info());
+    picture.warnings.extend(not_heeded(reader.info()));
     for (name, plane) in names.iter().zip(planes) {
         picture.push_channel(*name, plane)?;
     }
@@ -112,9 +115,30 @@ fn orientation(info: &Info) -> Orientation {
     info.exif_metadata.as_ref().map_or(Orientation::of(1), |data| Orientation::of_exif(data))
 }
 
-/// The meaning of the samples: sRGB unless a `gAMA` chunk says otherwise. 1/2.2 is how files say sRGB without the
-/// chunk of that name. [PNG, 4.3 and 13.13]
+/// Transfer characteristics of `cICP` that a picture can have here. [ITU-T H.273, table 3]
+const GAMMA_22: u8 = 4;
+const GAMMA_28: u8 = 5;
+const LINEAR: u8 = 8;
+/// Those that it cannot have.
+const PQ: u8 = 16;
+const HLG: u8 = 18;
+/// Primaries of Rec. 709, and unspecified ones. [ITU-T H.273, table 2]
+const REC709_PRIMARIES: [u8; 2] = [1, 2];
+
+/// The meaning of the samples: sRGB unless a chunk says otherwise, of which the first in this order counts: `cICP`, `iCCP`, `sRGB`,
+/// `gAMA`. 1/2.2 is how files say sRGB without the chunk of that name. [PNG, 4.3 and 13.13]
 fn colour_space(info: &Info) -> ColourSpace {
+    if let Some(codes) = info.coding_independent_code_points {
+        return match codes.transfer_function {
+            LINEAR => ColourSpace::LinearRec709,
+            GAMMA_22 => ColourSpace::Gamma(1.0 / 2.2),
+            GAMMA_28 => ColourSpace::Gamma(1.0 / 2.8),
+            _ => ColourSpace::Srgb,
+        };
+    }
+    if let Some(space) = info.icc_profile.as_deref().and_then(icc::colour_space) {
+        return space;
+    }
     let Some(gamma) = info.gama_chunk.filter(|_| info.srgb.is_none()).map(|gamma| gamma.into_value()) else {
         return ColourSpace::Srgb;
     };
@@ -124,6 +148,24 @@ fn colour_space(info: &Info) -> ColourSpace {
         // Such files exist, and their value is meaningless: they are shown as if the chunk were missing.
         gamma if !(0.05..=20.0).contains(&gamma) => ColourSpace::Srgb,
         gamma => ColourSpace::Gamma(gamma),
+    }
+}
+
+/// What a `cICP` chunk says and the colours do not show.
+fn not_heeded(info: &Info) -> Option<String> {
+    let codes = info.coding_independent_code_points?;
+    let curve = match codes.transfer_function {
+        PQ => Some("PQ"),
+        HLG => Some("HLG"),
+        _ => None,
+    };
+    let primaries = Some(codes.color_primaries).filter(|code| !REC709_PRIMARIES.contains(code));
+    match (curve, primaries) {
+        (Some(curve), _) => Some(format!("its samples are encoded by {curve} (cICP), and are read as sRGB")),
+        (None, Some(code)) => Some(format!(
+            "its primaries (cICP, code {code}) are not those of Rec. 709, and its colours are read as if they were"
+        )),
+        (None, None) => None,
     }
 }
 

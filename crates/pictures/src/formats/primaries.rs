@@ -1,4 +1,4 @@
-//! Converts linear colours of other primaries (an EXR's `chromaticities`) to Rec. 709.
+//! Converts linear colours of other primaries (an EXR's `chromaticities`, `PRIMARIES` of Radiance) to Rec. 709.
 
 use crate::Picture;
 use crate::picture::qualified;
@@ -17,8 +17,7 @@ type Matrix = [[f64; 3]; 3];
 /// Converts the colours of the main picture and of all layers. Collinear primaries, which span no gamut, leave the
 /// picture as it is.
 pub(super) fn to_rec709(picture: &mut Picture, from: Primaries) {
-    let differs = from.iter().zip(REC709).any(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > SAME);
-    let Some(matrix) = matrix_to_rec709(from).filter(|_| differs) else { return };
+    let Some(matrix) = matrix_to_rec709(from).filter(|_| !are_same(from, REC709)) else { return };
     let layers: Vec<String> =
         picture.layers().into_iter().map(str::to_owned).chain([String::new()]).collect();
     for layer in layers {
@@ -32,6 +31,18 @@ pub(super) fn to_rec709(picture: &mut Picture, from: Primaries) {
             }
         }
     }
+}
+
+/// Reads x and y of red, green, blue and white.
+pub(super) fn of_text(text: &str) -> Option<Primaries> {
+    let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let numbers: [f64; 8] = numbers?.try_into().ok()?;
+    Some([0, 2, 4, 6].map(|i| [numbers[i], numbers[i + 1]]))
+}
+
+/// True if two sets of primaries are the same but for their rounding.
+pub(super) fn are_same(a: Primaries, b: Primaries) -> bool {
+    a.as_flattened().iter().zip(b.as_flattened()).all(|(a, b)| (a - b).abs() <= SAME)
 }
 
 /// The weights of red, green and blue in the luminance; those of Rec. 709 if the primaries are collinear.

@@ -73,7 +73,40 @@ impl Interleaved {
             return;
         }
         if self.samples.iter().skip(first).step_by(channels).all(|&alpha| alpha == 0) {
-            self.samples.iter_mut().skip(first).step_by(channels).for_each(|alpha| *alpha = 255);
+            self.make_opaque();
+        }
+    }
+
+    /// Makes a picture with alpha opaque.
+    pub(super) fn make_opaque(&mut self) {
+        let channels = self.channels();
+        let first = channels.saturating_sub(1);
+        self.samples.iter_mut().skip(first).step_by(channels).for_each(|alpha| *alpha = 255);
+    }
+
+    /// Turns colours that have been multiplied by alpha into straight ones.
+    pub(super) fn divide_by_alpha(&mut self) {
+        let channels = self.channels();
+        for pixel in self.samples.chunks_exact_mut(channels.max(1)) {
+            let Some((&mut alpha, colour)) = pixel.split_last_mut() else { continue };
+            let straight = |c: u8| (u32::from(c) * 255 + u32::from(alpha) / 2) / u32::from(alpha).max(1);
+            colour.iter_mut().for_each(|c| *c = straight(*c).min(255) as u8);
+        }
+    }
+
+    /// Turns the picture so that its first row or column becomes the last.
+    pub(super) fn flip(&mut self, columns: bool, rows: bool) {
+        let channels = self.channels();
+        let row = self.width * channels;
+        if rows {
+            let flipped: Vec<u8> = self.samples.chunks_exact(row.max(1)).rev().flatten().copied().collect();
+            self.samples = flipped;
+        }
+        if columns {
+            for row in self.samples.chunks_exact_mut(row.max(1)) {
+                let flipped: Vec<u8> = row.chunks_exact(channels.max(1)).rev().flatten().copied().collect();
+                row.copy_from_slice(&flipped);
+            }
         }
     }
 }

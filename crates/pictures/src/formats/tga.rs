@@ -157,8 +157,26 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let mut whole = Interleaved { width, height, samples: samples.out, warnings: Vec::new() };
     if channels == 4 || channels == 2 {
         whole.make_opaque_if_all_transparent();
+        match attributes_type(bytes) {
+            Some(NO_ALPHA | IGNORED) => whole.make_opaque(),
+            Some(PREMULTIPLIED) => whole.divide_by_alpha(),
+            _ => {}
+        }
     }
     Ok(whole)
+}
+
+/// Kinds of alpha: none, none that means anything, and one that the colours have been multiplied by. [TGA 2.0, field 24]
+const NO_ALPHA: u8 = 0;
+const IGNORED: u8 = 1;
+const PREMULTIPLIED: u8 = 4;
+
+/// What the fourth channel is, where the file has an extension area, which its last 26 bytes point to. [TGA 2.0, fields 10 and 28]
+fn attributes_type(bytes: &[u8]) -> Option<u8> {
+    let footer = bytes.last_chunk::<26>().filter(|footer| footer[8..].starts_with(b"TRUEVISION-XFILE."))?;
+    let start = u32::from_le_bytes([footer[0], footer[1], footer[2], footer[3]]) as usize;
+    let area = bytes.get(start..).filter(|_| start != 0)?;
+    area.get(494).copied().filter(|_| area.starts_with(&495u16.to_le_bytes()))
 }
 
 /// Pixels on their way from the file to their positions.

@@ -40,6 +40,9 @@ const MAX_COMPRESSION_RATIO: u64 = 4096;
 /// More channels than any picture has, including those that are ignored.
 const MAX_CHANNELS: u16 = 64;
 
+/// The value of `FillOrder` where bytes begin with their lowest bit. [TIFF 6.0]
+const LOWEST_BIT_FIRST: u16 = 2;
+
 /// Whether the colours are multiplied by alpha.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Opacity {
@@ -106,6 +109,11 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     let (width, height) = decoder.dimensions().map_err(|error| explain(error, bytes))?;
     let kind = decoder.colortype().map_err(|error| explain(error, bytes))?;
     let bits = kind.bit_depth();
+    let order = decoder.find_tag_unsigned::<u16>(Tag::FillOrder).map_err(|error| explain(error, bytes))?;
+    if bits < 8 && order == Some(LOWEST_BIT_FIRST) {
+        let what = "the first pixel of its bytes is in the lowest bit (FillOrder 2), which cannot be read";
+        return Err(PictureError::invalid(FORMAT, what));
+    }
     let extra = decoder
         .find_tag_unsigned_vec::<u16>(Tag::ExtraSamples)
         .map_err(|error| explain(error, bytes))?

@@ -9,5 +9,6 @@ mod metrics;
 mod round_trips;
 mod sensor;
 mod shared_files;
+mod stated_meaning;
 mod textures_of_old;
 mod tone_maps;
