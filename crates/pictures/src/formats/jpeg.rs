@@ -1,6 +1,6 @@
 //! JPEG: a format for textures, and for pictures on the web. [JPEG]
 
-use super::faults::jpeg::{explain, is_one_scan, is_progressive, is_whole};
+use super::faults::jpeg::{as_jfif, explain, is_one_scan, is_progressive, is_whole};
 use super::guard::guarded;
 use super::orientation::Orientation;
 use super::rgba8::Interleaved;
@@ -40,6 +40,7 @@ const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
 
 /// The bytes of one or three channels, as they are shown. Of a file that was cut short, what is there.
 fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
+    let bytes = &*as_jfif(bytes);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options());
     decoder.decode_headers().map_err(|error| explain(&error, bytes))?;
     let info = decoder.info().ok_or_else(|| PictureError::invalid(FORMAT, "it has no frame header"))?;

@@ -1,5 +1,6 @@
 //! What files state about their samples: curves, primaries, alpha, and which way up they are.
 
+use bilux_math::Rgb;
 use bilux_pictures::{
     Alpha, ColourSpace, Limits, Picture, WriteOptions, read_bytes, read_rgba8, write_bytes,
 };
@@ -168,6 +169,23 @@ fn a_targa_says_what_its_alpha_is() {
     ] {
         let picture = tga(kind);
         assert_eq!([pixel(&picture, 0), pixel(&picture, 1)], [first, second], "{kind}");
+    }
+}
+
+/// Adobe's segment says that the samples are red, green and blue; but a file of JFIF has luma and chroma, as libjpeg and browsers
+/// read it.
+#[test]
+fn a_jpeg_of_jfif_has_luma_and_chroma_whatever_adobe_says() {
+    let picture = Picture::from_rgb(8, 8, vec![Rgb::new(0.6, 0.02, 0.05); 64]).unwrap();
+    let plain = write_bytes("jpeg", &picture, &WriteOptions::default()).unwrap();
+    let wanted = read(&plain, "jpeg").rgb(4, 4);
+    let is_jfif = plain.windows(5).any(|name| name == b"JFIF\0");
+    let adobe = |transform: u8| [b"\xff\xee\0\x0eAdobe\0\x64\0\0\0\0".as_slice(), &[transform]].concat();
+    let frame = plain.windows(2).position(|pair| pair == [0xff, 0xc0]).unwrap();
+    let with = |transform: u8| [&plain[..frame], &adobe(transform), &plain[frame..]].concat();
+    assert!(is_jfif);
+    for transform in [0, 1] {
+        assert_eq!(read(&with(transform), "jpeg").rgb(4, 4), wanted, "{transform}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::meaning;
 use crate::PictureError;
+use std::borrow::Cow;
 use zune_jpeg::errors::DecodeErrors;
 
 const FORMAT: &str = "JPEG";
@@ -75,6 +76,30 @@ pub(in super::super) fn is_one_scan(bytes: &[u8]) -> bool {
 pub(in super::super) fn is_whole(bytes: &[u8]) -> bool {
     let pixels = segments(bytes).last().map_or(2, |segment| segment.end);
     bytes.get(pixels..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
+}
+
+/// The bytes without a contradiction: a file of JFIF has luma and chroma, whatever Adobe's segment says. [JFIF 1.02]
+pub(in super::super) fn as_jfif(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (mut is_jfif, mut transform, mut components) = (false, None, 0);
+    for Segment { marker, body, end } in segments(bytes) {
+        match marker {
+            0xe0 => is_jfif |= body.starts_with(b"JFIF\0"),
+            // The name, a version, twice two bytes of flags, and how colours are stored.
+            0xee if body.starts_with(b"Adobe") && body.get(11) == Some(&0) => {
+                transform = Some(end - body.len() + 11);
+            }
+            frame if is_frame(frame) => components = body.get(5).copied().unwrap_or(0),
+            _ => {}
+        }
+    }
+    match transform {
+        Some(at) if is_jfif && components == 3 => {
+            let mut bytes = bytes.to_vec();
+            bytes[at] = 1;
+            Cow::Owned(bytes)
+        }
+        _ => Cow::Borrowed(bytes),
+    }
 }
 
 /// The marker of a scan's header.
