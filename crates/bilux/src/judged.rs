@@ -26,8 +26,10 @@ impl Judged {
     /// The exposure, in stops, with which a display shows what the scene's own light lights; 0 where it is as bright as usual, or
     /// lights next to nothing.
     pub(crate) fn exposure(&self) -> f32 {
-        let Illumination { surfaces, lit, level, glow } = self.measured;
+        let Illumination { surfaces, lit, touched, level, faint, glow } = self.measured;
         let (level, [wanted, tolerance]) = match surfaces > 0.0 {
+            // Nothing at all would be seen of what faint lamps light; a few bright places are seen as they are.
+            true if lit == 0.0 && touched >= SOME => (faint, SURFACE),
             true if lit < SOME => return 0.0,
             true => (level, SURFACE),
             false => (glow, EMITTER),

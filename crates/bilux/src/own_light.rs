@@ -61,7 +61,9 @@ pub(crate) fn measure(
 /// Of two views, what the one that light reaches less shows, as bright as in the brighter one.
 fn worst(a: Illumination, b: Illumination) -> Illumination {
     let least = if reached(&b) < reached(&a) { b } else { a };
-    Illumination { level: a.level.max(b.level), glow: a.glow.max(b.glow), ..least }
+    let [level, faint, glow] =
+        [(a.level, b.level), (a.faint, b.faint), (a.glow, b.glow)].map(|(a, b)| a.max(b));
+    Illumination { level, faint, glow, ..least }
 }
 
 /// True if nothing but a camera was added to a scene.

@@ -39,7 +39,8 @@ mod validate;
 mod variants;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -71,7 +72,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
 /// True for the magic bytes, or for a JSON object with an "asset" key near its start.

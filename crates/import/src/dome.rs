@@ -46,7 +46,7 @@ impl Dome {
                 (map.width(), map.height(), number(spec, "rotation").unwrap_or(0.0), texels)
             }
             None if ["zenith", "horizon", "ground"].iter().any(|key| is_given(key)) => {
-                let texels = (0..2 * ROWS * ROWS).map(|i| built.le(towards(i))).collect();
+                let texels = longitudes(ROWS).map(|towards| built.le(towards)).collect();
                 (2 * ROWS, ROWS, 0.0, texels)
             }
             None => return Ok(Some(Dome::Even(built.le(Vec3::Y)))),
@@ -57,10 +57,12 @@ impl Dome {
     }
 }
 
-/// The direction of a texel of a map of [`ROWS`] rows.
-fn towards(i: usize) -> Vec3 {
-    let (column, row) = (i % (2 * ROWS), i / (2 * ROWS));
-    let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / ROWS as f64);
-    let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / (2 * ROWS) as f64 - 0.5));
-    Vec3::new((r * sin) as f32, y as f32, (-r * cos) as f32)
+/// The directions of the texels of a map of longitude and latitude with so many rows, whose middle is towards -z.
+pub fn longitudes(rows: usize) -> impl Iterator<Item = Vec3> {
+    (0..2 * rows * rows).map(move |i| {
+        let (column, row) = (i % (2 * rows), i / (2 * rows));
+        let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / rows as f64);
+        let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / (2 * rows) as f64 - 0.5));
+        Vec3::new((r * sin) as f32, y as f32, (-r * cos) as f32)
+    })
 }

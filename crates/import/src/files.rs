@@ -3,10 +3,11 @@
 use crate::archive::is_archive;
 use crate::authors::written_by;
 use crate::bake::{warn_of_vertices, with_pictures, without_media};
-use crate::formats::{Formats, ReadFormat, SceneFormatEntry, extension};
+use crate::formats::{Formats, ReadFormat, SceneFormatEntry, WriteFormat, extension};
+use crate::frame::{Frame, in_frame, stated};
 use crate::gzip;
 use crate::locating::Locator;
-use crate::reading::{Reading, Source};
+use crate::reading::{OtherFormats, Reading, Source};
 use crate::strokes::as_triangles;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::writing::{Writing, write_all};
@@ -27,10 +28,11 @@ use std::sync::Arc;
 /// A [`FormatError`] with its location.
 pub fn read(formats: Formats, path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
     let mut reading = Reading::new(options, path.parent());
+    reading.others = Some(&formats);
     let row = formats.to_read(path);
     let name = path.display().to_string().into();
     if let Some(archive) = archive_of(path) {
-        reading.locator = Locator::new(archive.parent(), options.allow_outside);
+        reading.locator = Locator::new(archive.parent(), options);
         reading.mount(archive, &archive.display().to_string().into())?;
     }
     reading.open.extend(std::fs::canonicalize(path));
@@ -162,6 +164,7 @@ pub fn read_bytes(
     options: &ReadOptions,
 ) -> Result<SceneBuilder, FormatError> {
     let mut reading = Reading::new(options, base);
+    reading.others = Some(&formats);
     let bytes = plain_bytes(bytes, &mut reading, name)?;
     let bytes = &*bytes;
     let found = if format.is_empty() { formats.sniffed(bytes) } else { formats.named(format) };
@@ -209,7 +212,8 @@ pub fn write(
     let row = formats.of_path(path)?;
     check_not_read(path, &scene.files)?;
     let mut writing = Writing::new(path, scene, options);
-    if let Some(write) = row.write {
+    if let Some(WriteFormat { frame, write }) = row.write {
+        let scene = &*in_frame(scene, frame);
         if scene.origin != DVec3::ZERO {
             let [x, y, z] = scene.origin.to_array();
             writing.warn(format!(
@@ -257,6 +261,19 @@ pub fn read_source(
     flow(row, reading, source, &mut &source.bytes[..])
 }
 
+impl OtherFormats for Formats {
+    fn read_named(
+        &self,
+        format: &str,
+        reading: &mut Reading,
+        source: &Source,
+    ) -> Result<SceneBuilder, FormatError> {
+        let row = self.named(format);
+        let row = row.ok_or_else(|| self.unknown(Path::new(format), "read", SceneFormatEntry::reads))?;
+        read_source(row, reading, source)
+    }
+}
+
 /// The same for a source that may hold only the beginning of its bytes, with a reader that streams them.
 fn flow(
     row: &SceneFormatEntry,
@@ -292,7 +309,9 @@ fn flow(
         scene.written_by = written_by(row.entry.name, source.bytes).unwrap_or_default();
     }
     // A scene that is based on another one keeps what that file says.
-    if scene.up == UpHint::default() {
+    if let Some((up, unit)) = stated(source.bytes).filter(|_| is_open(row)) {
+        (scene.up, scene.unit) = (UpHint::Is(up), unit);
+    } else if scene.up == UpHint::default() {
         scene.up = row.up;
     }
     reading.settle(spent, textures, &scene);
@@ -300,6 +319,11 @@ fn flow(
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),
     }
+}
+
+/// True for formats that have no words for the up axis and the unit.
+fn is_open(row: &SceneFormatEntry) -> bool {
+    row.up != UpHint::default() && matches!(row.write, Some(WriteFormat { frame: Frame::Stated(_), .. }))
 }
 
 /// The rest of a stream, charged with what its text takes.

@@ -1,6 +1,7 @@
 //! The rows of the table of formats, and how a format is found in it.
 
 use crate::FormatError;
+use crate::frame::Frame;
 use crate::gzip::plain_name;
 use crate::reading::{Reading, Source};
 use crate::text::{is_marked, plain};
@@ -40,8 +41,14 @@ pub enum ReadFormat {
     /// From an archive, whose members are the files of the source's folder. The source holds only its beginning.
     Packed(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
 }
+
 /// Turns a scene into bytes.
-pub type WriteFormat = fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>;
+#[derive(Clone, Copy, Debug)]
+pub struct WriteFormat {
+    /// The axes and the unit of its files; the writer gets a scene that has them.
+    pub frame: Frame,
+    pub write: fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>,
+}
 
 impl SceneFormatEntry {
     /// True if files of this format can be read.

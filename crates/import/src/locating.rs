@@ -1,8 +1,8 @@
 //! Finds the files that a scene refers to, for all formats: files from other machines have names that were right there.
 //! Nothing outside the scene's folder is opened, or listed.
 
-use crate::FormatError;
 use crate::archive::Archives;
+use crate::{FormatError, ReadOptions};
 use bilux_scene::{SceneBuilder, Span, Warning};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -52,7 +52,7 @@ impl Names {
 
 /// Where files may be.
 pub struct Locator {
-    /// Nothing outside this folder is opened, except files in [`Locator::working_folder`].
+    /// Nothing outside this folder is opened, except files in [`Locator::working_folder`]: the scene's own, or that of its package.
     root: Option<PathBuf>,
     allow_outside: bool,
     /// A second folder where the current format looks for files.
@@ -65,11 +65,12 @@ pub struct Locator {
 
 impl Locator {
     /// For what files in a folder refer to.
-    pub fn new(folder: Option<&Path>, allow_outside: bool) -> Locator {
-        let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
+    pub fn new(folder: Option<&Path>, options: &ReadOptions) -> Locator {
+        let own = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
+        let root = own.map(|own| if options.whole_package { package_of(&own) } else { own });
         Locator {
             root,
-            allow_outside,
+            allow_outside: options.allow_outside,
             working_folder: None,
             archives: Archives::default(),
             names: Names::default(),
@@ -154,6 +155,11 @@ impl Locator {
             })
             // This excludes pipes, which might never end.
             .filter(|path| path.is_file())
+            .or_else(|| {
+                let (found, shown) = self.elsewhere_in_package(folder, &portable, is_closed)?;
+                self.names.note(name, at, || format!("'{shown}' here"));
+                Some(found)
+            })
             .ok_or_else(missing)?;
         match &self.root {
             Some(root) if found.starts_with(root) || self.allow_outside => Ok(found),
@@ -189,12 +195,61 @@ impl Locator {
         path.is_file().then_some(path)
     }
 
+    /// A file of the package for a name from another machine: by the longest end of that name, or else by the last part of it in
+    /// the folders of textures beside the model's. Also returns the name that it has in the package.
+    fn elsewhere_in_package(
+        &self,
+        folder: &Path,
+        name: &str,
+        is_closed: impl Fn(&PathBuf) -> bool,
+    ) -> Option<(PathBuf, String)> {
+        let root = self.root.as_deref()?;
+        let own = fs::canonicalize(folder).ok()?;
+        let parts: Vec<&str> = name.split('/').filter(|part| !matches!(*part, "" | "." | "..")).collect();
+        let bare = parts.last()?;
+        let ends = (parts.len().saturating_sub(MAX_PARTS)..parts.len()).map(|first| parts[first..].join("/"));
+        let mut tried: Vec<PathBuf> = ends.map(|end| root.join(end)).collect();
+        let around = own.parent().filter(|around| around.starts_with(root) || self.allow_outside);
+        for folder in [Some(&*own), around].into_iter().flatten() {
+            tried.extend(TEXTURES.iter().map(|textures| folder.join(textures).join(bare)));
+        }
+        let found = tried.into_iter().filter_map(|path| fs::canonicalize(path).ok());
+        let found = found.filter(|path| path.is_file()).find(is_closed)?;
+        let shown = found.strip_prefix(root).unwrap_or(&found).display().to_string();
+        Some((found, shown))
+    }
+
     /// A file with this name in or below the working folder.
     fn in_working_folder(&self, name: &str) -> Option<PathBuf> {
         let folder = fs::canonicalize(non_empty(self.working_folder.as_deref()?)).ok()?;
         let found = fs::canonicalize(folder.join(name)).ok()?;
         (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
+}
+
+/// The most parts of a name that are looked for.
+const MAX_PARTS: usize = 16;
+
+/// Folders of textures, in packs of models beside those of each format.
+const TEXTURES: [&str; 4] = ["textures", "texture", "Textures", "Texture"];
+
+/// What lies at the top of a package: of ROS, of Gazebo, of Git.
+const MARKS: [&str; 3] = ["package.xml", "model.config", ".git"];
+
+/// The most folders between a model and the top of its package.
+const MAX_DEPTH: usize = 8;
+
+/// The package that a model's folder belongs to: the nearest folder with a mark, or that of a pack, in which a folder of textures
+/// lies beside the model's; otherwise the model's own folder.
+fn package_of(own: &Path) -> PathBuf {
+    // Never the whole disk.
+    let mut around = own.ancestors().take(MAX_DEPTH).filter(|folder| folder.parent().is_some());
+    let marked = around.find(|folder| MARKS.iter().any(|mark| folder.join(mark).exists()));
+    let of_pack = || {
+        let parent = own.parent().filter(|parent| parent.parent().is_some())?;
+        TEXTURES.iter().any(|textures| parent.join(textures).is_dir()).then_some(parent)
+    };
+    marked.or_else(of_pack).unwrap_or(own).to_owned()
 }
 
 fn non_empty(folder: &Path) -> &Path {

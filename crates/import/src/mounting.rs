@@ -2,7 +2,8 @@
 
 use crate::FormatError;
 use crate::archive::Data;
-use crate::reading::{Reading, open};
+use crate::opening::open;
+use crate::reading::Reading;
 use std::path::Path;
 use std::sync::Arc;
 

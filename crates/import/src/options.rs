@@ -10,6 +10,9 @@ pub struct ReadOptions {
     pub max_memory: u64,
     /// If true, files outside the scene's own folder may be opened.
     pub allow_outside: bool,
+    /// If true, files of the whole package may be opened that the scene's folder belongs to: up to the folder with `package.xml`
+    /// (ROS), `model.config` (Gazebo) or `.git`, or with a folder `textures` beside the scene's.
+    pub whole_package: bool,
     /// A second folder to search for the files of a pbrt scene, as pbrt searches its working directory. Files in
     /// this folder may be opened.
     pub working_folder: Option<PathBuf>,
@@ -46,11 +49,12 @@ pub struct ReadOptions {
 }
 
 impl Default for ReadOptions {
-    /// 4 GiB, no files outside, warnings, a crease angle of 40 degrees, time 0, and the choices of the files.
+    /// 4 GiB, no files outside of the package, warnings, a crease angle of 40 degrees, time 0, and the choices of the files.
     fn default() -> ReadOptions {
         ReadOptions {
             max_memory: 4 << 30,
             allow_outside: false,
+            whole_package: true,
             working_folder: None,
             strict: false,
             validate: false,

@@ -6,6 +6,7 @@ use crate::displacement::{Displacement, Moved};
 use crate::gzip;
 use crate::images::{Decoded, SampleMeaning, decoded, mend};
 use crate::locating::Locator;
+use crate::opening::open;
 use crate::subdivision::PendingCage;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
@@ -47,9 +48,22 @@ pub enum Texels {
     Numbers(Option<Channel>),
 }
 
+/// The readers of other formats, for scenes that name files of them.
+pub trait OtherFormats {
+    /// Reads a source in the format of this name.
+    fn read_named(
+        &self,
+        format: &str,
+        reading: &mut Reading,
+        source: &Source,
+    ) -> Result<SceneBuilder, FormatError>;
+}
+
 /// The state that all readers of one read share.
 pub struct Reading<'o> {
     pub options: &'o ReadOptions,
+    /// Reads the files of other formats that a scene names, if it may name any.
+    pub others: Option<&'o dyn OtherFormats>,
     pub budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
     pub crease_angle: f32,
@@ -101,10 +115,11 @@ impl<'o> Reading<'o> {
     pub fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
         Reading {
             options,
+            others: None,
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,
             origin: DVec3::ZERO,
-            locator: Locator::new(folder, options.allow_outside),
+            locator: Locator::new(folder, options),
             textures: HashMap::new(),
             grids: HashMap::new(),
             distributions: HashMap::new(),
@@ -118,6 +133,14 @@ impl<'o> Reading<'o> {
             displacements: Vec::new(),
             files: BTreeSet::new(),
             has_variables: false,
+        }
+    }
+
+    /// Reads a file that the scene names, in the format of this name.
+    pub fn read_named(&mut self, format: &str, source: &Source) -> Result<SceneBuilder, FormatError> {
+        match self.others {
+            Some(others) => others.read_named(format, self, source),
+            None => Err(FormatError::malformed("no other format is read here", whole_file(source.name))),
         }
     }
 
@@ -356,17 +379,6 @@ impl<'o> Reading<'o> {
         self.textures.insert(key, texture.clone());
         Ok(texture)
     }
-}
-
-pub fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
-    let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
-    let file = fs::File::open(path).map_err(failed)?;
-    let metadata = file.metadata().map_err(failed)?;
-    if metadata.is_dir() {
-        let at = whole_file(&path.display().to_string().into());
-        return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
-    }
-    Ok((file, metadata.len()))
 }
 
 /// The material of files that do not describe any.

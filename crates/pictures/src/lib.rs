@@ -45,7 +45,7 @@ pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
     BitDepth, ForeignFormat, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, foreign_format,
-    format_named, format_of_path, guarded_decoding, is_decoding, read, read_bytes, read_crop,
+    format_named, format_of_path, guarded_decoding, is_decoding, open_regular, read, read_bytes, read_crop,
     read_crop_bytes, read_rgba8, read_with, write, write_atomically, write_bytes,
 };
 pub use limits::Limits;

@@ -1,6 +1,6 @@
 //! The scene of a file.
 
-use super::part21::{Table, Values, parse};
+use super::part21::{Table, parse};
 use super::pieces::{Pieces, pieces};
 use super::structure::placements::{Placed, placed};
 use super::structure::styles::{Style, Styles};
@@ -12,7 +12,7 @@ use bilux_import::sink::Sink;
 use bilux_import::text::whole_file;
 use bilux_math::Transform;
 use bilux_scene::{Object, SceneBuilder, Spec};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// How names of STEP files end.
 pub(super) const EXTENSIONS: &[&str] = &["step", "stp", "p21"];
@@ -29,13 +29,13 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
         builder.add(reading, shape)?;
     }
     let mut sink = builder.finished();
-    let elsewhere = part_in_another_file(&table);
+    let elsewhere = parts_in_other_files(&table);
     if sink.scene.objects.is_empty() {
-        let message = nothing_to_show(&table, elsewhere.map(|(file, _)| file));
+        let message = nothing_to_show(&table, &elsewhere);
         return Err(FormatError::malformed(message, whole_file(source.name)));
     }
-    if let Some((file, id)) = elsewhere {
-        let what = format!("parts in other files, such as '{file}'");
+    if let [(_, id), ..] = elsewhere[..] {
+        let what = format!("parts in other files ({})", listed(&elsewhere));
         sink.oddities.not_shown(&what, || table.span(id));
     }
     sink.scene.unit = unit;
@@ -45,26 +45,47 @@ pub(super) fn scene(reading: &mut Reading, source: &Source) -> Result<SceneBuild
 }
 
 /// Why there is nothing to show, and what to do.
-fn nothing_to_show(table: &Table, elsewhere: Option<String>) -> String {
-    match elsewhere {
-        _ if !table.is_whole => {
-            "it has no end (END-ISO-10303-21;): it was cut off before all that can be shown; get the file again".to_owned()
-        }
-        Some(file) => format!(
-            "its parts are in other files, such as '{file}', which are not read: convert these, or export the assembly into a single file"
-        ),
-        None => "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid".to_owned(),
+fn nothing_to_show(table: &Table, elsewhere: &[(String, u64)]) -> String {
+    if !table.is_whole {
+        return "it has no end (END-ISO-10303-21;): it was cut off before all that can be shown; get the file again".to_owned();
     }
+    if elsewhere.is_empty() {
+        return "it has no solid or surface that can be shown: export the part as an AP214 or AP242 solid"
+            .to_owned();
+    }
+    format!(
+        "its parts are in other files ({}), which are not read: convert these, or export the assembly into a single file",
+        listed(elsewhere)
+    )
 }
 
-/// A file of STEP that this one refers to, and where.
-fn part_in_another_file(table: &Table) -> Option<(String, u64)> {
-    let is_step = |name: &str| {
+/// The most names of other files that a message lists.
+const LISTED: usize = 8;
+
+fn listed(files: &[(String, u64)]) -> String {
+    let names: Vec<String> = files.iter().take(LISTED).map(|(name, _)| format!("'{name}'")).collect();
+    let more = files.len().saturating_sub(LISTED);
+    let end = if more > 0 { format!(" and {more} more") } else { String::new() };
+    names.join(", ") + &end
+}
+
+/// The files of parts that this one refers to, each once, and where.
+fn parts_in_other_files(table: &Table) -> Vec<(String, u64)> {
+    let is_step = |name: &String| {
         let ending = name.rsplit('.').next().unwrap_or_default();
         EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(ending))
     };
-    let named = |(id, values): (u64, Values)| Some((values.text(0), id)).filter(|(name, _)| is_step(name));
-    table.all("DOCUMENT_FILE").find_map(named)
+    let (mut found, mut known) = (Vec::new(), HashSet::new());
+    // The name of a file is that of its document, or an identification that is assigned to it.
+    for kind in ["DOCUMENT_FILE", "APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT"] {
+        for (id, values) in table.all(kind) {
+            let Some(name) = [values.text(0), values.text(1)].into_iter().find(is_step) else { continue };
+            if known.insert(name.clone()) {
+                found.push((name, id));
+            }
+        }
+    }
+    found
 }
 
 /// The program that wrote the file: the originating system, or else the preprocessor.

@@ -38,6 +38,10 @@ pub struct Illumination {
     /// The median, over the surfaces that light reaches, of the outgoing radiance of a white surface there, as luminance; 0 if
     /// there are none.
     pub level: f32,
+    /// The fraction of these surfaces that any light reaches, however little.
+    pub touched: f32,
+    /// The median of the same radiance over all that any light reaches; 0 if there are none.
+    pub faint: f32,
     /// The median luminance of the emissive surfaces that the camera sees; 0 if there are none.
     pub glow: f32,
 }
@@ -69,11 +73,15 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera, gets_surroundings: bool)
             Seen::Surface(light) => surfaces.push(light),
         }
     }
-    let lit: Vec<f32> = surfaces.iter().copied().filter(|light| *light >= DARK).collect();
+    let above = |least: f32| surfaces.iter().copied().filter(|light| *light >= least).collect::<Vec<f32>>();
+    let (lit, touched) = (above(DARK), above(f32::MIN_POSITIVE));
+    let share = |some: &[f32]| some.len() as f32 / surfaces.len().max(1) as f32;
     Illumination {
         surfaces: surfaces.len() as f32 / (GRID * GRID) as f32,
-        lit: lit.len() as f32 / surfaces.len().max(1) as f32,
+        lit: share(&lit),
+        touched: share(&touched),
         level: median(lit),
+        faint: median(touched),
         glow: median(emitters),
     }
 }

@@ -31,7 +31,8 @@ mod volumes;
 mod wearing;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -54,6 +55,9 @@ const CAPABILITIES: &[&str] = &[
     "variants",
 ];
 
+/// What layers can say of themselves. [OpenUSD]
+const FRAME: Frame = Frame::Stated(&[Axis::Y, Axis::Z]);
+
 /// Row of the table of formats.
 pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -68,7 +72,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| usda::MAGIC.iter().any(|magic| bytes.starts_with(magic)) || bytes.starts_with(usdc::MAGIC),
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Binary(read::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: FRAME, write: write::write }),
 };
 
 /// Row of the table of formats.
@@ -100,5 +104,5 @@ pub const PACKAGE: SceneFormatEntry = SceneFormatEntry {
     sniff: package::is_package,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Packed(package::read)),
-    write: Some(write::write_package),
+    write: Some(WriteFormat { frame: FRAME, write: write::write_package }),
 };

@@ -18,7 +18,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-gltf", UNDER_FORMAT),
     ("bilux-usd", UNDER_FORMAT),
     ("bilux-dcc", UNDER_FORMAT),
-    ("bilux-renderers", &["bilux-math", "bilux-pictures", "bilux-scene", "bilux-import", "bilux-meshes"]),
+    ("bilux-renderers", UNDER_FORMAT),
     ("bilux-step", UNDER_FORMAT),
     (
         "bilux-formats",

@@ -455,6 +455,26 @@ fn the_exposure_is_the_users_or_the_files_where_they_state_it() {
     assert!(bright(&job) > 100.0, "{}", bright(&job));
 }
 
+/// Lamps that light next to nothing, where no studio helps: a picture shows the model as one that is as bright as usual does.
+#[test]
+fn light_that_is_next_to_nothing_is_exposed() {
+    let alone = |lux: f32| SceneBuilder { environment_unspecified: false, ..sunlit(lux) };
+    let mean = |pixels: &[f32]| pixels.iter().sum::<f32>() / pixels.len() as f32;
+    let usual = mean(&shown(&alone(3.0), &[]).0);
+    for lux in [0.02f32, 0.004, 1e-5] {
+        let (pixels, exposure, notes) = shown(&alone(lux), &[]);
+        let wanted = bilux::math::transcendental::log2(3.0 / lux);
+        assert!((exposure - wanted).abs() < 1.5, "{lux} lux: {exposure} EV, and about {wanted} expected");
+        assert!(notes.len() == 1 && notes[0].contains("too dim for a display"), "{notes:?}");
+        assert!((mean(&pixels) - usual).abs() < 0.15, "{lux} lux: {} and {usual}", mean(&pixels));
+    }
+    // What no light reaches stays as it is.
+    let mut away = alone(0.004);
+    away.lights[0].parameters.set("direction", Vec3::Y);
+    put(&mut away, panel(Vec3::new(0.0, -3.0, 0.0), Vec3::X * 50.0, Vec3::Z * -50.0), clay(0.5));
+    assert_eq!(shown(&away, &[]).1, 0.0);
+}
+
 /// What is not exposed gets no brighter surroundings.
 #[test]
 fn exposures_leave_the_classic_shading_alone() {

@@ -53,6 +53,7 @@ fn read_options(common: &Common) -> ReadOptions {
     ReadOptions {
         max_memory: common.max_memory,
         allow_outside: common.allow_outside,
+        whole_package: !common.sandbox,
         working_folder: (!common.sandbox).then(PathBuf::new),
         strict: common.strict,
         ..ReadOptions::default()

@@ -2,9 +2,8 @@
 
 use super::{is_picture, report_warnings};
 use crate::arguments::Common;
-use bilux::pictures::{Limits, PICTURE_FORMATS, Picture, PictureError, foreign_format};
+use bilux::pictures::{Limits, PICTURE_FORMATS, Picture, PictureError, foreign_format, open_regular};
 use bilux::scene::{Span, Warning};
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -41,7 +40,7 @@ pub fn holds_picture(path: &Path) -> bool {
         return is_picture(path);
     }
     let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(4096).read_to_end(&mut head));
+    let read = open_regular(path).and_then(|file| file.take(4096).read_to_end(&mut head));
     read.is_ok()
         && (PICTURE_FORMATS.iter().any(|row| (row.sniff)(&head))
             || foreign_format(&head).is_some_and(|format| format.is_picture))

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::element::Element;
 use super::posed::Posed;
+use super::settings::Frame;
 use super::transforms::local;
 use bilux_import::FormatError;
 use bilux_import::budget::Budget;
@@ -17,6 +18,8 @@ pub(super) struct Placed<'d> {
     pub(super) node: Element<'d>,
     /// From its space to world space: metres, y up.
     pub(super) world: DMat4,
+    /// The axes and the unit of its space.
+    pub(super) frame: Frame,
     pub(super) is_visible: bool,
 }
 
@@ -40,13 +43,22 @@ impl<'d> Graph<'d> {
         oddities: &mut Oddities,
     ) -> Result<Graph<'d>, FormatError> {
         let document = posed.document;
-        let to_world = DMat4::from_translation(-origin) * document.settings.to_world;
+        // An asset is of the element that it is in. [Collada 1.4.1, asset]
+        let mut frame = document.settings.frame;
+        let library = document.root.children_named("library_visual_scenes");
+        for around in library.filter(|library| library.children().any(|child| child.key() == scene.key())) {
+            frame = frame.within(around, oddities);
+        }
+        frame = frame.within(scene, oddities);
+        let to_world = DMat4::from_translation(-origin) * frame.to_world();
         let mut graph = Graph { nodes: Vec::new(), places: HashMap::new() };
         // The nodes between the scene and the current one.
         let mut open: Vec<NodeId> = Vec::new();
-        let mut waiting: Vec<(Element, DMat4, bool, usize)> = Vec::new();
-        push_children(scene, to_world, true, 0, document, &mut waiting, oddities);
-        while let Some((node, parent, is_parent_visible, depth)) = waiting.pop() {
+        let mut waiting: Vec<Waiting> = Vec::new();
+        let first = Parent { world: to_world, frame, is_visible: true, depth: 0 };
+        push_children(scene, first, document, &mut waiting, oddities);
+        while let Some((node, parent)) = waiting.pop() {
+            let depth = parent.depth;
             open.truncate(depth);
             if open.contains(&node.key()) {
                 return Err(
@@ -58,17 +70,19 @@ impl<'d> Graph<'d> {
             }
             open.push(node.key());
             budget.take::<(Placed, [usize; 6], [(Element, DMat4); 1])>(1, node.file())?;
-            let world = parent * local(node, posed, budget)?;
+            let frame = parent.frame.within(node, oddities);
+            let world = parent.world * parent.frame.from(frame) * local(node, posed, budget)?;
             if !world.is_finite() {
                 return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
-            let is_visible = is_parent_visible && !is_hidden(node);
-            if is_parent_visible && !is_visible {
+            let is_visible = parent.is_visible && !is_hidden(node);
+            if parent.is_visible && !is_visible {
                 oddities.remark("a node is hidden", || node.at());
             }
             graph.places.entry(node.key()).or_insert(graph.nodes.len());
-            graph.nodes.push(Placed { node, world, is_visible });
-            push_children(node, world, is_visible, depth + 1, document, &mut waiting, oddities);
+            graph.nodes.push(Placed { node, world, frame, is_visible });
+            let around = Parent { world, frame, is_visible, depth: depth + 1 };
+            push_children(node, around, document, &mut waiting, oddities);
         }
         Ok(graph)
     }
@@ -79,14 +93,24 @@ impl<'d> Graph<'d> {
     }
 }
 
+/// What nodes have from the one that they are in.
+#[derive(Clone, Copy)]
+struct Parent {
+    world: DMat4,
+    frame: Frame,
+    is_visible: bool,
+    depth: usize,
+}
+
+/// A node that is to be placed.
+type Waiting<'d> = (Element<'d>, Parent);
+
 /// Adds the nodes in another one, so that the first comes first.
 fn push_children<'d>(
     within: Element<'d>,
-    world: DMat4,
-    is_visible: bool,
-    depth: usize,
+    parent: Parent,
     document: &Document<'d>,
-    waiting: &mut Vec<(Element<'d>, DMat4, bool, usize)>,
+    waiting: &mut Vec<Waiting<'d>>,
     oddities: &mut Oddities,
 ) {
     let first = waiting.len();
@@ -98,7 +122,7 @@ fn push_children<'d>(
             }
             _ => None,
         };
-        waiting.extend(node.map(|node| (node, world, is_visible, depth)));
+        waiting.extend(node.map(|node| (node, parent)));
     }
     waiting[first..].reverse();
 }

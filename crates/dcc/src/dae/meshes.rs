@@ -3,7 +3,7 @@
 use super::controllers::{self, Shaped};
 use super::effects::{Bindings, Materials};
 use super::element::Element;
-use super::geometry::Symbol;
+use super::geometry::{Symbol, lines};
 use super::graph::{Graph, Placed};
 use super::posed::Posed;
 use bilux_import::FormatError;
@@ -16,6 +16,7 @@ use bilux_scene::Object;
 use roxmltree::NodeId;
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// The meshes that have been read, and the materials that they are of.
 #[derive(Default)]
@@ -60,7 +61,9 @@ impl<'d> Meshes<'d> {
                     made
                 }
             };
-            let world = if made.is_in_world { DMat4::IDENTITY } else { placed.world };
+            let own = placed.frame.within(target, &mut sink.oddities);
+            let world = placed.world * placed.frame.from(own);
+            let world = if made.is_in_world { DMat4::IDENTITY } else { world };
             self.place_parts(&made, &world, instance, placed.node, posed, reading, sink)?;
         }
         Ok(())
@@ -112,7 +115,11 @@ fn make<'d>(
     let mut workshop = Workshop { budget: &mut reading.budget, oddities: &mut sink.oddities, crease_angle };
     let shaped = controllers::shaped(target, instance, placed, posed, graph, &mut workshop)?;
     let Some(Shaped { mesh, is_in_world }) = shaped else {
-        return Ok(Made { parts: Vec::new(), symbols: Vec::new(), is_in_world: false });
+        let found =
+            if target.name() == "geometry" { lines(target, posed.document, &mut workshop)? } else { None };
+        let part = |(mesh, symbol)| (Part { mesh: Arc::new(mesh), material: 0 }, symbol);
+        let (parts, symbols) = found.map(part).into_iter().unzip();
+        return Ok(Made { parts, symbols, is_in_world: false });
     };
     let mut polygons = mesh.polygons;
     polygons.add_normals(&mut workshop, file)?;

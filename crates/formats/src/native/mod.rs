@@ -25,7 +25,8 @@ pub use overlay::overlay;
 pub use schema::toml_schema;
 pub use shapes::{SHAPES, ShapeEntry};
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -54,7 +55,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(scene::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
 /// True if a line opens one of the tables that only scenes have.

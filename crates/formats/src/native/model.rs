@@ -18,6 +18,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// What making a generated mesh takes, in sizes of that mesh.
+const MAKING: u64 = 3;
+
 /// The keys of every model except those that place it; exactly one of the first three is its source.
 pub(super) const KEYS: [&str; 11] = [
     "file",
@@ -194,15 +197,24 @@ impl Native<'_, '_> {
             return Err(SceneError::unknown("built-in scene", kind, names, &item.at).into());
         };
         let spec = self.parameters(table, kind, &row.entry)?;
+        let key =
+            format!("{kind} {:?}", spec.parameters.0.iter().map(|(k, v, _)| (k, v)).collect::<Vec<_>>());
+        if let Some(known) = self.generated.get(&key) {
+            return Ok(known.clone());
+        }
         let model = (row.generate)(&Reader::new(&spec, &row.entry)?)?;
         let mut last: Option<&Arc<Mesh>> = None;
         for object in &model.objects {
             if !last.is_some_and(|mesh| Arc::ptr_eq(mesh, &object.mesh)) {
                 self.charge_mesh(&object.mesh, table)?;
+                // Making it took more than it takes: a file could ask for many.
+                self.reading.budget.take_bytes(MAKING * object.mesh.size(), &table.at.file)?;
             }
             last = Some(&object.mesh);
         }
-        Ok(Arc::new(model))
+        let model = Arc::new(model);
+        self.generated.insert(key, model.clone());
+        Ok(model)
     }
 
     /// The keys of a model that are parameters of its shape or generator.

@@ -8,6 +8,7 @@ use bilux_import::reading::{Reading, default_material};
 use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The maximum number of names that an error about an unknown name lists.
 pub(super) const MAX_NAMES: usize = 100;
@@ -21,6 +22,8 @@ pub(super) struct Native<'o, 'r> {
     default_material: Option<usize>,
     /// The index of the first material of each model file.
     pub(super) brought: HashMap<PathBuf, usize>,
+    /// Generated models by their kind and parameters.
+    pub(super) generated: HashMap<String, Arc<SceneBuilder>>,
     /// The maps of displaced objects: those of files of models are done when these are read.
     pub(super) displaced: Vec<(Moved, Displacement)>,
 }
@@ -28,8 +31,16 @@ pub(super) struct Native<'o, 'r> {
 impl<'o, 'r> Native<'o, 'r> {
     /// Nothing yet, upon a scene that may have something.
     pub(super) fn new(reading: &'r mut Reading<'o>, scene: SceneBuilder) -> Native<'o, 'r> {
-        let (materials, brought) = (HashMap::new(), HashMap::new());
-        Native { reading, scene, materials, default_material: None, brought, displaced: Vec::new() }
+        let (materials, brought, generated) = Default::default();
+        Native {
+            reading,
+            scene,
+            materials,
+            default_material: None,
+            brought,
+            generated,
+            displaced: Vec::new(),
+        }
     }
 
     /// Collects names first, since materials may refer to each other in any order.

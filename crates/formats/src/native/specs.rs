@@ -111,7 +111,10 @@ impl Native<'_, '_> {
             let distribution = self.reading.distribution(part.folder.as_deref(), file, &item.at)?;
             return Ok(Some(Value::Distribution(distribution)));
         }
-        let TomlValue::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
+        let TomlValue::Table(table) = &item.node else {
+            check_texture(key, kind, item)?;
+            return plain_value(key, item).map(Some);
+        };
         if kind == Some(ParameterKind::Grid) {
             return self.grid(key, table, part).map(|grid| Some(Value::Grid(grid)));
         }
@@ -272,4 +275,17 @@ fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
 fn missing_kind<'k>(what: &str, kinds: impl Iterator<Item = &'k str>, table: &Table) -> FormatError {
     let kinds: Vec<&str> = kinds.collect();
     missing(&format!("kind (of the {what}: {})", kinds.join(", ")), table)
+}
+
+/// Says how a texture is written where a text seems to be the name of one.
+fn check_texture(key: &str, kind: Option<ParameterKind>, item: &Item) -> Result<(), FormatError> {
+    use ParameterKind::{ColourTexture, NumberTexture, Texture};
+    let TomlValue::Text(name) = &item.node else { return Ok(()) };
+    let is_file = bilux_import::formats::extension(name.as_ref())
+        .is_some_and(|extension| bilux_pictures::format_named(&extension).is_some());
+    if is_file && matches!(kind, Some(ColourTexture { .. } | NumberTexture { .. } | Texture)) {
+        let message = format!("a texture is written as {key} = {{ texture = {name:?} }}");
+        return Err(SceneError::invalid(message, &item.at).into());
+    }
+    Ok(())
 }

@@ -6,10 +6,10 @@ use bilux_import::FormatError;
 use bilux_import::bake::name_of;
 use bilux_import::grids::file_of;
 use bilux_import::luminaires;
+use bilux_import::ply::encode;
 use bilux_import::text::whole_file;
 use bilux_import::writing::{UnusedNames, Writing};
 use bilux_math::{Motion, MotionKey, Rgb};
-use bilux_meshes::ply::encode;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::media::{ComputedDensity, Grid};
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value, Visibility};
@@ -106,7 +106,7 @@ impl ModelFiles {
         if let Some(file) = self.meshes.get(&Arc::as_ptr(mesh)) {
             return Ok(file.clone());
         }
-        let Some(bytes) = encode(&[mesh], writing.options.ascii) else {
+        let Some(bytes) = encode(&[mesh], writing.options.ascii, None) else {
             let message = "a mesh has more vertices than its file can hold";
             return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
         };

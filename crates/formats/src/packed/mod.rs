@@ -1,5 +1,7 @@
 //! Archives with a model and its textures, as people upload them. See `docs/formats/archives.md`.
 
+mod manifest;
+
 use crate::FORMATS;
 use crate::{SCENE_FORMATS, format_named};
 use bilux_import::FormatError;
@@ -42,25 +44,32 @@ struct Candidate<'a> {
 
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let root = source.folder.unwrap_or(Path::new(""));
+    let at = whole_file(source.name);
+    let stated = manifest::scene(reading, root, &at)?;
     let Some(archive) = reading.locator.archives.at(root) else {
-        return Err(FormatError::malformed("this is no archive", whole_file(source.name)));
+        return Err(FormatError::malformed("this is no archive", at));
     };
     let found = candidates(archive);
-    let Some(best) = found.first() else { return Err(no_scene(archive, source)) };
-    let (row, path) = (best.row, root.join(&best.member.name));
-    let shown = best.member.name.clone();
-    let others: Vec<String> = found[1..].iter().take(LISTED).map(|other| other.member.name.clone()).collect();
-    let at = whole_file(source.name);
+    let named = |path: &Path| found.iter().find(|candidate| root.join(&candidate.member.name) == path);
+    let chosen = stated.as_ref().and_then(|stated| named(stated.as_ref().ok()?));
+    let Some(best) = chosen.or(found.first()) else { return Err(no_scene(archive, source)) };
+    let (row, path, shown) = (best.row, root.join(&best.member.name), best.member.name.clone());
+    let others = found.iter().filter(|other| other.member.name != shown && chosen.is_none());
+    let others: Vec<String> = others.take(LISTED).map(|other| other.member.name.clone()).collect();
     reading.enter(&path, &at)?;
     let mut scene = read_file(FORMATS, Some(row), reading, &path, &path.display().to_string().into())?;
     reading.leave();
-    if let Some(other) = others.first() {
-        let message = format!(
+    let mut warn = |message: String| scene.warnings.push(Warning { message, at: at.clone() });
+    if let Some(Err(lost)) = stated {
+        warn(format!(
+            "the manifest names the scene '{lost}', which is not in the archive: shown is '{shown}'"
+        ));
+    } else if let Some(other) = others.first() {
+        warn(format!(
             "this archive has several scenes; shown is '{shown}', not {}: name another one as in '{}/{other}'",
             others.join(", "),
             source.name
-        );
-        scene.warnings.push(Warning { message, at });
+        ));
     }
     Ok(scene)
 }
@@ -76,7 +85,7 @@ fn candidate(member: &Member) -> Option<Candidate<'_>> {
     let name = member.name.as_str();
     // What names the model of a `.zae` is none itself.
     let is_hidden = name.split('/').any(|part| part.starts_with('.') || part == "__MACOSX")
-        || name.eq_ignore_ascii_case("manifest.xml");
+        || name.eq_ignore_ascii_case(manifest::NAME);
     let extension = extension(&plain_name(Path::new(name))).filter(|_| !is_hidden)?.to_lowercase();
     let row = format_named(&extension).filter(|row| row.reads() && row.extensions.contains(&&*extension))?;
     let format = SCENE_FORMATS.iter().position(|other| other.entry.name == row.entry.name)?;

@@ -247,3 +247,40 @@ fn a_mesh_far_from_zero_keeps_the_digits_of_its_file() {
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
+
+/// All points of one intensity, in files whose range of intensities is empty: one grey for all, no black and no NaN.
+#[test]
+fn an_empty_range_of_intensities_is_one_grey() {
+    let path = format!("{}/../../fuzz/corpus/scene_e57/empty_range.e57", env!("CARGO_MANIFEST_DIR"));
+    let e57 = read(path.as_ref(), &ReadOptions::default()).unwrap();
+    let greys = &e57.objects[0].mesh.vertex_kd;
+    assert!(greys.iter().all(|grey| *grey == greys[0] && grey.r > 0.1 && grey.r < 0.9), "{greys:?}");
+    for (format, text) in [("xyz", "0 0 0 7\n1 0 0 7\n2 0 0 7\n"), ("pts", "3\n0 0 0 0\n1 0 0 0\n2 0 0 0\n")]
+    {
+        let scene = read_text(format, text).unwrap();
+        assert!(only(&scene).vertex_kd.iter().all(|colour| colour.is_finite()), "{format}");
+        let is_black = |kd: Rgb| kd.is_black();
+        assert!(!scene.materials[0].colour("kd").is_some_and(is_black), "{format}");
+    }
+}
+
+/// Points in one stream without chunks, as LASzip 1.2 wrote them: chunks of the same points, without the table of chunks and the
+/// place of that table.
+#[test]
+fn the_first_laz_files_have_no_chunks() {
+    let chunked = corpus("same_12.laz");
+    let place = chunked.windows(14).position(|word| word == b"laszip encoded").unwrap();
+    let record = place - 2 + 54;
+    let points = u32::from_le_bytes(chunked[96..100].try_into().unwrap()) as usize;
+    let table = u64::from_le_bytes(chunked[points..points + 8].try_into().unwrap()) as usize;
+    let mut stream = chunked[..points].to_vec();
+    stream.extend(&chunked[points + 8..table]);
+    // The compressor of one stream, version 1.2, and no size of chunks.
+    stream[record] = 1;
+    stream[record + 4..record + 6].copy_from_slice(&[1, 2]);
+    let positions = |bytes: &[u8]| only(&read_text("las", bytes).unwrap()).positions.clone();
+    for size in [0u32, u32::MAX, 50_000] {
+        stream[record + 12..record + 16].copy_from_slice(&size.to_le_bytes());
+        assert_eq!(positions(&stream), positions(&chunked), "chunks of {size}");
+    }
+}

@@ -3,7 +3,8 @@
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read, read_bytes};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{SceneBuilder, Value};
+use bilux_scene::{SceneBuilder, Spec, Texture, Value};
+use std::sync::Arc;
 
 /// Positions of a square of two by two, for a mesh with an id.
 fn geometry(id: &str, positions: &str, polygons: &str) -> String {
@@ -429,4 +430,202 @@ fn what_is_wrong_is_refused_or_said_with_its_place() {
     assert!(warnings(&scene(&missing)).contains("is in another file, which is not read"));
     let out_of_range = placed("", "", "").replace("0 1 2 3", "0 1 2 9");
     assert!(warnings(&scene(&out_of_range)).contains("a vertex that the mesh does not have"));
+}
+
+/// A picture's alpha counts times `<transparency>` [Collada 1.4.1, transparent]: in each mode, by two different numbers.
+#[test]
+fn a_picture_of_opacity_counts_times_transparency() {
+    use bilux_scene::texture::Channel;
+    let folder = tempfile::tempdir().unwrap();
+    let picture = bilux_pictures::Picture::from_rgb(2, 1, vec![Rgb::grey(1.0), Rgb::grey(0.25)]).unwrap();
+    bilux_pictures::write(folder.path().join("mask.png"), &picture, &Default::default()).unwrap();
+    let opacities = |mode: &str, factor: f32| {
+        let (spec, textures) = with_mask(folder.path(), mode, factor);
+        let Some((Value::Texture(index), _)) = spec.parameters.find("opacity") else { panic!("{spec:?}") };
+        let texture = &textures[*index];
+        assert_ne!(texture.channel, Some(Channel::A), "this picture has no alpha");
+        [texture.texel(0, 0).g, texture.texel(1, 0).g]
+    };
+    // The bytes of the picture are 255 and 137, read as numbers.
+    let grey = 137.0 / 255.0;
+    for (mode, factor, wanted) in [
+        ("RGB_ONE", 1.0, [1.0, grey]),
+        ("RGB_ONE", 0.5, [0.5, 0.5 * grey]),
+        ("RGB_ZERO", 0.5, [0.5, 1.0 - 0.5 * grey]),
+        ("RGB_ZERO", 0.25, [0.75, 1.0 - 0.25 * grey]),
+    ] {
+        let found = opacities(mode, factor);
+        let off = (found[0] - wanted[0]).abs().max((found[1] - wanted[1]).abs());
+        assert!(off < 0.01, "{mode} {factor}: {found:?}, not {wanted:?}");
+    }
+    // In the modes of alpha, that of a picture without any is 1.
+    for (mode, wanted) in [("A_ONE", 0.25), ("A_ZERO", 0.75)] {
+        assert_eq!(with_mask(folder.path(), mode, 0.25).0.number("opacity"), Some(wanted), "{mode}");
+    }
+}
+
+/// A material whose `<transparent>` is a picture in two greys, with the textures of its scene.
+fn with_mask(folder: &std::path::Path, mode: &str, factor: f32) -> (Spec, Vec<Arc<Texture>>) {
+    let shader = format!(
+        "<phong><diffuse><color>1 1 1 1</color></diffuse><transparent opaque='{mode}'><texture texture='mask' texcoord='u'/>\
+         </transparent><transparency><float>{factor}</float></transparency></phong>"
+    );
+    let images = "<image id='mask'><init_from>mask.png</init_from></image>";
+    let path = folder.join("a.dae");
+    std::fs::write(&path, with_material("", &shader, images)).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    (scene.materials[scene.objects[0].material].clone(), scene.textures)
+}
+
+/// Files in which 0 is opaque have all of their materials so: what some exporters for 3ds Max write.
+#[test]
+fn inverted_transparency_is_of_whole_files() {
+    let opacities = |numbers: &[&str]| -> Vec<f32> {
+        let effects: String = numbers
+            .iter()
+            .enumerate()
+            .map(|(i, number)| {
+                format!(
+                    "<effect id='e{i}'><profile_COMMON><technique sid='c'><phong><transparent><color>1 1 1 1</color></transparent>\
+                     <transparency><float>{number}</float></transparency></phong></technique></profile_COMMON></effect>"
+                )
+            })
+            .collect();
+        let list = |kind: &dyn Fn(usize) -> String| (0..numbers.len()).map(kind).collect::<String>();
+        let materials = list(&|i| format!("<material id='m{i}'><instance_effect url='#e{i}'/></material>"));
+        let nodes = list(&|i| {
+            let bound = INSTANCE.replace("#mat", &format!("#m{i}"));
+            format!("<node id='n{i}'>{bound}</node>")
+        });
+        let libraries = format!(
+            "<library_effects>{effects}</library_effects><library_materials>{materials}</library_materials>\
+             <library_geometries>{}</library_geometries>",
+            geometry("g", SQUARE, &polylist("g"))
+        );
+        let scene = scene(&file("", &libraries, &nodes));
+        scene.objects.iter().map(|o| scene.materials[o.material].number("opacity").unwrap_or(1.0)).collect()
+    };
+    let near = |found: &[f32], wanted: &[f32]| {
+        assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}, not {wanted:?}");
+    };
+    near(&opacities(&["0", "0.2", "0.75"]), &[1.0, 0.8, 0.25]);
+    near(&opacities(&["1", "0.2", "0.75"]), &[1.0, 0.2, 0.75]);
+    near(&opacities(&["0", "0.2", "1"]), &[1.0, 0.2, 1.0]);
+}
+
+/// An asset is of the element that it is in [Collada 1.4.1, asset], within others that have their own.
+#[test]
+fn axes_and_units_are_of_the_element_that_states_them() {
+    let square =
+        format!("<library_geometries>{}</library_geometries>", geometry("g", SQUARE, &polylist("g")));
+    let asset = |inside: &str| format!("<asset>{inside}</asset>");
+    let inner = format!(
+        "<node id='b'>{}<translate>0 0 3</translate>{INSTANCE}</node>",
+        asset("<unit meter='0.01'/>")
+    );
+    let nodes = format!(
+        "<node id='a'>{}<translate>1 2 5</translate>{INSTANCE}{inner}</node><node id='c'><translate>0 7 0</translate>{INSTANCE}</node>",
+        asset("<up_axis>Z_UP</up_axis>")
+    );
+    let scene = scene(&file("<unit meter='0.5'/>", &square, &nodes));
+    let corner = |i: usize| scene.objects[i].motion.at(0.0).point(Vec3::new(2.0, 2.0, 0.0));
+    // The corner at (2, 2, 0): in halves of a metre with z up after (1, 2, 5); 3 cm above that, in centimetres; and with y up.
+    assert!(near(corner(0), [1.5, 2.5, -2.0]), "{}", corner(0));
+    assert!(near(corner(1), [0.52, 2.53, -1.02]), "{}", corner(1));
+    assert!(near(corner(2), [1.0, 4.5, 0.0]), "{}", corner(2));
+}
+
+/// Lines are shown where a geometry has nothing else: pairs, and rows.
+#[test]
+fn lines_alone_are_shown() {
+    let lines = "<lines material='m' count='2'><input semantic='VERTEX' source='#g-v' offset='0'/><p>0 1 2 3</p></lines>\
+                 <linestrips count='1'><input semantic='VERTEX' source='#g-v' offset='0'/><p>1 2 3 0</p></linestrips>";
+    let library =
+        |more: &str| format!("<library_geometries>{}</library_geometries>", geometry("g", SQUARE, more));
+    let with = |more: &str| scene(&file("", &library(more), &format!("<node id='n'>{INSTANCE}</node>")));
+    let mesh = with(lines).objects[0].mesh.clone();
+    assert_eq!(mesh.lines, [[0, 1], [2, 3], [1, 2], [2, 3], [3, 0]]);
+    assert_eq!(mesh.bounds().max, Vec3::new(2.0, 2.0, 0.0));
+    let both = with(&format!("{lines}{}", polylist("g")));
+    assert!(both.objects[0].mesh.lines.is_empty() && warnings(&both).contains("lines"));
+}
+
+/// Colours of vertices are morphed as positions are, by two shapes of different weights.
+#[test]
+fn morphs_blend_the_colours_of_vertices() {
+    let coloured = |id: &str, colours: &str| {
+        let list = source(&format!("{id}-c"), "float_array", colours, 3);
+        let polygons = format!(
+            "<polylist material='m' count='1'><input semantic='VERTEX' source='#{id}-v' offset='0'/>\
+             <input semantic='COLOR' source='#{id}-c' offset='1'/><vcount>4</vcount><p>0 0 1 1 2 2 3 3</p></polylist>"
+        );
+        geometry(id, SQUARE, &polygons).replace("<vertices", &format!("{list}<vertices"))
+    };
+    let geometries = coloured("g", "1 0 0 1 0 0 1 0 0 1 0 0")
+        + &coloured("a", "0 1 0 0 1 0 0 1 0 0 1 0")
+        + &coloured("b", "0 0 1 0 0 1 0 0 1 0 0 1");
+    let morph = format!(
+        "<library_controllers><controller id='k'><morph source='#g' method='NORMALIZED'>{}{}<targets>\
+         <input semantic='MORPH_TARGET' source='#t'/><input semantic='MORPH_WEIGHT' source='#w'/></targets></morph></controller>\
+         </library_controllers>",
+        source("t", "IDREF_array", "a b", 1),
+        source("w", "float_array", "0.5 0.125", 1)
+    );
+    let node = "<node id='n'><instance_controller url='#k'/></node>";
+    let scene =
+        scene(&file("", &format!("<library_geometries>{geometries}</library_geometries>{morph}"), node));
+    let colour = scene.objects[0].mesh.vertex_kd[2];
+    // Blended in linear light: red and green and blue of full strength are the same in both spaces.
+    assert!((colour - Rgb::new(0.375, 0.5, 0.125)).map(f32::abs).max_channel() < 1e-6, "{colour:?}");
+}
+
+/// The manifest of a `.zae` names its scene [Collada 1.5, zip archive], whatever else is there.
+#[test]
+fn manifests_name_the_scene() {
+    let wide = placed("", "", "<scale>3 1 1</scale>");
+    let manifest = "<?xml version='1.0'?><dae_root xmlns=''>./deep/scene.dae#s</dae_root>";
+    let files = |manifest: &str| {
+        let first = placed("", "", "");
+        let all: [(&str, &[u8]); 3] = [
+            ("a.dae", first.as_bytes()),
+            ("deep/scene.dae", wide.as_bytes()),
+            ("manifest.xml", manifest.as_bytes()),
+        ];
+        read_bytes(&crate::threemf::package(&all), "zae", None, "x.zae", &ReadOptions::default()).unwrap()
+    };
+    assert_eq!(files(manifest).bounds(0.0).max.x, 6.0);
+    let lost = files("<dae_root>gone.dae</dae_root>");
+    assert_eq!(lost.bounds(0.0).max.x, 2.0);
+    assert!(warnings(&lost).contains("'gone.dae'"), "{}", warnings(&lost));
+}
+
+/// Each column of a curve has tangents of its own [Barnes 2008, sampler]: with times at thirds, the number at a time is that of
+/// Bernstein's polynomials of its four control points.
+#[test]
+fn columns_of_bezier_curves_have_their_own_tangents() {
+    // From 0 to 2 seconds; control points of each column at 2/3 and 4/3.
+    let points = [[0.0, 3.0, -6.0, 8.0], [1.0, -2.0, 5.0, 4.0], [2.0, 9.0, 0.5, -1.0]];
+    let column = |i: usize, end: usize| points[i][end];
+    let list =
+        |time: f64, end: usize| -> String { (0..3).map(|i| format!("{time} {} ", column(i, end))).collect() };
+    let tangents = source("ot", "float_array", &(list(2.0 / 3.0, 1) + &list(8.0 / 3.0, 3)), 6)
+        + &source("it", "float_array", &(list(-2.0 / 3.0, 0) + &list(4.0 / 3.0, 2)), 6);
+    let ends: Vec<String> =
+        [0, 3].iter().flat_map(|end| (0..3).map(|i| column(i, *end).to_string())).collect();
+    let library = animated("BEZIER", "n/t", (&ends.join(" "), 3), &tangents);
+    for time in [0.5f32, 1.0, 1.5] {
+        let text = placed("", &library, "<translate sid='t'>0 0 0</translate>");
+        let options = ReadOptions { time, ..ReadOptions::default() };
+        let scene = read_bytes(text.as_bytes(), "dae", None, "x", &options).unwrap();
+        let t = f64::from(time) / 2.0;
+        let weights = [
+            (1.0 - t) * (1.0 - t) * (1.0 - t),
+            3.0 * t * (1.0 - t) * (1.0 - t),
+            3.0 * t * t * (1.0 - t),
+            t * t * t,
+        ];
+        let wanted = points.map(|p| p.iter().zip(weights).map(|(p, w)| p * w).sum::<f64>() as f32);
+        let found = corners(&scene)[0];
+        assert!((found - Vec3::from(wanted)).length() < 1e-3, "{time}: {found}, not {wanted:?}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Files of grids: OpenVDB, NanoVDB, `.npy` and `.vol`, byte by byte as their formats say, and broken.
 
 use bilux_formats::{GridOfFile, ReadOptions, read_grid, read_grids};
-use bilux_math::{Aabb, Vec3};
+use bilux_math::{Aabb, DVec3, Vec3};
 use bilux_scene::media::Grid;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -758,4 +758,110 @@ fn broken_files_of_grids_give_an_error_or_a_grid() {
             survive(&bad);
         }
     }
+}
+
+/// A map that is not symmetric: the rows of what columns of indices are multiplied by, and where the first voxel is.
+const SKEWED: [[f64; 3]; 3] = [[0.5, 0.125, 0.0], [0.0, 0.25, 0.0625], [-0.25, 0.0, 0.375]];
+const SHIFT: [f64; 3] = [1.0, -2.0, 3.0];
+
+fn skewed(p: DVec3) -> DVec3 {
+    DVec3::from(SKEWED.map(|row| DVec3::from(row).dot(p))) + DVec3::from(SHIFT)
+}
+
+/// The same map in a file of NanoVDB that is not compressed: row after row. [NanoVDB.h, Map]
+fn with_skewed_map(mut file: Vec<u8>) -> Vec<u8> {
+    let map = 16 + 176 + 8 + 296;
+    for (i, number) in SKEWED.as_flattened().iter().enumerate() {
+        let at = map + 88 + 8 * i;
+        file[at..at + 8].copy_from_slice(&number.to_le_bytes());
+    }
+    for (i, number) in SHIFT.iter().enumerate() {
+        let at = map + 88 + 144 + 8 * i;
+        file[at..at + 8].copy_from_slice(&number.to_le_bytes());
+    }
+    file
+}
+
+/// That of OpenVDB multiplies rows of indices.
+fn affine() -> (&'static str, Vec<f64>) {
+    let [a, b, c] = SKEWED;
+    let columns = [0, 1, 2].map(|i| [a[i], b[i], c[i], 0.0]);
+    let shift = [SHIFT[0], SHIFT[1], SHIFT[2], 1.0];
+    ("AffineMap", [columns.as_flattened(), &shift].concat())
+}
+
+#[test]
+fn maps_that_are_not_symmetric_place_voxels_in_both_formats() {
+    let leaves = two_leaves();
+    let wanted = |p: Vec3| skewed(p.as_dvec3()).as_vec3();
+    let open = file("", &[Tree { map: affine(), ..Tree::of(leaves.clone()) }]);
+    assert_same(&only(&open).0, &leaves, wanted, "OpenVDB");
+    assert_same(&only(&with_skewed_map(nano(&leaves, 1, 32, 0))).0, &leaves, wanted, "NanoVDB");
+}
+
+/// The distances from a ball, in a band of three voxels to both sides, where the map keeps them as those of the indices.
+fn ball(centre: DVec3, radius: f64) -> Vec<Leaf> {
+    let corner = |i: i32| [i & 1, i >> 1 & 1, i >> 2].map(|x| 8 * x);
+    let leaf = |i: i32| {
+        let origin = corner(i);
+        let distance = |i: usize| {
+            let at = [i / 64, i / 8 % 8, i % 8];
+            let p = DVec3::from([0, 1, 2].map(|axis: usize| f64::from(origin[axis]) + at[axis] as f64));
+            p.distance(centre) - radius
+        };
+        let values: Vec<f64> = (0..512).map(distance).collect();
+        let active = values.iter().map(|d| d.abs() < 3.0).collect();
+        Leaf { origin, active, values: values.iter().map(|d| d.clamp(-3.0, 3.0) as f32).collect() }
+    };
+    (0..8).map(leaf).collect()
+}
+
+/// A level set is drawn where its distances are 0: the ball of the closed form, through a map that is not symmetric.
+#[test]
+fn level_sets_are_drawn_as_surfaces() {
+    let (centre, radius) = (DVec3::new(7.25, 8.5, 7.75), 4.25);
+    let leaves = ball(centre, radius);
+    let surface = Tree {
+        name: "surface".into(),
+        class: "level set",
+        map: affine(),
+        background: 3.0,
+        active_only: false,
+        ..Tree::of(leaves.clone())
+    };
+    let mut of_nano = with_skewed_map(nano(&leaves, 1, 32, 0));
+    for at in [16 + 36, 16 + 176 + 8 + 632] {
+        of_nano[at..at + 4].copy_from_slice(&1u32.to_le_bytes());
+    }
+    let [x, y, z] = [0, 1, 2].map(|i| DVec3::from(SKEWED.map(|row| row[i])));
+    let volume = x.dot(y.cross(z)) * 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
+    for (name, bytes) in [("OpenVDB", file("", std::slice::from_ref(&surface))), ("NanoVDB", of_nano)] {
+        let scene = bilux_formats::read_bytes(&bytes, "", None, "ball", &ReadOptions::default()).unwrap();
+        let mesh = &scene.objects[0].mesh;
+        let corners = |t: &[u32; 3]| t.map(|i| mesh.positions[i as usize].as_dvec3());
+        let (mut sum, mut middle) = (0.0, DVec3::ZERO);
+        for [a, b, c] in mesh.triangles.iter().map(corners) {
+            let part = a.dot(b.cross(c)) / 6.0;
+            sum += part;
+            middle += (a + b + c) * 0.25 * part;
+        }
+        // Between voxels, distances from a ball are less than those on the line from one to the next.
+        assert!((sum / volume - 1.0).abs() < 0.045, "{name}: {sum}, not {volume}");
+        assert!((middle / sum).distance(skewed(centre)) < 0.01, "{name}: {}", middle / sum);
+        // Every vertex lies on the ball, and its normal leads away from it.
+        let back = bilux_math::DMat3::from_cols(x, y, z).inverse();
+        for (p, n) in mesh.positions.iter().zip(&mesh.normals) {
+            let from = back * (p.as_dvec3() - DVec3::from(SHIFT)) - centre;
+            assert!((from.length() - radius).abs() < 0.08, "{name}: {}", from.length());
+            let wanted = (back.transpose() * from).normalize();
+            assert!(n.as_dvec3().dot(wanted) > 0.93, "{name}: {n}, not {wanted}");
+        }
+    }
+    // As a density it stays refused, and next to one it is named.
+    let message = read_grid(&file("", std::slice::from_ref(&surface)), "a.vdb", "", &ReadOptions::default())
+        .unwrap_err();
+    assert!(message.to_string().contains("is a level set"), "{message}");
+    let both = file("", &[surface, Tree::of(two_leaves())]);
+    let scene = bilux_formats::read_bytes(&both, "", None, "both", &ReadOptions::default()).unwrap();
+    assert!(crate::warnings(&scene).contains("the grid 'surface'"), "{}", crate::warnings(&scene));
 }

@@ -93,16 +93,10 @@ fn the_up_axis_is_that_of_the_program_and_other_grids_are_named() {
         "{}",
         warnings(&scene)
     );
-    for (name, wanted) in [
-        ("broken_level_set.vdb", "is a level set"),
-        ("broken_vectors.vdb", "the grid 'velocity' of 'x.vdb' has the type 'vec3s'"),
-    ] {
-        let message =
-            read_bytes(&std::fs::read(corpus(name)).unwrap(), "", None, "x.vdb", &ReadOptions::default())
-                .unwrap_err()
-                .to_string();
-        assert!(message.starts_with("x.vdb: ") && message.contains(wanted), "{message}");
-    }
+    let vectors = std::fs::read(corpus("broken_vectors.vdb")).unwrap();
+    let message = read_bytes(&vectors, "", None, "x.vdb", &ReadOptions::default()).unwrap_err().to_string();
+    let wanted = "the grid 'velocity' of 'x.vdb' has the type 'vec3s'";
+    assert!(message.starts_with("x.vdb: ") && message.contains(wanted), "{message}");
 }
 
 #[test]

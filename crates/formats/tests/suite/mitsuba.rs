@@ -391,3 +391,83 @@ fn hostile_files_end_soon() {
     write("c.xml", "<scene version=\"3.0.0\"><include filename=\"../../etc/passwd\"/></scene>");
     assert!(read(&folder.path().join("c.xml"), &ReadOptions::default()).is_err());
 }
+
+/// Booleans of any case, as Mitsuba has them: Python writes them with a capital.
+#[test]
+fn booleans_are_of_any_case() {
+    for (word, turned) in [("True", true), ("TRUE", true), ("true", true), ("False", false), ("fAlse", false)]
+    {
+        let shape = format!("<shape type='rectangle'><boolean name='flip_normals' value='{word}'/></shape>");
+        let scene = scene(&shape);
+        assert_eq!(scene.objects[0].mesh.normals[0].z < 0.0, turned, "{word}");
+    }
+    let wrong = read_text(
+        "mitsuba",
+        "<scene version='3.0.0'><shape type='cube'><boolean name='flip_normals' value='yes'/></shape></scene>",
+    );
+    assert!(wrong.unwrap_err().to_string().contains("'yes'"));
+}
+
+/// Before version 2 a shape with a medium and no material is an invisible boundary. [Mitsuba 0.6, 8.1] Since then it is grey.
+#[test]
+fn media_without_a_material_have_no_surface_before_version_2() {
+    let kinds = |version: &str, [a, s]: [&str; 2], names: &str| {
+        let medium = format!(
+            "<medium type='homogeneous' id='fog'><rgb name='{a}' value='2,1,.5'/><rgb name='{s}' value='1,1,3'/></medium>"
+        );
+        let own = "<shape type='sphere'><medium type='homogeneous' name='interior'/></shape>";
+        let by_id = "<shape type='cube'><ref name='interior' id='fog'/></shape>";
+        let with = "<bsdf type='dielectric' id='glass'/><shape type='sphere'><ref id='glass'/><ref name='interior' id='fog'/></shape>";
+        let text = format!("<scene version='{version}'>{medium}{own}{by_id}{with}{names}</scene>");
+        let scene = read_text("mitsuba", text).unwrap();
+        scene.objects.iter().map(|o| scene.materials[o.material].kind.clone()).collect::<Vec<_>>()
+    };
+    let old = ["sigmaA", "sigmaS"];
+    for version in ["0.5.0", "0.6.0"] {
+        assert_eq!(kinds(version, old, ""), ["interface", "interface", "dielectric"], "{version}");
+    }
+    assert_eq!(kinds("3.0.0", ["sigma_a", "sigma_s"], "")[..2], ["diffuse", "diffuse"]);
+}
+
+/// The lobes of [Burley 2012] as types of their own, and includes that name files beside themselves.
+#[test]
+fn scenes_for_teaching_are_read() {
+    let with = |kind: &str| {
+        let bsdf = format!(
+            "<bsdf type='{kind}'><rgb name='baseColor' value='.5,.25,.125'/><float name='roughness' value='.3'/>\
+             <float name='specularTransmission' value='.75'/></bsdf>"
+        );
+        let text = format!("<scene version='0.5.0'><shape type='sphere'>{bsdf}</shape></scene>");
+        let scene = read_text("mitsuba", text).unwrap();
+        scene.materials[scene.objects[0].material].clone()
+    };
+    let number = |kind: &str, key: &str| with(kind).number(key);
+    assert_eq!(number("disneybsdf", "transmission_weight"), Some(0.75));
+    assert_eq!(number("disneymetal", "base_metalness"), Some(1.0));
+    assert_eq!(number("disneyglass", "transmission_weight"), Some(1.0));
+    assert_eq!(number("disneydiffuse", "specular_ior"), Some(1.0));
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    let scene = |inside: &str| format!("<scene version='0.5.0'>{inside}</scene>");
+    for (name, text) in [
+        (
+            "main.xml",
+            scene("<include filename='parts/all.xml'/><shape type='sphere'><ref id='red'/></shape>"),
+        ),
+        (
+            "parts/all.xml",
+            scene(
+                "<include filename='red.xml'/><shape type='obj'><string name='filename' value='a.obj'/></shape>",
+            ),
+        ),
+        (
+            "parts/red.xml",
+            "<bsdf type='diffuse' id='red'><rgb name='reflectance' value='1,0,0'/></bsdf>".to_owned(),
+        ),
+        ("parts/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_owned()),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let read = bilux_formats::read(&folder.path().join("main.xml"), &Default::default()).unwrap();
+    assert_eq!(read.objects.len(), 2);
+}

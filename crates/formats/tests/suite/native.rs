@@ -698,3 +698,18 @@ fn grids_are_written_beside_the_scene() {
         }
     }
 }
+
+/// A file name where a texture may be: the message says how one is written, for colours, numbers and normals alike.
+#[test]
+fn a_bare_file_name_says_how_textures_are_written() {
+    for (kind, key, name) in [
+        ("diffuse", "reflectance", "wood.png"),
+        ("principled", "specular_roughness", "maps/rough.EXR"),
+        ("principled", "normal", "bumps.jpg"),
+    ] {
+        let text = format!("[[material]]\nname = \"a\"\nkind = \"{kind}\"\n{key} = \"{name}\"\n");
+        let message = refusal("toml", &text);
+        assert!(message.contains(&format!("{key} = {{ texture = \"{name}\" }}")), "{message}");
+        assert!(message.contains(":4:"), "{message}");
+    }
+}

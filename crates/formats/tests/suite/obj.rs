@@ -453,3 +453,43 @@ fn memory_is_bounded() {
         "{error}"
     );
 }
+
+/// Blender writes a specular level and a roughness, and says who it is: `Ks` 0.5 reflects 4% [Burley 2012], and `Ns` is 1000 or 900 times
+/// (1 - r)². Two materials, of which one is a metal; the same lines of other programs stay Phong's.
+#[test]
+fn specular_levels_of_blender_are_no_mirrors() {
+    let lines = "newmtl plain\nNs 250\nKa 1 1 1\nKd .2 .1 .05\nKs .5 .5 .5\nNi 1.45\nd 1\nillum 2\n\
+                 newmtl metal\nNs 40\nKa .75 .75 .75\nKd .8 .4 .2\nKs .25 .25 .25\nNi 1.45\nd .5\nillum 3\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl plain\nf 1 2 3\nusemtl metal\nf 1 3 2\n";
+    std::fs::write(&path, format!("mtllib a.mtl\n{face}")).unwrap();
+    let materials = |first: &str| {
+        std::fs::write(folder.path().join("a.mtl"), format!("{first}\n{lines}")).unwrap();
+        read(&path, &ReadOptions::default()).unwrap().materials
+    };
+    for (first, smooth) in
+        [("# Blender 4.1.0 MTL File: 'a.blend'", 1000.0f32), ("# Blender MTL File: 'a.blend'", 900.0)]
+    {
+        let [plain, metal] = &materials(first)[..2] else { panic!() };
+        let near = |spec: &Spec, key: &str, wanted: f32| {
+            let found = spec.number(key).unwrap();
+            assert!((found - wanted).abs() < 1e-5, "{first}, {key}: {found}, not {wanted}");
+        };
+        assert_eq!(
+            (&*plain.kind, plain.colour("base_color")),
+            ("principled", Some(Rgb::new(0.2, 0.1, 0.05)))
+        );
+        // 4% is an index of 1.5, and 2% one of 1.3294.
+        near(plain, "specular_ior", 1.5);
+        near(plain, "specular_roughness", 1.0 - (250.0 / smooth).sqrt());
+        assert_eq!(plain.number("base_metalness"), None);
+        near(metal, "specular_ior", 1.329_431_3);
+        near(metal, "specular_roughness", 1.0 - (40.0 / smooth).sqrt());
+        near(metal, "base_metalness", 0.75);
+        near(metal, "opacity", 0.5);
+    }
+    for first in ["# Exported by another program", "", "# not Blender"] {
+        assert_eq!(materials(first)[0].kind, "phong", "{first}");
+    }
+}

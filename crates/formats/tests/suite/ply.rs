@@ -218,3 +218,15 @@ fn faces_of_vertices_that_are_not_there_are_refused_in_every_form() {
         }
     }
 }
+
+/// Writers put comments after the header too; a line of one holds no number.
+#[test]
+fn comments_between_rows_are_no_numbers() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                property list uchar int vertex_indices\nend_header\ncomment 9 9 9\n0 0 0\ncomment a b\n4 0 0\n0 2 0\n\
+                obj_info 1\n3 0 1 2\ncomment end\n";
+    let scene = crate::read_text("ply", text).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!(mesh.bounds().max, bilux_math::Vec3::new(4.0, 2.0, 0.0));
+    assert_eq!((mesh.triangles.len(), crate::warnings(&scene)), (1, String::new()));
+}

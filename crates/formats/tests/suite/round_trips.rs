@@ -4,7 +4,7 @@
 use crate::shared_files::scenes;
 use bilux_formats::{ReadOptions, SCENE_FORMATS, WriteOptions, read, write};
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Axis, Mesh, Object, SceneBuilder, UpHint};
+use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -163,7 +163,7 @@ fn pair(attribute: &str) -> SceneBuilder {
 
 /// The corners of all triangles: where they are in metres with y up, and what else they have.
 fn all_corners(scene: &SceneBuilder, attribute: &str) -> (Vec<Vec3>, Vec<Vec3>) {
-    let is_print = scene.unit == 0.001 && scene.up == UpHint::Is(Axis::Z);
+    let is_print = scene.unit == 0.001;
     let in_metres = |p: Vec3| if is_print { Vec3::new(p.x, p.z, -p.y) * 0.001 } else { p };
     let (mut places, mut values) = (Vec::new(), Vec::new());
     for Object { mesh, motion, .. } in &scene.objects {

@@ -4,6 +4,7 @@ use crate::step_truth::{Measures, measures};
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read_bytes};
 use bilux_math::colour::srgb_decode;
+use bilux_math::transcendental::{cos_f64, sin_f64};
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::SceneBuilder;
 use std::f64::consts::PI;
@@ -169,12 +170,20 @@ fn parts_in_other_files_are_named() {
     let other = "#9001=DOCUMENT_FILE('HEAD.STP','','',#9002,'','');\n#9003=DOCUMENT_FILE('notes.pdf','','',#9002,'','');";
     let with = |text: &str, what: &str| text.replacen("DATA;", &format!("DATA;\n{what}"), 1);
     let empty = "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
-    assert!(refusal("step", with(empty, other)).contains("such as 'HEAD.STP'"));
+    assert!(refusal("step", with(empty, other)).contains("in other files ('HEAD.STP'), which"));
+    // By what is assigned to documents that have a number for a name. [CAx-IF, External References]
+    let assigned = "#9010=DOCUMENT_FILE('D-17','','',#9002,'','');\n\
+        #9011=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('left.stp',#1,(#9010),#2);\n\
+        #9012=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('right.step',#1,(#9010),#2);\n\
+        #9013=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('left.stp',#1,(#9010),#2);";
+    assert!(
+        refusal("step", with(empty, assigned)).contains("in other files ('left.stp', 'right.step'), which")
+    );
     assert!(!refusal("step", with(empty, "#1=DIRECTION('',(0.,0.,1.));")).contains("other files"));
     let cut = with(empty, other).replace("END-ISO-10303-21;", "");
     assert!(refusal("step", cut).contains("it was cut off"));
     let solid = seed("cube_hole.step");
-    assert!(warnings(&scene(&with(&solid, other))).contains("parts in other files, such as 'HEAD.STP'"));
+    assert!(warnings(&scene(&with(&solid, other))).contains("parts in other files ('HEAD.STP')"));
     assert_eq!(warnings(&scene(&solid)), "");
 }
 
@@ -221,4 +230,127 @@ fn hostile_files_end_soon_with_an_error() {
     assert!(error.contains("more than the 4194304 bytes"), "{error}");
     let circle = format!("{head}#1=STYLED_ITEM('',(#1),#1);\n#2=MANIFOLD_SOLID_BREP('',#2);\n{end}");
     assert!(refusal("step", circle).contains("no solid or surface"));
+}
+
+/// A torus of radii 30 and 8 about z in faces between circles: at these angles around the tube, or around the axis.
+fn torus(tube: &[f64], axis: &[f64]) -> String {
+    const RADII: [f64; 2] = [30.0, 8.0];
+    let mut lines = vec!["#5=TOROIDAL_SURFACE('',#4,30.,8.);".to_owned()];
+    let mut last = 100;
+    let mut add = |text: String, lines: &mut Vec<String>| {
+        last += 1;
+        lines.push(format!("#{last}={text};"));
+        last
+    };
+    let triple = |p: DVec3| format!("({:.12},{:.12},{:.12})", p.x, p.y, p.z);
+    // Closed edges: a circle about a direction, and where it begins.
+    let mut edges = Vec::new();
+    let mut circle = |centre: DVec3, normal: DVec3, start: DVec3, lines: &mut Vec<String>| {
+        let point = add(format!("CARTESIAN_POINT('',{})", triple(start)), lines);
+        let vertex = add(format!("VERTEX_POINT('',#{point})"), lines);
+        let middle = add(format!("CARTESIAN_POINT('',{})", triple(centre)), lines);
+        let up = add(format!("DIRECTION('',{})", triple(normal)), lines);
+        let x = add(format!("DIRECTION('',{})", triple((start - centre).normalize())), lines);
+        let place = add(format!("AXIS2_PLACEMENT_3D('',#{middle},#{up},#{x})"), lines);
+        let curve = add(format!("CIRCLE('',#{place},{:.12})", start.distance(centre)), lines);
+        add(format!("EDGE_CURVE('',#{vertex},#{vertex},#{curve},.T.)"), lines)
+    };
+    let at = |u: f64, v: f64| {
+        let across = RADII[0] + RADII[1] * cos_f64(v);
+        DVec3::new(across * cos_f64(u), across * sin_f64(u), RADII[1] * sin_f64(v))
+    };
+    for &v in tube {
+        edges.push(circle(DVec3::Z * RADII[1] * sin_f64(v), DVec3::Z, at(0.3, v), &mut lines));
+    }
+    for &u in axis {
+        let centre = DVec3::new(cos_f64(u), sin_f64(u), 0.0) * RADII[0];
+        edges.push(circle(centre, DVec3::new(sin_f64(u), -cos_f64(u), 0.0), at(u, 0.4), &mut lines));
+    }
+    let faces: Vec<String> = (0..edges.len())
+        .map(|i| {
+            let mut bound = |edge: usize, way: &str, lines: &mut Vec<String>| {
+                let oriented = add(format!("ORIENTED_EDGE('',*,*,#{edge},{way})"), lines);
+                let around = add(format!("EDGE_LOOP('',(#{oriented}))"), lines);
+                add(format!("FACE_BOUND('',#{around},.T.)"), lines)
+            };
+            // The face is on the left: above a line that goes around the axis, and before one that goes around the tube.
+            let [low, high] = if axis.is_empty() { [".T.", ".F."] } else { [".F.", ".T."] };
+            let low = bound(edges[i], low, &mut lines);
+            let high = bound(edges[(i + 1) % edges.len()], high, &mut lines);
+            format!("#{}", add(format!("ADVANCED_FACE('',(#{low},#{high}),#5,.T.)"), &mut lines))
+        })
+        .collect();
+    let shell = add(format!("CLOSED_SHELL('',({}))", faces.join(",")), &mut lines);
+    let solid = add(format!("MANIFOLD_SOLID_BREP('',#{shell})"), &mut lines);
+    in_file(&lines.join("\n"), solid)
+}
+
+/// A file with a solid, in millimetres; #4 is a placement at the origin with z up.
+fn in_file(lines: &str, solid: usize) -> String {
+    format!(
+        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('a','2026-01-01T00:00:00',(''),(''),'','Bilux tests','');\n\
+         FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n#1=CARTESIAN_POINT('',(0.,0.,0.));\n#2=DIRECTION('',(0.,0.,1.));\n\
+         #3=DIRECTION('',(1.,0.,0.));\n#4=AXIS2_PLACEMENT_3D('',#1,#2,#3);\n\
+         #10=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n#11=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));\n\
+         #12=(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT());\n\
+         #13=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#10,#11,#12))REPRESENTATION_CONTEXT('','3D'));\n{lines}\n\
+         #20=APPLICATION_CONTEXT('design');\n#21=PRODUCT_CONTEXT('',#20,'mechanical');\n#22=PRODUCT('a','a','',(#21));\n\
+         #23=PRODUCT_DEFINITION_FORMATION('','',#22);\n#24=PRODUCT_DEFINITION_CONTEXT('part definition',#20,'design');\n\
+         #25=PRODUCT_DEFINITION('design','',#23,#24);\n#26=PRODUCT_DEFINITION_SHAPE('','',#25);\n\
+         #27=ADVANCED_BREP_SHAPE_REPRESENTATION('',(#4,#{solid}),#13);\n#28=SHAPE_DEFINITION_REPRESENTATION(#26,#27);\nENDSEC;\n\
+         END-ISO-10303-21;\n"
+    )
+}
+
+/// A torus has the area 4 π² R r and the volume 2 π² R r², however it is divided into faces: by two circles along the tube, wherever
+/// they are, across it, and by several.
+#[test]
+fn a_torus_has_its_area_however_it_is_divided() {
+    let (area, volume) = (4.0 * PI * PI * 30.0 * 8.0, 2.0 * PI * PI * 30.0 * 64.0);
+    for (tube, axis) in [
+        (&[0.0, PI][..], &[][..]),
+        (&[0.5 * PI, 1.5 * PI], &[]),
+        (&[0.7, 2.9], &[]),
+        (&[0.2, 2.0, 4.4], &[]),
+        (&[], &[0.0, PI]),
+        (&[], &[0.9, 5.1]),
+        (&[], &[0.1, 1.3, 2.2, 4.0]),
+    ] {
+        let scene = scene(&torus(tube, axis));
+        assert_eq!(warnings(&scene), "", "{tube:?} {axis:?}");
+        let found = measures(&scene);
+        let off = [found.area / area - 1.0, found.volume / volume - 1.0];
+        assert!(off.iter().all(|off| off.abs() < 0.01), "{tube:?} {axis:?}: {off:?}");
+        assert_eq!(open_edges(&scene), 0, "{tube:?} {axis:?}");
+    }
+}
+
+/// What is invisible is every item of a list, not its first alone: of four solids the second and the fourth are left.
+#[test]
+fn all_items_of_a_list_of_invisible_ones_are_hidden() {
+    let text = seed("tessellated.step");
+    let solids: String = (0..4)
+        .map(|i| {
+            let [list, face, solid] = [30, 40, 50].map(|first| first + i);
+            let x = 10 * i;
+            format!(
+                "#{list}=COORDINATES_LIST('',4,(({x}.,0.,0.),({}.,0.,0.),({x}.,1.,0.),({x}.,0.,1.)));\n\
+                 #{face}=TRIANGULATED_FACE('',#{list},4,(),$,(),((1,3,2),(1,2,4),(2,3,4),(3,1,4)));\n#{solid}=TESSELLATED_SOLID('',(#{face}),$);\n",
+                x + 1
+            )
+        })
+        .collect();
+    let with = |hidden: &str| {
+        let text = text.replace(
+            "#20=TESSELLATED_SHAPE_REPRESENTATION('',(#19,#11),#4);",
+            "#20=TESSELLATED_SHAPE_REPRESENTATION('',(#19,#50,#51,#52,#53),#4);",
+        );
+        scene(&text.replacen("DATA;", &format!("DATA;\n{solids}{hidden}"), 1))
+    };
+    let lefts = |scene: &SceneBuilder| -> Vec<f32> {
+        scene.objects.iter().map(|object| object.mesh.bounds().min.x).collect()
+    };
+    assert_eq!(lefts(&with("")), [0.0, 10.0, 20.0, 30.0]);
+    let styled = "#60=STYLED_ITEM('',(),#50);\n#61=STYLED_ITEM('',(),#52);\n#62=INVISIBILITY((#60,#61));\n";
+    assert_eq!(lefts(&with(styled)), [10.0, 30.0]);
 }

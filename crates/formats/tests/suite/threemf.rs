@@ -49,6 +49,16 @@ fn file_with(model: &str, more: &[(&str, &[u8])]) -> Result<SceneBuilder, Format
     read_bytes(&package(&[&own, more].concat()), "3mf", None, "x.3mf", &ReadOptions::default())
 }
 
+/// A package in millimetres that prints its first object.
+pub(crate) fn printed(resources: &str) -> Vec<u8> {
+    let model = model(resources, &items(&[1]));
+    package(&[
+        ("[Content_Types].xml", TYPES.as_bytes()),
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("3D/a.model", model.as_bytes()),
+    ])
+}
+
 fn file(resources: &str, build: &str) -> Result<SceneBuilder, FormatError> {
     file_with(&model(resources, build), &[])
 }
@@ -394,4 +404,34 @@ fn a_file_in_utf_16_is_read() {
     ];
     let scene = read_bytes(&package(&files), "", None, "upload", &ReadOptions::default()).unwrap();
     assert_eq!(scene.objects.len(), 1, "recognised by its first bytes, too");
+}
+
+/// What slicers read though the specification forbids it: drawn, and said. A tetrahedron of unit legs each time.
+#[test]
+fn what_slicers_read_is_drawn_with_a_warning() {
+    let whole = model(&object(1, ""), &items(&[1]));
+    let types = ("[Content_Types].xml", TYPES.as_bytes());
+    let relations = ("_rels/.rels", RELATIONSHIPS.as_bytes());
+    let read = |files: &[(&str, &[u8])]| {
+        let scene = read_bytes(&package(files), "3mf", None, "x.3mf", &ReadOptions::default()).unwrap();
+        assert_eq!(scene.bounds(0.0).max, Vec3::ONE);
+        (scene.objects.len(), warnings(&scene))
+    };
+    let (count, said) = read(&[relations, ("3D/a.model", whole.as_bytes())]);
+    assert!(count == 1 && said.contains("has no '[Content_Types].xml'"), "{said}");
+    let (count, said) = read(&[types, ("3D/3dmodel.model", whole.as_bytes())]);
+    assert!(count == 1 && said.contains("no relationship names the part"), "{said}");
+    let zero = model(&object(0, ""), &items(&[0]));
+    let (count, said) = read(&[types, relations, ("3D/a.model", zero.as_bytes())]);
+    assert!(count == 1 && said.contains("an id is 0"), "{said}");
+    let draft = whole.replace("core/2015/02", "2013/01");
+    let (count, said) = read(&[types, relations, ("3D/a.model", draft.as_bytes())]);
+    assert!(count == 1 && said.contains("the draft of 2013"), "{said}");
+    // Two parts beside the main one, without a build of their own. [3MF Production 1.1]
+    let build = r#"<item objectid="1" p:path="/3D/b.model"/><item objectid="1" p:path="/3D/c.model"/>"#;
+    let main = model("", build);
+    let part = whole.replace("<build><item objectid=\"1\"/></build>", "");
+    let parts = [("3D/b.model", part.as_bytes()), ("3D/c.model", part.as_bytes())];
+    let (count, said) = read(&[types, relations, ("3D/a.model", main.as_bytes()), parts[0], parts[1]]);
+    assert!(count == 2 && said.contains("has no element 'build'"), "{said}");
 }

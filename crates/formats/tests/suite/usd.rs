@@ -490,3 +490,53 @@ fn values_of_faces_and_corners_stay_with_their_faces_on_smooth_surfaces() {
         assert!((reach - least).abs() < 1e-6 || rule == "none" && reach > least, "{rule}: {reach}");
     }
 }
+
+/// A material bound for previews alone is the only one there is; one for all purposes is better, one for full pictures best.
+#[test]
+fn a_binding_for_previews_is_better_than_none() {
+    let material = |name: &str, red: f32| {
+        format!(
+            "def Material \"{name}\"\n{{\n    token outputs:surface.connect = </{name}/s.outputs:surface>\n    def Shader \"s\"\n    {{\n        \
+             uniform token info:id = \"UsdPreviewSurface\"\n        color3f inputs:diffuseColor = ({red}, 0, 0)\n        token outputs:surface\n    }}\n}}\n"
+        )
+    };
+    let bound = |bindings: &str| {
+        let mesh = "int[] faceVertexCounts = [3]\n    int[] faceVertexIndices = [0, 1, 2]\n    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]";
+        let scene = text(&format!(
+            "{}{}{}def Mesh \"m\" (\n    prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{{\n    {mesh}\n{bindings}}}\n",
+            material("a", 0.25),
+            material("b", 0.5),
+            material("c", 0.75)
+        ));
+        let object = &scene.objects[0];
+        scene.materials[object.material].colour("base_color").unwrap().r
+    };
+    let to = |purpose: &str, name: &str| format!("    rel material:binding{purpose} = </{name}>\n");
+    assert_eq!(bound(&to(":preview", "a")), 0.25);
+    assert_eq!(bound(&(to(":preview", "a") + &to("", "b"))), 0.5);
+    assert_eq!(bound(&(to(":preview", "a") + &to("", "b") + &to(":full", "c"))), 0.75);
+}
+
+/// Sublayers with other time codes in a second than the layer above them, and than each other: each is scaled by its own, and a
+/// sublayer of one by both. [OpenUSD, SdfLayerOffset]
+#[test]
+fn sublayers_keep_their_own_time_codes() {
+    let ball = |name: &str| {
+        format!("def Sphere \"{name}\" {{ double radius.timeSamples = {{ 0: 0, 1000: 1000 }} }}")
+    };
+    let layer =
+        |rate: u32, name: &str, more: &str| format!("(timeCodesPerSecond = {rate}{more})\n{}", ball(name));
+    let files = [
+        ("a.usda", "(startTimeCode = 10 timeCodesPerSecond = 24 subLayers = [@b.usda@, @c.usda@ (offset = 4; scale = 2)])".to_owned()),
+        ("b.usda", layer(48, "b", "")),
+        ("c.usda", layer(12, "c", " subLayers = [@d.usda@]")),
+        ("d.usda", layer(60, "d", "")),
+    ];
+    let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let scene = composed(&files);
+    let mut radii: Vec<(&str, f32)> =
+        widths(&scene).into_iter().map(|(name, width)| (name, width / 2.0)).collect();
+    radii.sort_by_key(|(name, _)| *name);
+    // At 10 of 24: 20 of 48; 10 = 2 (24/12) t + 4, so 1.5 of 12; and five times that of 60.
+    assert_eq!(radii, [("b", 20.0), ("c", 1.5), ("d", 7.5)]);
+}

@@ -108,3 +108,56 @@ fn documents_that_make_no_sense_are_left_out_or_end() {
     let entity = cube("<!DOCTYPE x [<!ENTITY a \"b\">]>");
     assert!(warnings(&entity).contains("a layer is left out"), "{}", warnings(&entity));
 }
+
+/// Arnold's shaders as its exporters write them into USD: the same graph by its own names, two unequal inputs each.
+#[test]
+fn graphs_of_arnold_come_down_to_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.ppm"), "P3 2 1 255 255 0 128 0 255 64").unwrap();
+    let shader = |name: &str, id: &str, inputs: &str| {
+        format!(
+            "    def Shader \"{name}\"\n    {{\n        uniform token info:id = \"arnold:{id}\"\n{inputs}        token outputs:out\n    }}\n"
+        )
+    };
+    let shaders = [
+        shader(
+            "surface",
+            "standard_surface",
+            "        float inputs:base = 0.5\n        color3f inputs:base_color.connect = </M/tint.outputs:out>\n        \
+             float inputs:metalness.connect = </M/blend.outputs:out>\n        float inputs:specular_roughness = 0.375\n",
+        ),
+        shader(
+            "tint",
+            "multiply",
+            "        color3f inputs:input1.connect = </M/picture.outputs:out>\n        color3f inputs:input2 = (0.5, 1, 0.25)\n",
+        ),
+        shader(
+            "picture",
+            "image",
+            "        string inputs:filename = \"p.ppm\"\n        string inputs:swrap = \"clamp\"\n",
+        ),
+        shader(
+            "blend",
+            "mix_rgba",
+            "        color3f inputs:input1 = (0.25, 0.25, 0.25)\n        color3f inputs:input2.connect = </M/flat.outputs:out>\n        float inputs:mix = 0.75\n",
+        ),
+        shader("flat", "flat", "        color3f inputs:color = (0.5, 0.5, 0.5)\n"),
+    ];
+    let text = format!(
+        "#usda 1.0\ndef Material \"M\"\n{{\n    token outputs:arnold:surface.connect = </M/surface.outputs:out>\n{}}}\n\
+         def Cube \"c\" {{ rel material:binding = </M> }}\n",
+        shaders.concat()
+    );
+    let path = folder.path().join("a.usda");
+    std::fs::write(&path, &text).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    assert_eq!(warnings(&scene), "");
+    let picture = texture(&scene, "base_color");
+    assert_eq!(picture.factor.to_array(), [0.25, 0.5, 0.125]);
+    assert_eq!(picture.wrap, [bilux_scene::texture::Wrap::Clamp, bilux_scene::texture::Wrap::Repeat]);
+    assert_eq!((number(&scene, "base_metalness"), number(&scene, "specular_roughness")), (0.4375, 0.375));
+    // What is not read is named.
+    std::fs::write(&path, text.replace("arnold:multiply", "arnold:cell_noise")).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    assert!(warnings(&scene).contains("cell_noise"), "{}", warnings(&scene));
+}

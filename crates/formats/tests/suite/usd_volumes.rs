@@ -16,7 +16,7 @@ fn read_at(time: f32, text: &str) -> SceneBuilder {
     let folder = tempfile::tempdir().unwrap();
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/scene_vdb");
     for (from, to) in
-        [("blosc.vdb", "ball.vdb"), ("halves_two_grids.vdb", "fire.vdb"), ("broken_level_set.vdb", "set.vdb")]
+        [("blosc.vdb", "ball.vdb"), ("halves_two_grids.vdb", "fire.vdb"), ("level_set.vdb", "set.vdb")]
     {
         std::fs::copy(corpus.join(from), folder.path().join(to)).unwrap();
     }

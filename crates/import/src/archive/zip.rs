@@ -40,7 +40,21 @@ pub(super) fn members(data: &Data) -> io::Result<Vec<Member>> {
             checksum: Some(file.crc32()),
         });
     }
+    check_apart(&members)?;
     Ok(members)
+}
+
+/// Refuses members that share bytes: a few of them could stand for more than any disk holds. [Fifield 2019]
+fn check_apart(members: &[Member]) -> io::Result<()> {
+    let mut places: Vec<(u64, u64, &str)> =
+        members.iter().map(|m| (m.start, m.start.saturating_add(m.stored), &*m.name)).collect();
+    places.sort_unstable();
+    match places.windows(2).find(|pair| pair[1].0 < pair[0].1 && pair[1].1 > pair[1].0) {
+        Some(pair) => {
+            Err(io::Error::other(format!("its members '{}' and '{}' overlap", pair[0].2, pair[1].2)))
+        }
+        None => Ok(()),
+    }
 }
 
 fn reason(error: ZipError) -> io::Error {

@@ -6,12 +6,14 @@ mod model;
 mod npy;
 mod numbers;
 mod sparse;
+mod surface;
 mod vol;
 
 pub use bytes::Bytes;
 pub use file::file_of;
 pub use model::{ENTRY, box_of};
-pub use sparse::{LeafMask, LeafValues, Placed, Sparse};
+pub use sparse::{LeafMask, Placed, ReadLeaf, Sparse};
+pub use surface::LeafValues;
 
 use crate::budget::Budget;
 use crate::reading::{Reading, Source};
@@ -20,7 +22,7 @@ use crate::vdb;
 use crate::{FormatError, ReadOptions};
 use bilux_math::{Aabb, Transform, Vec3};
 use bilux_scene::media::{Faults, Grid, MAX_SIDE};
-use bilux_scene::{Span, UpHint};
+use bilux_scene::{Mesh, Span, UpHint};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,7 +38,12 @@ pub struct GridFormatEntry {
     pub list: fn(&Source) -> Result<Catalogue, FormatError>,
     /// Reads a grid of the catalogue.
     pub read: fn(&Source, &Listed, &mut Budget) -> Result<Volume, FormatError>,
+    /// Reads the surface of a level set; `None` for formats without them.
+    pub surface: Option<ReadSurface>,
 }
+
+/// Reads the surface of a level set of the catalogue; `None` if it has none.
+pub type ReadSurface = fn(&Source, &Listed, &mut Budget) -> Result<Option<Mesh>, FormatError>;
 
 /// The grids of a file.
 #[derive(Debug)]
@@ -55,6 +62,8 @@ pub struct Listed {
     pub index: usize,
     /// Why it cannot be a density, as the rest of a sentence about it.
     pub refused: Option<String>,
+    /// True for distances from a surface.
+    pub is_level_set: bool,
 }
 
 /// A grid that has been read.

@@ -1,10 +1,11 @@
 //! A file of grids as a model: white smoke in the box of its voxels.
 
-use super::{GRID_FORMATS, Listed, Volume, format_of};
+use super::{Catalogue, GRID_FORMATS, Listed, ReadSurface, Volume, format_of};
 use crate::FormatError;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::oddities::Oddities;
-use crate::reading::{Reading, Source};
+use crate::reading::{Reading, Source, plain_material};
+use crate::sink::Sink;
 use crate::text::whole_file;
 use bilux_math::registry::Entry;
 use bilux_math::{Aabb, Transform, Vec3};
@@ -39,7 +40,13 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     let catalogue = (format.list)(source)?;
     let name: &str = source.name;
     let at = || whole_file(source.name);
-    let listed = catalogue.named("", name).map_err(|message| FormatError::malformed(message, at()))?;
+    let listed = match (catalogue.named("", name), format.surface) {
+        (Ok(listed), _) => listed,
+        (Err(_), Some(surface)) if catalogue.grids.iter().any(|grid| grid.is_level_set) => {
+            return surfaces(reading, source, &catalogue, surface);
+        }
+        (Err(message), _) => return Err(FormatError::malformed(message, at())),
+    };
     let volume = reading.volume(format, source, listed)?;
     let complaints = volume.complaints();
     let Volume { grid, bounds, .. } = volume;
@@ -74,6 +81,37 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     }
     oddities.into_warnings(&mut scene);
     Ok(scene)
+}
+
+/// The surfaces of all level sets of a file, which has nothing that can be a density.
+fn surfaces(
+    reading: &mut Reading,
+    source: &Source,
+    catalogue: &Catalogue,
+    surface: ReadSurface,
+) -> Result<SceneBuilder, FormatError> {
+    let at = || whole_file(source.name);
+    let mut sink = Sink::for_bare_files();
+    let material = sink.scene.add_material(plain_material(false, false));
+    for listed in &catalogue.grids {
+        let found = if listed.is_level_set { surface(source, listed, &mut reading.budget)? } else { None };
+        let Some(mesh) = found else {
+            sink.oddities.not_shown(&format!("the grid '{}'", listed.name), at);
+            continue;
+        };
+        let what = "a level set is shown as its surface, by triangles as large as its voxels";
+        sink.oddities.remark(what, at);
+        let name = if listed.name.is_empty() { source.stem() } else { listed.name.clone() };
+        sink.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+    }
+    if sink.scene.objects.is_empty() {
+        let message = "no distance in it changes its sign: there is no surface to show";
+        return Err(FormatError::malformed(message, at()));
+    }
+    if let Some(up) = catalogue.up {
+        sink.scene.up = up;
+    }
+    Ok(sink.finish())
 }
 
 /// The largest integral of a grid along straight ways that are parallel to an axis of its voxels and as wide as a block, per unit of

@@ -12,7 +12,7 @@ use bilux_scene::media::Grid;
 pub(super) const SIGNATURE: &[u8] = b"\x93NUMPY";
 
 pub(super) const FORMAT: GridFormatEntry =
-    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read, surface: None };
 
 /// Number types, their bytes, and how they are read.
 const TYPES: &[(&str, usize, Decode)] = &[
@@ -25,7 +25,10 @@ const TYPES: &[(&str, usize, Decode)] = &[
 ];
 
 fn list(_: &Source) -> Result<Catalogue, FormatError> {
-    Ok(Catalogue { grids: vec![Listed { name: String::new(), index: 0, refused: None }], up: None })
+    Ok(Catalogue {
+        grids: vec![Listed { name: String::new(), index: 0, refused: None, is_level_set: false }],
+        up: None,
+    })
 }
 
 fn read(source: &Source, _: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {

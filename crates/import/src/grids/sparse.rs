@@ -2,21 +2,24 @@
 //! [Museth 2013]
 
 use super::Volume;
+use super::surface::{Distances, LeafValues};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Source;
 use crate::text::whole_file;
 use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
+use bilux_scene::Mesh;
 use bilux_scene::media::{BLOCK, BLOCK_VOXELS, Block, Faults, Grid, MAX_SIDE};
+use std::collections::BTreeMap;
 
 /// Voxels along the side of a leaf: that of a block.
 const SIDE: i64 = BLOCK as i64;
 
-/// The voxels of a leaf with x varying slowest, as in these formats.
-pub type LeafValues = [f32; BLOCK_VOXELS];
-
 /// Which voxels of a leaf are active, one bit each, x varying slowest.
 pub type LeafMask = [u8; BLOCK_VOXELS / 8];
+
+/// Reads the values of a leaf that is at some byte of the file.
+pub type ReadLeaf<'a> = dyn FnMut(usize, &mut LeafValues) -> Result<(), FormatError> + 'a;
 
 /// What has been found in a tree.
 #[derive(Debug)]
@@ -50,6 +53,9 @@ pub struct Placed<'a> {
     /// From the indices of voxels, which are at their centres, to the space of the file.
     pub map: DMat4,
 }
+
+/// What a vertex of a surface takes while it is made, with the table in which its neighbours find it.
+const SURFACE_BYTES: usize = 128;
 
 /// A tree with fewer blocks in all is not refused for its extent: 1290 voxels along each side.
 const FEW_BLOCKS: u64 = 1 << 22;
@@ -132,7 +138,7 @@ impl Sparse {
         placed: &Placed,
         file: &Source,
         budget: &mut Budget,
-        mut read: impl FnMut(usize, &mut LeafValues) -> Result<(), FormatError>,
+        read: &mut ReadLeaf,
     ) -> Result<Option<Volume>, FormatError> {
         if self.parts.is_empty() {
             return Ok(None);
@@ -179,6 +185,31 @@ impl Sparse {
             Some(error) => Err(error),
             None => Ok(Some(Volume { grid, bounds, faults, background: 0.0, is_mean: false })),
         }
+    }
+
+    /// The surface where the values are 0, of a level set; `read` gives the values of a leaf. `None` if there is none.
+    pub fn into_surface(
+        self,
+        placed: &Placed,
+        file: &Source,
+        budget: &mut Budget,
+        read: &mut ReadLeaf,
+    ) -> Result<Option<Mesh>, FormatError> {
+        let mut blocks = BTreeMap::new();
+        for Part { origin, content } in self.parts {
+            // Larger cubes of one value are far from the surface.
+            let Content::Leaf(at) = content else { continue };
+            budget.take_bytes(2 * size_of::<LeafValues>() as u64, file.name)?;
+            let mut values = Box::new([0.0; BLOCK_VOXELS]);
+            read(at, &mut values)?;
+            blocks.insert(origin.map(|x| x.div_euclid(SIDE)), values);
+        }
+        let count = blocks.len();
+        let mesh = Distances { blocks }.surface(&placed.map);
+        // The surface passes through a block about as a plane does.
+        budget.take_bytes((count * BLOCK * BLOCK * SURFACE_BYTES) as u64, file.name)?;
+        budget.take_bytes(mesh.size(), file.name)?;
+        Ok((!mesh.triangles.is_empty()).then(|| Mesh { name: placed.name.to_owned(), ..mesh }))
     }
 
     /// The first voxel of the lattice of blocks, and how many voxels it has: all with values and one around them.

@@ -14,7 +14,7 @@ pub(super) const SIGNATURE: &[u8] = b"VOL\x03";
 const TYPES: [(usize, Decode); 3] = [(4, numbers::floats), (2, numbers::halves), (1, numbers::bytes_of_one)];
 
 pub(super) const FORMAT: GridFormatEntry =
-    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read };
+    GridFormatEntry { sniff: |bytes| bytes.starts_with(SIGNATURE), list, read, surface: None };
 
 fn list(source: &Source) -> Result<Catalogue, FormatError> {
     let mut bytes = Bytes::new(source.bytes, source.name);
@@ -22,9 +22,14 @@ fn list(source: &Source) -> Result<Catalogue, FormatError> {
     let channels = bytes.i32()?;
     let refused = (channels != 1 && channels != 3)
         .then(|| format!("has {channels} channels, but a density is one number for each voxel"));
-    let mut grids = vec![Listed { name: String::new(), index: 0, refused }];
+    let mut grids = vec![Listed { name: String::new(), index: 0, refused, is_level_set: false }];
     if channels == 3 {
-        let name = |(index, name): (usize, &&str)| Listed { name: (*name).into(), index, refused: None };
+        let name = |(index, name): (usize, &&str)| Listed {
+            name: (*name).into(),
+            index,
+            refused: None,
+            is_level_set: false,
+        };
         grids = ["mean"].iter().chain(&COLOURS).enumerate().map(name).collect();
     }
     Ok(Catalogue { grids, up: None })

@@ -115,7 +115,7 @@ pub(super) fn list(source: &Source) -> Result<Catalogue, FormatError> {
     let mut grids = Vec::new();
     for (index, descriptor) in descriptors(&mut bytes)?.into_iter().enumerate() {
         let kind = descriptor.kind.trim_end_matches(HALVES);
-        let mut refused = None;
+        let (mut refused, mut is_level_set) = (None, false);
         if TREES.iter().all(|(known, _)| *known != kind) {
             let kind = kind.trim_start_matches("Tree_").split('_').next().unwrap_or_default();
             refused = Some(format!("has the type '{kind}', but a density is one number for each voxel"));
@@ -125,13 +125,14 @@ pub(super) fn list(source: &Source) -> Result<Catalogue, FormatError> {
         own.u32()?;
         metadata(&mut own, |name, value| {
             if name == "class" && value == b"level set" {
+                is_level_set = refused.is_none();
                 refused = Some(LEVEL_SET.to_owned());
             }
             if name == "creator" && value.to_ascii_lowercase().starts_with(b"houdini") {
                 up = Some(UpHint::Is(Axis::Y));
             }
         })?;
-        grids.push(Listed { name: shown(&descriptor.unique).to_owned(), index, refused });
+        grids.push(Listed { name: shown(&descriptor.unique).to_owned(), index, refused, is_level_set });
     }
     Ok(Catalogue { grids, up })
 }

@@ -14,7 +14,12 @@ pub const OPEN: GridFormatEntry = GridFormatEntry {
     sniff: |bytes| bytes.starts_with(&archive::SIGNATURE),
     list: archive::list,
     read: tree::read,
+    surface: Some(tree::surface),
 };
 
-pub const NANO: GridFormatEntry =
-    GridFormatEntry { sniff: nano::is_nano, list: nano::list, read: nano::read };
+pub const NANO: GridFormatEntry = GridFormatEntry {
+    sniff: nano::is_nano,
+    list: nano::list,
+    read: nano::read,
+    surface: Some(nano::surface),
+};

@@ -5,9 +5,10 @@ use super::nano_tree::{GRID, Numbers, Tree, leaf};
 use super::packing::{unblosc, unzip};
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::grids::{Bytes, Catalogue, LeafValues, Listed, Placed, Volume};
+use crate::grids::{Bytes, Catalogue, LeafValues, Listed, Placed, ReadLeaf, Sparse, Volume};
 use crate::reading::Source;
 use bilux_math::{DMat3, DMat4, DVec3};
+use bilux_scene::Mesh;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -138,12 +139,45 @@ pub(super) fn list(source: &Source) -> Result<Catalogue, FormatError> {
         } else {
             (entry.class == IS_LEVEL_SET).then(|| LEVEL_SET.to_owned())
         };
-        Listed { name: entry.name, index, refused }
+        let is_level_set = entry.class == IS_LEVEL_SET && Numbers::of_type(entry.kind).is_some();
+        Listed { name: entry.name, index, refused, is_level_set }
     };
     Ok(Catalogue { grids: entries(source)?.into_iter().enumerate().map(listed).collect(), up: None })
 }
 
 pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
+    with_tree(source, listed, budget, |Found { sparse, placed, background, bytes }, budget, leaf| {
+        let volume = sparse.into_volume(&placed, source, budget, leaf)?;
+        let volume = volume.ok_or_else(|| bytes.fail("it has no voxels with values"))?;
+        Ok(Volume { background, ..volume })
+    })
+}
+
+pub(super) fn surface(
+    source: &Source,
+    listed: &Listed,
+    budget: &mut Budget,
+) -> Result<Option<Mesh>, FormatError> {
+    with_tree(source, listed, budget, |found, budget, leaf| {
+        found.sparse.into_surface(&found.placed, source, budget, leaf)
+    })
+}
+
+/// What is in a grid.
+struct Found<'a> {
+    sparse: Sparse,
+    placed: Placed<'a>,
+    background: f32,
+    bytes: Bytes<'a>,
+}
+
+/// Reads the tree of a grid, and makes something of it.
+fn with_tree<T>(
+    source: &Source,
+    listed: &Listed,
+    budget: &mut Budget,
+    make: impl FnOnce(Found, &mut Budget, &mut ReadLeaf) -> Result<T, FormatError>,
+) -> Result<T, FormatError> {
     let entry = &entries(source)?[listed.index];
     let unpacked = unpacked(source, entry, budget)?;
     let name: Arc<str> = format!("{}, in the grid '{}'", source.name, entry.name).into();
@@ -162,11 +196,8 @@ pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Res
     let map = DMat4::from_translation(DVec3::from(bytes.f64s::<3>()?)) * DMat4::from_mat3(matrix);
     let placed = Placed { name: &listed.name, map };
     let (sparse, background) = Tree::follow(bytes, numbers, source, budget)?;
-    let values = |at: usize, values: &mut LeafValues| leaf(bytes, at, numbers, background, values);
-    let volume = sparse.into_volume(&placed, source, budget, values)?;
-    let mut volume = volume.ok_or_else(|| bytes.fail("it has no voxels with values"))?;
-    volume.background = background;
-    Ok(volume)
+    let mut values = |at: usize, values: &mut LeafValues| leaf(bytes, at, numbers, background, values);
+    make(Found { sparse, placed, background, bytes }, budget, &mut values)
 }
 
 /// The bytes of a grid.

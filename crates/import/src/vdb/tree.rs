@@ -6,8 +6,9 @@ use super::maps;
 use super::packing::{unblosc, unzip};
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::grids::{Bytes, LeafMask, LeafValues, Listed, Placed, Sparse, Volume};
+use crate::grids::{Bytes, LeafMask, LeafValues, Listed, Placed, ReadLeaf, Sparse, Volume};
 use crate::reading::Source;
+use bilux_scene::Mesh;
 use bilux_scene::media::from_binary16;
 
 /// The bits of a grid's compression.
@@ -31,6 +32,40 @@ struct Encoding {
 }
 
 pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
+    with_tree(source, listed, budget, |Found { sparse, placed, background }, budget, leaf| {
+        let volume = sparse.into_volume(&placed, source, budget, leaf)?;
+        let volume = volume.ok_or_else(|| {
+            let message = format!("the grid '{}' has no voxels with values", listed.name);
+            Bytes::new(source.bytes, source.name).fail(message)
+        })?;
+        Ok(Volume { background, ..volume })
+    })
+}
+
+pub(super) fn surface(
+    source: &Source,
+    listed: &Listed,
+    budget: &mut Budget,
+) -> Result<Option<Mesh>, FormatError> {
+    with_tree(source, listed, budget, |found, budget, leaf| {
+        found.sparse.into_surface(&found.placed, source, budget, leaf)
+    })
+}
+
+/// What is in a grid.
+struct Found<'a> {
+    sparse: Sparse,
+    placed: Placed<'a>,
+    background: f32,
+}
+
+/// Reads the tree of a grid, and makes something of it.
+fn with_tree<T>(
+    source: &Source,
+    listed: &Listed,
+    budget: &mut Budget,
+    make: impl FnOnce(Found, &mut Budget, &mut ReadLeaf) -> Result<T, FormatError>,
+) -> Result<T, FormatError> {
     let found = find(source, listed.index)?;
     let mut bytes = Bytes::new(source.bytes, source.name);
     let (_, map) = before_tree(&mut bytes, found.own)?;
@@ -49,12 +84,8 @@ pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Res
         sparse.leaf(origin, mask, at, source, budget)?;
     }
     let placed = Placed { name: &listed.name, map };
-    let leaf = |at: usize, values: &mut LeafValues| leaf(bytes, at, &encoding, values);
-    let volume = sparse.into_volume(&placed, source, budget, leaf)?;
-    let mut volume =
-        volume.ok_or_else(|| bytes.fail(format!("the grid '{}' has no voxels with values", listed.name)))?;
-    volume.background = encoding.background;
-    Ok(volume)
+    let mut leaf = |at: usize, values: &mut LeafValues| leaf(bytes, at, &encoding, values);
+    make(Found { sparse, placed, background: encoding.background }, budget, &mut leaf)
 }
 
 /// Goes to where the tree of a grid begins; what comes before is its compression and its map.

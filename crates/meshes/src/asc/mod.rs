@@ -3,7 +3,8 @@
 mod read;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_import::text::Cursor;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
@@ -28,7 +29,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
 /// True if a line that begins with a word precedes three lines of numbers only, at least 8 each.

@@ -112,11 +112,16 @@ impl ScanPoints {
 fn colour(point: &Point, has_colours: bool) -> Rgb {
     match (&point.color, point.intensity) {
         (Some(colour), _) => {
-            Rgb::new(colour.red, colour.green, colour.blue).map(|c| srgb_decode(c.clamp(0.0, 1.0)))
+            Rgb::new(colour.red, colour.green, colour.blue).map(|c| srgb_decode(in_range(c, 1.0)))
         }
-        (None, Some(part)) if !has_colours => Rgb::grey(srgb_decode(0.15 + 0.8 * part.clamp(0.0, 1.0))),
+        (None, Some(part)) if !has_colours => Rgb::grey(srgb_decode(0.15 + 0.8 * in_range(part, 0.5))),
         _ => Rgb::WHITE,
     }
+}
+
+/// A number as a part of the range that the file states. An empty range says nothing: then it is the other number.
+fn in_range(part: f32, unsaid: f32) -> f32 {
+    if part.is_finite() { part.clamp(0.0, 1.0) } else { unsaid }
 }
 
 /// What is wrong, in plain words.

@@ -6,6 +6,7 @@ use bilux_import::reading::{Reading, Source};
 use bilux_import::text::whole_file;
 use bilux_pictures::guarded_decoding;
 use laz::{DecompressionSelection, LasZipDecompressor, LazItemType, LazVlr};
+use std::borrow::Cow;
 use std::io::Cursor;
 
 /// The header of a variable length record, and where in it are the name of its program, its number and its length.
@@ -15,6 +16,9 @@ const NUMBER: u16 = 22204;
 
 /// The compressor of the first versions: points in one stream, without chunks.
 const ONE_STREAM: u16 = 1;
+
+/// Where the record has the number of points in a chunk.
+const CHUNK_SIZE: std::ops::Range<usize> = 12..16;
 
 /// What is kept of a point: three coordinates, the intensity and, from here on, the colour.
 const COLOUR: usize = 14;
@@ -34,6 +38,7 @@ pub(super) fn unpacked(
     let damaged = || fail("they are damaged, or the file was cut off");
     let record = description(source.bytes)
         .ok_or_else(|| fail("the record that says how they are compressed is missing"))?;
+    let record = &*in_chunks(record);
     let vlr = guarded_decoding(|| LazVlr::from_buffer(record).ok()).flatten().ok_or_else(damaged)?;
     if vlr.items_size() != header.record as u64 {
         return Err(fail("the header and the record of the compression disagree about the size of a point"));
@@ -76,6 +81,17 @@ fn description(bytes: &[u8]) -> Option<&[u8]> {
         at += RECORD_HEADER + length;
     }
     None
+}
+
+/// The same record with a size of chunks. The first versions (LASzip 1.2) have no chunks and no size, for which the decompressor
+/// would look for a table of chunks of different sizes.
+fn in_chunks(record: &[u8]) -> Cow<'_, [u8]> {
+    if record.len() < CHUNK_SIZE.end || u16_at(record, 0) != ONE_STREAM {
+        return record.into();
+    }
+    let mut record = record.to_vec();
+    record[CHUNK_SIZE].copy_from_slice(&1u32.to_le_bytes());
+    record.into()
 }
 
 /// Checks the sizes that the decompressor takes from the file: the number of chunks, and the sizes of their layers.
@@ -136,7 +152,7 @@ fn check_sizes(bytes: &[u8], header: &Header, record: &[u8], vlr: &LazVlr) -> Op
 pub(super) fn points<'s>(
     reading: &mut Reading,
     source: &'s Source,
-) -> Result<(std::borrow::Cow<'s, [u8]>, Header), FormatError> {
+) -> Result<(Cow<'s, [u8]>, Header), FormatError> {
     let header = read_header(source)?;
     if header.is_compressed {
         let (bytes, header) = unpacked(reading, source, header)?;

@@ -1,5 +1,6 @@
 //! A file of MTL.
 
+use super::habits::Habit;
 use bilux_import::oddities::Oddities;
 use bilux_import::reading::{Reading, Source};
 use bilux_import::text::{Cursor, Places};
@@ -11,4 +12,6 @@ pub(super) struct Library<'a, 'o, 'r> {
     pub(super) cursor: Cursor<'a>,
     pub(super) places: Places<'a>,
     pub(super) oddities: Oddities,
+    /// What its program means by the specular keywords, where that is not Phong's.
+    pub(super) habit: Option<Habit>,
 }

@@ -2,6 +2,7 @@
 
 mod block;
 mod draft;
+mod habits;
 mod index;
 mod library;
 mod maps;
@@ -14,7 +15,8 @@ mod surface;
 mod transparency;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_import::text::Cursor;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
@@ -41,7 +43,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Flowing(read::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::Stated(&Axis::ALL), write: write::write }),
 };
 
 /// True if the first statement is one of the usual ones.

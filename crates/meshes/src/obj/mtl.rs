@@ -2,6 +2,7 @@
 //! cannot be read costs only itself.
 
 use super::draft::Draft;
+use super::habits::habit_of;
 use super::library::Library;
 use super::surface::material;
 use bilux_import::FormatError;
@@ -26,6 +27,7 @@ pub(super) fn read_library(
         cursor: Cursor::joining_lines(source.bytes),
         places: Places::new(source.name, source.bytes),
         oddities: Oddities::default(),
+        habit: habit_of(source.bytes),
     };
     let mut drafts: Vec<Draft> = Vec::new();
     while !library.cursor.is_done() {
@@ -53,7 +55,7 @@ pub(super) fn read_library(
     }
     library.decide_transparency(&mut drafts);
     for draft in drafts {
-        let mut spec = material(&draft);
+        let mut spec = material(&draft, library.habit);
         library.remark_highlight(&draft);
         library.put_maps(&draft, &mut spec, scene)?;
         let index = scene.add_material(spec);
@@ -93,7 +95,9 @@ impl Library<'_, '_, '_> {
         let known = |names: &[&'static str]| {
             names.iter().copied().find(|name| name.as_bytes().eq_ignore_ascii_case(key))
         };
-        if let Some(name) = known(&COLOURS) {
+        // Blender keeps there how metallic a surface is.
+        let ambient = self.habit.and_then(|_| known(&["Ka"]));
+        if let Some(name) = known(&COLOURS).or(ambient) {
             if let Some(colour) = self.colour() {
                 draft.colours.insert(name, (colour, start));
             }
@@ -131,7 +135,8 @@ impl Library<'_, '_, '_> {
     }
 
     fn remark_highlight(&mut self, draft: &Draft) {
-        let is_stated = draft.illum() >= 2 && draft.colour("Ks").is_some_and(|ks| !ks.is_black());
+        let is_stated =
+            self.habit.is_none() && draft.illum() >= 2 && draft.colour("Ks").is_some_and(|ks| !ks.is_black());
         if is_stated && draft.has_exponent_of_zero() && draft.lacks_highlight() {
             let what = "'Ns 0' is read as no highlight, as MeshLab, Asset Forge and others mean it";
             let (places, offset) = (&self.places, draft.offset("Ns"));

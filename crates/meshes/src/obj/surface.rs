@@ -1,6 +1,7 @@
 //! Converts MTL materials to those of Bilux, as `docs/formats/obj.md` describes.
 
 use super::draft::{Draft, unit};
+use super::habits::Habit;
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Value};
 
@@ -23,8 +24,8 @@ pub(super) fn is_of_pbr_extension(draft: &Draft) -> bool {
         || PBR_MAPS.iter().any(|word| draft.maps.contains_key(word))
 }
 
-/// The material without its textures.
-pub(super) fn material(draft: &Draft) -> Spec {
+/// The material without its textures, as a program with this habit means it.
+pub(super) fn material(draft: &Draft, habit: Option<Habit>) -> Spec {
     let ks = draft.colour("Ks").map_or(Rgb::BLACK, unit);
     let is_mirror = matches!(draft.illum(), 3 | 5 | 8)
         && draft.colour("Kr").is_none()
@@ -35,6 +36,8 @@ pub(super) fn material(draft: &Draft) -> Spec {
         principled(draft)
     } else if draft.is_glass {
         dielectric(draft)
+    } else if let Some(habit) = habit {
+        habitual(draft, habit)
     } else if is_mirror {
         Spec::new(&draft.name, "mirror").with("reflectance", ks)
     } else {
@@ -47,6 +50,28 @@ pub(super) fn material(draft: &Draft) -> Spec {
     }
     for (_, _, at) in &mut spec.parameters.0 {
         *at = draft.span.clone();
+    }
+    spec
+}
+
+/// A material of a program that writes a specular level and a roughness.
+fn habitual(draft: &Draft, habit: Habit) -> Spec {
+    let mut spec = Spec::new(&draft.name, "principled");
+    let mut set = |key: &str, value: Value| spec.parameters.set(key, value);
+    if let Some(kd) = draft.diffuse() {
+        set("base_color", kd.into());
+    }
+    let smoothness = (draft.number("Ns").unwrap_or(0.0).max(0.0) / habit.smooth).sqrt();
+    set("specular_roughness", (1.0 - smoothness).clamp(0.0, 1.0).into());
+    // A level of 1 reflects 8%. [Burley 2012]
+    let level = draft.colour("Ks").map_or(0.0, |ks| unit(ks).max_channel());
+    let amplitude = (0.08 * level).sqrt();
+    set("specular_ior", ((1.0 + amplitude) / (1.0 - amplitude)).into());
+    if matches!(draft.illum(), 3 | 6) {
+        set("base_metalness", draft.colour("Ka").map_or(1.0, |ka| unit(ka).max_channel()).into());
+    }
+    if draft.opacity < 1.0 {
+        set("opacity", draft.opacity.into());
     }
     spec
 }

@@ -5,12 +5,16 @@ use bilux_import::FormatError;
 use bilux_import::bake::{in_place, name_of, warn_of_scene};
 use bilux_import::colours::encoded;
 use bilux_import::float::push_f32s;
+use bilux_import::frame::statement;
 use bilux_import::writing::Writing;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::io::Write;
 
 pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     warn_of_scene(scene, "OBJ", writing);
+    if let Some(said) = statement(scene) {
+        writing.main.extend_from_slice(format!("# {said}\n").as_bytes());
+    }
     let names = write_library(scene, writing)?;
     let mut counts = Counts { positions: 1, uvs: 1, normals: 1 };
     for object in &scene.objects {

@@ -4,7 +4,8 @@ mod columns;
 mod read;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 use columns::Columns;
@@ -24,5 +25,5 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::Stated(&Axis::ALL), write: write::write }),
 };

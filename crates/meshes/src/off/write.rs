@@ -5,6 +5,7 @@ use bilux_import::FormatError;
 use bilux_import::bake::{in_place, warn_of_materials, warn_of_scene};
 use bilux_import::colours::encoded;
 use bilux_import::float::push_f32s;
+use bilux_import::frame::statement;
 use bilux_import::text::whole_file;
 use bilux_import::writing::Writing;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -32,7 +33,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         uvs: meshes.iter().any(|mesh| !mesh.uvs.is_empty()),
     };
     let faces: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    push_header(columns, [vertices, faces], &mut writing.main);
+    push_header(columns, [vertices, faces], statement(scene), &mut writing.main);
     for mesh in &meshes {
         (0..mesh.positions.len()).for_each(|i| push_vertex(columns, mesh, i, &mut writing.main));
     }
@@ -46,10 +47,13 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
-fn push_header(columns: Columns, [vertices, faces]: [usize; 2], out: &mut Vec<u8>) {
+fn push_header(columns: Columns, [vertices, faces]: [usize; 2], comment: Option<String>, out: &mut Vec<u8>) {
     let prefix = |given: bool, prefix: &'static str| if given { prefix } else { "" };
     let (uvs, colours) = (prefix(columns.uvs, "ST"), prefix(columns.colours, "C"));
     out.extend_from_slice(format!("{uvs}{colours}{}OFF\n", prefix(columns.normals, "N")).as_bytes());
+    if let Some(said) = comment {
+        out.extend_from_slice(format!("# {said}\n").as_bytes());
+    }
     if !columns.normals {
         // Otherwise Bilux's reader would smooth flat faces.
         out.extend_from_slice(&[b"# ", FLAT_COMMENT, b"\n"].concat());

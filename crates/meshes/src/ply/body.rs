@@ -174,7 +174,10 @@ impl<'a> Body<'a> {
     fn word(&mut self) -> Result<&'a [u8], FormatError> {
         loop {
             let word = self.cursor.word();
-            if !word.is_empty() {
+            // No number: writers put comments there, as the header has them.
+            if word == b"comment" || word == b"obj_info" {
+                self.cursor.rest_of_line();
+            } else if !word.is_empty() {
                 return Ok(word);
             }
             if self.cursor.is_done() {

@@ -12,9 +12,8 @@ mod strokes;
 mod textures;
 mod write;
 
-pub use write::encode;
-
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -31,5 +30,5 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply "),
     up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::Stated(&Axis::ALL), write: write::write }),
 };

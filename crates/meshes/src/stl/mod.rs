@@ -6,7 +6,8 @@ mod facet_colours;
 mod write;
 
 use bilux_import::FormatError;
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_import::reading::{Reading, Source, plain_material};
 use bilux_import::text::{is_comment, plain, plain_size, whole_file};
 use bilux_math::Rgb;
@@ -27,7 +28,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| binary::fits(bytes) || is_text(bytes),
     up: UpHint::Usually(Axis::Z),
     read: Some(ReadFormat::Binary(read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::PRINTED, write: write::write }),
 };
 
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {

@@ -27,7 +27,8 @@ mod write;
 mod xml;
 
 use bilux_import::FormatError;
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_import::reading::{Reading, Source};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, SceneBuilder, UpHint};
@@ -46,7 +47,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: package::is_package,
     up: UpHint::Is(Axis::Z),
     read: Some(ReadFormat::Packed(read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::PRINTED, write: write::write }),
 };
 
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {

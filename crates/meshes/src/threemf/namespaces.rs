@@ -21,9 +21,13 @@ pub(super) enum Namespace {
     Undeclared,
 }
 
+/// The core before the specification was published, as the first programs wrote it.
+pub(super) const DRAFT: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01";
+
 /// The namespaces by their addresses.
 const KNOWN: &[(&str, Namespace)] = &[
     ("http://schemas.microsoft.com/3dmanufacturing/core/2015/02", Namespace::Core),
+    (DRAFT, Namespace::Core),
     ("http://schemas.microsoft.com/3dmanufacturing/material/2015/02", Namespace::Materials),
     ("http://schemas.microsoft.com/3dmanufacturing/production/2015/06", Namespace::Production),
     ("http://schemas.microsoft.com/3dmanufacturing/slice/2015/07", Namespace::Slices),

@@ -9,8 +9,8 @@ use bilux_import::FormatError;
 impl PartReader<'_, '_> {
     /// Reads the object that has just been opened.
     pub(super) fn object(&mut self) -> Result<(), FormatError> {
+        let id = self.id()?;
         let Some(element) = self.xml.current() else { return Ok(()) };
-        let id = element.need_id("id")?;
         let role = role(&element)?;
         let (name, at, inside) = (element.words("name").into_owned(), element.at(), element.inside);
         let property = match (element.index("pid")?, element.index("pindex")?) {
@@ -110,7 +110,7 @@ impl PartReader<'_, '_> {
             if !element.is("component") {
                 continue;
             }
-            let id = element.need_id("objectid")?;
+            let id = element.need_index("objectid")?;
             let object = Reference { part: part_of(&element, self.model, self.part)?, id };
             if object.part == self.part && !matches!(self.model.find(object), Some(Resource::Object(_))) {
                 let message =

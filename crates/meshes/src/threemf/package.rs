@@ -17,6 +17,8 @@ const ENCRYPTED: &str = "http://schemas.openxmlformats.org/package/2006/relation
 const MODEL_TYPE: &str = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml";
 const TYPES: &str = "[Content_Types].xml";
 const RELATIONSHIPS: &str = "_rels/.rels";
+/// Where the model usually is.
+const USUAL: &str = "3D/3dmodel.model";
 
 /// The first and last bytes that tell a package from other zip files.
 const HEAD: usize = 1 << 16;
@@ -53,8 +55,9 @@ impl Package {
         let members =
             members.iter().map(|member| (member.name.to_lowercase(), member.name.clone())).collect();
         let package = Package { root, name: source.name.clone(), members };
-        if package.member(TYPES).is_none() {
-            let message = format!("it has no '{TYPES}', so it is not a 3MF but some other archive");
+        if package.member(TYPES).is_none() && package.members_ending(".model").is_empty() {
+            let message =
+                format!("it has neither '{TYPES}' nor a model, so it is not a 3MF but some other archive");
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
         Ok(package)
@@ -134,8 +137,15 @@ impl Package {
         }
         let mut models = all.iter().filter(|relationship| relationship.kind == MODEL);
         let Some(model) = models.next() else {
-            let message = "no relationship names the part with the 3D model: export the file again";
-            return Err(FormatError::malformed(message, whole()));
+            // Slicers look for it where it usually is.
+            let found = self.member(USUAL).map(str::to_owned);
+            let Some(member) = found.or_else(|| self.members_ending(".model").into_iter().next()) else {
+                let message = "no relationship names the part with the 3D model: export the file again";
+                return Err(FormatError::malformed(message, whole()));
+            };
+            let what = format!("no relationship names the part with the 3D model: '{member}' is taken");
+            oddities.note(&what, whole);
+            return Ok(member);
         };
         if let Some(second) = models.next() {
             let message = "a second relationship names a part with a 3D model: a file has one";
@@ -146,7 +156,13 @@ impl Package {
             let message = format!("the 3D model is to be the part '{part}', which the file does not contain");
             return Err(FormatError::malformed(message, model.at.clone()));
         };
-        self.check_type(reading, member, &model.at)?;
+        match self.member(TYPES) {
+            Some(_) => self.check_type(reading, member, &model.at)?,
+            None => {
+                let what = format!("the file has no '{TYPES}', which says what its parts are");
+                oddities.note(&what, || whole_file(&self.name));
+            }
+        }
         self.check_targets(reading, "", &all, oddities)?;
         let of_model = self.relationships(reading, &relationships_of(member))?;
         self.check_targets(reading, member, &of_model, oddities)?;

@@ -1,7 +1,7 @@
 //! A part with a model: its resources, its build items and its metadata.
 
 use super::model::{Item, Model, Reference, Resource};
-use super::namespaces::Namespace;
+use super::namespaces::{DRAFT, Namespace};
 use super::package::resolved;
 use super::xml::{Element, Level, Xml};
 use bilux_import::FormatError;
@@ -46,6 +46,10 @@ impl PartReader<'_, '_> {
             return Err(root.error(message));
         }
         check_extensions(&root)?;
+        if root.get("xmlns") == Some(DRAFT) {
+            let at = root.at();
+            self.oddities.note("the model is of the draft of 2013: it is read as 3MF of today", || at);
+        }
         let unit = unit(&root)?;
         if root.get("xml:space").is_some() {
             let at = root.at();
@@ -81,10 +85,13 @@ impl PartReader<'_, '_> {
             }
         }
         for (is_there, name) in [(has_resources, "resources"), (has_build, "build")] {
-            if !is_there {
+            // The build of another part than the first is not used. [3MF Production 1.1]
+            if !is_there && name == "build" && self.part != 0 {
+                self.oddities.note("a part of the file has no element 'build'", || at.clone());
+            } else if !is_there {
                 let message =
                     format!("this model has no element '{name}': it was cut off, or its program is faulty");
-                return Err(FormatError::malformed(message, at));
+                return Err(FormatError::malformed(message, at.clone()));
             }
         }
         if self.xml.child(Level::DOCUMENT)?.is_some() {
@@ -124,7 +131,7 @@ impl PartReader<'_, '_> {
             if !element.is("item") {
                 continue;
             }
-            let id = element.need_id("objectid")?;
+            let id = element.need_index("objectid")?;
             let object = Reference { part: part_of(&element, self.model, self.part)?, id };
             if object.part == self.part && self.model.find(object).is_none() {
                 let message = format!("object {id} is to be built, but no object with this id comes before");
@@ -138,6 +145,16 @@ impl PartReader<'_, '_> {
             self.model.items.push(Item { object, transform, is_printed, at });
         }
         Ok(())
+    }
+
+    /// The id of the element that has just been opened. Slicers read 0 too.
+    pub(super) fn id(&mut self) -> Result<u32, FormatError> {
+        let Some(element) = self.xml.current() else { return Ok(0) };
+        let (id, at) = (element.need_index("id")?, element.at());
+        if id == 0 {
+            self.oddities.note("an id is 0: ids begin at 1", || at);
+        }
+        Ok(id)
     }
 
     /// Notes what a number of this part stands for.

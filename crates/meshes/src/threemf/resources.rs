@@ -25,7 +25,7 @@ impl PartReader<'_, '_> {
                 (Namespace::Materials, "multiproperties") => self.group(Self::layers)?,
                 (Namespace::Materials, "texture2d") => {
                     let picture = picture(&child)?;
-                    let id = child.need_id("id")?;
+                    let id = child.need_index("id")?;
                     let resource = Resource::Picture(self.model.pictures.len());
                     Self::register(self.reading, self.model, &child, self.part, id, resource)?;
                     self.reading.budget.take_bytes(256, &self.file)?;
@@ -33,7 +33,7 @@ impl PartReader<'_, '_> {
                 }
                 (Namespace::Materials, name) if name.ends_with("displayproperties") => self.display()?,
                 (Namespace::Slices, "slicestack") => {
-                    let (id, at) = (child.need_id("id")?, child.at());
+                    let (id, at) = (child.need_index("id")?, child.at());
                     Self::register(self.reading, self.model, &child, self.part, id, Resource::Other)?;
                     self.oddities.not_shown("slices (the mesh is shown)", || at);
                 }
@@ -53,8 +53,9 @@ impl PartReader<'_, '_> {
         &mut self,
         read: fn(&mut Self, Level) -> Result<GroupKind, FormatError>,
     ) -> Result<(), FormatError> {
+        let id = self.id()?;
         let Some(element) = self.xml.current() else { return Ok(()) };
-        let (id, display) = (element.need_id("id")?, element.index("displaypropertiesid")?);
+        let display = element.index("displaypropertiesid")?;
         let resource = Resource::Group(self.model.groups.len());
         Self::register(self.reading, self.model, &element, self.part, id, resource)?;
         let inside = element.inside;
@@ -91,7 +92,7 @@ impl PartReader<'_, '_> {
     fn coordinates(&mut self, level: Level) -> Result<GroupKind, FormatError> {
         let file = self.file.clone();
         let Some(element) = self.xml.current() else { return Ok(GroupKind::Colours(Vec::new())) };
-        let id = element.need_id("texid")?;
+        let id = element.need_index("texid")?;
         let Some(&Resource::Picture(picture)) = self.model.resources.get(&(self.part, id)) else {
             return Err(element.error(format!("no texture2d with the id {id} comes before this group")));
         };
@@ -109,7 +110,7 @@ impl PartReader<'_, '_> {
     fn composites(&mut self, level: Level) -> Result<GroupKind, FormatError> {
         let file = self.file.clone();
         let Some(element) = self.xml.current() else { return Ok(GroupKind::Colours(Vec::new())) };
-        let (id, indices) = (element.need_id("matid")?, element.indices("matindices")?);
+        let (id, indices) = (element.need_index("matid")?, element.indices("matindices")?);
         let group = match self.model.resources.get(&(self.part, id)) {
             // It is registered itself already, but not in the list yet.
             Some(&Resource::Group(group)) => self.model.groups.get(group).map(|group| &group.kind),
@@ -210,11 +211,11 @@ impl PartReader<'_, '_> {
     /// Reads the display properties that have just been opened.
     fn display(&mut self) -> Result<(), FormatError> {
         let Some(element) = self.xml.current() else { return Ok(()) };
-        let (id, inside, file) = (element.need_id("id")?, element.inside, self.file.clone());
+        let (id, inside, file) = (element.need_index("id")?, element.inside, self.file.clone());
         let resource = Resource::Display(self.model.displays.len());
         let picture =
             |name: &str| -> Result<usize, FormatError> {
-                let id = element.need_id(name)?;
+                let id = element.need_index(name)?;
                 match self.model.resources.get(&(self.part, id)) {
                     Some(&Resource::Picture(picture)) => Ok(picture),
                     _ => Err(element

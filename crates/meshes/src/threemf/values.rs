@@ -20,12 +20,6 @@ impl<'x> Element<'x> {
         self.index(name).map(Option::unwrap_or_default)
     }
 
-    /// The number of a resource, from 1 on.
-    pub(super) fn need_id(&self, name: &str) -> Result<u32, FormatError> {
-        let id = self.need_index(name)?;
-        if id == 0 { Err(self.wrong(name, "0", "a number from 1 on")) } else { Ok(id) }
-    }
-
     pub(super) fn number(&self, name: &str) -> Result<Option<f32>, FormatError> {
         let Some(text) = self.get(name) else { return Ok(None) };
         number(text).filter(|x| x.is_finite()).map(Some).ok_or_else(|| self.wrong(name, text, "a number"))

@@ -6,9 +6,22 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::Path;
 
+/// Opens a regular file for reading.
+///
+/// # Errors
+/// If it cannot be opened, or is a pipe, a socket or a device: those may never give a byte, or never end.
+pub fn open_regular(path: &Path) -> std::io::Result<File> {
+    // Asked before it is opened, since opening a pipe waits for who writes into it.
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() && !metadata.is_dir() {
+        return Err(std::io::Error::other("this is a pipe or a device, not a file"));
+    }
+    File::open(path)
+}
+
 /// The bytes of a file; an error if they exceed the limit, whatever length the file claims to have.
 pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, PictureError> {
-    let file = File::open(path).map_err(|source| PictureError::Io { action: "open it", source })?;
+    let file = open_regular(path).map_err(|source| PictureError::Io { action: "open it", source })?;
     let mut bytes = Vec::new();
     let limit = limits.max_bytes.saturating_add(1);
     file.take(limit)

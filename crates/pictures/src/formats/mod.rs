@@ -25,7 +25,7 @@ mod tokens;
 mod unfinished;
 mod webp;
 
-pub use disk::write_atomically;
+pub use disk::{open_regular, write_atomically};
 pub use foreign::{FOREIGN_FORMATS, ForeignFormat, foreign_format};
 pub use guard::{guarded_decoding, is_decoding};
 pub use rgba8::Rgba8;

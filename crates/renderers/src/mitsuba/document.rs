@@ -107,7 +107,13 @@ impl Files {
                 return Ok((found, joined));
             }
         }
-        let found = reading.locator.locate(self.folder.as_deref(), name, at)?;
-        Ok((found, name.to_owned()))
+        let found = reading.locator.locate(self.folder.as_deref(), name, at);
+        // What an included file names may lie beside that file.
+        let beside = Path::new(&*at.file).parent().filter(|_| found.is_err() && self.folder.is_some());
+        if let Some(Ok(path)) = beside.map(|folder| reading.locator.locate(Some(folder), name, at)) {
+            let name = path.display().to_string();
+            return Ok((path, name));
+        }
+        Ok((found?, name.to_owned()))
     }
 }

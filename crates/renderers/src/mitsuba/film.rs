@@ -194,6 +194,7 @@ pub(super) fn depth(
         integrator,
         &[
             "rr_depth",
+            "version",
             "strict_normals",
             "shading_samples",
             "emitter_samples",

@@ -20,7 +20,7 @@ pub(super) fn medium(maker: &mut Maker, plugin: &Rc<Plugin>) -> Result<Medium, F
     let make = row(plugin, MEDIA)?;
     let mut medium = maker.within(plugin, |maker| make(maker, plugin))?;
     medium.anisotropy = anisotropy(maker, plugin)?;
-    plugin.ignore(&["sample_emitters", "has_spectral_extinction", "method"]);
+    plugin.ignore(&["sample_emitters", "has_spectral_extinction", "method", "step_size"]);
     plugin.report_unused(&mut maker.oddities);
     Ok(medium)
 }

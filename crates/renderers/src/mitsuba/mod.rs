@@ -20,7 +20,8 @@ mod values;
 mod variables;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -52,7 +53,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
 /// True if its outermost element is a scene with a version.

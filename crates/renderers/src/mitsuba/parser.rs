@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::plugin::{Plugin, Property, Value};
 use super::transforms::{Placement, step};
-use super::upgrade::{Version, kind_of_version_3, snake_case};
+use super::upgrade::{Version, complete, kind_of_version_3, name_of_version_3};
 use super::values::{GivenColour, numbers_of, rgb, samples, spectrum};
 use super::variables::Variables;
 use bilux_import::FormatError;
@@ -160,7 +160,7 @@ impl Parser<'_, '_> {
             },
         };
         let name = self.attribute(node, "name", file)?.unwrap_or_default();
-        let name = if file.version.is_old() { snake_case(&name) } else { name };
+        let name = if file.version.is_old() { name_of_version_3(&name) } else { name };
         into.push(Property { name, value, at, used: Cell::new(false) });
         Ok(())
     }
@@ -175,10 +175,13 @@ impl Parser<'_, '_> {
     ) -> Result<Rc<Plugin>, FormatError> {
         let at = file.xml.at(node);
         let kind = self.needed(node, "type", file)?;
-        let kind = if file.version.is_old() { kind_of_version_3(&kind).to_owned() } else { kind };
-        let kind = kind.to_lowercase();
+        let is_old = file.version.is_old();
         let id = self.attribute(node, "id", file)?.unwrap_or_default();
-        let properties = self.children(node, file, depth + 1)?;
+        let mut properties = self.children(node, file, depth + 1)?;
+        if is_old {
+            complete(tag, &kind, &mut properties, &self.document.ids, &at);
+        }
+        let kind = if is_old { kind_of_version_3(&kind) } else { &kind }.to_lowercase();
         let bytes = size_of::<Plugin>() + kind.len() + 3 * id.len();
         self.reading.budget.take_bytes(2 * bytes as u64, &at.file)?;
         let plugin = Rc::new(Plugin::new(tag, kind, id.clone(), properties, at.clone()));
@@ -262,7 +265,8 @@ impl Parser<'_, '_> {
                     Err(_) => return wrong("a whole number", &text),
                 }
             }
-            "boolean" => match self.needed(node, "value", file)?.trim() {
+            // Of any case, as Mitsuba has it: Python writes True.
+            "boolean" => match &*self.needed(node, "value", file)?.trim().to_lowercase() {
                 "true" => Value::Flag(true),
                 "false" => Value::Flag(false),
                 other => return wrong("true or false", other),

@@ -30,7 +30,8 @@ mod textures;
 mod transforms;
 mod write;
 
-use bilux_import::formats::{ReadFormat, SceneFormatEntry};
+use bilux_import::formats::{ReadFormat, SceneFormatEntry, WriteFormat};
+use bilux_import::frame::Frame;
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
@@ -62,7 +63,7 @@ pub const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff,
     up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
-    write: Some(write::write),
+    write: Some(WriteFormat { frame: Frame::METRES, write: write::write }),
 };
 
 /// True if a line begins the world.

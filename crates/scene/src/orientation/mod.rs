@@ -45,6 +45,11 @@ impl OrientationSource {
 }
 
 impl Orientation {
+    /// With this axis up, and the front that modelling programs give it.
+    pub fn usual(up: Axis) -> Orientation {
+        Orientation { up, front: front_of(up), source: OrientationSource::Usual }
+    }
+
     /// The orientation of a scene, where the user did not choose it; `None` if front and up are on the same axis.
     pub fn of(scene: &SceneBuilder, up: Option<Axis>, front: Option<Axis>) -> Option<Orientation> {
         let (usual, is_open) = match scene.up {

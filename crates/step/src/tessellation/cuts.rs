@@ -8,6 +8,10 @@ use bilux_math::DVec2;
 /// The corners of a line at which a cut is tried.
 const TRIED: usize = 48;
 
+/// How far a cut may miss the surface, as a part of the way from one corner to the next, and how often it may be halved.
+const BENT: f64 = 0.02;
+const DEEPEST: usize = 7;
+
 /// Corners along the line of a pole.
 const PIECES: usize = 32;
 
@@ -58,7 +62,7 @@ impl Around {
             let pole = self.pole(surface, only)?;
             let only = only.clone();
             let (low, high) = if is_forward(&only) { (only, pole) } else { (pole, only) };
-            return Some(vec![self.join(low, high, holes)]);
+            return Some(vec![self.join(surface, low, high, holes)]);
         }
         let mut loops = Vec::new();
         let mut rest = around.into_iter();
@@ -67,7 +71,7 @@ impl Around {
             // Lines whose directions are wrong enclose the same.
             let low = if is_forward(&low) { low } else { low.reversed() };
             let high = if is_forward(&high) { high.reversed() } else { high };
-            loops.push(self.join(low, high, holes));
+            loops.push(self.join(surface, low, high, holes));
         }
         Some(loops)
     }
@@ -94,7 +98,7 @@ impl Around {
     }
 
     /// Joins a line that goes forwards and one that goes back by a cut from one to the other, followed both ways.
-    fn join(self, low: Path, high: Path, holes: &[Path]) -> Vec<Corner> {
+    fn join(self, surface: &dyn Surface, low: Path, high: Path, holes: &[Path]) -> Vec<Corner> {
         let count = low.corners.len();
         let step = count.div_ceil(TRIED);
         let mut best: Option<(usize, f64, Vec<Corner>)> = None;
@@ -122,7 +126,16 @@ impl Around {
                 best = Some((crossings, missed, line));
             }
         }
-        best.map_or_else(Vec::new, |best| best.2)
+        best.map_or_else(Vec::new, |best| self.on_surface(surface, best.2, count))
+    }
+
+    /// The same line with the cut on the surface, with the same points both ways. `end` is the corner at which the cut begins.
+    fn on_surface(self, surface: &dyn Surface, line: Vec<Corner>, end: usize) -> Vec<Corner> {
+        let mut cut = Vec::new();
+        follow(surface, [line[end], line[end + 1]], DEEPEST, &mut cut);
+        let back = cut.iter().rev().map(|corner| corner.moved(-self.turn()));
+        let (low, high) = line.split_at(end + 1);
+        low.iter().chain(&cut).chain(high).copied().chain(back).collect()
     }
 
     /// How often holes cross a line, wherever they are found on the surface.
@@ -140,6 +153,20 @@ impl Around {
         }
         count
     }
+}
+
+/// Adds corners between two of them, until the lines from one to the next are next to the surface.
+fn follow(surface: &dyn Surface, [a, b]: [Corner; 2], deepest: usize, into: &mut Vec<Corner>) {
+    let at = |part: f64| a.at.lerp(b.at, part);
+    let missed = |part: f64| surface.point(at(part)).distance(a.point.lerp(b.point, part));
+    let farthest = [0.25, 0.5, 0.75].map(missed).into_iter().fold(0.0, f64::max);
+    if deepest == 0 || farthest <= BENT * a.point.distance(b.point) {
+        return;
+    }
+    let middle = Corner { at: at(0.5), point: surface.point(at(0.5)) };
+    follow(surface, [a, middle], deepest - 1, into);
+    into.push(middle);
+    follow(surface, [middle, b], deepest - 1, into);
 }
 
 fn own_crossings(cut: [DVec2; 2], line: &[Corner]) -> usize {

@@ -13,6 +13,9 @@ const MAX_CHAIN: usize = 48;
 /// The number of places that are looked at for one prim, and for all: references of references can double them.
 const MAX_PLACES: [usize; 2] = [5_000, 5_000_000];
 
+/// What all places have been brought through beyond what is usual.
+const MAX_DEEP: usize = 1_000_000;
+
 /// The sites that are being brought in, to find circles.
 pub(super) type Chain = Vec<(u32, String)>;
 
@@ -138,7 +141,16 @@ fn bring_in(
         }
         return Ok(None);
     };
-    Ok(Some(found.brought_in(arc, node, offset)))
+    let found = found.brought_in(arc, node, offset);
+    layers.deep += found.depth_beyond();
+    if layers.deep > MAX_DEEP {
+        let message = format!(
+            "references of references multiply: {} is one of very many places that they bring in; remove some",
+            node.site.path
+        );
+        return Err(FormatError::malformed(message, target.at.clone()));
+    }
+    Ok(Some(found))
 }
 
 /// Classes that a node was composed with count in the layers around it too: a prim there with the same name overrides them.

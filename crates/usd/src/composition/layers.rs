@@ -30,6 +30,8 @@ pub(crate) struct Layers<'r, 'o, 'b> {
     stack_of: HashMap<u32, u32>,
     /// The places that were brought in for the current prim, and for all.
     pub(super) places: [usize; 2],
+    /// What all of them were brought through beyond what is usual.
+    pub(super) deep: usize,
     /// The times of the stage for which clips are opened.
     pub(crate) moments: Vec<f64>,
     /// Sets of clips so far.
@@ -57,6 +59,7 @@ impl<'r, 'o, 'b> Layers<'r, 'o, 'b> {
             stacks: Vec::new(),
             stack_of: HashMap::new(),
             places: [0; 2],
+            deep: 0,
             moments: Vec::new(),
             clip_sets: 0,
         };

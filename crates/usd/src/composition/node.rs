@@ -166,6 +166,15 @@ impl Node {
         self.children.iter_mut().for_each(|child| child.move_in(mapping, offset));
     }
 
+    /// The number of places that its places have been brought through, beyond what stages have that people make.
+    pub(super) fn depth_beyond(&self) -> usize {
+        /// References of references of references.
+        const USUAL: usize = 4;
+        let through = std::iter::successors(self.site.mapping.as_ref(), |mapping| mapping.outer.as_ref());
+        let inner = self.children.iter().map(Node::depth_beyond).sum::<usize>();
+        through.count().saturating_sub(USUAL) + inner
+    }
+
     /// The path of something in this node in the node above.
     pub(super) fn outwards(&self, path: &str) -> Option<String> {
         self.site.mapping.as_ref()?.once(path)

@@ -24,6 +24,9 @@ pub(crate) struct Prim {
     pub(crate) is_defined: bool,
 }
 
+/// Bytes of an opinion's place with what it has been brought through, without its path.
+const SITE: usize = 160;
+
 /// More prims than anybody draws one by one.
 const MAX_PRIMS: usize = 4_000_000;
 
@@ -69,7 +72,8 @@ impl Composer {
             choose(&mut child, &mut chain, layers, &mut self.variants)?;
             let opinions = child.opinions();
             let index = self.prims.len() as u32;
-            let bytes = size_of::<Prim>() + opinions.len() * size_of::<Opinion>() + 2 * child.site.path.len();
+            let site = SITE + child.site.path.len();
+            let bytes = size_of::<Prim>() + opinions.len() * (size_of::<Opinion>() + site) + site;
             layers.reading.budget.take_bytes(bytes as u64, &layers.all[0].name)?;
             if self.prims.len() >= MAX_PRIMS {
                 let message = format!("there are more than {MAX_PRIMS} prims once everything is composed");

@@ -5,8 +5,8 @@ use crate::value::{Text, Value};
 use bilux_import::FormatError;
 use bilux_import::budget::Budget;
 
-/// The kinds of bindings that a picture uses, the first one before the other.
-const PURPOSES: [&str; 2] = ["material:binding:full", "material:binding"];
+/// The kinds of bindings that a picture uses, each before those that follow it: one for a preview is better than none.
+const PURPOSES: [&str; 3] = ["material:binding:full", "material:binding", "material:binding:preview"];
 
 /// The material of a prim, given the prims above it from the root on: the nearest binding, unless one further up says that it is
 /// stronger.

@@ -10,7 +10,8 @@ use bilux_import::sink::Sink;
 use bilux_scene::Spec;
 
 /// The outputs that can have a surface, the first one before the others.
-const OUTPUTS: [&str; 3] = ["outputs:mtlx:surface", "outputs:surface", "outputs:out"];
+const OUTPUTS: [&str; 4] =
+    ["outputs:mtlx:surface", "outputs:surface", "outputs:out", "outputs:arnold:surface"];
 
 /// The material of a prim; `None`, with a note, if it has no surface that is read.
 pub(crate) fn material(

@@ -1,5 +1,6 @@
 //! Materials: what surfaces are bound to, networks of shaders, and `principled`.
 
+mod arnold;
 mod bindings;
 mod draft;
 mod folding;

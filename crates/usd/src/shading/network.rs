@@ -1,5 +1,6 @@
 //! Shaders and what is connected to them.
 
+use super::arnold;
 use crate::stage::{Found, Stage};
 use crate::value::Text;
 use bilux_import::FormatError;
@@ -42,14 +43,20 @@ pub(super) fn resolve(
     Ok(Input::Nothing)
 }
 
-/// What the input of a shader gets.
+/// What the input of a shader gets; `name` is what MaterialX calls it.
 pub(super) fn input(
     stage: &Stage,
     shader: u32,
     name: &str,
     budget: &mut Budget,
 ) -> Result<Input, FormatError> {
-    resolve(stage, shader, &format!("inputs:{name}"), budget)
+    let found = resolve(stage, shader, &format!("inputs:{name}"), budget)?;
+    let of_arnold = arnold::input(name).filter(|_| matches!(found, Input::Nothing));
+    let Some(other) = of_arnold else { return Ok(found) };
+    match stage.text(shader, "info:id", budget)?.is_some_and(|id| id.starts_with(arnold::PREFIX)) {
+        true => resolve(stage, shader, &format!("inputs:{other}"), budget),
+        false => Ok(found),
+    }
 }
 
 /// A number or text of the input of a shader that no other shader gives.
@@ -65,7 +72,9 @@ pub(super) fn constant(
     })
 }
 
-/// The kind of a shader, such as `UsdUVTexture`; empty if it is of another kind than those with an identifier.
+/// The kind of a shader, such as `UsdUVTexture`, by its name in MaterialX if it has one; empty if it is of another kind than those
+/// with an identifier.
 pub(super) fn kind(stage: &Stage, shader: u32, budget: &mut Budget) -> Result<String, FormatError> {
-    Ok(stage.text(shader, "info:id", budget)?.map_or_else(String::new, |id| id.to_string()))
+    let id = stage.text(shader, "info:id", budget)?;
+    Ok(id.map_or_else(String::new, |id| arnold::node(&id).map_or_else(|| id.to_string(), str::to_owned)))
 }

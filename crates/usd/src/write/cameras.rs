@@ -4,6 +4,7 @@ use super::document::Document;
 use super::placement::placed;
 use super::text::{Text, quoted};
 use bilux_import::camera_loss::{field_of_view, not_perspective, picture_aspect_ratio};
+use bilux_import::frame::metres;
 use bilux_import::placement::looking;
 use bilux_import::values::{number, vector};
 use bilux_import::writing::Writing;
@@ -54,8 +55,7 @@ impl Document<'_> {
         let mut others = spec.clone();
         others.parameters.0.retain(|(key, ..)| !key.starts_with("principal"));
         not_perspective(&others, "USD", writing);
-        let unit = if self.scene.unit > 0.0 { self.scene.unit } else { 1.0 };
-        let height = 10.0 * FILM / unit;
+        let height = 10.0 * FILM / metres(self.scene);
         let width = height * aspect;
         let length = 0.5 * height / f64::from(tan(0.5 * field_of_view(spec).to_radians()));
         text.line(&format!("float focalLength = {}", length as f32));

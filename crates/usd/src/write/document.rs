@@ -2,6 +2,7 @@
 
 use super::names::Names;
 use super::text::Text;
+use bilux_import::frame::metres;
 use bilux_scene::texture::Image;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashMap;
@@ -72,7 +73,7 @@ impl<'s> Document<'s> {
     /// The whole layer.
     pub(super) fn finish(self) -> Vec<u8> {
         let is_z = matches!(self.scene.up, bilux_scene::UpHint::Is(bilux_scene::Axis::Z));
-        let unit = if self.scene.unit > 0.0 { self.scene.unit } else { 1.0 };
+        let unit = metres(self.scene);
         let mut layer = Text { out: b"#usda 1.0\n".to_vec(), ..Text::at_depth(0) };
         layer.line("(");
         layer.line("    customLayerData = {");

@@ -7,7 +7,7 @@ use crate::dae::geometry;
 use crate::dae::posed::Posed;
 use bilux_import::FormatError;
 use bilux_import::polygon_mesh::{Layer, PolygonMesh, Workshop};
-use bilux_math::Vec3;
+use bilux_math::{Rgb, Vec3};
 
 /// Adds the shapes of a morph to a mesh. Normalized, the mesh has the weight that the shapes leave; relative, the shapes are
 /// offsets.
@@ -30,12 +30,13 @@ pub(super) fn blend<'d>(
     let weights = posed.numbers(array, workshop.budget)?;
     let weights = weights.iter().map(|weight| if weight.is_finite() { *weight as f32 } else { 0.0 });
     let (rest, normals) = (mesh.positions.clone(), mesh.normals.values().to_vec());
-    workshop.budget.take_bytes((12 * (rest.len() + normals.len())) as u64, morph.file())?;
+    let colours = mesh.colours.values().to_vec();
+    workshop.budget.take_bytes((12 * (rest.len() + normals.len() + colours.len())) as u64, morph.file())?;
     let mut are_normals_known = true;
     for (shape, weight) in shapes.into_iter().zip(weights).filter(|(_, weight)| *weight != 0.0) {
         let found = document.target(shape);
         let read = found.map(|found| shape_of(found, document, workshop)).transpose()?.flatten();
-        let Some((positions, turned)) = read.filter(|(positions, _)| positions.len() == rest.len()) else {
+        let Some(shape) = read.filter(|shape| shape.positions.len() == rest.len()) else {
             let what = "a shape of a morph is missing, or has other vertices than the mesh: it is left out";
             workshop.oddities.note(what, || morph.at());
             continue;
@@ -45,13 +46,20 @@ pub(super) fn blend<'d>(
                 *sum += (*shape - if is_relative { Vec3::ZERO } else { *rest }) * weight;
             }
         };
-        add(&mut mesh.positions, &rest, &positions);
-        if turned.len() == normals.len() {
-            add(mesh.normals.values_mut(), &normals, &turned);
+        add(&mut mesh.positions, &rest, &shape.positions);
+        if shape.normals.len() == normals.len() {
+            add(mesh.normals.values_mut(), &normals, &shape.normals);
         } else {
             are_normals_known = false;
         }
+        if shape.colours.len() == colours.len() {
+            let sums = mesh.colours.values_mut().iter_mut();
+            for ((sum, rest), shape) in sums.zip(&colours).zip(&shape.colours) {
+                *sum += (*shape - if is_relative { Rgb::BLACK } else { *rest }) * weight;
+            }
+        }
     }
+    mesh.colours.values_mut().iter_mut().for_each(|colour| *colour = colour.clamp(0.0, 1.0));
     if !are_normals_known {
         // They follow from the faces.
         mesh.normals = Layer::default();
@@ -59,8 +67,13 @@ pub(super) fn blend<'d>(
     Ok(())
 }
 
-/// Positions, and normals if there are any.
-type Shape = (Vec<Vec3>, Vec<Vec3>);
+/// Positions, and normals and colours if there are any.
+#[derive(Default)]
+struct Shape {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    colours: Vec<Rgb>,
+}
 
 /// The positions and the normals of a shape, which need not have polygons.
 fn shape_of<'d>(
@@ -69,8 +82,10 @@ fn shape_of<'d>(
     workshop: &mut Workshop,
 ) -> Result<Option<Shape>, FormatError> {
     if let Some(mesh) = geometry::read(geometry, document, workshop)? {
-        workshop.budget.take::<Vec3>(mesh.polygons.normals.values().len(), geometry.file())?;
-        return Ok(Some((mesh.polygons.positions, mesh.polygons.normals.values().to_vec())));
+        let PolygonMesh { positions, normals, colours, .. } = mesh.polygons;
+        let (normals, colours) = (normals.values().to_vec(), colours.values().to_vec());
+        workshop.budget.take::<Vec3>(normals.len() + colours.len(), geometry.file())?;
+        return Ok(Some(Shape { positions, normals, colours }));
     }
     let vertices = geometry.path(&["mesh", "vertices"]);
     let source = vertices.and_then(|vertices| input(&inputs(vertices, document), "POSITION"));
@@ -78,5 +93,5 @@ fn shape_of<'d>(
     let table = Table::<f32>::read(source, document, workshop.budget)?;
     workshop.budget.take::<Vec3>(table.len, geometry.file())?;
     let positions = table.rows().filter_map(|row| row.first_chunk::<3>()).map(|p| Vec3::from(*p)).collect();
-    Ok(Some((positions, Vec::new())))
+    Ok(Some(Shape { positions, ..Shape::default() }))
 }

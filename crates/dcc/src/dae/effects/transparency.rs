@@ -35,13 +35,14 @@ impl Filling<'_, '_, '_, '_> {
         }
         let value = self.effect.value("transparent");
         if let Some(map) = value.filter(|value| value.name() == "texture") {
-            return self.opacity_of_picture(map, mode);
+            return self.opacity_of_picture(map, mode, factor.unwrap_or(1.0).clamp(0.0, 1.0) as f32);
         }
         let [r, g, b, a] = value.map(|value| self.rgba(value)).transpose()?.flatten().unwrap_or([1.0; 4]);
         let stated = if mode.is_of_alpha { f64::from(a) } else { f64::from(r + g + b) / 3.0 };
         let product = (stated * factor.unwrap_or(1.0)).clamp(0.0, 1.0);
         let opacity = if mode.one_is_opaque { product } else { 1.0 - product };
-        let opacity = if self.is_inverted() { 1.0 - opacity } else { opacity };
+        let is_inverted = self.is_of_old_sketchup() || self.posed.document.settings.has_inverted_opacity;
+        let opacity = if is_inverted { 1.0 - opacity } else { opacity };
         if opacity <= 0.0 {
             let at = self.draft.spec.span.clone();
             let what = "a material that is wholly transparent is read as opaque, as the programs mean it that write this";
@@ -53,7 +54,7 @@ impl Filling<'_, '_, '_, '_> {
     }
 
     /// True for files of programs that write transparency where the format has opacity: SketchUp before 7.1.
-    fn is_inverted(&self) -> bool {
+    fn is_of_old_sketchup(&self) -> bool {
         let Some(version) = self.posed.document.settings.tool.strip_prefix("Google SketchUp ") else {
             return false;
         };
@@ -62,7 +63,9 @@ impl Filling<'_, '_, '_, '_> {
     }
 
     /// Sets the opacity from a picture: its alpha if it has one, whatever the mode says, or else its brightness.
-    fn opacity_of_picture(&mut self, map: Element<'_>, mode: Mode) -> Result<(), FormatError> {
+    ///
+    /// The picture counts times `<transparency>`. [Collada 1.4.1, transparent]
+    fn opacity_of_picture(&mut self, map: Element<'_>, mode: Mode, factor: f32) -> Result<(), FormatError> {
         let map = self.effect.value("transparent").filter(|value| value.key() == map.key());
         let Some(texture) = map.map(|map| self.texture(map, true)).transpose()?.flatten() else {
             return Ok(());
@@ -70,23 +73,33 @@ impl Filling<'_, '_, '_, '_> {
         let diffuse = self.effect.value("diffuse").and_then(|value| value.attribute("texture"));
         let is_of_colours = diffuse.is_some() && diffuse == map.and_then(|map| map.attribute("texture"));
         let is_plain = mode.is_of_alpha && !has_alpha(&texture);
-        let Some(texture) = opacity(texture, is_of_colours || is_plain) else { return Ok(()) };
+        let Some(texture) = opacity(texture, is_of_colours || is_plain) else {
+            let rest = if mode.one_is_opaque { factor } else { 1.0 - factor };
+            if is_plain && !is_of_colours && rest > 0.0 && rest < 1.0 {
+                self.draft.set("opacity", rest);
+            }
+            return Ok(());
+        };
         let is_inverted = !mode.one_is_opaque && (texture.channel != Some(Channel::A) || mode.is_of_alpha);
         if !is_inverted {
-            return self.draft.put("opacity", texture);
+            // 0 is what programs write that do not mean it.
+            let factor = if factor > 0.0 { texture.factor * factor } else { texture.factor };
+            return self.draft.put("opacity", Texture { factor, ..texture });
         }
         let file = self.draft.spec.span.file.clone();
         self.draft.reading.budget.take::<[u8; 4]>(texture.width() * texture.height(), &file)?;
-        self.draft.put("opacity", Texture { image: Arc::new(inverted(&texture)), channel: None, ..texture })
+        self.draft
+            .put("opacity", Texture { image: Arc::new(inverted(&texture, factor)), channel: None, ..texture })
     }
 }
 
-/// What is missing to 1 of the channel of a texture.
-fn inverted(texture: &Texture) -> Image {
+/// What is missing to 1 of the channel of a texture, times a factor.
+fn inverted(texture: &Texture, factor: f32) -> Image {
     let (width, height) = (texture.width(), texture.height());
     let rest = |texel: [u8; 4]| {
         let level = if texture.channel == Some(Channel::A) { texel[3] } else { texel[1] };
-        [255 - level, 255 - level, 255 - level, 255]
+        let rest = 255 - (f32::from(level) * factor).round() as u8;
+        [rest, rest, rest, 255]
     };
     let bytes = match &texture.image.texels {
         Texels::Bytes(bytes) => bytes.iter().map(|texel| rest(*texel)).collect(),

@@ -1,7 +1,7 @@
 //! A mesh as the file has it.
 
 use super::builder::{Builder, Symbol};
-use super::primitives::{Primitive, SURFACES};
+use super::primitives::{LINES, Primitive, SURFACES};
 use crate::dae::data::{Input, inputs};
 use crate::dae::document::Document;
 use crate::dae::element::Element;
@@ -27,21 +27,20 @@ pub(in crate::dae) fn read<'d>(
         }
     }
     let Some(mesh) = geometry.child("mesh") else { return Ok(None) };
-    for name in ["lines", "linestrips"] {
-        if let Some(lines) = mesh.child(name) {
-            workshop.oddities.not_shown("lines", || lines.at());
-        }
-    }
     let elements = mesh.children().filter(|element| SURFACES.contains(&element.name()));
     let all: Vec<(Element, Vec<Input>)> =
         elements.map(|element| (element, corners_inputs(element, document))).collect();
+    // The edges of surfaces; lines alone are shown.
+    let edges = mesh.children().find(|element| LINES.contains(&element.name())).filter(|_| !all.is_empty());
+    if let Some(edges) = edges {
+        workshop.oddities.not_shown("lines", || edges.at());
+    }
     let mut builder = Builder::for_inputs(all.iter().map(|(_, inputs)| &inputs[..]));
     let mut symbols: Vec<Symbol> = Vec::new();
     for (element, inputs) in &all {
         builder.begin(*element, inputs, &mut symbols, document, workshop)?;
         if builder.has_positions() {
-            let stride = inputs.iter().map(|input| input.offset + 1).max().unwrap_or(1);
-            let stride = stride.max(declared_stride(*element));
+            let stride = stride_of(*element, inputs);
             Primitive { element: *element, stride }.add(&mut builder, workshop)?;
         } else {
             workshop.oddities.note("polygons without positions are left out", || element.at());
@@ -50,8 +49,14 @@ pub(in crate::dae) fn read<'d>(
     Ok(builder.finish(geometry, workshop).map(|polygons| Mesh { polygons, symbols }))
 }
 
+/// The number of indices of each vertex of a primitive.
+pub(super) fn stride_of(element: Element, inputs: &[Input]) -> usize {
+    let stride = inputs.iter().map(|input| input.offset + 1).max().unwrap_or(1);
+    stride.max(declared_stride(element))
+}
+
 /// The inputs of a primitive, with those of its vertices in place of the vertices themselves.
-fn corners_inputs<'d>(element: Element<'d>, document: &Document<'d>) -> Vec<Input<'d>> {
+pub(super) fn corners_inputs<'d>(element: Element<'d>, document: &Document<'d>) -> Vec<Input<'d>> {
     let mut all = Vec::new();
     for direct in inputs(element, document) {
         if direct.semantic == "VERTEX" {

@@ -3,8 +3,10 @@
 mod builder;
 mod channel;
 mod holes;
+mod lines;
 mod mesh;
 mod primitives;
 
 pub(super) use builder::Symbol;
+pub(super) use lines::lines;
 pub(super) use mesh::{Mesh, read};

@@ -13,6 +13,9 @@ pub(super) struct Primitive<'d> {
     pub(super) stride: usize,
 }
 
+/// The forms that have lines: pairs of vertices, and vertices in a row.
+pub(super) const LINES: [&str; 2] = ["lines", "linestrips"];
+
 /// The forms that have surfaces.
 pub(super) const SURFACES: [&str; 5] = ["triangles", "polylist", "polygons", "trifans", "tristrips"];
 

@@ -83,7 +83,11 @@ fn highlight(properties: &Properties, is_of_blender: bool, draft: &mut Draft) ->
 fn transparency(properties: &Properties, draft: &mut Draft) -> Result<(), FormatError> {
     let opacity = properties.stated("Opacity").and_then(|_| properties.number("Opacity"));
     let colour = properties.vector("TransparentColor").map(|colour| colour.element_sum() / 3.0);
-    let product = colour.unwrap_or(0.0) * properties.number("TransparencyFactor").unwrap_or(1.0);
+    let factor = properties.number("TransparencyFactor");
+    // A factor that a material states alone is the whole transparency, whatever the template says of the colour.
+    let is_alone =
+        properties.stated("TransparentColor").is_none() && properties.stated("TransparencyFactor").is_some();
+    let product = if is_alone { 1.0 } else { colour.unwrap_or(0.0) } * factor.unwrap_or(1.0);
     let transparent = match opacity {
         Some(opacity) if opacity < 1.0 || product >= 1.0 => 1.0 - opacity,
         // White times one, without an opacity, is what some exporters write for everything.

@@ -20,6 +20,8 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(in crate::fbx) struct Textures {
     decoded: HashMap<(Index, bool), Arc<Image>>,
+    /// The objects with pictures in them, by the names of their files with and without a folder.
+    held: Option<HashMap<String, Index>>,
 }
 
 impl Textures {
@@ -71,6 +73,25 @@ impl Textures {
         }))
     }
 
+    /// The objects of the file that hold a picture of one of these names, the same name before the same file in another folder.
+    fn embedded(&mut self, names: &[String], posed: &Posed) -> Vec<Index> {
+        let document = posed.document;
+        let held = self.held.get_or_insert_with(|| {
+            let mut held: HashMap<String, Index> = HashMap::new();
+            for index in document.indices().filter(|index| document.class(*index) == b"Video") {
+                let node = document.object(index).node;
+                if node.child("Content").is_some_and(|content| content.value(0).is_some()) {
+                    for name in file_names(node).into_iter().flat_map(|name| [base_name(&name), name]) {
+                        held.entry(name).or_insert(index);
+                    }
+                }
+            }
+            held
+        });
+        let wanted = names.iter().cloned().chain(names.iter().map(|name| base_name(name)));
+        wanted.filter_map(|name| held.get(&name).copied()).collect()
+    }
+
     /// The picture of a texture: in the file, or else beside it.
     fn picture(
         &mut self,
@@ -85,7 +106,9 @@ impl Textures {
         let nodes = [Some(node), video.map(|video| document.object(video).node)];
         let names: Vec<String> = nodes.into_iter().flatten().flat_map(file_names).collect();
         let name = names.first().cloned().unwrap_or_default();
-        if let Some(video) = video {
+        // Another object may hold the picture for all that name its file.
+        let holders = video.into_iter().chain(self.embedded(&names, posed));
+        for video in holders {
             if let Some(image) = self.decoded.get(&(video, is_data)) {
                 return Ok(Texture::of(&name, image.clone(), is_data));
             }
@@ -128,11 +151,16 @@ fn file_names(node: Node<'_>) -> Vec<String> {
     stated.filter(|name| !name.is_empty()).collect()
 }
 
+/// The name of a file without its folder.
+fn base_name(name: &str) -> String {
+    name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned()
+}
+
 /// Where the file may be: as stated, or where programs put textures beside their scenes.
 fn candidates(names: &[String], stem: &str) -> Vec<String> {
     let mut all: Vec<String> = names.to_vec();
     for name in names {
-        let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
+        let base = base_name(name);
         for folder in [&format!("{stem}.fbm"), "textures", "Textures", "../textures", "../Textures"] {
             all.push(format!("{folder}/{base}"));
         }

@@ -4,6 +4,7 @@ use super::writer::ps;
 use super::*;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
+use bilux_math::transcendental::atan2_f64;
 use std::f32::consts::PI;
 
 /// A quad with a material, or what else is connected to its node (2) or to the material (3).
@@ -159,4 +160,80 @@ fn cameras_look_along_x_with_the_angle_of_their_lens() {
     assert!((spec.number("fov").unwrap() - 26.99).abs() < 0.02, "{spec:?}");
     let spec = camera(vec![p("ApertureMode", &[2.0]), p("FieldOfView", &[33.0])]);
     assert_eq!(spec.number("fov"), Some(33.0));
+}
+
+/// A factor that is stated alone is the transparency, as Blender and three.js read it; with a colour it is a factor on that.
+#[test]
+fn a_transparency_factor_alone_is_the_transparency() {
+    let opacity = |list: Vec<N>| {
+        let scene = read_all(&with(vec![phong(list)], vec![link(3, 2, "")]));
+        scene.materials[scene.objects[0].material].number("opacity").unwrap_or(1.0)
+    };
+    assert!((opacity(vec![p("TransparencyFactor", &[0.6])]) - 0.4).abs() < 1e-6);
+    let both = vec![p("TransparentColor", &[0.5, 0.5, 0.5]), p("TransparencyFactor", &[0.6])];
+    assert!((opacity(both) - 0.7).abs() < 1e-6);
+    assert_eq!(opacity(vec![p("TransparentColor", &[0.0, 0.0, 0.0]), p("TransparencyFactor", &[0.6])]), 1.0);
+    assert_eq!(opacity(vec![p("TransparencyFactor", &[0.0])]), 1.0);
+}
+
+/// Of several objects for one file, one has the picture: it is that of all, and no other's.
+#[test]
+fn a_picture_is_found_in_another_object_of_its_name() {
+    let png = |grey: f32| {
+        let picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::grey(grey)]).unwrap();
+        bilux_pictures::write_bytes("png", &picture, &Default::default()).unwrap()
+    };
+    let clip = |id: i64, name: &'static str, content: Option<Vec<u8>>| {
+        let names = vec![n("RelativeFilename", vec![text(name)], vec![])];
+        let content = content.map(|bytes| n("Content", vec![V::Bytes(bytes)], vec![]));
+        object("Video", id, "clip", "Clip", names.into_iter().chain(content).collect())
+    };
+    let texture =
+        object("Texture", 4, "t", "", vec![n("RelativeFilename", vec![text("maps\\grid.png")], vec![])]);
+    let all = vec![
+        phong(vec![]),
+        texture,
+        clip(5, "maps\\grid.png", None),
+        clip(6, "maps\\other.png", Some(png(0.5))),
+        clip(7, "C:/a/grid.png", Some(png(0.25))),
+    ];
+    let links = vec![link(3, 2, ""), link(4, 3, "DiffuseColor"), link(5, 4, "")];
+    let scene = scene_of(&binary(7400, true, &with(all, links))).unwrap();
+    let spec = &scene.materials[scene.objects[0].material];
+    let Some((bilux_scene::Value::Texture(index), _)) = spec.parameters.find("base_color") else {
+        panic!("{spec:?}")
+    };
+    assert!((scene.textures[*index].texel(0, 0).g - 0.25).abs() < 0.01);
+}
+
+/// The gates of a camera by closed form: the film is 4 : 3 and 36 mm wide, the lens is 24 mm, and the picture 2 : 1 or 1 : 1. [FBX SDK,
+/// FbxCamera::EGateFit: fill shows no more than the film, overscan no less.]
+#[test]
+fn each_fit_of_the_gate_shows_its_part_of_the_film() {
+    let [width, height, focal] = [36.0, 27.0, 24.0];
+    let fov = |fit: f64, aspect: f64| {
+        let list = vec![
+            p("FilmWidth", &[width / 25.4]),
+            p("FilmHeight", &[height / 25.4]),
+            p("FocalLength", &[focal]),
+            p("ApertureMode", &[3.0]),
+            p("AspectWidth", &[aspect * 100.0]),
+            p("AspectHeight", &[100.0]),
+            p("GateFit", &[fit]),
+        ];
+        let camera = object("NodeAttribute", 5, "lens", "Camera", vec![properties(list)]);
+        let node = object("Model", 4, "eye", "Camera", vec![]);
+        let scene = read_all(&with(vec![node, camera], vec![link(5, 4, ""), link(4, 0, "")]));
+        scene.cameras[0].spec.number("fov").unwrap()
+    };
+    let of = |seen: f64| (2.0 * atan2_f64(seen / 2.0, focal).to_degrees()) as f32;
+    // By what is seen of the film's height: its own, or what its width leaves.
+    for (fit, wide, tall) in
+        [(1.0, height, height), (2.0, width / 2.0, width), (3.0, width / 2.0, height), (4.0, height, width)]
+    {
+        for (aspect, seen) in [(2.0, wide), (1.0, tall)] {
+            let found = fov(fit, aspect);
+            assert!((found - of(seen)).abs() < 1e-3, "fit {fit}, {aspect}: {found}, not {}", of(seen));
+        }
+    }
 }

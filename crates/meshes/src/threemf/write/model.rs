@@ -5,8 +5,8 @@ use bilux_import::FormatError;
 use bilux_import::bake::name_of;
 use bilux_import::writing::Writing;
 use bilux_import::xml::escaped;
-use bilux_math::{DMat4, DVec3, Rgb};
-use bilux_scene::{Axis, Mesh, Object, SceneBuilder, Texture, UpHint};
+use bilux_math::Rgb;
+use bilux_scene::{Mesh, Object, SceneBuilder, Texture};
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -22,8 +22,6 @@ pub(super) struct Model<'s> {
     pub(super) meshes: HashMap<(*const Mesh, usize), Option<usize>>,
     /// Meshes that are not closed.
     pub(super) open: usize,
-    /// From the scene to millimetres with z upwards.
-    to_print: DMat4,
 }
 
 /// What a mesh has from its material.
@@ -41,19 +39,8 @@ pub(super) type Properties = (usize, Vec<[usize; 3]>);
 
 impl<'s> Model<'s> {
     pub(super) fn new(scene: &'s SceneBuilder) -> Model<'s> {
-        let (unit, up) = conventions(scene);
         let (looks, meshes) = Default::default();
-        let to_print = upwards(up) * DMat4::from_scale(DVec3::splat(unit));
-        Model {
-            scene,
-            resources: String::new(),
-            items: String::new(),
-            last: 0,
-            looks,
-            meshes,
-            open: 0,
-            to_print,
-        }
+        Model { scene, resources: String::new(), items: String::new(), last: 0, looks, meshes, open: 0 }
     }
 
     /// The identifier of the next resource.
@@ -80,10 +67,10 @@ impl<'s> Model<'s> {
             }
         };
         let Some(id) = id else { return Ok(()) };
-        let place = self.to_print * object.motion.at(0.0).matrix().as_dmat4();
+        let place = object.motion.at(0.0);
+        let place = place.matrix();
         let columns = [place.x_axis, place.y_axis, place.z_axis, place.w_axis].map(|axis| axis.truncate());
-        let numbers: Vec<String> =
-            columns.iter().flat_map(|c| c.to_array()).map(|x| (x as f32).to_string()).collect();
+        let numbers: Vec<String> = columns.iter().flat_map(|c| c.to_array()).map(|x| x.to_string()).collect();
         let name = escaped(name_of(object));
         let _ = writeln!(
             self.items,
@@ -143,29 +130,4 @@ impl<'s> Model<'s> {
         )
         .into_bytes()
     }
-}
-
-/// Millimetres in a unit of a scene, and the axis that points up. What states neither is taken as slicers take it: in
-/// millimetres, with z upwards.
-fn conventions(scene: &SceneBuilder) -> (f64, Axis) {
-    match scene.up {
-        _ if scene.unit > 0.0 && scene.unit.is_finite() => {
-            let UpHint::Is(axis) = scene.up else { return (scene.unit * 1000.0, Axis::Z) };
-            (scene.unit * 1000.0, axis)
-        }
-        UpHint::Is(axis) => (1000.0, axis),
-        UpHint::Usually(_) => (1.0, Axis::Z),
-    }
-}
-
-/// The rotation that makes an axis point along z.
-fn upwards(up: Axis) -> DMat4 {
-    let z = up.direction();
-    let x = match up.index() {
-        // From y upwards to z upwards, x stays.
-        1 | 2 => DVec3::X,
-        _ => DVec3::Y,
-    };
-    DMat4::from_cols(x.extend(0.0), z.cross(x).extend(0.0), z.extend(0.0), bilux_math::glam::DVec4::W)
-        .transpose()
 }

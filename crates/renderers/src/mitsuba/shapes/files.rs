@@ -5,8 +5,6 @@ use super::maker::{FileKey, Piece, ShapeMaker};
 use super::solids::upwards;
 use crate::mitsuba::plugin::Plugin;
 use bilux_import::FormatError;
-use bilux_import::files::read_source;
-use bilux_import::formats::SceneFormatEntry;
 use bilux_import::names::shortened;
 use bilux_import::reading::Source;
 use bilux_math::DMat4;
@@ -16,17 +14,17 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 pub(super) fn obj(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<Vec<Piece>, FormatError> {
-    make(maker, plugin, &bilux_meshes::obj::ENTRY, true)
+    make(maker, plugin, "obj", true)
 }
 
 pub(super) fn ply(maker: &mut ShapeMaker, plugin: &Rc<Plugin>) -> Result<Vec<Piece>, FormatError> {
-    make(maker, plugin, &bilux_meshes::ply::ENTRY, false)
+    make(maker, plugin, "ply", false)
 }
 
 fn make(
     maker: &mut ShapeMaker,
     plugin: &Rc<Plugin>,
-    row: &SceneFormatEntry,
+    format: &str,
     flips_by_default: bool,
 ) -> Result<Vec<Piece>, FormatError> {
     let (name, at) = plugin.file()?;
@@ -36,7 +34,7 @@ fn make(
     let v_upwards = plugin.flag("flip_tex_coords", flips_by_default)?;
     let (path, _) = maker.maker.files().locate(name, &at, maker.maker.reading)?;
     let attribute = match maker.maker.document.part_of(plugin, "bsdf")? {
-        Some(bsdf) if row.entry.name == "ply" => maker.maker.document.attribute(&bsdf)?,
+        Some(bsdf) if format == "ply" => maker.maker.document.attribute(&bsdf)?,
         _ => None,
     };
     let key: FileKey = (path.clone(), 0, [flips, is_flat, v_upwards], attribute.clone());
@@ -46,7 +44,7 @@ fn make(
     }
     let reading = &mut *maker.maker.reading;
     let mut bytes = reading.load(&path)?;
-    if row.entry.name == "obj" {
+    if format == "obj" {
         without_materials(&mut bytes);
     }
     let is_coloured = attribute.as_ref().is_some_and(|name| select(&mut bytes, name));
@@ -60,7 +58,7 @@ fn make(
     let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
     // A mesh without normals is smooth all over, or not at all.
     let crease_angle = std::mem::replace(&mut reading.crease_angle, if is_flat { 0.0 } else { 180.0 });
-    let model = read_source(row, reading, &source);
+    let model = reading.read_named(format, &source);
     reading.crease_angle = crease_angle;
     let mut model = model?;
     reading.release(bytes);

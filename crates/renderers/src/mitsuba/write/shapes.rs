@@ -3,10 +3,10 @@
 use super::document::{Document, Emission, Look};
 use super::emitters::APART;
 use bilux_import::FormatError;
+use bilux_import::ply::encode;
 use bilux_import::text::whole_file;
 use bilux_import::writing::Writing;
 use bilux_math::{DMat4, Mat4, Transform};
-use bilux_meshes::ply::encode;
 use bilux_scene::{Mesh, Object, Visibility};
 use std::sync::Arc;
 
@@ -137,7 +137,7 @@ impl Document<'_> {
             writing.warn("Mitsuba files store one set of texture coordinates: the second is left out");
         }
         let bare = Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), uvs2: Vec::new(), ..mesh.clone() };
-        let Some(bytes) = encode(&[&bare], false) else {
+        let Some(bytes) = encode(&[&bare], false, None) else {
             let message = "a mesh has more vertices than its file can hold";
             return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
         };

@@ -4,7 +4,6 @@ use super::super::document::ShapeGeometry;
 use super::super::parameters::ParameterList;
 use super::maker::ShapeMaker;
 use bilux_import::FormatError;
-use bilux_import::files::read_source;
 use bilux_import::reading::Source;
 use bilux_scene::{Mesh, SceneError};
 use std::path::Path;
@@ -33,7 +32,7 @@ pub(super) fn make(
     let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
     // In pbrt, a mesh without normals is flat.
     let crease_angle = std::mem::replace(&mut maker.loader.reading.crease_angle, 0.0);
-    let model = read_source(&bilux_meshes::ply::ENTRY, maker.loader.reading, &source);
+    let model = maker.loader.reading.read_named("ply", &source);
     maker.loader.reading.crease_angle = crease_angle;
     let mut model = model?;
     maker.loader.reading.release(bytes);

@@ -3,10 +3,10 @@
 use super::document::{Document, numbers};
 use super::shape_attributes::ShapeAttributes;
 use bilux_import::FormatError;
+use bilux_import::ply::encode;
 use bilux_import::text::whole_file;
 use bilux_import::writing::Writing;
 use bilux_math::Transform;
-use bilux_meshes::ply::encode;
 use bilux_scene::{Mesh, Object};
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -86,7 +86,7 @@ impl Objects {
         }
         let bare =
             Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), uvs2: Vec::new(), ..(**mesh).clone() };
-        let Some(bytes) = encode(&[&bare], writing.options.ascii) else {
+        let Some(bytes) = encode(&[&bare], writing.options.ascii, None) else {
             let message = "a mesh has more vertices than its file can hold";
             return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
         };
