@@ -293,18 +293,23 @@ fn ends_in_time(child: Child, name: &str, what: &str) -> String {
     out
 }
 
+/// An OBJ file of one triangle, many times, that takes seconds to read.
+pub(crate) fn long_to_read() -> String {
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned() + &"f 1 2 3\n".repeat(3_000_000)
+}
+
 #[test]
 fn a_signal_ends_it_at_once_while_it_reads() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
-    // A pipe that nobody closes: reading never ends.
-    assert!(Command::new("mkfifo").arg(path.join("pipe.obj")).status().unwrap().success());
+    // A pipe that nobody closes: reading never ends. Files take seconds.
+    fs::write(path.join("long.obj"), long_to_read()).unwrap();
     for (name, line) in [
         ("-TERM", "render - -o a.png --json"),
         ("-INT", "render - -o a.png --json"),
-        ("-TERM", "info pipe.obj"),
-        ("-INT", "convert pipe.obj -o b.ply"),
-        ("-TERM", "generate teapots --from pipe.obj --count 2 -o two.obj"),
+        ("-TERM", "info long.obj"),
+        ("-INT", "convert long.obj -o b.ply"),
+        ("-TERM", "generate teapots --from long.obj --count 2 -o two.obj"),
     ] {
         let mut child = bilux(path, line).stdin(Stdio::piped()).spawn().unwrap();
         let pipe = child.stdin.take();

@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use crate::hang_up;
+use crate::servers::long_to_read;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -276,8 +277,8 @@ fn a_process_that_dies_takes_one_job_with_it() {
 fn a_job_that_is_stopped_while_it_reads_says_so() {
     let folder = folder();
     let path = folder.path();
-    assert!(Command::new("mkfifo").arg(path.join("pipe.obj")).status().unwrap().success());
-    let lines = [job(1, "pipe.obj", json!({ "timeout": 0.3 })), job(2, "a/card.obj", json!({}))];
+    std::fs::write(path.join("long.obj"), long_to_read()).unwrap();
+    let lines = [job(1, "long.obj", json!({ "timeout": 0.3 })), job(2, "a/card.obj", json!({}))];
     let results = results(path, &[], &lines);
     let error = "timeout: the time of 0.3 s was up before there was a picture to save";
     assert_eq!((&results[0]["status"], &results[0]["error"]), (&json!(124), &json!(error)), "{results:#?}");

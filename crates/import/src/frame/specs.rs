@@ -4,6 +4,7 @@ use crate::dome::longitudes;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{DMat3, DVec3, Vec3};
 use bilux_scene::lights::{BuiltLight, build};
+use bilux_scene::materials::scale_lengths;
 use bilux_scene::{Part, SceneBuilder, Spec, Texture, Value};
 use std::sync::Arc;
 
@@ -39,11 +40,7 @@ impl Turn {
             let Some(row) = Part::Camera.row(&camera.spec.kind) else { continue };
             camera.keyframes.iter_mut().for_each(|(_, changes)| self.values(&mut changes.0, row));
         }
-        for spec in materials {
-            // Their lengths are those of the file, as its meshes are.
-            let Some(row) = Part::Material.row(&spec.kind) else { continue };
-            self.values(&mut spec.parameters.0, row);
-        }
+        materials.iter_mut().for_each(|spec| scale_lengths(spec, self.scale));
     }
 
     /// States the defaults that would mean something else in the new frame.
@@ -83,11 +80,7 @@ impl Turn {
                 let is_direction = DIRECTIONS.contains(&parameter.name);
                 *value = Value::from((if is_direction { turned } else { turned * scale }).as_vec3());
             }
-            (_, "m") => multiply(value, scale),
-            (_, "1/m") => multiply(value, 1.0 / scale),
-            // The same irradiance at so many times the distance.
-            (_, "W" | "W/sr") => multiply(value, scale * scale),
-            _ => {}
+            (_, unit) => value.scale_lengths(unit, scale),
         }
     }
 
@@ -119,15 +112,4 @@ impl Turn {
 
 fn vector(value: &Value) -> Option<Vec3> {
     Spec::new("", "").with("v", value.clone()).vector("v")
-}
-
-/// Multiplies a number, or each number of a list; a texture stays.
-fn multiply(value: &mut Value, factor: f64) {
-    match value {
-        Value::Integer(whole) if *whole > 0 => *value = Value::Number(*whole as f64 * factor),
-        // A negative number stands for none.
-        Value::Number(number) if *number > 0.0 => *number *= factor,
-        Value::List(list) => list.iter_mut().for_each(|one| multiply(one, factor)),
-        _ => {}
-    }
 }

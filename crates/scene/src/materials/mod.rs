@@ -127,6 +127,16 @@ pub fn as_principled(spec: &Spec) -> Option<Spec> {
     Some(row.principled?.apply(spec))
 }
 
+/// Says the same of objects that are `scale` times as large: lengths inside, and what is stated for each of them.
+pub fn scale_lengths(spec: &mut Spec, scale: f64) {
+    let Some(row) = MATERIALS.iter().find(|row| row.entry.name == spec.kind) else { return };
+    for (key, value, _) in &mut spec.parameters.0 {
+        if let Some(parameter) = row.entry.parameters.iter().find(|parameter| parameter.name == key) {
+            value.scale_lengths(parameter.unit, scale);
+        }
+    }
+}
+
 const ABSORPTION: Parameter = Parameter {
     name: "absorption",
     summary: "absorption coefficient inside (Beer-Lambert law)",

@@ -34,6 +34,28 @@ impl Value {
         Value::List(v.map(|c| Value::Number(f64::from(c))).to_vec())
     }
 
+    /// The same quantity where all lengths are `scale` times as large; `unit` is that of its row (`m`, `W`).
+    ///
+    /// Texts and textures stay, as do zeros and negative numbers, which stand for none.
+    pub fn scale_lengths(&mut self, unit: &str, scale: f64) {
+        match unit {
+            "m" => self.multiply(scale),
+            "1/m" => self.multiply(1.0 / scale),
+            // The same irradiance at so many times the distance.
+            "W" | "W/sr" => self.multiply(scale * scale),
+            _ => {}
+        }
+    }
+
+    fn multiply(&mut self, factor: f64) {
+        match self {
+            Value::Integer(whole) if *whole > 0 => *self = Value::Number(*whole as f64 * factor),
+            Value::Number(number) if *number > 0.0 => *number *= factor,
+            Value::List(list) => list.iter_mut().for_each(|one| one.multiply(factor)),
+            _ => {}
+        }
+    }
+
     pub(super) fn as_number(&self) -> Option<f64> {
         match *self {
             Value::Integer(i) => Some(i as f64),

@@ -279,3 +279,19 @@ fn units_become_metres_and_objects_keep_their_positions() {
     let height = millimetres.objects[0].motion.at(0.0).bounds(&bust().bounds()).extent().y;
     assert!((height - 0.0064).abs() < 1e-6, "{height}");
 }
+
+/// Of light that passes so many units of a medium, as much is left in any unit: it goes by the product of the length
+/// with the coefficient [Beer-Lambert law], or by the quotient of the length by the depth.
+#[test]
+fn insides_are_scaled_with_their_objects() {
+    let mut millimetres = scene(bust(), UpHint::Is(Axis::Y));
+    millimetres.unit = 0.001;
+    millimetres.materials = vec![
+        Spec::new("", "principled").with("transmission_depth", 4).with("specular_ior", 1.25),
+        Spec::new("", "interface").with("absorption", Value::triple([3.0, 0.0, 0.5])),
+    ];
+    complete(&mut millimetres, &Studio::default());
+    let [wax, smoke] = &millimetres.materials[..2] else { panic!() };
+    assert_eq!((wax.number("transmission_depth"), wax.number("specular_ior")), (Some(0.004), Some(1.25)));
+    assert_eq!(smoke.vector("absorption"), Some(Vec3::new(3000.0, 0.0, 500.0)));
+}

@@ -3,6 +3,7 @@
 use super::super::{affine, move_all};
 use super::Studio;
 use crate::builder::SceneBuilder;
+use crate::materials::scale_lengths;
 use crate::orientation::{Orientation, UpHint};
 use crate::parameters::Spec;
 use bilux_math::{DMat3, DVec3};
@@ -33,6 +34,10 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
             shift = linear * -middle.as_vec3().as_dvec3();
         } else if scene.unit > 0.0 && scene.unit.is_finite() {
             linear *= scene.unit;
+            // What is inside, too: as deep a colour, as dense a smoke.
+            for material in &mut scene.materials {
+                scale_lengths(material, scene.unit);
+            }
         }
     }
     let is_open = scene.up != UpHint::default();
