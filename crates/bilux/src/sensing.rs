@@ -4,7 +4,7 @@ use crate::Error;
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_pictures::Picture;
 use bilux_pictures::sensor::{Pattern, Reading, SENSOR, Sensor};
-use bilux_scene::{Parameters, Reader, Spec};
+use bilux_scene::{Parameters, Reader, SceneError, Spec};
 
 /// A sensor, and what is wanted of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,11 +28,16 @@ impl Sensing {
     /// A sensor with these parameters; all others have their defaults.
     ///
     /// # Errors
-    /// If a parameter has a wrong name or a value out of range.
+    /// If a parameter has a wrong name or a value out of range, or both `iso` and `gain` are given.
     pub fn new(parameters: &Parameters) -> Result<Sensing, Error> {
         let mut spec = Spec::new("", SENSOR.name);
         spec.parameters = parameters.clone();
         let reader = Reader::new(&spec, &SENSOR)?;
+        if ["iso", "gain"].iter().all(|key| reader.number(key) > 0.0) {
+            let message =
+                "iso and gain both set how many digital numbers an electron makes: give one of them";
+            return Err(SceneError::invalid(message, reader.span("gain")).into());
+        }
         let number = |key: &str| reader.number_f64(key);
         let triple = |key: &str| reader.vector_f64(key).to_array();
         let sensor = Sensor {

@@ -170,7 +170,7 @@ pub struct Render {
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// The picture to write, replacing an older one; its extension sets the format (`bilux list picture-formats`),
-    /// `{stem}` stands for the scene's name, `{frame}` for the frame's number, and `-` writes a PNG to standard output
+    /// `{stem}` stands for the scene's name, `{frame}` for the frame's number, and `-` writes to standard output
     #[arg(short, long, value_name = "OUT", required_unless_present = "replay", help_heading = help::COMMON_OPTIONS)]
     pub output: Option<PathBuf>,
     /// The width and height of the picture in pixels [default: 512x512]
@@ -265,6 +265,9 @@ pub struct Render {
     /// Whether `bsp` groups polygons or whole objects [default: polygons]
     #[arg(long, value_name = "polygons|objects", help_heading = help::SPEED)]
     pub bsp_group: Option<String>,
+    /// The format of a picture on standard output (`bilux list picture-formats`) [default: png]
+    #[arg(long, value_name = "NAME", requires = "output", help_heading = help::OUTPUT)]
+    pub output_format: Option<String>,
     /// The bits per channel of PNG and PPM files
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"], help_heading = help::OUTPUT)]
     pub bits: String,
@@ -303,6 +306,11 @@ impl Render {
         self.output.as_deref().unwrap_or(Path::new("-"))
     }
 
+    /// The name of a picture, which says its format: on standard output one of its own.
+    pub fn named(&self, output: &Path) -> PathBuf {
+        crate::streams::named(output, self.output_format.as_deref())
+    }
+
     /// True if only a part of the picture is rendered.
     pub fn is_part(&self) -> bool {
         self.samples.is_some() || self.crop.is_some()
@@ -314,7 +322,7 @@ impl Render {
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  bilux info model.glb\n  bilux info model.glb --json")]
 pub struct Info {
-    /// The scene file
+    /// The scene file; `-` reads it from standard input
     pub scene: PathBuf,
     /// Print JSON instead of text
     #[arg(long, help_heading = help::OUTPUT)]

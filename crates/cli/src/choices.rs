@@ -43,6 +43,9 @@ pub struct Posed {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
         value_parser = parse_time, help_heading = help::WHAT)]
     pub at: f32,
+    /// The format of the scene on standard input; auto detects it from the first bytes
+    #[arg(long, value_name = "NAME|auto", default_value = "auto", help_heading = help::WHAT)]
+    pub input_format: String,
 }
 
 /// See [`Choices::glass`].

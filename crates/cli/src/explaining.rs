@@ -14,7 +14,7 @@ use std::path::PathBuf;
     bilux explain model.glb --json\n  \
     bilux explain scene.toml --set camera=1")]
 pub struct Explain {
-    /// The scene file (`bilux list formats`)
+    /// The scene file (`bilux list formats`); `-` reads it from standard input
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// Print JSON instead of text

@@ -31,6 +31,7 @@ mod sensing;
 mod serving;
 mod settings_from;
 mod signals;
+mod streams;
 mod studio;
 mod usage;
 mod values;

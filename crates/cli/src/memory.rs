@@ -5,12 +5,15 @@ use anyhow::Context;
 use bilux::memory_limit::{LimitSource, MemoryLimit};
 use bilux::scene::Parameters;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 static LIMIT: OnceLock<Option<MemoryLimit>> = OnceLock::new();
 
 /// Whether the limit is what bounds `--max-memory`.
 static IS_TIGHTER: AtomicBool = AtomicBool::new(false);
+
+/// What `--max-memory` allows, as it is bounded.
+static ALLOWED: AtomicU64 = AtomicU64::new(0);
 
 /// The limit that the system imposes, if it does.
 pub fn imposed() -> Option<&'static MemoryLimit> {
@@ -40,10 +43,17 @@ fn refuse_before_kill(_: &MemoryLimit) {}
 
 /// Lowers `--max-memory` to what the system and the threads leave.
 pub fn bound(max_memory: &mut u64) {
+    ALLOWED.store(*max_memory, Ordering::Relaxed);
     let Some(limit) = LIMIT.get_or_init(MemoryLimit::of_process) else { return };
     let left = limit.for_pictures();
     IS_TIGHTER.store(left < *max_memory, Ordering::Relaxed);
     *max_memory = left.min(*max_memory);
+    ALLOWED.store(*max_memory, Ordering::Relaxed);
+}
+
+/// The bytes that all work together may take.
+pub fn allowed() -> u64 {
+    ALLOWED.load(Ordering::Relaxed)
 }
 
 /// What sets the limit, if the system imposes one.

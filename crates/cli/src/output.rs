@@ -1,6 +1,7 @@
 //! Output: results go to standard output, everything else to standard error.
 
 use bilux::formats::FormatError;
+use bilux::pictures::PictureError;
 use bilux::transport::RenderError;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -95,6 +96,9 @@ fn without_error_numbers(text: &str) -> String {
 
 /// The flag that allows what the library refused.
 fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
+    if let Some(needed) = cause.downcast_ref::<PictureError>().and_then(PictureError::bytes_needed) {
+        return allowing(needed);
+    }
     let error = cause.downcast_ref::<bilux::Error>()?;
     let is_too_large = matches!(
         error,
@@ -116,8 +120,23 @@ fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
     })
 }
 
+/// The flag that allows so many bytes for a picture, whose limit may be a part of that of all.
+fn allowing([needed, limit]: [u64; 2]) -> Option<String> {
+    let parts = crate::memory::allowed().checked_div(limit)?.max(1);
+    let bytes = needed.checked_mul(parts).filter(|bytes| *bytes < 1 << 44)?;
+    Some(match bytes {
+        0..0x4000_0000 => format!(" (--max-memory {}M)", bytes.div_ceil(1 << 20)),
+        _ => format!(" (--max-memory {}G)", bytes.div_ceil(1 << 30)),
+    })
+}
+
+/// True if standard error is a terminal that moves its cursor and has colours, which one that calls itself dumb does not.
+pub fn is_capable_terminal() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
 /// Bold and coloured on a terminal, unless `NO_COLOR` is set.
 fn painted(word: &str, colour: &str) -> String {
-    let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty()) || !io::stderr().is_terminal();
+    let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty()) || !is_capable_terminal();
     if plain { word.to_owned() } else { format!("\x1b[1;{colour}m{word}\x1b[0m") }
 }

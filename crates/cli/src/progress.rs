@@ -5,7 +5,6 @@ use crate::interrupt::Interrupt;
 use crate::output;
 use bilux::transport::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as BarStyle};
-use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -29,7 +28,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 impl Report {
     /// Makes a report on the work that `label` names.
     pub fn new(label: &str, common: &Common, interrupt: Interrupt) -> Report {
-        let terminal = std::io::stderr().is_terminal();
+        let terminal = output::is_capable_terminal();
         let style = match common.progress {
             _ if common.quiet => ProgressStyle::None,
             ProgressStyle::Auto if terminal => ProgressStyle::Bar,

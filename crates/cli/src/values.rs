@@ -77,6 +77,12 @@ pub fn parse_positive(text: &str) -> Result<f32, String> {
     most.ok_or_else(|| "write a number larger than 0, such as 100".to_owned())
 }
 
+/// Parses a maintenance factor.
+pub fn parse_maintenance(text: &str) -> Result<f32, String> {
+    let factor = text.parse().ok().filter(|&factor: &f32| factor > 0.0 && factor <= 1.0);
+    factor.ok_or_else(|| "write a number above 0 and at most 1, such as 0.8".to_owned())
+}
+
 /// Parses a focal length in millimetres.
 pub fn parse_focal(text: &str) -> Result<f32, String> {
     text.parse().map_err(|_| "write a length in mm, such as 45".to_owned())

@@ -161,6 +161,15 @@ pub enum PictureError {
 }
 
 impl PictureError {
+    /// Bytes that a limit must allow for this picture to be read, and those that it allows; `None` for other errors.
+    pub fn bytes_needed(&self) -> Option<[u64; 2]> {
+        match self {
+            PictureError::InFile { source, .. } => source.bytes_needed(),
+            PictureError::TooLarge { needed, limit, .. } => Some([*needed, *limit]),
+            _ => None,
+        }
+    }
+
     pub(crate) fn invalid(format: &'static str, what: impl Into<String>) -> PictureError {
         PictureError::Invalid { format, what: what.into() }
     }

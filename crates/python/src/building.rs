@@ -26,3 +26,17 @@ pub(crate) fn build_of(
     let job = Job::with_built(scene, asked, &mut built)?;
     Ok((job, built.tree_work().trees - before))
 }
+
+/// The moment, in seconds, unless a scene whose meshes move by themselves was not read for it.
+///
+/// # Errors
+/// Says what to do.
+pub(crate) fn check_moment(scene: &SceneBuilder, time: f32, loaded_at: f32) -> Result<f32, bilux::Error> {
+    if !scene.inventory.moves() || time == loaded_at {
+        return Ok(time);
+    }
+    Err(bilux::Error::Settings(format!(
+        "time: the meshes of this file move, and it was read for {loaded_at} s: read it again with bilux.load(…, \
+         time={time}), or pose it with scene.pose(time={time})"
+    )))
+}

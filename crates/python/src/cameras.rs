@@ -6,7 +6,7 @@ use crate::hits::rows;
 use crate::values::{Spec, Unresolved};
 use bilux::math::{DVec2, DVec3};
 use bilux::scene::Camera;
-use bilux::scene::cameras::{CameraSpec, build};
+use bilux::scene::cameras::build;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -16,21 +16,23 @@ use std::sync::Arc;
 pub(crate) struct Measuring {
     camera: Arc<dyn Camera>,
     size: DVec2,
+    /// The moment in seconds.
+    time: f32,
 }
 
 impl Measuring {
-    /// The camera in pictures of this size; by default that of the pictures which it was calibrated with.
+    /// The camera at a moment in pictures of this size; by default that of the pictures which it was calibrated with.
     ///
     /// # Errors
     /// `TypeError` if it is no camera; `ValueError` if nothing says the size, or a parameter is wrong.
-    pub(crate) fn new(py: Python<'_>, spec: &Spec, size: Option<[u32; 2]>) -> PyResult<Measuring> {
+    pub(crate) fn new(py: Python<'_>, spec: &Spec, size: Option<[u32; 2]>, time: f32) -> PyResult<Measuring> {
         if spec.table != "cameras" {
             return Err(PyTypeError::new_err(format!(
                 "only cameras see points and have rays: this is one of bilux.{}",
                 spec.table
             )));
         }
-        let camera = CameraSpec::new(spec.resolved(py, &mut Unresolved)?);
+        let camera = spec.camera(py, &mut Unresolved)?;
         let Some([width, height]) = size.or_else(|| camera.calibrated_size()) else {
             let message =
                 "size: give the width and height of the pictures in pixels, such as size=(640, 480)";
@@ -40,7 +42,7 @@ impl Measuring {
             return Err(PyValueError::new_err(format!("size: a picture of {width}x{height} has no pixels")));
         }
         let camera = build(&camera, width as f32 / height as f32).map_err(of_scene)?;
-        Ok(Measuring { camera, size: DVec2::new(f64::from(width), f64::from(height)) })
+        Ok(Measuring { camera, size: DVec2::new(f64::from(width), f64::from(height)), time })
     }
 
     /// What is odd about its pictures.
@@ -57,7 +59,7 @@ impl Measuring {
         let points = arrays::points("points", points)?;
         let points = points.rows();
         let pixel = |i: usize| {
-            let seen = self.camera.project_f64(DVec3::from(points.row(i)), 0.0);
+            let seen = self.camera.project_f64(DVec3::from(points.row(i)), self.time);
             seen.map_or([f64::NAN; 2], |film| (film * self.size - 0.5).to_array())
         };
         let pixels: Vec<[f64; 2]> = (0..points.len()).map(pixel).collect();
@@ -83,7 +85,7 @@ impl Measuring {
         let view = array.as_array();
         let pixels = view.as_slice().unwrap_or_default().as_chunks::<2>().0;
         let ray = |pixel: &[f64; 2]| {
-            let ray = self.camera.ray_f64((DVec2::from(*pixel) + 0.5) / self.size, 0.0);
+            let ray = self.camera.ray_f64((DVec2::from(*pixel) + 0.5) / self.size, self.time);
             ray.map_or([[f64::NAN; 3]; 2], |ends| ends.map(|v| v.to_array()))
         };
         let (origins, directions) = pixels.iter().map(ray).map(|[o, d]| (o, d)).unzip();

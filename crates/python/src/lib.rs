@@ -80,7 +80,7 @@ mod _bilux {
     #[pymodule_export]
     use crate::scene::Scene;
     #[pymodule_export]
-    use crate::sensors::{daylight_coefficients, irradiance, patch_numbers};
+    use crate::sensors::{daylight_coefficients, irradiance, patch_numbers, sunlight};
     #[pymodule_export]
     use crate::silhouettes::silhouettes;
     #[pymodule_export]

@@ -111,7 +111,8 @@ impl Picture {
 
     /// What is known of the render: "spp" (samples per pixel that were taken; their mean, if it was stopped), "spp_asked"
     /// (those that were asked for, or None where noise or time decides), "noise" (a fraction of the light, or None), "seconds" and, of them, "build_seconds" (for the scene's trees), "trees_built" (how many
-    /// there were not yet), "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "rays", and "warnings".
+    /// there were not yet), "complete" (false if it was stopped), "integrator", "choice" (of strategies, or None), "denoiser" (or None), "seed", "time" (the
+    /// moment that it shows, in seconds), "rays", and "warnings".
     /// Empty for other pictures.
     #[getter]
     fn info(&self, py: Python<'_>) -> Py<PyDict> {

@@ -1,6 +1,6 @@
 //! Renders a scene: what the command line does between reading a scene and writing a picture.
 
-use crate::building::build_of;
+use crate::building::{build_of, check_moment};
 use crate::errors::{Error, exception, warn};
 use crate::picture::Picture;
 use crate::poses::with_other_poses;
@@ -28,6 +28,7 @@ pub(crate) struct Rendered {
     spp: f64,
     asked: Option<u32>,
     seed: u64,
+    time: f32,
     integrator: &'static str,
     denoiser: Option<String>,
     build: BuildWork,
@@ -134,14 +135,7 @@ pub(crate) fn prepared(
     let building = Instant::now();
     let (job, trees) = build_of(scene, built, asked)?;
     let seconds = building.elapsed().as_secs_f64();
-    let time = job.settings().time;
-    if scene.inventory.moves() && time != request.loaded_at {
-        return Err(bilux::Error::Settings(format!(
-            "time: the meshes of this file move, and it was read for {} s: read it again with bilux.load(…, \
-             time={time})",
-            request.loaded_at
-        )));
-    }
+    check_moment(scene, job.settings().time, request.loaded_at)?;
     Ok(Prepared { job, build: BuildWork { seconds, trees } })
 }
 
@@ -188,6 +182,7 @@ pub(crate) fn with_layers(
         spp: outcome.samples_per_pixel(),
         asked: job.asked_samples(),
         seed: settings.seed,
+        time: settings.time,
         integrator: settings.integrator.entry.name,
         denoiser: denoiser.map(|chosen| chosen.denoiser.describe()),
         build,
@@ -238,6 +233,7 @@ fn info<'py>(py: Python<'py>, rendered: &Rendered, begun: Instant) -> PyResult<B
     info.set_item("choice", outcome.rendered.choice.as_ref().map(ToString::to_string))?;
     info.set_item("denoiser", rendered.denoiser.as_deref())?;
     info.set_item("seed", rendered.seed)?;
+    info.set_item("time", rendered.time)?;
     info.set_item("rays", outcome.rendered.counters.rays)?;
     let warnings: Vec<String> =
         rendered.warnings.iter().map(|warning| in_python(&warning.to_string())).collect();

@@ -2,6 +2,7 @@
 
 use crate::adding::{self, Adding, mesh, object, of_table};
 use crate::arrays;
+use crate::building::check_moment;
 use crate::encoded::{Encoded, decoded};
 use crate::ending::without_gil;
 use crate::errors::{exception, warn};
@@ -16,7 +17,6 @@ use crate::surroundings::surround;
 use crate::values::{self, Resolve, Spec, Unresolved};
 use bilux::formats::ReadOptions;
 use bilux::math::Transform;
-use bilux::scene::cameras::CameraSpec;
 use bilux::scene::{Object, Parameters, SceneBuilder};
 use bilux::wording::in_python;
 use bilux::{Built, Settings};
@@ -146,13 +146,15 @@ impl Scene {
         self.builder(py).objects.len()
     }
 
-    /// The time of a render that is asked for one, or for none.
-    fn _moment(&self, py: Python<'_>, time: Option<f32>) -> PyResult<f32> {
+    /// The time of a render that is asked for one, or for none, of a scene that was read for this time.
+    fn _moment(&self, py: Python<'_>, time: Option<f32>, loaded_at: f32) -> PyResult<f32> {
         let mut asked = Parameters::default();
         if let Some(time) = time {
             asked.set("time", time);
         }
-        Ok(Settings::of(&self.builder(py), &asked).map_err(exception)?.time)
+        let builder = self.builder(py);
+        let time = Settings::of(&builder, &asked).map_err(exception)?.time;
+        check_moment(&builder, time, loaded_at).map_err(exception)
     }
 
     fn _object<'py>(
@@ -207,8 +209,8 @@ impl Scene {
 
     fn _add_camera(&self, py: Python<'_>, camera: &Bound<'_, Spec>) -> PyResult<usize> {
         let mut builder = self.builder(py);
-        let camera = of_table(camera, "cameras")?.resolved(py, &mut Adding(&mut builder))?;
-        builder.cameras.push(CameraSpec::new(camera));
+        let camera = of_table(camera, "cameras")?.camera(py, &mut Adding(&mut builder))?;
+        builder.cameras.push(camera);
         Ok(builder.cameras.len() - 1)
     }
 
@@ -254,14 +256,16 @@ impl Scene {
     #[getter]
     fn cameras(&self, py: Python<'_>) -> PyResult<Vec<Spec>> {
         let builder = self.builder(py);
-        builder.cameras.iter().map(|camera| Spec::of(py, "cameras", &camera.spec, &builder)).collect()
+        builder.cameras.iter().map(|camera| Spec::of_camera(py, camera, &builder)).collect()
     }
 
     #[setter]
     fn set_cameras(&self, py: Python<'_>, cameras: Vec<Bound<'_, Spec>>) -> PyResult<()> {
         let mut builder = self.builder(py);
-        let cameras = adding::resolved(&cameras, "cameras", &mut builder)?.into_iter();
-        builder.cameras = cameras.map(CameraSpec::new).collect();
+        let camera =
+            |camera: &Bound<'_, Spec>| of_table(camera, "cameras")?.camera(py, &mut Adding(&mut builder));
+        let cameras = cameras.iter().map(camera).collect::<PyResult<_>>()?;
+        builder.cameras = cameras;
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::Job;
 use bilux::scene::cameras::{SensorPoint, SensorPoints};
-use bilux::transport::{Estimate, SkyPatches};
+use bilux::transport::{Estimate, PartOfSky, SkyPatches};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -45,8 +45,8 @@ pub(crate) fn irradiance<'py>(
     Ok((array(&|estimate| estimate.mean)?, array(&error)?, found.samples))
 }
 
-/// The coefficients of points, an array (n, patches) in sr, for rows of patches: sine of the elevation at which each begins, and
-/// number of patches.
+/// The coefficients of points and their standard errors, arrays (n, patches) in sr, for rows of patches: sine of the elevation at
+/// which each begins, and number of patches. First those of all light, then those of what does not come straight.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "each is an argument of bilux.daylight")]
 pub(crate) fn daylight_coefficients<'py>(
@@ -58,12 +58,43 @@ pub(crate) fn daylight_coefficients<'py>(
     settings: &Bound<'py, PyDict>,
     max_memory: u64,
     callback: Option<&Bound<'py, PyAny>>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<[[Bound<'py, PyAny>; 2]; 2]> {
     let (sensors, patches) = (sensors(points, normals)?, SkyPatches::new(rows));
-    let even = bilux::scene::Spec::new("sky", "environment").with("radiance", 1.0f32);
     let work = |job: &Job, watch: &Watch| job.daylight_coefficients(&sensors, &patches, watch);
-    let table = measured(py, scene, (settings, max_memory, callback), Some(even), work)?;
-    Ok(PyArray1::from_vec(py, table).reshape([sensors.points().len(), patches.count()])?.into_any())
+    let table = measured(py, scene, (settings, max_memory, callback), Some(even_sky()), work)?;
+    let array = |parts: &[PartOfSky], of: fn(&PartOfSky) -> f32| {
+        let flat = PyArray1::from_iter(py, parts.iter().map(of));
+        Ok::<_, PyErr>(flat.reshape([sensors.points().len(), patches.count()])?.into_any())
+    };
+    let both = |parts: &[PartOfSky]| {
+        Ok::<_, PyErr>([array(parts, |part| part.mean)?, array(parts, |part| part.error)?])
+    };
+    Ok([both(&table.all)?, both(&table.reflected)?])
+}
+
+/// The light that points receive straight from a sun in each direction, over what a surface that faces it receives in front of
+/// everything: an array (n, directions).
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an argument of bilux.daylight")]
+pub(crate) fn sunlight<'py>(
+    py: Python<'py>,
+    scene: &Bound<'py, Scene>,
+    points: &Bound<'py, PyAny>,
+    normals: &Bound<'py, PyAny>,
+    directions: &Bound<'py, PyAny>,
+    settings: &Bound<'py, PyDict>,
+    max_memory: u64,
+    callback: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (sensors, directions) = (sensors(points, normals)?, arrays::vectors("directions", directions)?);
+    let work = |job: &Job, watch: &Watch| job.sunlight(&sensors, &directions, watch);
+    let table = measured(py, scene, (settings, max_memory, callback), Some(even_sky()), work)?;
+    Ok(PyArray1::from_vec(py, table).reshape([sensors.points().len(), directions.len()])?.into_any())
+}
+
+/// A light that shines from everywhere.
+fn even_sky() -> bilux::scene::Spec {
+    bilux::scene::Spec::new("sky", "environment").with("radiance", 1.0f32)
 }
 
 /// The number of the patch in each direction.

@@ -4,11 +4,13 @@ use crate::cameras::Measuring;
 use crate::errors::of_scene;
 use crate::values::{self, Spec, Unresolved};
 use bilux::math::registry::Entry;
+use bilux::scene::cameras::{self, CameraSpec};
 use bilux::scene::{Reader, SceneError, Span};
 use bilux::tables::{TABLES, values as values_of};
 use bilux::wording::in_python;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 /// The row of a table.
 fn entry(table: &str, kind: &str) -> Result<Entry, SceneError> {
@@ -27,14 +29,35 @@ impl Spec {
     ///     SceneError: if there is no such row, or a parameter has a wrong name or a value out of range.
     ///     TypeError: if a value is of a type that no parameter has.
     #[new]
-    #[pyo3(signature = (table, kind, parameters, name = ""))]
-    fn new(table: &str, kind: &str, parameters: &Bound<'_, PyDict>, name: &str) -> PyResult<Spec> {
+    #[pyo3(signature = (table, kind, parameters, name = "", keyframes = Vec::new()))]
+    fn new(
+        table: &str,
+        kind: &str,
+        parameters: &Bound<'_, PyDict>,
+        name: &str,
+        keyframes: Vec<(f32, Bound<'_, PyDict>)>,
+    ) -> PyResult<Spec> {
         let entry = entry(table, kind).map_err(of_scene)?;
-        let mut spec = bilux::scene::Spec::new(name, kind);
-        spec.parameters = values::parameters(parameters, &mut Unresolved)?;
-        Reader::new(&spec, &entry).map_err(of_scene)?;
-        let parameters = parameters.copy()?.unbind();
-        Ok(Spec { table: table.to_owned(), kind: kind.to_owned(), name: name.to_owned(), parameters })
+        check(&entry, name, parameters)?;
+        if table != "cameras" && !keyframes.is_empty() {
+            return Err(PyTypeError::new_err(format!(
+                "keyframes: bilux.{table} do not move, only cameras do"
+            )));
+        }
+        for (_, changes) in &keyframes {
+            check(&entry, name, changes)?;
+        }
+        if table == "cameras" {
+            check_camera(kind, name, parameters, &keyframes)?;
+        }
+        let copy = |(time, changes): &(f32, Bound<'_, PyDict>)| Ok((*time, changes.copy()?.unbind()));
+        Ok(Spec {
+            table: table.to_owned(),
+            kind: kind.to_owned(),
+            name: name.to_owned(),
+            parameters: parameters.copy()?.unbind(),
+            keyframes: keyframes.iter().map(copy).collect::<PyResult<_>>()?,
+        })
     }
 
     /// The parameters that are given, by name; all others have their defaults.
@@ -43,17 +66,31 @@ impl Spec {
         self.parameters.bind(py).copy()
     }
 
-    /// The same with other values of some parameters.
+    /// Of a camera that moves: times in seconds, rising, each with the parameters that differ there. Between two of them
+    /// parameters change evenly. Files have them.
+    #[getter]
+    fn keyframes<'py>(&self, py: Python<'py>) -> PyResult<Vec<(f32, Bound<'py, PyDict>)>> {
+        self.keyframes.iter().map(|(time, changes)| Ok((*time, changes.bind(py).copy()?))).collect()
+    }
+
+    /// The same with other values of some parameters, which then no longer change between keyframes.
     ///
     /// Example:
     ///     >>> dark = bilux.materials.diffuse(reflectance=0.5).with_(reflectance=0.1)
     #[pyo3(signature = (**parameters))]
     fn with_(&self, py: Python<'_>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<Spec> {
-        let all = self.parameters(py)?;
+        let (all, keyframes) = (self.parameters(py)?, self.keyframes(py)?);
         if let Some(changes) = parameters {
             all.update(changes.as_mapping())?;
+            for (key, _) in changes {
+                for (_, moving) in
+                    keyframes.iter().filter(|(_, moving)| moving.contains(&key).unwrap_or(false))
+                {
+                    moving.del_item(&key)?;
+                }
+            }
         }
-        Spec::new(&self.table, &self.kind, &all, &self.name)
+        Spec::new(&self.table, &self.kind, &all, &self.name, keyframes)
     }
 
     /// Of a camera: the pixels at which it sees points of the world.
@@ -63,6 +100,7 @@ impl Spec {
     /// Args:
     ///     points: an array (n, 3), in metres.
     ///     size: width and height of the picture in pixels; by default that of the pictures which it was calibrated with.
+    ///     time: of a camera that moves, the moment in seconds.
     ///
     /// Returns:
     ///     An array (n, 2) of float64, column and row of each; NaN where the camera does not see the point. Pixels beside the
@@ -76,14 +114,15 @@ impl Spec {
     ///     >>> camera = bilux.cameras.perspective(position=(0, 0, 4), look_at=(0, 0, 0))
     ///     >>> camera.project([[0, 0, 0]], size=(640, 480))
     ///     array([[319.5, 239.5]])
-    #[pyo3(signature = (points, *, size = None))]
+    #[pyo3(signature = (points, *, size = None, time = 0.0))]
     fn project<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         size: Option<[u32; 2]>,
+        time: f32,
     ) -> PyResult<Bound<'py, PyAny>> {
-        Measuring::new(py, self, size)?.project(py, points)
+        Measuring::new(py, self, size, time)?.project(py, points)
     }
 
     /// Of a camera: the rays of pixels, through the middle of the lens.
@@ -91,6 +130,7 @@ impl Spec {
     /// Args:
     ///     pixels: an array (n, 2), column and row of each; centres are at whole numbers.
     ///     size: width and height of the picture in pixels; by default that of the pictures which it was calibrated with.
+    ///     time: of a camera that moves, the moment in seconds.
     ///
     /// Returns:
     ///     Origins and unit directions, two arrays (n, 3) of float64; NaN where the camera sees nothing.
@@ -104,27 +144,31 @@ impl Spec {
     ///     >>> origins, directions = camera.rays([[319.5, 239.5]], size=(640, 480))
     ///     >>> origins, directions
     ///     (array([[0., 0., 4.]]), array([[ 0.,  0., -1.]]))
-    #[pyo3(signature = (pixels, *, size = None))]
+    #[pyo3(signature = (pixels, *, size = None, time = 0.0))]
     fn rays<'py>(
         &self,
         py: Python<'py>,
         pixels: &Bound<'py, PyAny>,
         size: Option<[u32; 2]>,
+        time: f32,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let [origins, directions] = Measuring::new(py, self, size)?.rays(py, pixels)?;
+        let [origins, directions] = Measuring::new(py, self, size, time)?.rays(py, pixels)?;
         Ok((origins, directions))
     }
 
     /// What is odd about the pictures of a calibrated camera.
     fn _oddities(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(Measuring::new(py, self, None)?.oddities())
+        Ok(Measuring::new(py, self, None, 0.0)?.oddities())
     }
 
     fn __eq__(&self, py: Python<'_>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
         let Ok(other) = other.cast::<Spec>() else { return Ok(false) };
         let other = other.get();
         let same = (&self.table, &self.kind, &self.name) == (&other.table, &other.kind, &other.name);
-        Ok(same && self.parameters.bind(py).eq(other.parameters.bind(py))?)
+        let (own, others) = (self.keyframes(py)?, other.keyframes(py)?);
+        Ok(same
+            && self.parameters.bind(py).eq(other.parameters.bind(py))?
+            && PyList::new(py, own)?.eq(others)?)
     }
 
     fn __hash__(&self) -> u64 {
@@ -136,7 +180,7 @@ impl Spec {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let (py, spec) = (slf.py(), slf.get());
-        let arguments = (&spec.table, &spec.kind, spec.parameters(py)?, &spec.name);
+        let arguments = (&spec.table, &spec.kind, spec.parameters(py)?, &spec.name, spec.keyframes(py)?);
         (slf.get_type(), arguments).into_pyobject(py)
     }
 
@@ -148,8 +192,34 @@ impl Spec {
         for (key, value) in self.parameters.bind(py) {
             words.push(format!("{key}={}", value.repr()?));
         }
+        if !self.keyframes.is_empty() {
+            words.push(format!("keyframes={}", PyList::new(py, self.keyframes(py)?)?.repr()?));
+        }
         Ok(format!("bilux.{}.{}({})", self.table, self.kind, words.join(", ")))
     }
+}
+
+/// Checks the names and values of parameters.
+fn check(entry: &Entry, name: &str, parameters: &Bound<'_, PyDict>) -> PyResult<()> {
+    let mut spec = bilux::scene::Spec::new(name, entry.name);
+    spec.parameters = values::parameters(parameters, &mut Unresolved)?;
+    Reader::new(&spec, entry).map(drop).map_err(of_scene)
+}
+
+/// Checks what only all parameters of a camera together say, such as that it does not look along its own up direction.
+fn check_camera(
+    kind: &str,
+    name: &str,
+    parameters: &Bound<'_, PyDict>,
+    keyframes: &[(f32, Bound<'_, PyDict>)],
+) -> PyResult<()> {
+    let mut spec = bilux::scene::Spec::new(name, kind);
+    spec.parameters = values::parameters(parameters, &mut Unresolved)?;
+    let mut camera = CameraSpec::new(spec);
+    for (time, changes) in keyframes {
+        camera.keyframes.push((*time, values::parameters(changes, &mut Unresolved)?));
+    }
+    cameras::build(&camera, 1.0).map(drop).map_err(of_scene)
 }
 
 /// The rows of a table, as dictionaries with `name`, `summary`, `source` and `parameters`.

@@ -2,6 +2,7 @@
 //! may be one, and may be computed from some.
 
 use crate::texture::Texture;
+use bilux::scene::cameras::CameraSpec;
 use bilux::scene::{Parameters, SceneBuilder, Value};
 use numpy::{PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -29,6 +30,8 @@ pub(crate) struct Spec {
     #[pyo3(get)]
     pub(crate) name: String,
     pub(crate) parameters: Py<PyDict>,
+    /// Of a camera that moves: times in seconds, rising, each with the parameters that differ.
+    pub(crate) keyframes: Vec<(f32, Py<PyDict>)>,
 }
 
 /// Numbers in space, such as the density of smoke, for any parameter of a material that takes a grid.
@@ -97,7 +100,15 @@ impl Spec {
             kind: spec.kind.clone(),
             name: spec.name.clone(),
             parameters: dictionary(py, &spec.parameters, scene)?.unbind(),
+            keyframes: Vec::new(),
         })
+    }
+
+    /// The camera of a scene.
+    pub(crate) fn of_camera(py: Python<'_>, camera: &CameraSpec, scene: &SceneBuilder) -> PyResult<Spec> {
+        let key = |(time, changes): &(f32, Parameters)| Ok((*time, dictionary(py, changes, scene)?.unbind()));
+        let keyframes: PyResult<Vec<_>> = camera.keyframes.iter().map(key).collect();
+        Ok(Spec { keyframes: keyframes?, ..Spec::of(py, "cameras", &camera.spec, scene)? })
     }
 
     /// The same for a scene, with textures and materials as indices.
@@ -105,6 +116,15 @@ impl Spec {
         let mut spec = bilux::scene::Spec::new(&self.name, &self.kind);
         spec.parameters = parameters(self.parameters.bind(py), resolve)?;
         Ok(spec)
+    }
+
+    /// The same of a camera, with its keyframes.
+    pub(crate) fn camera(&self, py: Python<'_>, resolve: &mut dyn Resolve) -> PyResult<CameraSpec> {
+        let mut camera = CameraSpec::new(self.resolved(py, resolve)?);
+        for (time, changes) in &self.keyframes {
+            camera.keyframes.push((*time, parameters(changes.bind(py), resolve)?));
+        }
+        Ok(camera)
     }
 }
 

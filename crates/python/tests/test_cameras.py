@@ -207,3 +207,63 @@ def test_a_pair_of_eyes_has_the_disparity_of_its_depth():
     disparity = focal * 0.2 / (5 - points[:, 2])
     assert np.allclose((seen["left"] - seen["right"])[:, 0], disparity, atol=1e-4)
     assert np.allclose((seen["left"] - seen["right"])[:, 1], 0, atol=1e-4)
+
+
+def test_poses_the_other_way_round():
+    rotation, shift = pose()
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, shift
+    ours = bilux.cameras.opencv(K, matrix, size=SIZE)
+    other = bilux.cameras.opencv(K, camera_to_world=np.linalg.inv(matrix), size=SIZE)
+    points = points_seen(rotation, shift)
+    np.testing.assert_allclose(other.project(points), ours.project(points), atol=1e-9)
+    with pytest.raises(ValueError, match="camera_to_world: give it, or world_to_camera"):
+        bilux.cameras.opencv(K, matrix, camera_to_world=matrix, size=SIZE)
+    with pytest.raises(ValueError, match=r"camera_to_world: its last row is .* transpose it: camera_to_world.T"):
+        bilux.cameras.opencv(K, camera_to_world=matrix.T, size=SIZE)
+
+
+def test_a_camera_that_sees_nothing_is_said():
+    """Such as one whose pose goes from the camera to the world, where the other way is meant."""
+    scene = bilux.Scene()
+    scene.add_mesh([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
+    to_camera = np.array([[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 5], [0, 0, 0, 1.0]])
+    turn = np.eye(4)
+    turn[:3, :3] = [[0, 0, -1], [0, 1, 0], [1, 0, 0]]
+    for matrix, is_said in ((to_camera @ turn, False), (np.linalg.inv(to_camera @ turn), True)):
+        scene.cameras = [bilux.cameras.opencv(K, matrix, size=SIZE)]
+        warned = scene.render(size=(32, 24), spp=1, integrator="path").info["warnings"] if not is_said else None
+        if is_said:
+            with pytest.warns(bilux.SceneWarning, match="sees none of the scene's objects"):
+                scene.render(size=(32, 24), spp=1, integrator="path")
+        else:
+            assert not [text for text in warned if "sees none" in text]
+
+
+def test_a_camera_without_axes_is_refused_at_once():
+    for kind in ("perspective", "orthographic", "fisheye", "panorama"):
+        with pytest.raises(bilux.SceneError, match=r"straight down needs another up"):
+            getattr(bilux.cameras, kind)(position=(0, 5, 0), look_at=(0, 0, 0))
+        down = getattr(bilux.cameras, kind)(position=(0, 5, 0), look_at=(0, 0, 0), up=(0, 0, -1))
+        assert down.with_(position=(0, 7, 0)).parameters["position"] == (0, 7, 0)
+
+
+def test_colours_as_screens_show_them():
+    scene = bilux.Scene()
+    card = [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]]
+    scene.add_mesh(card, [[0, 1, 2], [0, 2, 3]], material=bilux.materials.diffuse(reflectance="#ff8040"))
+    scene.add_light(bilux.lights.environment(radiance=1))
+    scene.add_camera(bilux.cameras.perspective(position=(0, 0, 5), look_at=(0, 0, 0)))
+    # By the curve of sRGB; radiance 1 all around is reflected with the albedo.
+    found = scene.render(size=8, spp=64, integrator="path", max_depth=1).pixels.mean((0, 1))
+    np.testing.assert_allclose(found, [1, 0.21586, 0.05127], rtol=0.02)
+    with pytest.raises(bilux.SceneError, match="#rrggbb"):
+        bilux.materials.diffuse(reflectance="#ff80")
+
+
+def test_textures_beyond_the_range_are_said():
+    scene = bilux.Scene()
+    corners, texture = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], bilux.Texture(np.full((4, 4, 3), 200.0), name="paint")
+    scene.add_mesh(corners, [[0, 1, 2]], uvs=[[0, 0], [1, 0], [0, 1]], material=bilux.materials.diffuse(reflectance=texture))
+    with pytest.warns(bilux.SceneWarning, match="'paint' has 200 in it, but reflectance"):
+        scene.render(size=8, spp=1)

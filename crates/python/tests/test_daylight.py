@@ -241,6 +241,7 @@ def test_broken_weather_is_refused_by_line(tmp_path):
         (changed(20, 14, "9999"), None, "line 29: the direct normal irradiance.*stands for missing"),
         (changed(21, 15, "-3"), None, "line 30: the diffuse horizontal irradiance.* is -3"),
         (changed(21, 15, "2500"), None, "another unit"),
+        (changed(31 * 24 + 5, 2, "30"), None, r"line 758: the day \(entry 3\) is 30, but month 2 of 2019 has 28 days"),
         (changed(22, 15, ""), None, "line 31: .*entry 16.*'' is no number"),
         (changed(23, 3, "25"), None, "line 32: the hour .* is 25, but must be from 1 to 24"),
         ([*RECORDS[:-1], "2019,12,31,24"], None, "line 8768: .*ends before it"),
@@ -268,6 +269,8 @@ def test_the_sky_gives_the_light_of_the_weather(tmp_path):
     hour = int(np.flatnonzero((weather.day == 2) & (weather.month == 6) & (weather.hour == 12.5))[0])
     scene = room()
     table = daylight.coefficients(scene, POINTS, patches=daylight.SkyPatches(4), spp=4096)
+    with pytest.raises(IndexError, match="interval: there is no number 8760: the weather has 8760"):
+        daylight.sky_light(weather, 8760)
     # The sun is a disc in one and as large as a patch in the other, so it is left out.
     by_patches = table @ daylight.sky_matrix(weather, daylight.SkyPatches(4), sun=False)[:, hour]
     scene.add_light(daylight.sky_light(weather, hour).with_(direct=0))
@@ -287,6 +290,81 @@ def test_the_figures_of_a_year():
     assert daylight.annual_sun_exposure(illuminance, 300, 3) == 0.5
     with pytest.raises(ValueError, match="must be"):
         daylight.daylight_autonomy(illuminance, occupied=occupied[1:])
+
+
+def test_the_sun_is_a_point_whose_shadows_are_exact(tmp_path):
+    """Through the hole of the window, which is the only way in: where the ray to the sun crosses its plane, z = 6."""
+    weather = daylight.read_epw(epw(tmp_path))
+    points = np.array([[x, 0.8, z] for x in (0.6, 2.0, 3.4) for z in (1.0, 3.0, 5.5)])
+    found = daylight.direct_sunlight(room(), points, weather)
+    turned, raised = np.radians(weather.azimuth), np.radians(weather.elevation)
+    sun = np.stack([np.cos(raised) * np.sin(turned), np.sin(raised), -np.cos(raised) * np.cos(turned)])
+    normal, _, _, _ = daylight._illuminances(weather)
+    outdoors = normal * np.clip(sun[1], 0, None)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (6 - points[:, 2, None]) / sun[2]
+        x, y = points[:, 0, None] + along * sun[0], points[:, 1, None] + along * sun[1]
+    inside = (sun[2] > 0) & (sun[1] > 0) & (x > 0.5) & (x < 3.5) & (y > 1) & (y < 2.5)
+    # Within a rounding of the edge either is right.
+    near = np.minimum(np.abs(np.stack([x - 0.5, x - 3.5])).min(0), np.abs(np.stack([y - 1, y - 2.5])).min(0)) < 1e-4
+    assert inside.sum() > 1000 and near.sum() < 20
+    np.testing.assert_allclose(found[~near], (inside * outdoors)[~near], rtol=1e-4, atol=0.1)
+    assert (found <= outdoors * (1 + 1e-6)).all()
+    # The share of points with more than 250 hours of 1000 lx, counted by the same geometry: no number is random.
+    occupied = weather.occupied()
+    share = (((inside * outdoors)[:, occupied] >= 1000).sum(1) > 250).mean()
+    assert daylight.annual_sun_exposure(found, occupied=occupied) == share and 0 < share < 1
+
+
+def test_a_year_is_its_sky_and_its_sun(tmp_path):
+    """Two hours of a year, measured by lights that stand for them: with sun and without."""
+    weather, scene = daylight.read_epw(epw(tmp_path)), room()
+    points = np.array([[2.0, 0.8, 5.0], [1.0, 0.8, 2.0]])
+    year = daylight.annual_illuminance(scene, points, weather, spp=16384)
+    outdoors, _, _, _ = daylight._illuminances(weather)
+    direct = daylight.direct_sunlight(scene, points, weather)
+    sunny = int(np.argmax(np.where(direct[0] > 0, outdoors, 0)))
+    dull = int(np.flatnonzero((weather.direct_normal == 0) & (weather.diffuse_horizontal > 150))[0])
+    for hour, tolerance in ((sunny, 0.1), (dull, 0.03)):
+        scene.lights = [daylight.sky_light(weather, hour)]
+        values, errors = scene.illuminance(points, spp=16384)
+        off = np.abs(year.values[:, hour] - values)
+        assert (off < tolerance * values + 4 * (errors + year.errors[:, hour])).all(), (hour, year.values[:, hour], values)
+    # What comes straight has no error: the point in the sun is known better than by patches alone.
+    assert direct[0, sunny] > 0.5 * year.values[0, sunny] and year.errors[0, sunny] < 0.1 * year.values[0, sunny]
+
+
+def test_the_errors_of_a_year_are_honest(tmp_path):
+    weather, scene, hours = daylight.read_epw(epw(tmp_path)), room(), slice(4000, 4100)
+    points = [[2.0, 0.8, 4.0], [1.0, 0.8, 1.5]]
+    runs = [daylight.annual_illuminance(scene, points, weather, spp=256, seed=seed) for seed in range(12)]
+    values = np.array([run.values[:, hours] for run in runs])
+    errors = np.array([run.errors[:, hours] for run in runs])
+    lit = values.mean(0) > 50
+    ratio = np.sqrt((errors**2).mean(0)[lit].mean() / values.var(0, ddof=1)[lit].mean())
+    assert 0.6 < ratio < 1.7, ratio
+    # And those of the figures.
+    threshold = float(np.median(values.mean(0)[lit]))
+    autonomies = [daylight.daylight_autonomy(run, threshold, weather.occupied()) for run in runs]
+    spread = np.std([found.values for found in autonomies], axis=0, ddof=1)
+    known = np.mean([found.errors for found in autonomies], axis=0)
+    assert (known < 4 * spread + 0.01).all() and (spread < 4 * known + 0.01).all(), (spread, known)
+
+
+def test_figures_have_the_errors_of_what_they_are_found_from():
+    values = np.array([[100.0, 290, 310, 500], [310.0, 330, 340, 350], [100.0, 305, 320, 400]])
+    year = bilux.Measured(values, np.array([[20.0], [1.0], [8.0]]) * np.ones(4))
+    found = daylight.daylight_autonomy(year)
+    # By 20 lx two hours of the first pass or fail, by 8 lx one of the third, by 1 lx none of the second.
+    assert found.values.tolist() == [0.5, 1, 0.75] and found.errors.tolist() == [0.25, 0, 0.125]
+    share = daylight.spatial_daylight_autonomy(year, share=0.75)
+    chance = 0.5 * math.erfc(1 / math.sqrt(2)), 0.5
+    assert share.values == pytest.approx(2 / 3)
+    assert share.errors == pytest.approx(np.sqrt(chance[0] * (1 - chance[0]) + chance[1] * (1 - chance[1])) / 3)
+    exact = daylight.daylight_autonomy(bilux.Measured(values, np.zeros_like(values)))
+    assert np.array_equal(exact.values, daylight.daylight_autonomy(values)) and not exact.errors.any()
+    assert daylight.annual_sun_exposure(year, 300, 2).values == pytest.approx(2 / 3)
+    assert daylight.useful_daylight_illuminance(year).errors.shape == (3, 3)
 
 
 # Glare
@@ -319,7 +397,85 @@ def test_glare_is_that_of_the_formula():
     assert up[0] == pytest.approx(math.exp((35.2 - 1.22) * 0.02 + 21 * 0.004), rel=1e-6)
 
 
+#: Position indices of lamps right above the line of sight, by their height over their distance R. [CIE 117, table 1]
+ABOVE = {0.0: 1.00, 0.5: 2.86, 1.0: 7.00, 1.5: 13.15}
+
+
+def test_the_unified_rating_is_that_of_its_formula():
+    for height, index in ABOVE.items():
+        assert daylight.position_index([[0, height, -1]], (0, 0, -1))[0] == pytest.approx(index, rel=0.01)
+    # Two lamps of different luminance and size, at places whose indices the table has, before an even background.
+    camera = bilux.cameras.fisheye(position=(0, 0, 0), look_at=(0, 0, -1), fov=180)
+    size = 600
+    y, x = np.mgrid[0:size, 0:size]
+    rays = np.nan_to_num(camera.rays(np.stack([x, y], -1).reshape(-1, 2), size=(size, size))[1])
+    light, total = np.where(np.linalg.norm(rays, axis=1) > 0, 40.0, 0.0), 0.0
+    for height, bright, radius in ((0.5, 9000.0, 0.06), (1.0, 20_000.0, 0.09)):
+        towards = np.array([0, height, -1]) / math.hypot(1, height)
+        light[np.arccos(np.clip(rays @ towards, -1, 1)) < radius] = bright
+        total += bright**2 * 2 * np.pi * (1 - math.cos(radius)) / ABOVE[height] ** 2
+    lamps = sum(40.0 * np.pi * math.sin(r) ** 2 / math.hypot(1, h) for h, r in ((0.5, 0.06), (1.0, 0.09)))
+    background = 40.0 - lamps / np.pi
+    expected = 8 * math.log10(0.25 / background * total)
+    found = daylight.unified_glare_rating(light.reshape(size, size), camera, threshold=1000)
+    assert found == pytest.approx(expected, abs=0.15) and 15 < expected < 30
+    # The default threshold finds the same lamps; twice the background is a step of 8 log 2 less.
+    assert daylight.unified_glare_rating(light.reshape(size, size), camera) == found
+    dimmer = np.where(light == 40, 80.0, light).reshape(size, size)
+    assert daylight.unified_glare_rating(dimmer, camera, 1000) == pytest.approx(found - 8 * math.log10(2), abs=1e-6)
+    assert daylight.unified_glare_rating(np.where(light > 0, 40.0, 0).reshape(size, size), camera) == -math.inf
+    with pytest.raises(ValueError, match="no background"):
+        daylight.unified_glare_rating(np.where(light > 40, light, 0).reshape(size, size), camera, 1000)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda light, eye: ((light / light.max() * 255).astype(np.uint8), eye), "numbers of a picture file"),
+        (lambda light, eye: (light, bilux.cameras.perspective(fov=90)), r"it sees \d+% of what is ahead"),
+        (lambda light, eye: (light, bilux.cameras.orthographic()), "it sees 0% of what is ahead"),
+        (lambda light, eye: (light, bilux.cameras.fisheye(fov=140)), r"it sees \d+% of what is ahead"),
+    ],
+)
+def test_glare_of_other_pictures_is_refused(change, message):
+    camera, light, _ = glare_picture()
+    with pytest.raises(ValueError, match=message):
+        daylight.glare_probability(*change(light, camera))
+
+
+@pytest.mark.parametrize("factor", [1 / 683, 0, 683])
+def test_glare_in_other_units_is_said(factor):
+    camera, light, _ = glare_picture()
+    with pytest.warns(UserWarning, match="at the eye"):
+        daylight.glare_probability(light * factor, camera)
+
+
 # Radiance
+
+
+#: Over the zenith, at elevations of 5, 30 and 60 degrees: what `gensky -ang 40 0 -c` describes, by Radiance 5.4.
+GENSKY_OVERCAST = {5: 0.39144, 30: 0.66667, 60: 0.91068}
+
+
+@pytest.mark.filterwarnings("ignore:the camera sees none")
+def test_the_overcast_sky_is_that_of_gensky():
+    scene = room(window=False)
+    scene.add_light(bilux.lights.cie_sky(standard=16, irradiance="10 klx", ground=0))
+    # Level ground receives 7π/9 of the zenith's luminance. [Moon 1942]
+    zenith = 10_000 / (7 * np.pi / 9)
+    for elevation, share in GENSKY_OVERCAST.items():
+        up, flat = math.sin(math.radians(elevation)), math.cos(math.radians(elevation))
+        scene.cameras = [bilux.cameras.perspective(position=(0, 9, 20), look_at=(flat, 9 + up, 20), fov=1)]
+        seen = scene.render(size=2, spp=1, denoise=False, integrator="path").pixels.mean() * 683
+        assert seen == pytest.approx(share * zenith, rel=5e-3), elevation
+
+
+def test_gensky_still_describes_that_sky(tmp_path):
+    run = radiance()
+    text = run(["gensky", "-ang", 40, 0, "-c", "-B", 10_000 / 179]).decode()
+    # The last numbers are 2 for overcast, the brightness of the zenith, and that of the ground.
+    kind, zenith, _ = (float(word) for word in text.split()[-3:])
+    assert kind == 2 and zenith * 179 == pytest.approx(10_000 / (7 * np.pi / 9), rel=1e-3)
 
 
 def radiance():
@@ -401,5 +557,8 @@ def test_evalglare_finds_the_same_glare(tmp_path):
     pixels[light <= 0] = 0
     head = f"#?RADIANCE\nVIEW= -vta -vh 180 -vv 180\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
     (tmp_path / "glare.hdr").write_bytes(head.encode() + pixels.astype(np.uint8).tobytes())
-    found = float(run(["evalglare", "glare.hdr"], folder=tmp_path).decode().split(":")[1].split()[0])
-    assert daylight.glare_probability(light, camera) == pytest.approx(found, abs=0.005)
+    text = run(["evalglare", "glare.hdr"], folder=tmp_path).decode()
+    names, numbers = text.split(":")[0].split(","), text.split(":")[1].split()
+    theirs = {name.strip(): float(number) for name, number in zip(names, numbers, strict=False)}
+    assert daylight.glare_probability(light, camera) == pytest.approx(theirs["dgp"], abs=0.005)
+    assert daylight.unified_glare_rating(light, camera) == pytest.approx(theirs["ugr"], abs=0.3)

@@ -90,3 +90,11 @@ def test_what_makes_no_sense_is_refused():
         grey(1).sensor(pattern="rgbw")
     with pytest.raises(bilux.PictureError, match="black level"):
         grey(1).sensor(bit_depth=8, black_level=255)
+
+
+def test_iso_and_gain_are_not_both_taken():
+    light = bilux.generate("cornell").render(size=8, spp=1)
+    with pytest.raises(bilux.SceneError, match="gain: iso and gain both set"):
+        light.sensor(iso=100, gain=2)
+    assert light.sensor(iso=400, gain=0).info["iso"] == pytest.approx(400)
+    assert light.sensor(iso=0, gain=2).info["gain"] == pytest.approx(2)

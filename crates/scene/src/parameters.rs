@@ -212,7 +212,8 @@ impl<'a> Reader<'a> {
     /// A colour; white if a texture is given.
     pub fn colour(&self, key: &str) -> Rgb {
         match self.value(key) {
-            Value::Text(text) => Quantity::read(&text).map_or(Rgb::WHITE, |quantity| quantity.colour),
+            Value::Text(text) => quantity::shown(&text)
+                .unwrap_or_else(|| Quantity::read(&text).map_or(Rgb::WHITE, |quantity| quantity.colour)),
             value => triple(&value).map_or(Rgb::WHITE, Rgb::from_array),
         }
     }

@@ -80,7 +80,7 @@ pub mod work;
 pub use batch_means::{BatchMeans, push_variance};
 pub use camera_rays::CameraSpread;
 pub use checkpoint::{Checkpoint, Observer, Standing, Unobserved};
-pub use daylight::{SkyPatches, daylight_coefficients};
+pub use daylight::{DaylightCoefficients, PartOfSky, SkyPatches, daylight_coefficients, sunlight};
 pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
 pub use failures::{SampleFailures, SamplePlace};

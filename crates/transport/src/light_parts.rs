@@ -332,7 +332,7 @@ impl PartTally<'_> {
             self.found.clear();
             let found = Some(std::mem::take(&mut self.found));
             let way = self.lengths.as_ref().map(|_| Way::from(ray.origin.into()));
-            state.record = Some(Box::new(Record { found, events: None, way }));
+            state.record = Some(Box::new(Record { found, way, ..Record::default() }));
             let mut task = Task { context: &eye.context, tracer, sample: &mut state };
             self.sum = integrator.radiance(&ray, &mut task);
             self.found = state.record.and_then(|record| record.found).unwrap_or_default();

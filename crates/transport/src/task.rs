@@ -53,6 +53,8 @@ pub struct Record {
     pub events: Option<Vec<Event>>,
     /// The light that it finds, light by light, if that is wanted.
     pub found: Option<Vec<FoundLight>>,
+    /// The direction in which a path that [receives](bilux_scene::Camera::receives) leaves its point.
+    pub(crate) first: Option<Vec3>,
     /// The path from the camera, if the lengths of those that find light are wanted.
     pub(crate) way: Option<Way>,
 }

@@ -2,11 +2,17 @@
 
 use super::Job;
 use crate::Error;
+use bilux_math::Vec3;
 use bilux_scene::cameras::SensorPoints;
-use bilux_transport::{Filter, Progress, Received, RenderSettings, SkyPatches};
+use bilux_transport::{
+    DaylightCoefficients, Filter, PartOfSky, Progress, Received, RenderSettings, SkyPatches,
+};
 
 /// Bytes that a point takes while its light is measured.
 const POINT: u64 = 1024;
+
+/// Bytes that a coefficient takes, with those that do not come straight.
+const PATCH: u64 = 4 * size_of::<PartOfSky>() as u64;
 
 impl Job {
     /// [`bilux_transport::received`] by points of its scene: by the job's settings, and not by its camera. `None` if it was stopped
@@ -32,12 +38,26 @@ impl Job {
         points: &SensorPoints,
         patches: &SkyPatches,
         progress: &dyn Progress,
-    ) -> Result<Option<Vec<f32>>, Error> {
-        let settings = self.settings_of(points, 4 * patches.count() as u64)?;
+    ) -> Result<Option<DaylightCoefficients>, Error> {
+        let settings = self.settings_of(points, PATCH * patches.count() as u64)?;
         let (scene, plan) = (self.scene(), self.integrator().chooser());
         let plan = plan.map(|chooser| chooser.plan(scene, points, &settings));
         let integrator = plan.as_ref().map_or(self.integrator(), |plan| &*plan.integrator);
         Ok(bilux_transport::daylight_coefficients(scene, points, integrator, &settings, patches, progress)?)
+    }
+
+    /// [`bilux_transport::sunlight`] that reaches points from each direction, one row after the other. `None` if it was stopped.
+    ///
+    /// # Errors
+    /// If memory is short.
+    pub fn sunlight(
+        &self,
+        points: &SensorPoints,
+        directions: &[Vec3],
+        progress: &dyn Progress,
+    ) -> Result<Option<Vec<f32>>, Error> {
+        let settings = self.settings_of(points, size_of::<f32>() as u64 * directions.len() as u64)?;
+        Ok(bilux_transport::sunlight(self.scene(), points, directions, &settings, progress)?)
     }
 
     /// How points are measured; `bytes` is the memory for one.

@@ -198,9 +198,9 @@ fn write_interval(
     bilux::pictures::write(&path, &picture, &WriteOptions::default())?;
     if !common.quiet {
         output::eprint(format_args!(
-            "{}: 95% intervals of {} samples in {} replicates",
+            "{}: 95% intervals of {} in {} replicates",
             path.display(),
-            interval.samples(),
+            output::counted(interval.samples(), "sample", "samples"),
             interval.degrees_of_freedom() + 1,
         ));
     }

@@ -1,63 +1,57 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
-use super::heat_map::heat_map;
-use super::pictures::{holds_picture, read_picture, with_main};
+use super::given::Given;
+use super::pictures::with_main;
+use super::plan::Plan;
+use super::targets::is_stdout;
 use super::{
-    DONE, check_choices, check_folder, check_not_input, check_quality, is_picture, load, read_options_with,
+    DONE, check_choices, check_folder, check_not_input, is_picture, outputs, read_options_with,
     report_warnings, warn_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
 use crate::sandbox_paths::SandboxPaths;
+use crate::streams::named;
 use crate::usage;
-use anyhow::anyhow;
-use bilux::formats::{WriteOptions, check_not_read};
+use anyhow::{anyhow, bail};
+use bilux::formats::check_not_read;
+use bilux::pictures::formats::WriteOptions;
 use bilux::pictures::{Limits, Picture};
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
-    check_folder(output).map_err(usage::wrong)?;
-    check_not_input(output, [&**input]).map_err(usage::wrong)?;
-    let confines = SandboxPaths::default().reading_scene(input).writing(output);
-    confines.check_written(output, common).map_err(usage::wrong)?;
-    match (holds_picture(input), is_picture(output)) {
+    let given = Given::open(input, &arguments.posed.input_format, common)?;
+    let confines = SandboxPaths::default().reading_scene(Given::place(input));
+    let confines = if is_stdout(output) { confines } else { confines.writing(output) };
+    if !is_stdout(output) {
+        check_folder(output).map_err(usage::wrong)?;
+        check_not_input(output, [&**input]).map_err(usage::wrong)?;
+        confines.check_written(output, common).map_err(usage::wrong)?;
+    }
+    let to_picture =
+        is_stdout(output) || is_picture(output) || arguments.heat_map.is_some() && is_table(output);
+    match (given.holds_picture(), to_picture) {
         (true, true) => {
-            bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
-            check_quality(arguments.quality, output).map_err(usage::wrong)?;
+            if !is_table(output) {
+                let format = arguments.output_format.as_deref();
+                outputs::check(output, format, arguments.quality).map_err(usage::wrong)?;
+            }
             confines.enter(common)?;
-            let picture = converted(arguments, common)?;
-            warn_lost_alpha(&picture, output, None, common)?;
-            let mut options = bilux::pictures::WriteOptions::default();
-            options.quality = arguments.quality.unwrap_or(options.quality);
-            bilux::pictures::write(output, &picture, &options)?;
+            convert_picture(&given, arguments, common)?;
         }
         (false, false) => {
-            bilux::formats::format_of_path(output).map_err(usage::wrong)?;
-            if arguments.quality.is_some() {
-                return Err(usage::wrong(anyhow!("--quality is only for JPEG pictures: leave it out")));
-            }
-            if arguments.layer.is_some() {
-                return Err(usage::wrong(anyhow!("--layer is of a picture, not of a scene: leave it out")));
-            }
-            if arguments.heat_map.is_some() {
-                return Err(usage::wrong(anyhow!(
-                    "--heat-map is of a picture, not of a scene: leave it out"
-                )));
-            }
+            check_scene_options(arguments).map_err(usage::wrong)?;
             confines.enter(common)?;
-            let scene =
-                load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
-            check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
-            check_not_read(output, &scene.files).map_err(usage::wrong)?;
-            report_warnings(&scene.warnings, common)?;
-            let options = WriteOptions { ascii: arguments.ascii };
-            let lost = bilux::formats::write(output, &scene, &options)?;
-            report_warnings(&lost, common)?;
+            convert_scene(&given, arguments, common)?;
         }
         (false, true) => {
             return Err(mismatch(input, output, "a scene", "is a picture: use `bilux render`"));
         }
         (true, false) => {
+            if is_table(output) {
+                let message = "a .csv holds the numbers of one channel: name it with --heat-map";
+                return Err(usage::wrong(anyhow!("{}: {message}", output.display())));
+            }
             if bilux::formats::format_of_path(output).is_err() {
                 bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
             }
@@ -67,19 +61,74 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// What becomes of a picture before it is written in another format.
-fn converted(arguments: &Convert, common: &Common) -> anyhow::Result<Picture> {
-    let (input, layer) = (&arguments.input, arguments.layer.as_deref());
-    let picture = read_picture(input, &Limits::new(common.max_memory), common)?;
+/// True for a file of comma-separated values.
+fn is_table(output: &Path) -> bool {
+    output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+}
+
+fn convert_picture(given: &Given, arguments: &Convert, common: &Common) -> anyhow::Result<()> {
+    let (output, format) = (&arguments.output, arguments.output_format.as_deref());
+    let picture = given.picture(&Limits::new(common.max_memory), common)?;
     if let Some(channel) = &arguments.heat_map {
-        return heat_map(&picture, channel, arguments, common.quiet);
+        let plan = Plan::of(&picture, channel, arguments)?;
+        if !common.quiet {
+            plan.explain();
+        }
+        if is_table(output) {
+            return Ok(bilux::pictures::write_atomically(output, plan.table().as_bytes())
+                .map_err(|error| error.in_file(output))?);
+        }
+        return outputs::write(output, format, &plan.picture()?, &WriteOptions::default());
     }
-    let holds_layers = bilux::pictures::format_of_path(&arguments.output)?.entry.name == "exr";
+    let named = named(output, format);
+    let picture = converted(picture, arguments, &named, common)?;
+    warn_lost_alpha(&picture, &named, None, common)?;
+    let mut options = WriteOptions::default();
+    options.quality = arguments.quality.unwrap_or(options.quality);
+    outputs::write(output, format, &picture, &options)
+}
+
+/// Refuses what only pictures have.
+fn check_scene_options(arguments: &Convert) -> anyhow::Result<()> {
+    bilux::formats::format_of_path(&arguments.output)?;
+    if arguments.quality.is_some() {
+        bail!("--quality is only for JPEG pictures: leave it out");
+    }
+    let of_pictures = [
+        ("--layer", arguments.layer.is_some()),
+        ("--heat-map", arguments.heat_map.is_some()),
+        ("--output-format", arguments.output_format.is_some()),
+    ];
+    match of_pictures.iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => bail!("{flag} is of a picture, not of a scene: leave it out"),
+        None => Ok(()),
+    }
+}
+
+fn convert_scene(given: &Given, arguments: &Convert, common: &Common) -> anyhow::Result<()> {
+    let (output, posed) = (&arguments.output, &arguments.posed);
+    let scene = given.scene(&read_options_with(common, &posed.choices, posed.at))?;
+    check_choices(&scene, &posed.choices).map_err(usage::wrong)?;
+    check_not_read(output, &scene.files).map_err(usage::wrong)?;
+    report_warnings(&scene.warnings, common)?;
+    let options = bilux::formats::WriteOptions { ascii: arguments.ascii };
+    report_warnings(&bilux::formats::write(output, &scene, &options)?, common)
+}
+
+/// What becomes of a picture before it is written in the format of this name.
+fn converted(
+    picture: Picture,
+    arguments: &Convert,
+    named: &Path,
+    common: &Common,
+) -> anyhow::Result<Picture> {
+    let layer = arguments.layer.as_deref();
+    let holds_layers = bilux::pictures::format_of_path(named)?.entry.name == "exr";
     if holds_layers && layer.is_none() {
         return Ok(picture);
     }
     let metadata = picture.metadata.clone();
-    let mut main = with_main(picture, layer, input, common)?.main();
+    let mut main = with_main(picture, layer, &arguments.input, common)?.main();
     main.metadata = metadata;
     Ok(main)
 }

@@ -1,6 +1,7 @@
 //! `bilux explain`: why a scene is slow or noisy, and what would help.
 
-use super::{DONE, check_choices, load, read_options_with, report_warnings};
+use super::given::Given;
+use super::{DONE, check_choices, read_options_with, report_warnings};
 use crate::arguments::{Common, Explain};
 use crate::sandbox_paths::SandboxPaths;
 use crate::{output, settings_from, usage};
@@ -13,10 +14,11 @@ pub fn run(arguments: &Explain, common: &Common) -> anyhow::Result<u8> {
     let user = settings_from::explain(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
-    let confines = SandboxPaths::default().reading_scene(&arguments.scene);
+    let given = Given::open(&arguments.scene, &arguments.posed.input_format, common)?;
+    let confines = SandboxPaths::default().reading_scene(Given::place(&arguments.scene));
     confines.reading_options(&arguments.studio).enter(common)?;
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
-    let mut scene = load(&arguments.scene, &options)?;
+    let mut scene = given.scene(&options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     arguments.studio.set_up(&mut scene, &options)?;
     report_warnings(&scene.warnings, common)?;

@@ -1,6 +1,7 @@
 //! `bilux info`: what is in a scene.
 
-use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
+use super::given::Given;
+use super::{DONE, check_choices, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
 use crate::output::counted;
 use crate::sandbox_paths::SandboxPaths;
@@ -16,8 +17,9 @@ use std::sync::Arc;
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
     let options = ReadOptions { validate: true, ..options };
-    SandboxPaths::default().reading_scene(&arguments.scene).enter(common)?;
-    let scene = load(&arguments.scene, &options)?;
+    let given = Given::open(&arguments.scene, &arguments.posed.input_format, common)?;
+    SandboxPaths::default().reading_scene(Given::place(&arguments.scene)).enter(common)?;
+    let scene = given.scene(&options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(&scene))?)?;

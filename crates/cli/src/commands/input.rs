@@ -1,31 +1,29 @@
 //! The scene that `bilux render` renders, and the jobs that it makes of it.
 
+use super::given::Given;
 use super::targets::{Target, is_stdout};
-use super::{aov, check_choices, load, read_options_with, report_warnings};
+use super::{aov, check_choices, read_options_with, report_warnings};
 use crate::arguments::{Common, Render};
-use crate::assignments::from_flag;
 use crate::interrupt::Interrupt;
 use crate::{output, usage};
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, anyhow};
 use bilux::checkpoint::checkpoint_path;
 use bilux::formats::ReadOptions;
 use bilux::pictures::formats::format_of_path;
-use bilux::scene::{Parameters, SceneBuilder, SceneError};
+use bilux::scene::{Parameters, SceneBuilder};
 use bilux::transport::Window;
 use bilux::transport::aovs::Aov;
 use bilux::watch::Watched;
 use bilux::{Built, Denoised, Job, JobRequest, Series};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// A scene file, which may have to be read again for another time.
 pub struct Input<'a> {
     pub path: &'a Path,
-    /// The bytes from standard input, which can be read only once.
-    piped: Option<Vec<u8>>,
+    given: Given<'a>,
     pub arguments: &'a Render,
     pub common: &'a Common,
     pub interrupt: &'a Interrupt,
@@ -51,21 +49,11 @@ impl Input<'_> {
         interrupt: &'a Interrupt,
         watched: Option<&'a Watched>,
     ) -> anyhow::Result<Input<'a>> {
-        let mut piped = None;
-        if is_stdout(path) {
-            check_input_format(&arguments.input_format).map_err(usage::wrong)?;
-            let mut bytes = Vec::new();
-            let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
-            input.context("cannot read standard input")?;
-            if bytes.is_empty() {
-                bail!("standard input is empty: name a scene file, or pipe in a scene");
-            }
-            piped = Some(bytes);
-        }
+        let given = Given::open(path, &arguments.input_format, common)?;
         let begun = Cell::new(Instant::now());
         let (built, warnings) = (RefCell::default(), RefCell::default());
         let (notes, files) = (RefCell::default(), RefCell::default());
-        Ok(Input { path, piped, arguments, common, interrupt, begun, built, warnings, notes, files, watched })
+        Ok(Input { path, given, arguments, common, interrupt, begun, built, warnings, notes, files, watched })
     }
 
     /// Prints warnings, and keeps them for `--json`.
@@ -86,15 +74,7 @@ impl Input<'_> {
     pub fn read(&self, time: f32, whole_movement: bool) -> anyhow::Result<SceneBuilder> {
         let choices = &self.arguments.choices;
         let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
-        let mut scene = match &self.piped {
-            Some(bytes) => {
-                // There is no file name, so the first bytes decide.
-                let format =
-                    Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
-                bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
-            }
-            None => load(self.path, &options)?,
-        };
+        let mut scene = self.given.scene(&options)?;
         check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
         self.arguments.studio.set_up(&mut scene, &options)?;
         self.files.borrow_mut().extend(scene.files.iter().cloned());
@@ -106,9 +86,10 @@ impl Input<'_> {
 
     /// The name and the contents of every file that was read.
     pub fn contents(&self) -> impl Iterator<Item = (String, anyhow::Result<Vec<u8>>)> + '_ {
-        let piped = self.piped.iter().map(|bytes| ("on standard input".to_owned(), Ok(bytes.clone())));
+        let piped = self.given.piped().into_iter();
+        let piped = piped.map(|bytes| ("on standard input".to_owned(), Ok(bytes.to_vec())));
         let mut files = self.files.borrow().clone();
-        if self.piped.is_none() {
+        if self.given.piped().is_none() {
             files.insert(self.path.to_owned());
         }
         let read = |path: PathBuf| {
@@ -164,7 +145,7 @@ impl Input<'_> {
         let (arguments, common) = (self.arguments, self.common);
         // A path is drawn into the picture that is shown, even if only a part of it is rendered.
         let is_whole = arguments.replay.is_some() || !arguments.is_part();
-        let is_shown = is_whole && (is_stdout(output) || format_of_path(output)?.for_display);
+        let is_shown = is_whole && format_of_path(self.arguments.named(output))?.for_display;
         let denoised = if is_shown { Denoised::ForDisplay } else { Denoised::IfAsked };
         let mut request = JobRequest::from(user)
             .in_series(series.clone())
@@ -207,14 +188,4 @@ impl Input<'_> {
         let job = if needs(Aov::needs_next) { job.moving_to(&pose(time + frame)?) } else { job };
         Ok(if needs(Aov::needs_previous) { job.moving_from(&pose(time - frame)?) } else { job })
     }
-}
-
-/// Refuses an unknown scene format.
-fn check_input_format(name: &str) -> anyhow::Result<()> {
-    if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
-        return Ok(());
-    }
-    let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
-    let names = rows.map(|row| row.entry.name).chain(["auto"]);
-    Err(SceneError::unknown("scene format", name, names, &from_flag("--input-format")).into())
 }

@@ -2,6 +2,7 @@
 
 use super::finishing::finish;
 use super::frames::FinishedFrames;
+use super::given::Given;
 use super::input::Input;
 use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
 use super::{DONE, aov, keeping, log, replaying, report_notes, watching};
@@ -105,8 +106,7 @@ pub fn confines(targets: &[Target], arguments: &Render) -> SandboxPaths {
     let studio = &arguments.studio;
     let mut confines = SandboxPaths::default();
     for scene in targets.iter().map(|target| &target.scene) {
-        // A scene on standard input may name files in the working directory.
-        let scene = if is_stdout(scene) { Path::new("./stdin") } else { scene };
+        let scene = Given::place(scene);
         // One that leads out is refused when its turn comes, and does not stop the others.
         if !leads_out(scene) {
             confines = confines.reading_scene(scene);

@@ -1,7 +1,8 @@
 //! Where the pictures of a render go. Mistakes are found before anything is rendered.
 
-use super::check_folder;
+use super::{check_folder, outputs};
 use crate::arguments::Render;
+pub use crate::streams::is_stdout;
 use anyhow::bail;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;
@@ -35,9 +36,7 @@ pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
             scene.file_stem().filter(|_| !is_stdout(scene)).map_or("stdin".into(), |s| s.to_string_lossy());
         let named = |pattern: &Path| PathBuf::from(pattern.to_string_lossy().replace("{stem}", &stem));
         let output = named(pattern);
-        if !is_stdout(&output) {
-            check_output(&output, arguments)?;
-        }
+        check_output(&output, arguments)?;
         if targets.iter().any(|other| other.output == output) && !is_stdout(&output) {
             bail!(
                 "{}: two scenes would write this file: rename one of them, or put them in separate commands",
@@ -111,9 +110,13 @@ pub fn still_frames(arguments: &Render, scene: &SceneBuilder) -> Vec<Warning> {
 
 /// Refuses a picture that cannot be written.
 fn check_output(output: &Path, arguments: &Render) -> anyhow::Result<()> {
-    check_folder(output)?;
-    let format = format_of_path(output)?;
-    let (name, path) = (format.entry.name, output.display());
+    if is_stdout(output) && arguments.output.is_none() {
+        // Text alone.
+        return Ok(());
+    }
+    outputs::check(output, arguments.output_format.as_deref(), arguments.quality)?;
+    let named = arguments.named(output);
+    let (name, path) = (format_of_path(&named)?.entry.name, named.display());
     if arguments.samples.is_some() && name != "exr" {
         bail!(
             "{path}: --samples needs an .exr, which keeps exact sums: write an .exr, and merge the parts with \
@@ -125,12 +128,7 @@ fn check_output(output: &Path, arguments: &Render) -> anyhow::Result<()> {
             "{path}: --bits 16 is only for PNG and PPM, and {name} has 8 bits: write a .png, or leave out --bits"
         );
     }
-    super::check_quality(arguments.quality, output)
-}
-
-/// True for `-`.
-pub fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
+    Ok(())
 }
 
 /// Replaces `{frame}` by four digits; if it is missing, puts them before the extension.

@@ -2,10 +2,8 @@
 
 use super::aov::{self, Layers};
 use super::input::Input;
-use super::warn_lost_alpha;
-use crate::commands::targets::is_stdout;
+use super::{outputs, warn_lost_alpha};
 use crate::interrupt::Interrupt;
-use crate::output;
 use anyhow::bail;
 use bilux::pictures::Picture;
 use bilux::pictures::denoise::DenoiserChoice;
@@ -65,7 +63,7 @@ pub fn write(
     output: &Path,
 ) -> anyhow::Result<Denoising> {
     let Input { arguments, common, interrupt, .. } = *input;
-    let is_exr = !is_stdout(output) && aov::is_exr(output);
+    let is_exr = aov::is_exr(&arguments.named(output));
     let is_part = is_exr && (arguments.is_part() || outcome.rendered.cancelled);
     let chosen = denoiser.filter(|_| !is_part);
     let smooth = chosen.map(|chosen| denoised(outcome, chosen, interrupt)).transpose()?.flatten();
@@ -90,12 +88,8 @@ pub fn write(
         options.bit_depth = BitDepth::Sixteen;
     }
     options.quality = arguments.quality.unwrap_or(options.quality);
-    if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
-    } else {
-        warn_lost_alpha(&picture, output, options.behind, common)?;
-        bilux::pictures::write(output, &picture, &options)?;
-    }
+    warn_lost_alpha(&picture, &arguments.named(output), options.behind, common)?;
+    outputs::write(output, arguments.output_format.as_deref(), &picture, &options)?;
     Ok(match (chosen, denoiser) {
         (None, _) => Denoising::Off,
         (Some(_), Some(_)) => Denoising::Done,

@@ -15,7 +15,7 @@ use bilux::transport::{Film, Observer, Standing};
 use bilux::{Job, Outcome};
 use indicatif::ProgressBar;
 use protocol::{Environment, Protocol};
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
@@ -79,7 +79,7 @@ impl Preview {
         job: &Job,
         bar: Option<ProgressBar>,
     ) -> anyhow::Result<Option<Preview>> {
-        let is_terminal = std::io::stderr().is_terminal();
+        let is_terminal = output::is_capable_terminal();
         let Some(protocol) = choice.protocol(&Environment::read(), is_terminal) else {
             output::warning(
                 "--preview: standard error is no terminal, so there is no preview: leave it out, or name a protocol, such \

@@ -320,3 +320,75 @@ fn heat_maps_have_photometric_units_and_a_scale() {
         assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
     }
 }
+
+/// Two point lamps of Φ/4π candela above a meter: in each pixel I cos³ / h², with the mean, the minimum and the uniformity of these.
+#[test]
+fn a_plan_of_lamps_adds_up_and_is_a_table() {
+    let folder = folder();
+    let path = folder.path();
+    let lamps = [([-1.0, 2.6, 0.3], 1500.0), ([1.4, 2.4, -0.5], 900.0)];
+    let light = |(p, lumens): &([f64; 3], f64)| {
+        format!("[[light]]\nkind = \"point\"\nposition = {p:?}\nintensity = \"{lumens} lm\"\n")
+    };
+    let meter = "[[camera]]\nkind = \"irradiance\"\nposition = [0, 0.8, 0]\nlook_at = [0, 2, 0]\nup = [0, 0, -1]\nheight = 4\n\
+                 [[model]]\nshape = \"floor\"\nside = 10\n";
+    fs::write(path.join("meter.toml"), meter.to_owned() + &lamps.iter().map(light).collect::<String>())
+        .unwrap();
+    done(path, "render meter.toml -o plan.exr --size 24x16 --spp 64 -i path -q --denoise=off --aov variance");
+    let at = |x: f64, z: f64| -> f64 {
+        let of = |([px, py, pz], lumens): &([f64; 3], f64)| {
+            let (height, away) = (py - 0.8, (px - x) * (px - x) + (pz - z) * (pz - z));
+            let far2 = away + height * height;
+            lumens / (4.0 * std::f64::consts::PI) * height / (far2 * far2.sqrt())
+        };
+        lamps.iter().map(of).sum()
+    };
+    let middle = |i: usize| at((i % 24) as f64 * 0.25 - 2.875, (i / 24) as f64 * 0.25 - 1.875);
+    let all: Vec<f64> = (0..24 * 16).map(middle).collect();
+    let (mean, least) = (all.iter().sum::<f64>() / 384.0, all.iter().copied().fold(f64::INFINITY, f64::min));
+    let most = all.iter().copied().fold(0.0, f64::max);
+    done(path, "convert plan.exr -o plan.csv --heat-map luminance --unit lx -q");
+    let table = fs::read_to_string(path.join("plan.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        table.lines().map(|line| line.split(',').map(|word| word.parse().unwrap()).collect()).collect();
+    assert!(rows.len() == 16 && rows.iter().all(|row| row.len() == 24));
+    for (found, expected) in rows.iter().flatten().zip(&all) {
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} for {expected}");
+    }
+    for (factor, more) in [(1.0, ""), (0.75, " --maintenance-factor 0.75")] {
+        let said = run(
+            path,
+            &format!("convert plan.exr -o plan.png --heat-map luminance --unit lx --contours 20,30{more}"),
+        );
+        let text = String::from_utf8_lossy(&said.stderr).into_owned();
+        let number = |name: &str| -> f64 {
+            let (_, rest) = text.split_once(&format!("{name} ")).unwrap_or_else(|| panic!("{name}: {text}"));
+            rest.split([' ', ',', ';', '\n']).next().unwrap().parse().unwrap()
+        };
+        for (name, expected) in
+            [("Em", factor * mean), ("Emin", factor * least), ("Emax", factor * most), ("U0", least / mean)]
+        {
+            assert!((number(name) / expected - 1.0).abs() < 0.02, "{name} is {expected}: {text}");
+        }
+        assert!(text.contains(" ± ") && text.contains("maintenance") == (factor != 1.0), "{text}");
+    }
+    // The lines are where the picture without them has neighbours on both sides.
+    done(path, "convert plan.exr -o bare.png --heat-map luminance --unit lx -q");
+    done(path, "convert plan.exr -o lines.png --heat-map luminance --unit lx -q --contours 20,30");
+    let (bare, lines) = (opened(path, "bare.png"), opened(path, "lines.png"));
+    for i in 0..24 * 16 {
+        let (x, y) = (i % 24, i / 24);
+        let crosses = |j: usize| [20.0, 30.0].iter().any(|level| (all[i] < *level) != (all[j] < *level));
+        let near = |j: usize| [20.0, 30.0].iter().any(|level| (all[j] / level - 1.0).abs() < 0.02);
+        let beside: Vec<usize> =
+            [(x < 23).then_some(i + 1), (y < 15).then_some(i + 24)].into_iter().flatten().collect();
+        if !near(i) && !beside.iter().any(|j| near(*j)) {
+            let is_drawn = bare.rgb(x, y) != lines.rgb(x, y);
+            assert_eq!(is_drawn, beside.iter().any(|j| crosses(*j)), "{x}, {y}");
+        }
+    }
+    for wrong in ["--maintenance-factor 1.2", "--maintenance-factor 0", "--contours 0"] {
+        let output = run(path, &format!("convert plan.exr -o x.png --heat-map luminance --unit lx {wrong}"));
+        assert_eq!(output.status.code(), Some(2), "{wrong}");
+    }
+}

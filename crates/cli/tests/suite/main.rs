@@ -14,6 +14,7 @@ mod resume;
 mod sensors;
 mod serve;
 mod servers;
+mod streams;
 mod witness;
 mod worker;
 mod wrong_inputs;

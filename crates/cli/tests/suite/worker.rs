@@ -157,6 +157,7 @@ fn a_sandbox_holds_for_each_job() {
     let statuses: Vec<i64> = results.iter().map(|result| result["status"].as_i64().unwrap()).collect();
     assert_eq!(statuses, [0, 1, 0, 0, 0], "{results:#?}");
     assert!(results[1]["error"].as_str().unwrap().contains("../c/card.obj"), "{results:#?}");
+    assert!(results[1]["warnings"][0].as_str().unwrap().starts_with("sandbox: "), "{results:#?}");
     assert!(path.join("b/5.png").is_file() && !path.join("a/2.png").exists());
     let many: Vec<String> = (0..30).map(|id| job(id, "a/card.obj", json!({ "size": "4x4" }))).collect();
     let results = self::results(path, &["--sandbox"], &many);

@@ -273,3 +273,30 @@ fn quantities_of_light_are_read_written_and_refused_with_their_place() {
     let error = of("[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = \"5000 K\"\n").unwrap_err();
     assert!(error.contains("a colour [r, g, b] with each from 0 to 1"), "{error}");
 }
+
+/// A lamp of 100 cd in all directions gives 400 π lm; of 683 cd, with the multiplier, all of them count.
+#[test]
+fn stated_lumens_that_cannot_be_are_said() {
+    let file = |lamps: &str, multiplier: f64, ballast: f64| {
+        format!(
+            "IESNA:LM-63-2002\nTILT=NONE\n{lamps} {multiplier} 2 1 1 2 0 0 0\n{ballast} 1 10\n0 180\n0\n100 100\n"
+        )
+    };
+    let said = |lamps: &str, multiplier: f64, ballast: f64| {
+        let (lamp, warnings) = reads(file(lamps, multiplier, ballast).as_bytes()).unwrap();
+        close(lamp.lumens(), 400.0 * std::f64::consts::PI * multiplier * ballast);
+        warnings.join("; ")
+    };
+    // 1257 lm: from one lamp, from two, and of none that is stated.
+    for right in ["1 1257", "2 700", "1 -1", "1 0"] {
+        assert_eq!(said(right, 1.0, 1.0), "", "{right}");
+    }
+    assert_eq!(said("1 1257", 1.0, 0.5), "", "a ballast dims what is stated too");
+    for (lamps, multiplier, wanted) in [
+        ("1 1000", 1.0, "it states lamps of 1000 lm, but its intensities add up to 1257 lm (126%)"),
+        ("2 3000", 1.0, "it states lamps of 6000 lm, but its intensities add up to 1257 lm (21%)"),
+        ("1 1257", 3.0, "it states lamps of 1257 lm, but its intensities add up to 3770 lm (300%)"),
+    ] {
+        assert!(said(lamps, multiplier, 1.0).starts_with(wanted), "{}", said(lamps, multiplier, 1.0));
+    }
+}

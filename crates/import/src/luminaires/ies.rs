@@ -46,7 +46,8 @@ fn read(source: &Source) -> Result<Measured, FormatError> {
         }
     }
     let name = if name.is_empty() { source.stem() } else { name };
-    let distribution = numbers(&mut words, &name, is_of_2019)?;
+    let (distribution, stated) = numbers(&mut words, &name, is_of_2019)?;
+    warnings.extend(disagreement(stated, distribution.lumens()));
     Ok(Measured { distribution, warnings })
 }
 
@@ -85,9 +86,30 @@ fn skip_tilt(words: &mut Words) -> Result<bool, FormatError> {
     Ok(words.numbers(count, "tilt factors")?.iter().any(|factor| *factor != 1.0))
 }
 
-fn numbers(words: &mut Words, name: &str, is_of_2019: bool) -> Result<IntensityDistribution, FormatError> {
-    words.number("the number of lamps")?;
-    words.number("the lumens of each lamp")?;
+/// What a luminaire lets out of the light of its lamps, as a fraction: most of it, and no more than there is, but for rounding.
+const LET_OUT: [f64; 2] = [0.55, 1.05];
+
+/// What to say where the light of the lamps, in lumens, cannot be that of the intensities; nothing where it is not stated.
+fn disagreement(stated: f64, found: f64) -> Option<String> {
+    let [least, most] = LET_OUT;
+    let share = found / stated;
+    (stated > 0.0 && !(least..=most).contains(&share)).then(|| {
+        format!(
+            "it states lamps of {stated:.0} lm, but its intensities add up to {found:.0} lm ({:.0}%), which is what the lamp gives: \
+             scale it if the lumens are right",
+            share * 100.0
+        )
+    })
+}
+
+/// The distribution, and the light of the lamps in lumens with all factors; not positive if the file does not state it.
+fn numbers(
+    words: &mut Words,
+    name: &str,
+    is_of_2019: bool,
+) -> Result<(IntensityDistribution, f64), FormatError> {
+    let lamps = words.number("the number of lamps")?;
+    let lumens = words.number("the lumens of each lamp")?;
     let mut factor = not_negative(words, "the multiplier of the intensities")?;
     let rows = words.count("the number of vertical angles", [1, MAX_ANGLES])?;
     let planes = words.count("the number of horizontal angles", [1, MAX_ANGLES])?;
@@ -99,10 +121,13 @@ fn numbers(words: &mut Words, name: &str, is_of_2019: bool) -> Result<IntensityD
     for what in ["the unit of lengths", "the width", "the length", "the height"] {
         words.number(what)?;
     }
-    factor *= not_negative(words, "the ballast factor")?;
+    let ballast = not_negative(words, "the ballast factor")?;
+    factor *= ballast;
     // The edition of 2019 has the kind of the file here.
     let last = not_negative(words, "the ballast-lamp photometric factor")?;
     factor *= if is_of_2019 { 1.0 } else { last };
+    let stated =
+        if lumens > 0.0 { lamps * lumens * ballast * if is_of_2019 { 1.0 } else { last } } else { 0.0 };
     words.number("the watts")?;
     let vertical = angles(words, rows, "vertical angles")?;
     let horizontal = angles(words, planes, "horizontal angles")?;
@@ -130,7 +155,7 @@ fn numbers(words: &mut Words, name: &str, is_of_2019: bool) -> Result<IntensityD
             (planes, from_the_pole(&horizontal))
         }
     };
-    planes.distribution(name, goniometer, polar, words)
+    Ok((planes.distribution(name, goniometer, polar, words)?, stated))
 }
 
 /// Polar angles from angles above an equator.

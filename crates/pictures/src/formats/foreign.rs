@@ -16,6 +16,7 @@ pub struct ForeignFormat {
 
 const TO_PNG: &str =
     "convert it to PNG or JPEG with another program (such as ImageMagick: magick IN OUT.png)";
+const RUNS: &str = "it is run, not read: name a file that holds what you mean";
 const TO_GLB: &str = "export it as .glb from the program that made it, or from Blender";
 
 const fn picture(what: &'static str, is_like: fn(&[u8]) -> bool) -> ForeignFormat {
@@ -99,6 +100,14 @@ pub static FOREIGN_FORMATS: &[ForeignFormat] = &[
     }),
     scene("an IGES model of a CAD program", |b| {
         b.get(72..80) == Some(b"S      1") || b.get(72..80) == Some(b"S0000001")
+    }),
+    other("a program", RUNS, |b| {
+        // Of Linux, of Windows and of macOS.
+        b.starts_with(b"\x7fELF")
+            || b.starts_with(b"MZ") && b.len() > 64
+            || [&b"\xcf\xfa\xed\xfe"[..], b"\xce\xfa\xed\xfe", b"\xca\xfe\xba\xbe"]
+                .iter()
+                .any(|m| b.starts_with(m))
     }),
     other("a pointer of Git LFS", "fetch the file with `git lfs pull`", |b| {
         b.starts_with(b"version https://git-lfs.github.com/spec/")

@@ -49,18 +49,25 @@ def _matrix(K: ArrayLike) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _pose(world_to_camera: ArrayLike | None, R: ArrayLike | None, t: ArrayLike | None) -> dict[str, tuple[float, ...]]:
+def _pose(
+    world_to_camera: ArrayLike | None, camera_to_world: ArrayLike | None, R: ArrayLike | None, t: ArrayLike | None
+) -> dict[str, tuple[float, ...]]:
     """Position, a point on the axis, and up, of a camera with OpenCV's axes.
 
     Raises:
         ValueError: if there is no rotation, or more than one.
     """
-    if world_to_camera is None and R is None and t is None:
+    if camera_to_world is not None:
+        if world_to_camera is not None or R is not None or t is not None:
+            raise ValueError("camera_to_world: give it, or world_to_camera, or R and t, not both")
+        turn, place = _halves(_numbers("camera_to_world", camera_to_world), "camera_to_world")
+        rotation, shift, name = turn.T, -turn.T @ place, "camera_to_world"
+    elif world_to_camera is None and R is None and t is None:
         rotation, shift, name = np.eye(3), np.zeros(3), "R"
     elif world_to_camera is not None:
         if R is not None or t is not None:
             raise ValueError("world_to_camera: give it, or R and t, not both")
-        rotation, shift, name = *_halves(_numbers("world_to_camera", world_to_camera)), "world_to_camera"
+        rotation, shift, name = *_halves(_numbers("world_to_camera", world_to_camera), "world_to_camera"), "world_to_camera"
     else:
         if R is None or t is None:
             missing = "R" if R is None else "t"
@@ -121,6 +128,7 @@ def of_opencv(kind: str, make: Callable[..., Spec]) -> Callable[..., Spec]:
         K: ArrayLike | None = None,
         world_to_camera: ArrayLike | None = None,
         *,
+        camera_to_world: ArrayLike | None = None,
         distortion: ArrayLike | None = None,
         size: tuple[int, int] | None = None,
         R: ArrayLike | None = None,
@@ -130,12 +138,12 @@ def of_opencv(kind: str, make: Callable[..., Spec]) -> Callable[..., Spec]:
         **parameters: Any,
     ) -> Spec:
         if K is None:
-            others = {"world_to_camera": world_to_camera, "distortion": distortion, "size": size, "R": R, "t": t}
+            others = {"world_to_camera": world_to_camera, "camera_to_world": camera_to_world, "distortion": distortion, "size": size, "R": R, "t": t}
             given = [other for other, value in others.items() if value is not None]
             if given:
                 raise ValueError(f"{given[0]}: it needs K, the camera matrix")
             return make(name=name, **parameters)
-        known = _matrix(K) | _sides(size) | _pose(world_to_camera, R, t) | _distortion(order, distortion)
+        known = _matrix(K) | _sides(size) | _pose(world_to_camera, camera_to_world, R, t) | _distortion(order, distortion)
         twice = known.keys() & parameters.keys()
         if twice:
             raise ValueError(f"{sorted(twice)[0]}: the matrices say it already")
@@ -151,6 +159,7 @@ DOOR = """A camera by the matrices of OpenCV, or by the parameters below.
 Args:
     K: the camera matrix (3, 3), in pixels whose centres are at whole numbers, as in OpenCV.
     world_to_camera: from points of the world to OpenCV's axes (x to the right, y down, z forwards), in metres: (4, 4) or (3, 4).
+    camera_to_world: in place of it, the inverse: where the camera is, and its axes in the world, in OpenCV's directions.
     distortion: OpenCV's coefficients, in its order: {order}.
     size: width and height of the pictures that the camera was calibrated with, in pixels.
     R: in place of world_to_camera: its rotation (3, 3), or OpenCV's rvec (3,).
@@ -202,13 +211,13 @@ def _numbers(name: str, argument: Any) -> _Numbers:
     return numbers
 
 
-def _halves(both: _Numbers) -> tuple[_Numbers, _Numbers]:
+def _halves(both: _Numbers, name: str) -> tuple[_Numbers, _Numbers]:
     """The rotation and the translation of a matrix."""
     if both.shape not in ((4, 4), (3, 4)):
-        raise ValueError(f"world_to_camera: its shape is {both.shape}, but must be (4, 4) or (3, 4)")
+        raise ValueError(f"{name}: its shape is {both.shape}, but must be (4, 4) or (3, 4)")
     if both.shape == (4, 4) and not np.array_equal(both[3], [0, 0, 0, 1]):
-        advice = "; transpose it: world_to_camera.T" if np.array_equal(both[:, 3], [0, 0, 0, 1]) else ""
-        raise ValueError(f"world_to_camera: its last row is {both[3].tolist()}, but must be [0, 0, 0, 1]{advice}")
+        advice = f"; transpose it: {name}.T" if np.array_equal(both[:, 3], [0, 0, 0, 1]) else ""
+        raise ValueError(f"{name}: its last row is {both[3].tolist()}, but must be [0, 0, 0, 1]{advice}")
     return both[:3, :3], both[:3, 3]
 
 

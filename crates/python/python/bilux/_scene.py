@@ -386,6 +386,7 @@ class Scene(_bilux.Scene):
 
         Raises:
             IndexError: if there is no such object.
+            ValueError: if an object is twice in a group.
             SceneError: if an object is in two groups, or the size makes no sense.
 
         Example:
@@ -395,6 +396,9 @@ class Scene(_bilux.Scene):
         """
         numbers = range(len(self)) if objects is None else objects
         groups = [[self._number(one) for one in _several(group)] for group in numbers]
+        twice = next((one for group in groups for one in group if group.count(one) > 1), None)
+        if twice is not None:
+            raise ValueError(f"objects: {twice} is there twice in a group")
         given, most = self._whole(settings)
         return amodal_of(groups, operator.index(margin), *_bilux.silhouettes(self, groups, operator.index(margin), given, most))
 
@@ -439,6 +443,7 @@ class Scene(_bilux.Scene):
         if given.keys() & {"noise", "time_limit"}:
             raise TypeError("progressive: noise and time_limit do not end it: leave the loop instead")
         given |= {"noise": 0, "time_limit": 0}
+        self._checked_moment(given.get("time"))
         with following(progress) as callback:
             yield from self._progressive(given, _bytes(max_memory), callback)
 
@@ -530,7 +535,7 @@ class Scene(_bilux.Scene):
         return View(self, _sides(size), spp, operator.index(camera), settings | {"integrator": integrator})
 
     def lidar(
-        self, beams: Beams | ArrayLike, *, pose: ArrayLike | None = None, time: float = 0.0, **scanner: Any
+        self, beams: Beams | ArrayLike, *, pose: ArrayLike | None = None, time: float | None = None, **scanner: Any
     ) -> PointCloud:
         """What a laser scanner measures: all returns of each pulse, also behind glass and by mirrors, with noise.
 
@@ -540,7 +545,7 @@ class Scene(_bilux.Scene):
         Args:
             beams: a pattern such as `bilux.lidar.spinning(...)`, or an array (n, 3) of directions.
             pose: a (4, 4) matrix from the scanner's axes (y up, looking along -z) to the scene; (n, 4, 4) for one each.
-            time: when the scan begins, in seconds.
+            time: when the scan begins, in seconds; by default the time of the scene's pose, else 0.
             **scanner: parameters of `bilux.lidar.parameters["lidar"]`, such as divergence=3 (mrad), rays=16,
                 range_noise=0.02 (m), max_range=100, returns="first", channel="red" or seed=1.
 
@@ -560,7 +565,7 @@ class Scene(_bilux.Scene):
         """
         from .lidar import _scanned
 
-        return _scanned(self, beams, pose, time, scanner)
+        return _scanned(self, beams, pose, self._checked_moment(self._time if time is None else float(time)), scanner)
 
     def replay(self, x: int, y: int, sample: int = 0, **settings: Any) -> Replay:
         """Takes one sample of a picture again, and says what happens along its path.
@@ -742,6 +747,7 @@ class Scene(_bilux.Scene):
             raise TypeError(f"{min(fixed)}: this is a setting of pictures, and nothing that points have")
         plain = dict.fromkeys(("size", "camera", "time", "exposure"))
         given = self._settings(**plain | settings) | {"texture_filter": "none"}
+        self._checked_moment(given.get("time"))
         return given, _bytes(most)
 
     def _whole(self, settings: dict[str, Any]) -> tuple[dict[str, Any], int]:
@@ -750,7 +756,13 @@ class Scene(_bilux.Scene):
             raise TypeError("noise and time_limit have no effect here: give spp, the number of samples")
         most = settings.pop("max_memory", MAX_MEMORY)
         plain = dict.fromkeys(("size", "camera", "time", "exposure"))
-        return self._settings(**plain | settings) | {"noise": 0, "time_limit": 0}, _bytes(most)
+        given = self._settings(**plain | settings) | {"noise": 0, "time_limit": 0}
+        self._checked_moment(given.get("time"))
+        return given, _bytes(most)
+
+    def _checked_moment(self, time: float | None) -> float:
+        """The moment that a call shows, in seconds; an error where the meshes of a file were read for another one."""
+        return self._moment(self._asked_time(time), self._time)
 
     def _asked_time(self, time: float | None) -> float | None:
         """The time that a call asks for: if it says none, that of the pose."""

@@ -15,6 +15,7 @@ Example:
     ((1, 146), True)
 
 Sources:
+    [CIE 117] CIE. Discomfort Glare in Interior Lighting. CIE 117, 1995.
     [IES 2000] IES. Lighting Handbook. 9th edition.
     [IES LM-83-12] IES. Spatial Daylight Autonomy and Annual Sunlight Exposure. LM-83-12, 2012.
     [Iwata 1997] T. Iwata, M. Tokura. Position index for a glare source located below the line of vision. Lighting Research and
@@ -39,12 +40,16 @@ Sources:
 
 from __future__ import annotations
 
+import calendar
 import io
+import math
+import operator
 import os
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
-from typing import Any, TextIO
+from typing import Any, Literal, TextIO, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,7 +58,7 @@ from . import _bilux
 from ._bilux import Spec
 from ._progress import following
 from ._scene import Scene, _sensors
-from ._types import Progress
+from ._types import Measured, Progress
 
 Floats = NDArray[np.float64]
 
@@ -296,6 +301,9 @@ def _record(name: str, line: int, fields: list[str], each: int) -> list[float]:
             (("year", 1900, 2200), ("month", 1, 12), ("day", 1, 31), ("hour", 1, 24))
         )
     )
+    days = calendar.monthrange(int(year), int(month))[1]
+    if day > days:
+        raise ValueError(f"{name}, line {line}: the day (entry 3) is {day:g}, but month {month:g} of {year:g} has {days} days")
     minute = _number(name, line, fields, 4, "minute", 0, 60) if each > 1 else 60.0
     dew = _number(name, line, fields, _COLUMNS["dew point"], "dew point in °C", -99.9, 99.9)
     light = []
@@ -390,11 +398,14 @@ def sky_light(weather: Weather, interval: int) -> Spec:
         weather: from `read_epw`.
         interval: its number, from 0.
     """
-    direct, diffuse, clearness, brightness = (values[interval] for values in _illuminances(weather))
-    if weather.elevation[interval] <= 0:
+    number = operator.index(interval)
+    if not 0 <= number < len(weather):
+        raise IndexError(f"interval: there is no number {number}: the weather has {len(weather)} of them, counted from 0")
+    direct, diffuse, clearness, brightness = (values[number] for values in _illuminances(weather))
+    if weather.elevation[number] <= 0:
         direct = diffuse = 0.0
     return Spec("lights", "perez-sky", {
-        "elevation": float(weather.elevation[interval]), "azimuth": float(weather.azimuth[interval]),
+        "elevation": float(weather.elevation[number]), "azimuth": float(weather.azimuth[number]),
         "direct": f"{direct} lx", "diffuse": f"{diffuse} lx",
         "clearness": float(clearness), "brightness": float(brightness),
     })  # fmt: skip
@@ -422,8 +433,7 @@ def sky_matrix(
     directions, level, solid = patches.directions, patches.level, patches.solid_angles
     above = directions[1:, 1]
     found = np.zeros((len(patches), len(weather)), np.float32)
-    turned, raised = np.radians(weather.azimuth), np.radians(weather.elevation)
-    suns = np.stack([np.cos(raised) * np.sin(turned), np.sin(raised), -np.cos(raised) * np.cos(turned)], axis=1)
+    raised, suns = np.radians(weather.elevation), _suns(weather)
     numbers = patches.numbers(suns)
     for hour in np.flatnonzero((weather.elevation > 0) & (direct + diffuse > 0)):
         column = np.zeros(len(patches))
@@ -443,16 +453,27 @@ def sky_matrix(
     return found
 
 
+@overload
+def coefficients(
+    scene: Scene, points: ArrayLike, normals: ArrayLike = ..., *, errors: Literal[False] = False,
+    patches: SkyPatches | None = None, spp: int = 4096, progress: bool | Callable[[Progress], object] = False, **settings: Any,
+) -> NDArray[np.float32]: ...  # fmt: skip
+@overload
+def coefficients(
+    scene: Scene, points: ArrayLike, normals: ArrayLike = ..., *, errors: Literal[True],
+    patches: SkyPatches | None = None, spp: int = 4096, progress: bool | Callable[[Progress], object] = False, **settings: Any,
+) -> Measured: ...  # fmt: skip
 def coefficients(
     scene: Scene,
     points: ArrayLike,
     normals: ArrayLike = (0.0, 1.0, 0.0),
     *,
+    errors: bool = False,
     patches: SkyPatches | None = None,
     spp: int = 4096,
     progress: bool | Callable[[Progress], object] = False,
     **settings: Any,
-) -> NDArray[np.float32]:
+) -> NDArray[np.float32] | Measured:
     """Measures how much each point receives of the light of each patch of the sky: directly, and after reflections.
 
     The scene's own lights do not count. The sky is sampled evenly, whatever the windows are.
@@ -460,6 +481,7 @@ def coefficients(
     Args:
         scene: the scene.
         points, normals: as for `Scene.illuminance`.
+        errors: whether to give the standard errors too.
         patches: by default, the 145 of Tregenza.
         spp: samples of each point.
         progress: as for `Scene.render`.
@@ -467,18 +489,130 @@ def coefficients(
 
     Returns:
         coefficients in sr, an array (points, patches): the illuminance in lx where a patch has 1 cd/m². Multiply it by
-        `sky_matrix`, `dc @ sky`, for illuminances in lx.
+        `sky_matrix`, `dc @ sky`, for illuminances in lx. With `errors`, a `Measured` of them and their standard errors.
     """
     patches = SkyPatches() if patches is None else patches
+    everything, _ = _coefficients(scene, points, normals, patches, spp, progress, settings)
+    return everything if errors else everything.values.astype(np.float32)
+
+
+def _coefficients(
+    scene: Scene,
+    points: ArrayLike,
+    normals: ArrayLike,
+    patches: SkyPatches,
+    spp: int,
+    progress: bool | Callable[[Progress], object],
+    settings: dict[str, Any],
+) -> tuple[Measured, Measured]:
+    """The coefficients of all light, and of what does not come straight."""
     given, most = scene._measuring(settings | {"spp": spp, "noise": 0, "time_limit": 0})
     points, normals = _sensors(points, normals)
     with following(progress) as callback:
-        return _bilux.daylight_coefficients(scene, points, normals, patches._rows, given, most, callback)
+        both = _bilux.daylight_coefficients(scene, points, normals, patches._rows, given, most, callback)
+    everything, reflected = (Measured(*(part.astype(np.float64) for part in parts)) for parts in both)
+    return everything, reflected
+
+
+def direct_sunlight(
+    scene: Scene,
+    points: ArrayLike,
+    weather: Weather,
+    normals: ArrayLike = (0.0, 1.0, 0.0),
+    *,
+    progress: bool | Callable[[Progress], object] = False,
+    **settings: Any,
+) -> Floats:
+    """The illuminance of each point by the sun alone, without reflections, in each interval: what `annual_sun_exposure` takes.
+    [IES LM-83-12]
+
+    The sun is a point where it stands in the middle of the interval, so that its shadows are exact: no number is random, and none
+    is more than the sun gives outdoors. Smooth panes of glass, thin or with parallel faces, let their part of it through.
+
+    Args:
+        scene: the scene; its lights do not count.
+        points, normals: as for `Scene.illuminance`.
+        weather: from `read_epw`.
+        progress: as for `Scene.render`.
+        **settings: as for `Scene.illuminance`.
+
+    Returns:
+        illuminances in lx, an array (points, intervals); 0 while the sun is below the horizon.
+
+    Example:
+        >>> scene, weather = bilux.generate("cornell"), bilux.daylight.read_epw("london.epw")
+        >>> bilux.daylight.direct_sunlight(scene, [[0.2, 0.1, -0.2]], weather).shape
+        (1, 8760)
+    """
+    direct, _, _, _ = _illuminances(weather)
+    shining = np.flatnonzero((weather.elevation > 0) & (direct > 0))
+    points, normals = _sensors(points, normals)
+    found = np.zeros((len(points), len(weather)))
+    given, most = scene._measuring(settings | {"spp": 1, "noise": 0, "time_limit": 0})
+    if len(shining):
+        with following(progress) as callback:
+            parts = _bilux.sunlight(scene, points, normals, _suns(weather)[shining], given, most, callback)
+        found[:, shining] = parts * direct[shining]
+    return found
+
+
+def annual_illuminance(
+    scene: Scene,
+    points: ArrayLike,
+    weather: Weather,
+    normals: ArrayLike = (0.0, 1.0, 0.0),
+    *,
+    patches: SkyPatches | None = None,
+    spp: int = 4096,
+    albedo: float = 0.2,
+    progress: bool | Callable[[Progress], object] = False,
+    **settings: Any,
+) -> Measured:
+    """The illuminance of each point in each interval, by sky and sun, and how certain it is.
+
+    What comes straight from the sun is exact, as by `direct_sunlight`. All else is measured by `coefficients` and multiplied by
+    `sky_matrix`; only the light of the sun that is reflected comes from a sun as large as its patch. The figures of a year take
+    what this returns, and then have standard errors too.
+
+    Args:
+        scene, points, normals, patches, spp, progress, **settings: as for `coefficients`; by default there are 577 patches.
+        weather: from `read_epw`.
+        albedo: of the ground below the horizon.
+
+    Returns:
+        illuminances in lx, (points, intervals), and their standard errors.
+
+    Example:
+        >>> scene, weather = bilux.Scene(), bilux.daylight.read_epw("london.epw")
+        >>> ground = scene.add_mesh([[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]], [[0, 1, 2], [0, 2, 3]])
+        >>> year = bilux.daylight.annual_illuminance(scene, [[0, 1, 0]], weather, spp=64)
+        >>> bilux.daylight.daylight_autonomy(year, occupied=weather.occupied()).errors.shape
+        (1,)
+    """
+    patches = SkyPatches(2) if patches is None else patches
+    everything, reflected = _coefficients(scene, points, normals, patches, spp, progress, settings)
+    sky = sky_matrix(weather, patches, sun=False, albedo=albedo).astype(np.float64)
+    sun = sky_matrix(weather, patches, sky=False, albedo=albedo).astype(np.float64)
+    # Of the ground, number 0, all light counts.
+    of_sun = Measured(*(np.hstack([a[:, :1], b[:, 1:]]) for a, b in zip(everything, reflected, strict=True)))
+    values = everything.values @ sky + of_sun.values @ sun + direct_sunlight(scene, points, weather, normals, **settings)
+    # The same samples gave both, so that their errors in one patch add up; those of different patches are independent.
+    a, b = everything.errors, of_sun.errors
+    variances = a**2 @ sky**2 + 2 * (a * b) @ (sky * sun) + b**2 @ sun**2
+    return Measured(values, np.sqrt(variances))
+
+
+def _suns(weather: Weather) -> Floats:
+    """(n, 3) unit vectors to the sun."""
+    turned, raised = np.radians(weather.azimuth), np.radians(weather.elevation)
+    return np.stack([np.cos(raised) * np.sin(turned), np.sin(raised), -np.cos(raised) * np.cos(turned)], axis=1)
 
 
 def _hours(illuminance: ArrayLike, occupied: ArrayLike | None) -> Floats:
     """Illuminances, (points, intervals), in the intervals that count."""
     values = np.atleast_2d(np.asarray(illuminance))
+    if values.ndim != 2 or 0 in values.shape:
+        raise ValueError(f"illuminance: its shape is {values.shape}, but must be (points, intervals), with at least one of each")
     if occupied is None:
         return values
     mask = np.asarray(occupied, bool)
@@ -489,49 +623,124 @@ def _hours(illuminance: ArrayLike, occupied: ArrayLike | None) -> Floats:
     return values[:, mask]
 
 
-def daylight_autonomy(illuminance: ArrayLike, threshold: float = 300.0, occupied: ArrayLike | None = None) -> Floats:
+def _of_points(illuminance: ArrayLike | Measured, occupied: ArrayLike | None, figure: Callable[[Floats], Floats]) -> Measured:
+    """A figure of each point, and its error: by what a point is off in one hour, it is off in all, in the same direction."""
+    if not isinstance(illuminance, Measured):
+        found = figure(_hours(illuminance, occupied))
+        return Measured(found, np.zeros_like(found))
+    values, errors = _hours(illuminance.values, occupied), _hours(illuminance.errors, occupied)
+    apart = figure(values + errors) - figure(np.maximum(values - errors, 0))
+    return Measured(figure(values), np.abs(apart) / 2)
+
+
+def _share(found: Measured, passes: NDArray[np.bool_], limit: float) -> Measured:
+    """The fraction of points that pass a limit, and its error: each may belong on the other side of it, by some chance."""
+    off = np.abs(found.values - limit)
+    pairs = zip(off.tolist(), found.errors.tolist(), strict=True)
+    wrong = np.array([0.5 * math.erfc(one / error / math.sqrt(2)) if error > 0 else 0.0 for one, error in pairs])
+    return Measured(passes.mean(), np.sqrt((wrong * (1 - wrong)).sum()) / len(wrong))
+
+
+def _autonomy(illuminance: ArrayLike | Measured, threshold: float, occupied: ArrayLike | None) -> Measured:
+    return _of_points(illuminance, occupied, lambda values: (values >= threshold).mean(axis=1))
+
+
+@overload
+def daylight_autonomy(illuminance: Measured, threshold: float = 300.0, occupied: ArrayLike | None = None) -> Measured: ...
+@overload
+def daylight_autonomy(illuminance: ArrayLike, threshold: float = 300.0, occupied: ArrayLike | None = None) -> Floats: ...
+def daylight_autonomy(
+    illuminance: ArrayLike | Measured, threshold: float = 300.0, occupied: ArrayLike | None = None
+) -> Floats | Measured:
     """(points,) fractions of the time in which daylight alone gives the threshold, in lx. [Reinhart 2006]
 
     Args:
-        illuminance: (points, intervals) in lx.
+        illuminance: (points, intervals) in lx, or what `annual_illuminance` returns.
         threshold: in lx.
         occupied: (intervals,) which count; by default all. `Weather.occupied` has the usual hours.
+
+    Returns:
+        the fractions; of what has standard errors, a `Measured` of them and theirs.
     """
-    shares: Floats = (_hours(illuminance, occupied) >= threshold).mean(axis=1)
-    return shares
+    found = _autonomy(illuminance, threshold, occupied)
+    return found if isinstance(illuminance, Measured) else found.values
 
 
+@overload
+def spatial_daylight_autonomy(
+    illuminance: Measured, threshold: float = 300.0, share: float = 0.5, occupied: ArrayLike | None = None
+) -> Measured: ...
+@overload
 def spatial_daylight_autonomy(
     illuminance: ArrayLike, threshold: float = 300.0, share: float = 0.5, occupied: ArrayLike | None = None
-) -> float:
-    """The fraction of points with the threshold for this share of the time: sDA(300/50%). [IES LM-83-12]"""
-    return float((daylight_autonomy(illuminance, threshold, occupied) >= share).mean())
+) -> float: ...
+def spatial_daylight_autonomy(
+    illuminance: ArrayLike | Measured, threshold: float = 300.0, share: float = 0.5, occupied: ArrayLike | None = None
+) -> float | Measured:
+    """The fraction of points with the threshold for this share of the time: sDA(300/50%). [IES LM-83-12]
+
+    Of what has standard errors, as `annual_illuminance` returns it, a `Measured` of it and its own.
+    """
+    of_points = _autonomy(illuminance, threshold, occupied)
+    found = _share(of_points, of_points.values >= share, share)
+    return found if isinstance(illuminance, Measured) else float(found.values)
 
 
+@overload
+def useful_daylight_illuminance(
+    illuminance: Measured, low: float = 100.0, high: float = 3000.0, occupied: ArrayLike | None = None
+) -> Measured: ...
+@overload
 def useful_daylight_illuminance(
     illuminance: ArrayLike, low: float = 100.0, high: float = 3000.0, occupied: ArrayLike | None = None
-) -> Floats:
-    """(points, 3) fractions of the time with less than `low`, from `low` to `high`, and more, in lx. [Nabil 2006]"""
-    values = _hours(illuminance, occupied)
-    below, above = (values < low).mean(axis=1), (values > high).mean(axis=1)
-    return np.stack([below, 1 - below - above, above], axis=1)
+) -> Floats: ...
+def useful_daylight_illuminance(
+    illuminance: ArrayLike | Measured, low: float = 100.0, high: float = 3000.0, occupied: ArrayLike | None = None
+) -> Floats | Measured:
+    """(points, 3) fractions of the time with less than `low`, from `low` to `high`, and more, in lx. [Nabil 2006]
+
+    Of what has standard errors, as `annual_illuminance` returns it, a `Measured` of them and theirs.
+    """
+
+    def figure(values: Floats) -> Floats:
+        below, above = (values < low).mean(axis=1), (values > high).mean(axis=1)
+        return np.stack([below, 1 - below - above, above], axis=1)
+
+    found = _of_points(illuminance, occupied, figure)
+    return found if isinstance(illuminance, Measured) else found.values
 
 
+@overload
+def annual_sun_exposure(
+    direct: Measured, threshold: float = 1000.0, hours: float = 250.0, occupied: ArrayLike | None = None, each: int = 1
+) -> Measured: ...
+@overload
 def annual_sun_exposure(
     direct: ArrayLike, threshold: float = 1000.0, hours: float = 250.0, occupied: ArrayLike | None = None, each: int = 1
-) -> float:
+) -> float: ...
+def annual_sun_exposure(
+    direct: ArrayLike | Measured,
+    threshold: float = 1000.0,
+    hours: float = 250.0,
+    occupied: ArrayLike | None = None,
+    each: int = 1,
+) -> float | Measured:
     """The fraction of points that get the threshold, in lx, from the sun directly for more than so many hours: ASE(1000,250).
     [IES LM-83-12]
 
     Args:
-        direct: (points, intervals) illuminances by the sun alone, without reflections: of `coefficients(…, max_depth=0)` and
-            `sky_matrix(…, sky=False)`.
+        direct: (points, intervals) illuminances by the sun alone, without reflections: of `direct_sunlight`, which is exact.
         threshold: in lx.
         hours: of the year.
         occupied: as for `daylight_autonomy`.
         each: intervals in an hour.
+
+    Returns:
+        the fraction; of what has standard errors, a `Measured` of it and its own.
     """
-    return float(((_hours(direct, occupied) >= threshold).sum(axis=1) > hours * each).mean())
+    of_points = _of_points(direct, occupied, lambda values: (values >= threshold).sum(axis=1).astype(float))
+    found = _share(of_points, of_points.values > hours * each, hours * each)
+    return found if isinstance(direct, Measured) else float(found.values)
 
 
 def position_index(directions: ArrayLike, forward: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> Floats:
@@ -574,30 +783,112 @@ def glare_probability(luminance: ArrayLike, camera: Spec, threshold: float | Non
         threshold: in cd/m², above which a pixel glares; by default five times the mean luminance.
 
     Raises:
-        ValueError: if the picture has no two dimensions, or holds what is not finite.
+        ValueError: if the picture has no two dimensions, or holds what is not finite or the numbers of a picture file; or if the
+            camera sees less than half of everything around it.
+
+    Warns:
+        UserWarning: if the result is outside of the values for which the formula was found, as it is of pictures in other units.
     """
-    values = np.asarray(luminance, float)
-    if values.ndim != 2 or not np.isfinite(values).all():
-        raise ValueError("luminance: give an array (height, width) of finite numbers in cd/m²")
-    height, width = values.shape
-    y, x = np.mgrid[0:height, 0:width]
-
-    def at(dx: float, dy: float) -> Floats:
-        return camera.rays(np.stack([x + dx, y + dy], -1).reshape(-1, 2), size=(width, height))[1]
-
-    middle = at(0, 0)
-    across, down = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)
-    solid = np.nan_to_num(np.linalg.norm(np.cross(across, down), axis=1))
-    forward = camera.rays([[(width - 1) / 2, (height - 1) / 2]], size=(width, height))[1][0]
-    up = camera.parameters.get("up", (0.0, 1.0, 0.0))
-    seen = np.isfinite(middle).all(axis=1) & (solid > 0)
-    middle, solid, light = middle[seen], solid[seen], values.reshape(-1)[seen]
-    cos = np.maximum(middle @ forward, 0)
-    eye = float((light * solid * cos).sum())
-    if eye <= 0:
+    seen = _Seen(luminance, camera)
+    if seen.eye <= 0:
+        warnings.warn("glare_probability: the picture is black, with 0 lx at the eye", stacklevel=2)
         return 0.0
-    limit = 5 * float((light * solid).sum() / solid.sum()) if threshold is None else threshold
-    glaring = (light > limit) & (cos > 0)
-    index = position_index(middle[glaring], forward, up)
-    total = float((light[glaring] ** 2 * solid[glaring] / index**2).sum()) / eye**1.87
-    return float(min(max(5.87e-5 * eye + 9.18e-2 * np.log10(1 + total) + 0.16, 0.0), 1.0))
+    glaring = seen.glaring(threshold)
+    total = float((seen.light[glaring] ** 2 * seen.solid[glaring] / seen.index(glaring) ** 2).sum()) / seen.eye**1.87
+    found = float(5.87e-5 * seen.eye + 9.18e-2 * np.log10(1 + total) + 0.16)
+    least, most = _FOUND_FOR
+    if seen.eye < _DIM:
+        warnings.warn(
+            f"glare_probability: there are only {seen.eye:.3g} lx at the eye, which is no daylight: is the luminance in cd/m², 683 "
+            "times that of a picture's pixels?",
+            stacklevel=2,
+        )
+    elif not least <= found <= most:
+        warnings.warn(
+            f"glare_probability: {found:.3g}, with {seen.eye:.3g} lx at the eye, is outside of {least} to {most}, for which the "
+            "formula was found: is the luminance in cd/m²?",
+            stacklevel=2,
+        )
+    return min(max(found, 0.0), 1.0)
+
+
+def unified_glare_rating(luminance: ArrayLike, camera: Spec, threshold: float | None = None) -> float:
+    """The unified glare rating of a picture: how much the lamps of a room disturb, from 10 (nobody) to 30 (all). [CIE 117]
+
+    UGR = 8 log₁₀(0.25 / Lb Σ L² ω / P²), of lamps with luminance L, solid angle ω and position index P. Lb is the background's
+    luminance: the illuminance at the eye without the lamps, over π. Each pixel above the threshold counts as a lamp of its own,
+    which is the same as whole lamps if these are evenly bright.
+
+    Args:
+        luminance: (height, width) in cd/m²: 683 times that of a picture's pixels.
+        camera: the camera of the picture, as for `glare_probability`.
+        threshold: in cd/m², above which a pixel belongs to a lamp; by default five times the mean luminance.
+
+    Returns:
+        the rating; minus infinity if nothing glares.
+
+    Raises:
+        ValueError: as for `glare_probability`, and if all is dark but the lamps, so that there is no background.
+    """
+    seen = _Seen(luminance, camera)
+    glaring = seen.glaring(threshold)
+    if not glaring.any():
+        return -math.inf
+    background = float((seen.light * seen.solid * seen.cos)[~glaring].sum()) / np.pi
+    if background <= 0:
+        raise ValueError("luminance: all is dark but the lamps, so that there is no background to compare them with")
+    total = float((seen.light[glaring] ** 2 * seen.solid[glaring] / seen.index(glaring) ** 2).sum())
+    return float(8 * np.log10(0.25 / background * total))
+
+
+class _Seen:
+    """What an eye sees: directions, solid angles and luminances of the pixels of a picture."""
+
+    def __init__(self, luminance: ArrayLike, camera: Spec) -> None:
+        given = np.asarray(luminance)
+        if given.dtype in (np.bool_, np.uint8, np.uint16):
+            raise ValueError(f"luminance: these are numbers of a picture file ({given.dtype}), not luminances in cd/m²")
+        values = np.asarray(given, float)
+        if values.ndim != 2 or not np.isfinite(values).all():
+            raise ValueError("luminance: give an array (height, width) of finite numbers in cd/m²")
+        height, width = values.shape
+        y, x = np.mgrid[0:height, 0:width]
+
+        def at(dx: float, dy: float) -> Floats:
+            return camera.rays(np.stack([x + dx, y + dy], -1).reshape(-1, 2), size=(width, height))[1]
+
+        middle = at(0, 0)
+        across, down = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)
+        solid = np.nan_to_num(np.linalg.norm(np.cross(across, down), axis=1))
+        seen = np.isfinite(middle).all(axis=1) & (solid > 0)
+        self.forward = camera.rays([[(width - 1) / 2, (height - 1) / 2]], size=(width, height))[1][0]
+        self.up = camera.parameters.get("up", (0.0, 1.0, 0.0))
+        self.middle, self.solid, self.light = middle[seen], solid[seen], values.reshape(-1)[seen]
+        self.cos: Floats = np.maximum(self.middle @ self.forward, 0)
+        ahead = float(self.solid[self.cos > 0].sum()) / (2 * np.pi)
+        if ahead < _WHOLE_VIEW:
+            raise ValueError(
+                f"camera: it sees {ahead:.0%} of what is ahead of it, but glare is of all that an eye sees: take "
+                "bilux.cameras.fisheye with fov=180"
+            )
+        self.eye = float((self.light * self.solid * self.cos).sum())
+
+    def glaring(self, threshold: float | None) -> NDArray[np.bool_]:
+        """(n,) which pixels ahead are brighter than the threshold, by default five times the mean."""
+        limit = 5 * float((self.light * self.solid).sum() / self.solid.sum()) if threshold is None else threshold
+        bright: NDArray[np.bool_] = (self.light > limit) & (self.cos > 0)
+        return bright
+
+    def index(self, which: NDArray[np.bool_]) -> Floats:
+        """The position indices of some pixels."""
+        return position_index(self.middle[which], self.forward, self.up)
+
+
+_FOUND_FOR = (0.2, 0.8)
+"""The values of the daylight glare probability for which its formula was found. [Wienold 2006]"""
+
+_DIM = 100.0
+"""Illuminances at the eye, in lx, that are less are no daylight: the people of [Wienold 2006] had some hundreds at least."""
+
+_WHOLE_VIEW = 0.95
+"""The part of the half sphere ahead that a camera must see, less than all since its edge is one of pixels."""

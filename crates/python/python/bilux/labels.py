@@ -19,6 +19,7 @@ import json
 import os
 import pathlib
 import struct
+import warnings
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -52,6 +53,7 @@ class Instance(NamedTuple):
         transform: (4, 4) matrix from the mesh of its first object to the scene.
         bounds: (2, 3) corners of the box around all of it, along the axes of that mesh.
         masks: all of it, and what is visible of it.
+        time: the moment of all that, in seconds.
     """
 
     category: str
@@ -59,6 +61,7 @@ class Instance(NamedTuple):
     transform: _Numbers
     bounds: _Numbers
     masks: Amodal
+    time: float = 0.0
 
 
 def instances(
@@ -80,8 +83,12 @@ def instances(
 
     Returns:
         one instance each, also for those of which nothing is visible.
+
+    Raises:
+        SceneError: if the meshes of a file move by themselves, and it was read for another time.
     """
-    known = scene._objects_at(scene._moment(scene._asked_time(time)))
+    moment = scene._checked_moment(time)
+    known = scene._objects_at(moment)
     if objects is None:
         objects = [number for number, one in enumerate(known) if one.category]
     found = scene.amodal(objects, margin=margin, **settings | ({} if time is None else {"time": time}))
@@ -95,7 +102,7 @@ def instances(
         ]
         points = np.concatenate(corners)
         bounds = np.stack([points.min(0), points.max(0)])
-        return Instance(first.category, first.name, first.transform, bounds, masks)
+        return Instance(first.category, first.name, first.transform, bounds, masks, moment)
 
     return [one(masks) for masks in found if masks.objects]
 
@@ -108,6 +115,14 @@ def _placed(matrix: _Numbers, points: _Numbers) -> _Numbers:
 # Masks.
 
 
+def _of_mask(mask: ArrayLike) -> NDArray[np.bool_]:
+    """A mask, if it is one."""
+    inside = np.asarray(mask, dtype=bool)
+    if inside.ndim != 2:
+        raise ValueError(f"mask: its shape is {inside.shape}, but must be (height, width)")
+    return inside
+
+
 def runs(mask: ArrayLike) -> list[int]:
     """How many pixels are outside and inside of a mask in turn, column by column: COCO's uncompressed masks.
 
@@ -118,7 +133,7 @@ def runs(mask: ArrayLike) -> list[int]:
         >>> bilux.labels.runs([[0, 1], [0, 1]])
         [2, 2]
     """
-    flat = np.asarray(mask, dtype=bool).ravel(order="F")
+    flat = _of_mask(mask).ravel(order="F")
     ends = np.flatnonzero(np.diff(flat)) + 1
     lengths: list[int] = np.diff(np.concatenate([[0], ends, [flat.size]])).tolist()
     return ([0] if flat.size and flat[0] else []) + lengths
@@ -191,7 +206,7 @@ def polygons(mask: ArrayLike) -> list[list[float]]:
         >>> bilux.labels.polygons([[0, 0, 0], [0, 1, 0]])
         [[1.0, 1.0, 2.0, 1.0, 2.0, 2.0, 1.0, 2.0]]
     """
-    inside = np.pad(np.asarray(mask, dtype=bool), 1)
+    inside = np.pad(_of_mask(mask), 1)
     leaves: dict[tuple[int, int], list[tuple[int, int]]] = {}
     # Edges with the inside on their right, as seen with y downwards.
     for edges, begin, end in (
@@ -274,22 +289,41 @@ def write_depth(file: Path, depth: ArrayLike, *, unit: float = 0.001) -> None:
 
     Args:
         file: its path.
-        depth: (height, width) in metres; z-depth for most readers. What is infinite, or too far for 16 bits, becomes 0, which
+        depth: (height, width) in metres; z-depth for most readers. What is infinite, or behind the camera, becomes 0, which
             says that there is no depth.
         unit: metres that the number 1 stands for: 0.001 for millimetres, which reach 65.5 m.
+
+    Raises:
+        ValueError: if a depth is too far for 16 bits, or the unit is no positive number.
     """
-    steps = np.asarray(depth, dtype=np.float64) / unit
-    fits = np.isfinite(steps) & (steps >= 0) & (steps < 65535.5)
-    write_png(file, np.rint(np.where(fits, steps, 0)).astype(np.uint16))
+    write_png(file, _steps(depth, unit))
 
 
-def matrices(camera: Spec, size: tuple[int, int]) -> tuple[_Numbers, _Numbers]:
+_LARGEST = 65535
+
+
+def _steps(depth: ArrayLike, unit: float) -> NDArray[np.uint16]:
+    """Depths in steps of a unit, both in metres; 0 where there is none."""
+    if not 0 < unit < np.inf:
+        raise ValueError(f"unit: {unit!r} is no positive number of metres")
+    metres = np.asarray(depth, dtype=np.float64)
+    steps = np.rint(np.where(np.isfinite(metres) & (metres >= 0), metres, 0) / unit)
+    if steps.max(initial=0) > _LARGEST:
+        raise ValueError(
+            f"depths reach {steps.max() * unit:.6g} m, but 16 bits of {unit * 1e3:.6g} mm hold at most {_LARGEST * unit:.6g} m: "
+            "take larger steps, or make what is farther infinite, which is written as 0"
+        )
+    return steps.astype(np.uint16)
+
+
+def matrices(camera: Spec, size: tuple[int, int], *, time: float = 0.0) -> tuple[_Numbers, _Numbers]:
     """The matrices of a camera with OpenCV's axes (x to the right, y down, z forwards).
 
     Args:
         camera: one of `bilux.cameras` whose pictures keep straight lines straight: a pinhole, also with a principal point
             elsewhere.
         size: width and height of its pictures in pixels.
+        time: of a camera that moves, the moment in seconds.
 
     Returns:
         K: (3, 3) camera matrix, in pixels whose centres are at whole numbers.
@@ -308,7 +342,7 @@ def matrices(camera: Spec, size: tuple[int, int]) -> tuple[_Numbers, _Numbers]:
     """
     width, height = size
     sides = np.array([[0, 0], [width, 0], [0, height], [width, height], [0.37 * width, 0.21 * height]], np.float64)
-    origins, rays = camera.rays(sides, size=size)
+    origins, rays = camera.rays(sides, size=size, time=time)
     if not np.isfinite(rays).all() or np.abs(origins - origins[0]).max() > 1e-6 * (1 + np.abs(origins[0]).max()):
         raise ValueError("camera: its rays do not come from one point, so that it has no matrix")
     # Rays of a pinhole are a matrix times (column, row, 1); the corners say it but for its scale.
@@ -344,8 +378,7 @@ class Coco:
     """
 
     def __init__(self, categories: Sequence[str] | Mapping[str, int], *, polygons: bool = False) -> None:
-        numbered = categories if isinstance(categories, Mapping) else dict(zip(categories, range(1, len(categories) + 1)))  # noqa: B905
-        self._categories = dict(numbered)
+        self._categories = _numbered(categories, 1)
         self._polygons = polygons
         self._images: list[dict[str, Any]] = []
         self._annotations: list[dict[str, Any]] = []
@@ -412,6 +445,17 @@ def _cropped(masks: Amodal, *, whole: bool = False) -> NDArray[np.bool_]:
     return mask[margin : margin + height, margin : margin + width]
 
 
+def _numbered(categories: Sequence[str] | Mapping[str, int], first: int) -> dict[str, int]:
+    """The numbers of categories by their names, counted from the first if there are only names."""
+    names = list(categories)
+    numbers = list(categories.values()) if isinstance(categories, Mapping) else list(range(first, first + len(names)))
+    for kind, values in (("the name", names), ("the number", numbers)):
+        twice = [one for one in values if values.count(one) > 1]
+        if twice:
+            raise ValueError(f"categories: {kind} {twice[0]!r} is there twice, but each category has its own")
+    return dict(zip(names, numbers, strict=True))
+
+
 def _number_of(instance: Instance, categories: Mapping[str, int]) -> int:
     if instance.category not in categories:
         known = ", ".join(categories)
@@ -440,7 +484,7 @@ def yolo(
     Raises:
         ValueError: if an instance has another category.
     """
-    numbers = categories if isinstance(categories, Mapping) else dict(zip(categories, range(len(categories)), strict=True))
+    numbers = _numbered(categories, 0)
     lines = []
     for instance in instances:
         number, box = _number_of(instance, numbers), instance.masks.visible_box
@@ -471,20 +515,22 @@ def kitti(
     Args:
         file: its path.
         instances: what is in the picture; those of which nothing is visible are left out.
-        camera: the camera, a pinhole.
+        camera: the camera, a pinhole. If it moves, it counts where it is at the moment of the instances.
         size: width and height of the picture in pixels.
         forward: the direction of an object's front, (3,) along x or z of its mesh, by default z, as in glTF.
 
     Raises:
-        ValueError: if the camera has no matrix, or the front is along y.
+        ValueError: if the camera has no matrix, the front is along y, or the instances are of several moments.
     """
-    _, world_to_camera = matrices(camera, size)
+    seen = list(instances)
+    _, world_to_camera = matrices(camera, size, time=_moment(seen))
+    _warn_of_leaning(seen, world_to_camera)
     front = np.asarray(forward, np.float64)
     along = int(np.argmax(np.abs(front)))
     if front.shape != (3,) or along == 1 or not front[along]:
         raise ValueError(f"forward: {forward!r} is no direction along x or z")
     lines = []
-    for instance in instances:
+    for instance in seen:
         if instance.masks.visible_box is None:
             continue
         to_camera = world_to_camera @ instance.transform
@@ -510,6 +556,35 @@ def kitti(
     pathlib.Path(file).write_text("".join(line + "\n" for line in lines))
 
 
+def _warn_of_leaning(instances: Sequence[Instance], world_to_camera: _Numbers) -> None:
+    """Warns of boxes that are not upright before the camera, as those of KITTI are, such as before one that looks down."""
+    for instance in instances:
+        up = (world_to_camera @ instance.transform)[:3, 1]
+        leaning = float(np.degrees(np.arccos(np.clip(-up[1] / np.linalg.norm(up), -1, 1))))
+        if instance.masks.visible_box is not None and leaning > _UPRIGHT:
+            warnings.warn(
+                f"kitti: boxes in space stand upright before the camera, but {instance.name!r} leans by {leaning:.0f} degrees there, "
+                "which its line cannot say: is the camera level, and its pose from the world to the camera?",
+                stacklevel=3,
+            )
+            return
+
+
+_UPRIGHT = 15.0
+"""How far, in degrees, boxes may lean before the camera; those of cars on hills do by some."""
+
+
+def _moment(instances: Sequence[Instance], shown: float | None = None) -> float:
+    """The one moment of instances, and of the picture that shows them, if that is known."""
+    moments = sorted({instance.time for instance in instances} | ({shown} if shown is not None else set()))
+    if len(moments) > 1:
+        seconds = " and ".join(f"{moment:g}" for moment in moments)
+        raise ValueError(
+            f"instances: they and their picture are of different moments, {seconds} s: give `render` and `instances` the same time"
+        )
+    return moments[0] if moments else 0.0
+
+
 # BOP.
 
 
@@ -521,15 +596,20 @@ class Bop:
     Args:
         folder: of the scene, such as "train_pbr/000000"; it is made if there is none.
         categories: the numbers of models by the category of instances, or names of categories, counted from 1.
-        depth_scale: millimetres that the number 1 stands for in files of depth.
+        depth_scale: millimetres that the number 1 stands for in files of depth, which reach 65,535 times as far. By default it
+            is chosen for each picture, so that its farthest depth fits; scene_camera.json says it.
+
+    Raises:
+        ValueError: if the scale is no positive number.
     """
 
     def __init__(
-        self, folder: Path, categories: Sequence[str] | Mapping[str, int], *, depth_scale: float = 0.1
+        self, folder: Path, categories: Sequence[str] | Mapping[str, int], *, depth_scale: float | None = None
     ) -> None:
+        if depth_scale is not None and not 0 < depth_scale < np.inf:
+            raise ValueError(f"depth_scale: {depth_scale!r} is no positive number of millimetres")
         self._folder = pathlib.Path(folder)
-        numbered = categories if isinstance(categories, Mapping) else dict(zip(categories, range(1, len(categories) + 1)))  # noqa: B905
-        self._categories = dict(numbered)
+        self._categories = _numbered(categories, 1)
         self._depth_scale = depth_scale
         self._camera: dict[str, Any] = {}
         self._poses: dict[str, Any] = {}
@@ -543,20 +623,26 @@ class Bop:
         Args:
             picture: the picture.
             instances: what is in it. Give `bilux.labels.instances` a margin, since boxes reach beyond the picture.
-            camera: the camera, a pinhole.
+            camera: the camera, a pinhole. If it moves, it counts where it is at the moment of the picture.
 
         Raises:
-            ValueError: if there is no layer "z_depth", an instance has another category, or is scaled: poses turn and move.
+            ValueError: if there is no layer "z_depth", a depth does not fit the scale that was fixed, an instance has another
+                category or is of another moment than the picture, or is scaled: poses turn and move.
         """
         if "z_depth" not in picture:
             raise ValueError("picture: it has no layer 'z_depth': render with labels=True or aov=['z_depth']")
         number, size = len(self._camera), (picture.width, picture.height)
-        K, world_to_camera = matrices(camera, size)
-        seen = [(_number_of(instance, self._categories), instance) for instance in instances]
+        given = list(instances)
+        K, world_to_camera = matrices(camera, size, time=_moment(given, picture.info.get("time")))
+        seen = [(_number_of(instance, self._categories), instance) for instance in given]
         poses = [_pose(instance, world_to_camera, model) for model, instance in seen]
-        depth = picture["z_depth"]
+        scale = _fitting_scale(picture["z_depth"]) if self._depth_scale is None else self._depth_scale
+        try:
+            depth = _steps(picture["z_depth"], scale * 1e-3)
+        except ValueError as error:
+            raise ValueError(f"depth_scale: {error}; without depth_scale, it is chosen so that they fit") from None
         picture.save(self._folder / f"rgb/{number:06}.png")
-        write_depth(self._folder / f"depth/{number:06}.png", depth, unit=self._depth_scale * 1e-3)
+        write_png(self._folder / f"depth/{number:06}.png", depth)
         info = []
         for index, (_, instance) in enumerate(seen):
             masks, name = instance.masks, f"{number:06}_{index:06}.png"
@@ -568,14 +654,14 @@ class Bop:
                     "bbox_obj": _bop_box(masks.box),
                     "bbox_visib": _bop_box(masks.visible_box),
                     "px_count_all": masks.pixels,
-                    "px_count_valid": int(np.isfinite(depth[inside]).sum()),
+                    "px_count_valid": int(np.count_nonzero(depth[inside])),
                     "px_count_visib": masks.visible_pixels,
                     "visib_fract": masks.visible_fraction,
                 }
             )
         self._camera[str(number)] = {
             "cam_K": K.ravel().tolist(),
-            "depth_scale": self._depth_scale,
+            "depth_scale": scale,
             "cam_R_w2c": world_to_camera[:3, :3].ravel().tolist(),
             "cam_t_w2c": (world_to_camera[:3, 3] * 1e3).tolist(),
         }
@@ -586,6 +672,18 @@ class Bop:
         """Writes the files of cameras, poses and visibility."""
         for name, content in (("camera", self._camera), ("gt", self._poses), ("gt_info", self._info)):
             (self._folder / f"scene_{name}.json").write_text(json.dumps(content, indent=1))
+
+
+def _fitting_scale(depth: ArrayLike) -> float:
+    """Millimetres that the number 1 stands for, in two digits, so that the farthest of depths in metres fits into 16 bits."""
+    metres = np.asarray(depth, np.float64)
+    farthest = float(metres.max(initial=0.0, where=np.isfinite(metres)))
+    if farthest <= 0:
+        return 0.1
+    least = farthest * 1e3 / _LARGEST
+    digit = 10.0 ** (int(np.floor(np.log10(least))) - 1)
+    # As decimals are written, not with the last bits of a product.
+    return float(f"{np.ceil(least / digit * (1 - 1e-12)) * digit:.2g}")
 
 
 def _bop_box(box: Box | None) -> list[int]:

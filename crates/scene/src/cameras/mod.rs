@@ -239,7 +239,8 @@ fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
 
 /// What is wrong with a camera that has no axes.
 fn without_axes(reader: &Reader) -> SceneError {
-    let message = "a camera must not look along its own up direction, nor at its own position";
+    let message = "a camera must not look along its own up direction, nor at its own position: one that looks straight down needs \
+                   another up, such as [0, 0, -1]";
     SceneError::invalid(message, reader.span("look_at"))
 }
 

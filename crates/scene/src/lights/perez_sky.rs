@@ -1,7 +1,9 @@
 //! `perez-sky`: the sky of any weather, from the light of the sun and of the sky that was measured. [Perez 1993]
 
 use super::LightEntry;
-use super::sky_dome::{AZIMUTH, Amount, ELEVATION, GROUND, SUN_DIAMETER, SkyFormula, Surroundings, number};
+use super::sky_dome::{
+    AZIMUTH, Amount, ELEVATION, GROUND, Gradation, SUN_DIAMETER, SkyFormula, Surroundings, number,
+};
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{acos_f64, cos_f64, exp_f64, powf_f64};
@@ -58,8 +60,9 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         let clearness = given("clearness", perez_clearness(sun, sky, zenith));
         let brightness =
             given("brightness", sky * f64::from(LUMENS_PER_WATT) * air_mass(zenith) / ABOVE_THE_AIR);
-        let coefficients = perez_coefficients(clearness, brightness, zenith).map(|c| c as f32);
-        let formula = SkyFormula { coefficients, across: 0.0 };
+        let [a, b, c, d, e] = perez_coefficients(clearness, brightness, zenith).map(|c| c as f32);
+        let gradation = Gradation::Exponential([a, b]);
+        let formula = SkyFormula { gradation, indicatrix: [c, d, e], across: 0.0 };
         Ok(around.lights(&formula, Amount::Level(diffuse), direct))
     },
 };

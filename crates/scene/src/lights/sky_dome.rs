@@ -19,23 +19,42 @@ const SIZE: [usize; 2] = [512, 256];
 /// Formulas that divide by the cosine of the zenith angle keep to this near the horizon.
 const LOWEST: f32 = 0.01;
 
-/// How bright a sky is by the angles from the zenith and from the sun, (1 + a exp(b / cos Z)) (1 + c (exp(d χ) - f) + e cos² χ).
+/// How bright a sky is by the angles Z from the zenith and χ from the sun: its gradation times 1 + c (exp(d χ) - f) + e cos² χ.
 /// \[CIE 2003; Perez 1993, eq. 1]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SkyFormula {
-    pub(super) coefficients: [f32; 5],
+    pub(super) gradation: Gradation,
+    /// c, d and e.
+    pub(super) indicatrix: [f32; 3],
     /// f: what the indicatrix is less than by exp(d π/2), or 0.
     pub(super) across: f32,
+}
+
+/// How bright a sky is by the angle from the zenith.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Gradation {
+    /// 1 + a exp(b / cos Z), of a and b.
+    Exponential([f32; 2]),
+    /// 1 + 2 cos Z: three times as bright at the zenith as at the horizon. \[Moon 1942]
+    Overcast,
+}
+
+impl Gradation {
+    fn at(self, up: f32) -> f32 {
+        match self {
+            Gradation::Exponential([a, b]) => 1.0 + a * exp(b / up.max(LOWEST)),
+            Gradation::Overcast => 1.0 + 2.0 * up.max(0.0),
+        }
+    }
 }
 
 impl SkyFormula {
     /// In any unit; never negative.
     pub(super) fn at(&self, direction: Vec3, sun: Vec3) -> f32 {
-        let [a, b, c, d, e] = self.coefficients;
+        let [c, d, e] = self.indicatrix;
         let cos = direction.dot(sun).clamp(-1.0, 1.0);
-        let gradation = 1.0 + a * exp(b / direction.y.max(LOWEST));
         let indicatrix = 1.0 + c * (exp(d * acos(cos)) - self.across) + e * cos * cos;
-        (gradation * indicatrix).max(0.0)
+        (self.gradation.at(direction.y) * indicatrix).max(0.0)
     }
 }
 
@@ -144,7 +163,11 @@ mod tests {
     use super::*;
     use bilux_math::Aabb;
 
-    const OVERCAST: SkyFormula = SkyFormula { coefficients: [4.0, -0.7, 0.0, -1.0, 0.0], across: 0.0 };
+    const OVERCAST: SkyFormula = SkyFormula {
+        gradation: Gradation::Exponential([4.0, -0.7]),
+        indicatrix: [0.0, -1.0, 0.0],
+        across: 0.0,
+    };
 
     fn sky(formula: &SkyFormula, amount: Amount) -> Texture {
         let towards = Vec3::new(0.5, 0.7, -0.4).normalize();
@@ -170,7 +193,11 @@ mod tests {
 
     #[test]
     fn level_ground_receives_what_is_asked_for() {
-        let clear = SkyFormula { coefficients: [-1.0, -0.32, 10.0, -3.0, 0.45], across: 0.009 };
+        let clear = SkyFormula {
+            gradation: Gradation::Exponential([-1.0, -0.32]),
+            indicatrix: [10.0, -3.0, 0.45],
+            across: 0.009,
+        };
         for formula in [OVERCAST, clear] {
             let map = EnvironmentMap::new(
                 Arc::new(sky(&formula, Amount::Level(Rgb::grey(3.0)))),

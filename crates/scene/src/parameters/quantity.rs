@@ -3,6 +3,7 @@
 use crate::error::nearest_name;
 use crate::wavelength::black_body;
 use bilux_math::Rgb;
+use bilux_math::colour::srgb_decode;
 use bilux_math::photometry::LUMENS_PER_WATT;
 use bilux_math::registry::Parameter;
 
@@ -167,7 +168,10 @@ pub(super) fn colour_of(parameter: &Parameter, text: &str, [min, max]: [f64; 2])
     let units = units_of(parameter.unit);
     // A reflectance is no light.
     if units.is_empty() && max <= 1.0 {
-        return Err(wanted);
+        return shown(text).ok_or_else(|| wanted + ", or \"#rrggbb\" as a screen shows it");
+    }
+    if text.starts_with('#') {
+        return Err(format!("{wanted}: '{text}' says what a screen shows, not how much light that is"));
     }
     let units = if units.is_empty() { "K".to_owned() } else { units.join(", ") + ", K" };
     let wanted = |why: &str| {
@@ -178,6 +182,14 @@ pub(super) fn colour_of(parameter: &Parameter, text: &str, [min, max]: [f64; 2])
         true => Ok(colour),
         false => Err(wanted("this is too much")),
     }
+}
+
+/// The light of a colour as screens show it, `#rrggbb`.
+pub(super) fn shown(text: &str) -> Option<Rgb> {
+    let digits = text.strip_prefix('#')?;
+    let is_hex = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let all = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex)?;
+    Some(Rgb::from_array([16, 8, 0].map(|shift| srgb_decode(f32::from((all >> shift) as u8) / 255.0))))
 }
 
 fn example(unit: &str) -> &'static str {
@@ -262,6 +274,16 @@ mod tests {
         // The white of Rec. 709 is daylight of 6504 K, close to a black body of that temperature.
         let white = Quantity::read("6500 K").unwrap().colour;
         assert!((white - Rgb::WHITE).to_array().iter().all(|off| off.abs() < 0.06), "{white:?}");
+    }
+
+    /// By the curve of IEC 61966-2-1: of 128 and 64, ((x / 255 + .055) / 1.055)^2.4.
+    #[test]
+    fn colours_as_screens_show_them() {
+        let [red, green, blue] = shown("#ff8040").unwrap().to_array();
+        assert!(red == 1.0 && (green - 0.215_861).abs() < 1e-5 && (blue - 0.051_269).abs() < 1e-5);
+        for wrong in ["", "#fff", "#gggggg", "ff0000", "#ff00000", "#+12345"] {
+            assert_eq!(shown(wrong), None, "{wrong}");
+        }
     }
 
     #[test]

@@ -95,7 +95,7 @@ fn places(kind: &str) -> Vec<Place> {
         }
         "environment" => small("environment", PI * f64::from(LIGHT), 1.0, spec().with("radiance", LIGHT)),
         // They are as bright as they are asked to be.
-        "cie-sky" => [1, 5, 12]
+        "cie-sky" => [1, 5, 12, 16]
             .into_iter()
             .flat_map(|standard| {
                 let spec = spec().with("standard", standard).with("irradiance", LIGHT);

@@ -1,5 +1,6 @@
 //! Scenes, from what describes them to what rays meet.
 
+mod cameras;
 mod conventions;
 mod generators;
 mod irradiance;

@@ -2,7 +2,7 @@
 //! [Kajiya 1986; Veach 1997, 9.2]
 
 mod light_connection;
-mod sheet;
+pub(crate) mod sheet;
 
 use crate::equiangular::{self, Approach, EquiangularSample};
 use crate::interaction::{Interaction, NO_OBJECT};

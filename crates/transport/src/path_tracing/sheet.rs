@@ -24,7 +24,12 @@ impl PathTracing {
         let seen = path.walk.seen(task.sample);
         path.light = seen * self.direct(task, &from, (0, seen));
         match self.scatter(&mut path, &at, task) {
-            true => self.follow(path, task),
+            true => {
+                if let Some(record) = task.sample.record.as_deref_mut() {
+                    record.first = Some(Vec3::from(path.walk.ray.direction));
+                }
+                self.follow(path, task)
+            }
             false => path.light,
         }
     }
@@ -34,7 +39,8 @@ fn white(normal: Vec3) -> Bsdf {
     Bsdf::of(normal, normal, Lobe::Lambert(Lambert { albedo: Rgb::WHITE }))
 }
 
-fn paper(ray: &Ray, normal: Vec3) -> Surface {
+/// The paper where a ray begins.
+pub(crate) fn paper(ray: &Ray, normal: Vec3) -> Surface {
     let p = Vec3::from(ray.origin);
     Surface {
         t: 0.0,

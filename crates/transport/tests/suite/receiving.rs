@@ -1,12 +1,14 @@
 //! What points and plans receive, against closed forms; and what of it comes from each patch of the sky.
 
+use crate::common::media::boxed;
 use crate::common::{built, diffuse, floor, integrator, put, quad};
-use bilux_math::transcendental::{atan2_f64, sin};
+use bilux_math::transcendental::{atan2_f64, sin, sin_cos};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::{CameraSpec, SensorPoint, SensorPoints, build};
 use bilux_scene::{Scene, SceneBuilder, Spec};
 use bilux_transport::{
-    Received, RenderError, RenderSettings, Silent, SkyPatches, Stop, daylight_coefficients, received, render,
+    DaylightCoefficients, PartOfSky, Received, RenderError, RenderSettings, Silent, SkyPatches, Stop,
+    daylight_coefficients, received, render, sunlight,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -122,11 +124,15 @@ fn tregenza() -> SkyPatches {
     SkyPatches::new((0..).map(|row| sin((12.0 * row as f32).to_radians())).zip(rows))
 }
 
-fn coefficients(scene: &Scene, [p, normal]: [Vec3; 2], spp: u32) -> Vec<f32> {
-    let points = SensorPoints::new(vec![SensorPoint { p, normal }; 3]);
-    let settings = RenderSettings::new(2, 2, spp);
+fn measured_parts(scene: &Scene, [p, normal]: [Vec3; 2], count: usize, spp: u32) -> DaylightCoefficients {
+    let points = SensorPoints::new(vec![SensorPoint { p, normal }; count]);
+    let settings = RenderSettings::new(points.size()[0], points.size()[1], spp);
     let all = daylight_coefficients(scene, &points, &*integrator("path"), &settings, &tregenza(), &Silent);
-    all.unwrap().unwrap()[..146].to_vec()
+    all.unwrap().unwrap()
+}
+
+fn coefficients(scene: &Scene, at: [Vec3; 2], spp: u32) -> Vec<f32> {
+    measured_parts(scene, at, 3, spp).all[..146].iter().map(|part| part.mean).collect()
 }
 
 #[test]
@@ -162,6 +168,118 @@ fn each_patch_gets_its_own_light() {
     let patches = tregenza();
     let towards = |x: f32| beside[patches.number(Vec3::new(x, 0.3, 0.01))];
     assert!(towards(1.0) == 0.0 && towards(-1.0) > 0.0, "{} {}", towards(1.0), towards(-1.0));
+}
+
+/// The errors of coefficients are those by which many measurements of them differ.
+#[test]
+fn coefficients_know_their_errors() {
+    const COUNT: usize = 96;
+    let at = [Vec3::new(0.3, 0.7, 0.0), Vec3::new(0.2, 1.0, 0.1).normalize()];
+    let found = measured_parts(&under_the_sky(), at, COUNT, 64);
+    for parts in [&found.all, &found.reflected] {
+        let (mut known, mut seen) = (0.0, 0.0);
+        for patch in 0..146 {
+            let of_patch = || parts.iter().skip(patch).step_by(146).map(|part| f64::from(part.mean));
+            let mean = of_patch().sum::<f64>() / COUNT as f64;
+            seen += of_patch().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (COUNT - 1) as f64;
+            let errors = parts.iter().skip(patch).step_by(146).map(|part| f64::from(part.error));
+            known += errors.map(|error| error * error).sum::<f64>() / COUNT as f64;
+        }
+        let ratio = (known / seen).sqrt();
+        assert!((0.9..1.1).contains(&ratio), "{ratio}");
+    }
+    assert!(measured_parts(&under_the_sky(), at, 1, 4).all.iter().all(|part| part.error.is_infinite()));
+}
+
+/// What comes straight is no reflection, through a pane either; what matt walls reflect is nothing else.
+#[test]
+fn straight_light_is_not_reflected() {
+    let pane = |builder: &mut SceneBuilder| {
+        let glass = Spec::new("", "dielectric").with("thin", true).with("eta", 1.5f32);
+        put(builder, "pane", floor(1.0, 2000.0), glass);
+    };
+    let at = [Vec3::new(0.0, 0.2, 0.0), Vec3::Y];
+    for has_pane in [false, true] {
+        let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
+        put(&mut builder, "black", floor(0.0, 9e4), diffuse(0.0f32));
+        if has_pane {
+            pane(&mut builder);
+        }
+        let found = measured_parts(&built(&builder), at, 1, 4096);
+        let sum = |parts: &[PartOfSky]| parts.iter().map(|part| part.mean).sum::<f32>();
+        assert!(
+            sum(&found.all) > 2.0 && sum(&found.reflected) == 0.0,
+            "{has_pane}: {}",
+            sum(&found.reflected)
+        );
+    }
+    // The wall hides a part of the half sphere above.
+    let found = measured_parts(&under_the_sky(), at, 1, 1 << 14);
+    let sum = |parts: &[PartOfSky]| parts.iter().map(|part| f64::from(part.mean)).sum::<f64>();
+    let straight = sum(&found.all) - sum(&found.reflected);
+    assert!(straight < PI && straight > 0.4 * PI, "{straight}");
+    assert_eq!(
+        sum(&found.reflected[1..]),
+        0.0,
+        "the ground reflects upwards, away from the point, and the wall is black"
+    );
+}
+
+/// The sun at an elevation and an azimuth, in degrees.
+fn sun(elevation: f32, azimuth: f32) -> Vec3 {
+    let ((up, flat), (east, north)) = (sin_cos(elevation.to_radians()), sin_cos(azimuth.to_radians()));
+    Vec3::new(flat * east, up, -flat * north)
+}
+
+fn sun_at(scene: &Scene, [p, normal]: [Vec3; 2], directions: &[Vec3]) -> Vec<f32> {
+    let points = SensorPoints::new(vec![SensorPoint { p: p + Vec3::Z, normal }, SensorPoint { p, normal }]);
+    let found =
+        sunlight(scene, &points, directions, &RenderSettings::new(2, 1, 1), &Silent).unwrap().unwrap();
+    found[directions.len()..].to_vec()
+}
+
+#[test]
+fn shadows_of_the_sun_are_exact() {
+    // The wall to the east is 50 m high and 1 m away: a point 2 m to the west of it sees the sun above atan(50 / 3).
+    let at = [Vec3::new(-2.0, 0.0, 0.0), Vec3::Y];
+    let edge = atan2_f64(50.0, 3.0).to_degrees() as f32;
+    let suns =
+        [sun(edge - 0.01, 90.0), sun(edge + 0.01, 90.0), sun(30.0, 270.0), sun(30.0, 0.0), sun(-5.0, 270.0)];
+    let found = sun_at(&under_the_sky(), at, &suns);
+    assert_eq!([found[0], found[4]], [0.0, 0.0]);
+    for (i, elevation) in [(1, edge + 0.01), (2, 30.0), (3, 30.0)] {
+        assert!((found[i] - sin(elevation.to_radians())).abs() < 1e-6, "{i}: {}", found[i]);
+    }
+}
+
+/// A thin pane takes what a stack of its two faces reflects; a thick one what each face reflects, once.
+#[test]
+fn panes_let_their_part_of_the_sun_through() {
+    let up = f64::from(sin(40f32.to_radians()));
+    for (is_thin, share) in [(true, pane_transmits(up)), (false, thick_pane_transmits(up))] {
+        let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
+        let glass = Spec::new("", "dielectric").with("thin", is_thin).with("eta", 1.5f32);
+        let plate = || boxed(Vec3::new(-99.0, 1.0, -99.0), Vec3::new(99.0, 1.02, 99.0));
+        put(&mut builder, "pane", if is_thin { floor(1.0, 200.0) } else { plate() }, glass);
+        let found = sun_at(&built(&builder), [Vec3::ZERO, Vec3::Y], &[sun(40.0, 130.0)]);
+        assert!(
+            (f64::from(found[0]) / (up * share) - 1.0).abs() < 1e-4,
+            "{is_thin}: {} for {}",
+            found[0],
+            up * share
+        );
+    }
+    let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
+    put(&mut builder, "paper", floor(1.0, 200.0), diffuse(0.9f32));
+    assert_eq!(sun_at(&built(&builder), [Vec3::ZERO, Vec3::Y], &[sun(40.0, 130.0)]), [0.0]);
+}
+
+/// The fraction that two faces let through, by Fresnel's equations, without what they send back and forth.
+fn thick_pane_transmits(cos: f64) -> f64 {
+    let thin = pane_transmits(cos);
+    // 1 - 2R/(1 + R) = (1 - R)/(1 + R).
+    let reflected = (1.0 - thin) / (1.0 + thin);
+    (1.0 - reflected) * (1.0 - reflected)
 }
 
 #[test]

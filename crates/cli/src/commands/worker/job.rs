@@ -44,6 +44,27 @@ impl Limits {
         let Common { max_memory, sandbox, strict, allow_outside, verbose, .. } = *common;
         Limits { timeout: arguments.timeout, max_memory, sandbox, strict, allow_outside, verbose }
     }
+
+    /// What a job asked for beyond them.
+    fn in_vain(&self, timeout: Option<Duration>, memory: Option<u64>, sandbox: Option<bool>) -> Vec<String> {
+        let longer = timeout.zip(self.timeout).filter(|(own, most)| own > most);
+        let longer = longer.map(|(own, most)| {
+            format!(
+                "timeout: the job asked for {} s, but the worker's limit is {} s",
+                own.as_secs_f64(),
+                most.as_secs_f64()
+            )
+        });
+        let larger = memory.filter(|own| *own > self.max_memory).map(|own| {
+            format!(
+                "max_memory: the job asked for {own} bytes, but the worker's limit is {} bytes",
+                self.max_memory
+            )
+        });
+        let outside = (self.sandbox && sandbox == Some(false))
+            .then(|| "sandbox: the job asked for none, but the worker puts every job in one".to_owned());
+        [outside, larger, longer].into_iter().flatten().collect()
+    }
 }
 
 /// What is rendered, where to, and within which limits.
@@ -59,6 +80,8 @@ pub struct Job {
     pub command: Vec<String>,
     /// What it needs in its sandbox, if it is to be in one.
     pub confines: Option<Confines>,
+    /// Limits that it asked for and does not get, since the worker's are tighter: each is a sentence.
+    pub in_vain: Vec<String>,
 }
 
 /// Why a line is no job, with its `id` as far as it has one.
@@ -95,8 +118,11 @@ impl Job {
         let timeout =
             limited(&mut fields, "timeout", |text| parse_duration(text).map_err(|e| e.to_string()))?;
         let memory = limited(&mut fields, "max_memory", parse_bytes)?;
-        let wants_sandbox = fields.remove("sandbox").unwrap_or(Value::Bool(false));
-        let wants_sandbox = wants_sandbox.as_bool().ok_or("sandbox: write true or false")?;
+        let wants_sandbox = match fields.remove("sandbox") {
+            None | Some(Value::Null) => None,
+            Some(value) => Some(value.as_bool().ok_or("sandbox: write true or false")?),
+        };
+        let in_vain = limits.in_vain(timeout, memory, wants_sandbox);
         let mut command = vec!["bilux".to_owned(), "render".to_owned(), "--json".to_owned()];
         command.push(format!(
             "--max-memory={}",
@@ -106,7 +132,7 @@ impl Job {
         let switches = [
             ("--strict", limits.strict),
             ("--allow-outside", limits.allow_outside),
-            ("--sandbox", limits.sandbox || wants_sandbox),
+            ("--sandbox", limits.sandbox || wants_sandbox == Some(true)),
         ];
         command.extend(switches.iter().filter(|(_, is_on)| *is_on).map(|(flag, _)| (*flag).to_owned()));
         for (key, value) in fields {
@@ -115,7 +141,7 @@ impl Job {
         command.extend([format!("--output={output}"), "--".to_owned(), scene]);
         let confines = needed(&command)?;
         let timeout = [timeout, limits.timeout].into_iter().flatten().min();
-        Ok(Job { id: id.clone(), output, timeout, command, confines })
+        Ok(Job { id: id.clone(), output, timeout, command, confines, in_vain })
     }
 }
 
@@ -271,12 +297,33 @@ mod tests {
             r#"{"scene": "a.glb", "output": "a.png", "max_memory": "64G", "sandbox": false, "timeout": 2}"#;
         for line in [line.to_owned(), line.replace("max_memory", "max-memory")] {
             let job = Job::read(Line::Text(line), &strict).unwrap();
+            let named: Vec<_> = job.in_vain.iter().filter_map(|why| why.split(':').next()).collect();
+            assert_eq!(named, ["sandbox", "max_memory"], "{:?}", job.in_vain);
             let parsed = Arguments::try_parse_from(&job.command).unwrap();
             assert!(parsed.common.sandbox && parsed.common.strict);
             assert_eq!(parsed.common.max_memory, 1 << 30);
             assert_eq!(job.timeout, Some(Duration::from_secs(2)));
             assert!(job.confines.is_some());
         }
+    }
+
+    #[test]
+    fn only_what_is_asked_for_in_vain_is_said() {
+        let said = |more: &str, sandbox: bool| {
+            let line = format!(r#"{{"scene": "a.glb", "output": "a.png"{more}}}"#);
+            Job::read(Line::Text(line), &Limits { sandbox, ..FREE }).unwrap().in_vain.join("; ")
+        };
+        assert_eq!(
+            said(r#", "timeout": 999"#, true),
+            "timeout: the job asked for 999 s, but the worker's limit is 9 s"
+        );
+        assert!(said(r#", "sandbox": false"#, true).starts_with("sandbox: "));
+        for less in
+            ["", r#", "timeout": 9"#, r#", "max_memory": "1G", "sandbox": true"#, r#", "sandbox": null"#]
+        {
+            assert_eq!((said(less, false), said(less, true)), (String::new(), String::new()), "{less}");
+        }
+        assert_eq!(said(r#", "sandbox": false"#, false), "");
     }
 
     #[test]

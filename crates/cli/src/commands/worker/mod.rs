@@ -31,12 +31,16 @@ pub fn run(arguments: &Worker, common: &Common) -> anyhow::Result<u8> {
     let (lines, mut process) = (Lines::of_stdin(), None);
     while let Some((number, line)) = lines.next(&signals) {
         let begun = Instant::now();
-        let (id, output, ended) = match Job::read(line, &limits) {
-            Ok(job) => (job.id.clone(), json!(job.output), rendered(&job, &mut process, &signals)),
-            Err((id, error)) => (id, Value::Null, Ending::failed(2, error)),
+        let (id, output, in_vain, ended) = match Job::read(line, &limits) {
+            Ok(job) => {
+                let ended = rendered(&job, &mut process, &signals);
+                (job.id, json!(job.output), job.in_vain, ended)
+            }
+            Err((id, error)) => (id, Value::Null, Vec::new(), Ending::failed(2, error)),
         };
-        let warnings: Vec<&Value> =
-            ended.pictures.iter().filter_map(|picture| picture["warnings"].as_array()).flatten().collect();
+        let of_pictures =
+            ended.pictures.iter().filter_map(|picture| picture["warnings"].as_array()).flatten();
+        let warnings: Vec<Value> = in_vain.into_iter().map(Value::from).chain(of_pictures.cloned()).collect();
         output::print(json!({
             "id": id, "line": number, "status": ended.status, "output": output,
             "seconds": begun.elapsed().as_secs_f64(), "error": ended.error, "warnings": warnings,

@@ -1,5 +1,8 @@
 //! What is odd about a picture before it is rendered, even though it can be rendered.
 
+mod sight;
+mod textures;
+
 use crate::presets::{Ground, Studio};
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
@@ -10,6 +13,7 @@ use bilux_scene::{
 /// Warnings about a scene: `given` is the scene before anything missing was added, `scene` is as the camera sees it.
 pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
     let mut warnings: Vec<Warning> = of_boundaries(given, scene).into_iter().collect();
+    warnings.extend(textures::beyond_range(given));
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
     camera.warnings().iter().for_each(|message| warn(message));
@@ -24,6 +28,8 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
             "the camera sees only the back faces of single-sided surfaces (doubleSided is false in glTF), so it sees \
              nothing: look from the other side, for example with --orbit {azimuth},{elevation}",
         ));
+    } else if sight::is_past_everything(given, scene, camera) {
+        warn(sight::MESSAGE);
     } else if given.environment_unspecified && !given.cameras.is_empty() {
         // Authors of such files have rarely looked through the file's camera; scenes in other formats are made for
         // theirs.
