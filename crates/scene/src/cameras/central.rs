@@ -2,7 +2,7 @@
 //! share.
 
 use super::pose::{Pose, Poses};
-use super::{Camera, CameraConnection, CameraKeys, CameraMatrices, CameraSample, Pinhole};
+use super::{Camera, CameraConnection, CameraKeys, CameraMatrices, CameraSample, Pinhole, check_changes};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
@@ -54,12 +54,7 @@ pub(super) fn build<P: Projection>(
 ) -> Result<Arc<dyn Camera>, SceneError> {
     let poses = Poses::read(keys)?;
     let (_, reader) = keys.first().ok_or_else(|| SceneError::invalid("no keyframes", &Default::default()))?;
-    if let Some(key) =
-        keys.iter().find_map(|(_, other)| other.differs(reader, &["position", "look_at", "up"]))
-    {
-        let message = format!("the camera's {key} cannot change over time: leave it out of the keyframes");
-        return Err(SceneError::invalid(message, reader.span(key)));
-    }
+    check_changes(keys, &["position", "look_at", "up"])?;
     let projection = read(reader, f64::from(aspect))?;
     let pinhole = poses.still().zip(projection.matrix()).map(|(pose, matrix)| pinhole(pose, matrix));
     Ok(Arc::new(Central { poses, projection, aside, pinhole }))

@@ -237,6 +237,16 @@ fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
     (&keys[low].1, &keys[high].1, fraction)
 }
 
+/// Refuses keyframes of parameters other than those that may change over time.
+fn check_changes(keys: CameraKeys, may_change: &[&str]) -> Result<(), SceneError> {
+    let Some((_, first)) = keys.first() else { return Ok(()) };
+    let Some(key) = keys.iter().find_map(|(_, other)| other.differs(first, may_change)) else {
+        return Ok(());
+    };
+    let message = format!("the camera's {key} cannot change over time: leave it out of the keyframes");
+    Err(SceneError::invalid(message, first.span(key)))
+}
+
 /// What is wrong with a camera that has no axes.
 fn without_axes(reader: &Reader) -> SceneError {
     let message = "a camera must not look along its own up direction, nor at its own position: one that looks straight down needs \

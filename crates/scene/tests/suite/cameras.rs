@@ -77,7 +77,7 @@ fn the_middle_of_a_picture_stays_the_middle() {
             let camera = camera(&spec, aspect);
             let [position, ahead] = camera.ray_f64(DVec2::splat(0.5), 0.0).unwrap();
             let forward = (DVec3::new(0.5, 1.0, -3.0) - DVec3::new(1.0, 2.0, 5.0)).normalize();
-            assert!(ahead.dot(forward) > 1.0 - 1e-10, "{} {aspect}: {ahead}", row.entry.name);
+            assert!(ahead.dot(forward) > 1.0 - 1e-6, "{} {aspect}: {ahead}", row.entry.name);
             assert!((position - DVec3::new(1.0, 2.0, 5.0)).length() < 1e-6, "{}", row.entry.name);
         }
         if !row.entry.parameters.iter().any(|parameter| parameter.name == "fx") {
@@ -101,7 +101,7 @@ fn the_middle_of_a_picture_stays_the_middle() {
         let on_axis = camera.ray_f64(film(cx, cy, 1.0), 0.0).unwrap()[1];
         let forward = (DVec3::new(0.5, 1.0, -3.0) - DVec3::new(1.0, 2.0, 5.0)).normalize();
         assert!(
-            on_axis.dot(forward) > 1.0 - 1e-10,
+            on_axis.dot(forward) > 1.0 - 1e-6,
             "{}: the principal point looks along the axis",
             row.entry.name
         );
@@ -211,6 +211,7 @@ fn rays(camera: &dyn Camera, time: f32) -> Vec<f32> {
 /// stays as it was at the first keyframe would be noticed, and what jumps at the second.
 #[test]
 fn all_that_has_keyframes_moves_between_them() {
+    let mut wrong = Vec::new();
     for row in CAMERAS {
         for parameter in row.entry.parameters {
             let Some([first, last]) = two_values(parameter) else { continue };
@@ -236,11 +237,12 @@ fn all_that_has_keyframes_moves_between_them() {
                 |a: usize, b: usize| at[a].iter().zip(&at[b]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             let whole = apart(0, 3);
             let name = format!("{} of {}", parameter.name, row.entry.name);
-            assert!(whole > 1e-4, "{name}: nothing moves");
-            for (a, b) in [(0, 1), (1, 2), (2, 3)] {
-                let part = apart(a, b);
-                assert!(part > 0.02 * whole && part < 0.9 * whole, "{name}: {part} of {whole} in step {a}");
+            let parts = [apart(0, 1), apart(1, 2), apart(2, 3)];
+            let moves = |part: &f32| *part > 0.02 * whole && *part < 0.9 * whole;
+            if whole <= 1e-4 || !parts.iter().all(moves) {
+                wrong.push(format!("{name}: {parts:?} of {whole}"));
             }
         }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
