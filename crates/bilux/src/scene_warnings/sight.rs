@@ -40,7 +40,7 @@ fn is_in_picture(object: &Object, camera: &dyn Camera, time: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use crate::Job;
-    use bilux_math::Vec3;
+    use bilux_math::{Transform, Vec3};
     use bilux_scene::cameras::CameraSpec;
     use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, generators::shapes};
     use std::sync::Arc;
@@ -52,7 +52,8 @@ mod tests {
         let ball = |radius| -> Arc<Mesh> { Arc::new(shapes::icosphere(Vec3::ZERO, radius, 2)) };
         scene.objects.push(Object::new("ball", ball(1.0), clay));
         let speck = Object::new("speck", ball(1e-3), clay);
-        scene.objects.push(speck.placed(bilux_math::Transform::translate(Vec3::new(0.0, 0.0, -40.0))));
+        let far = Transform::translate(Vec3::new(0.0, 0.0, -40.0)).unwrap();
+        scene.objects.push(speck.placed(far));
         scene.cameras.push(CameraSpec::new(camera));
         let job = Job::new(&scene, &Parameters::default()).unwrap();
         job.warnings().iter().any(|warning| warning.to_string().contains("sees none of the scene's objects"))

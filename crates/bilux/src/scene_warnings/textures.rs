@@ -62,7 +62,7 @@ mod tests {
         assert_eq!(warnings(floats(0.0, 1.0), "base_color"), "");
         assert_eq!(warnings(Texels::Bytes(vec![[255; 4], [0; 4]]), "base_color"), "");
         assert_eq!(warnings(floats(0.0, 80.0), "emission"), "", "light may be as bright as it likes");
-        for key in ["base_color", "roughness"] {
+        for key in ["base_color", "base_metalness"] {
             assert!(warnings(floats(0.25, 255.0), key).contains("'paint' has 255 in it"), "{key}");
             assert!(warnings(floats(-0.5, 0.5), key).contains("'paint' has -0.5 in it"), "{key}");
         }
