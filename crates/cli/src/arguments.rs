@@ -75,6 +75,8 @@ pub enum ProgressStyle {
     Auto,
     Bar,
     Lines,
+    /// Lines for the scheduler of a farm that runs jobs of Open Job Description
+    Openjd,
     None,
 }
 
@@ -202,8 +204,9 @@ pub struct Render {
     /// The time to show, in seconds, for animated scenes [default: 0]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_time, help_heading = help::WHAT)]
     pub at: Option<f32>,
-    /// Render frames A to B, inclusive, at 24 frames per second (`--set fps=30` changes that)
-    #[arg(long, value_name = "A-B", conflicts_with = "turntable", value_parser = parse_frames, help_heading = help::WHAT)]
+    /// Render frames A to B, inclusive, at 24 frames per second (`--set fps=30` changes that); with --turntable, only these of
+    /// its pictures, from 0
+    #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
     /// Render N pictures from all around the model, a full turn
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_turntable, help_heading = help::STUDIO)]

@@ -1,7 +1,7 @@
 //! The arguments of `bilux farm`.
 
 use crate::help;
-use crate::values::{parse_chunks, parse_frames};
+use crate::values::{parse_chunks, parse_frames, parse_turntable};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -10,6 +10,7 @@ use std::path::PathBuf;
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \
     bilux farm walk.toml --frames 0-47 --chunks 8 -o job           Six frames per task\n  \
+    bilux farm model.glb --turntable 36 --chunks 6 -o job          Six pictures of a turn per task\n  \
     bilux farm model.glb --chunks 16 -o job -- --spp 1024          64 samples per task, then merge\n  \
     bilux farm model.glb --chunks 4 -o job -- --spp 256 --size 1920x1080 --env sunset.hdr\n  \
     openjd run job/template.yaml --step Merge --run-dependencies   Run the whole job here\n\n\
@@ -30,6 +31,9 @@ pub struct Farm {
     /// Render frames A to B, inclusive, divided among the tasks [default: one picture, whose samples are divided]
     #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::COMMON_OPTIONS)]
     pub frames: Option<(u32, u32)>,
+    /// Render N pictures from all around the model, divided among the tasks
+    #[arg(long, value_name = "N", allow_hyphen_values = true, conflicts_with = "frames", value_parser = parse_turntable, help_heading = help::COMMON_OPTIONS)]
+    pub turntable: Option<u32>,
     /// The name of the picture, or of the frames, where `{frame}` is their number [default: the scene's name and .png]
     #[arg(long, value_name = "NAME", help_heading = help::OUTPUT)]
     pub picture: Option<String>,

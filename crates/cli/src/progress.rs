@@ -6,14 +6,14 @@ use crate::output;
 use bilux::transport::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as BarStyle};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Shows the samples done, rays per second and the time left.
 pub struct Report {
     interrupt: Interrupt,
     bar: Option<ProgressBar>,
-    lines: bool,
+    style: ProgressStyle,
     label: String,
     total: AtomicU64,
     samples: AtomicU64,
@@ -46,7 +46,7 @@ impl Report {
         Report {
             interrupt,
             bar,
-            lines: style == ProgressStyle::Lines,
+            style,
             label: label.to_owned(),
             total: AtomicU64::new(1),
             samples: AtomicU64::new(0),
@@ -60,6 +60,9 @@ impl Report {
     pub fn finish(&self) -> f64 {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
+        }
+        if self.style == ProgressStyle::Openjd {
+            for_scheduler(of_all(100.0));
         }
         self.begun.elapsed().as_secs_f64()
     }
@@ -81,6 +84,9 @@ impl Report {
         *last = Instant::now();
         let (percent, left) =
             remaining(samples, self.total.load(Ordering::Relaxed), self.begun.elapsed().as_secs_f64());
+        if self.style == ProgressStyle::Openjd {
+            return for_scheduler(of_all(percent));
+        }
         let left = left.map_or_else(String::new, |left| format!(", {left:.0} s left"));
         output::eprint(format_args!("{}: {percent:.0}%, {:.2} Mrays/s{left}", self.label, self.rate() / 1e6));
     }
@@ -100,7 +106,7 @@ impl Progress for Report {
         if let Some(bar) = &self.bar {
             bar.set_position(samples.min(self.total.load(Ordering::Relaxed)));
             bar.set_message(format!("{:.2} Mrays/s", self.rate() / 1e6));
-        } else if self.lines {
+        } else if matches!(self.style, ProgressStyle::Lines | ProgressStyle::Openjd) {
             self.line(samples);
         }
     }
@@ -108,6 +114,26 @@ impl Progress for Report {
     fn is_cancelled(&self) -> bool {
         self.interrupt.is_requested()
     }
+}
+
+/// Of several pictures, how many are done, and how many there are.
+static SERIES: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(1)];
+
+/// From now on, progress is that of a series of pictures, of which so many are done.
+pub fn of_series(done: u32, all: u32) {
+    SERIES[0].store(done, Ordering::Relaxed);
+    SERIES[1].store(all.max(1), Ordering::Relaxed);
+}
+
+/// The percent of all pictures, by that of one.
+fn of_all(percent: f64) -> f64 {
+    let [done, all] = [0, 1].map(|i| f64::from(SERIES[i].load(Ordering::Relaxed)));
+    (100.0 * done + percent) / all
+}
+
+/// A message of an action to its scheduler, which reads both streams.
+fn for_scheduler(percent: f64) {
+    output::eprint(format_args!("openjd_progress: {percent:.1}"));
 }
 
 /// Too small a share of the work to tell how long the rest takes.
@@ -123,6 +149,14 @@ fn remaining(samples: u64, total: u64, seconds: f64) -> (f64, Option<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pictures_of_a_series_share_its_progress() {
+        of_series(2, 4);
+        assert_eq!([of_all(0.0), of_all(40.0), of_all(100.0)], [50.0, 60.0, 75.0]);
+        of_series(0, 1);
+        assert_eq!(of_all(40.0), 40.0);
+    }
 
     #[test]
     fn an_estimate_that_was_too_low_is_never_exceeded() {

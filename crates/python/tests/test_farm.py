@@ -30,6 +30,7 @@ def test_a_picture_from_a_farm_has_the_bytes_of_a_local_one(folder, command_line
     program = f"Bilux={command_line.program}"
     done = openjd("run", "job/template.yaml", "--step", "Merge", "--run-dependencies", "-p", program)
     assert "Chunks run: 4" in done
+    assert "openjd_progress: 100.0" in done
     command_line("render", "model.glb", "-o", "local.png", *options)
     assert (folder / "job/pictures/model.png").read_bytes() == (folder / "local.png").read_bytes()
 

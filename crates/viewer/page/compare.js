@@ -1,5 +1,6 @@
 // The picture beside another one: with a setting changed, or before the edits. A slider splits the view between them.
 
+import { busy } from "./busy.js";
 import { byId, element, large, plain, shape, title } from "./element.js";
 import { control } from "./inputs.js";
 import { add, draw } from "./plot.js";
@@ -83,6 +84,7 @@ export class Compare {
 
   #choose(key) {
     this.working.textContent = "Working …";
+    busy("compare", key === "" ? "" : "Rendering the other picture …");
     this.working.hidden = key === "";
     this.place.replaceChildren();
     this.made = null;
@@ -121,7 +123,7 @@ export class Compare {
     this.results.hidden = !it;
     this.differences.checked = Boolean(it?.differences);
     if (!it && was) this.#end();
-    if (!it) this.working.hidden = true;
+    if (!it) this.#rest();
     this.#label();
   }
 
@@ -130,6 +132,12 @@ export class Compare {
     this.#curves = { own: [], other: [], difference: [] };
     canvas.hidden = divider.hidden = true;
     byId("side-own").hidden = byId("side-other").hidden = true;
+  }
+
+  // Nothing is waited for any more.
+  #rest() {
+    this.working.hidden = true;
+    busy("compare", "");
   }
 
   // Which of the two is where.
@@ -184,7 +192,7 @@ export class Compare {
     const fits = this.#comparison && own && other && JSON.stringify(own.eye) === JSON.stringify(other.eye);
     canvas.hidden = divider.hidden = !fits;
     byId("side-own").hidden = byId("side-other").hidden = !fits;
-    if (fits) this.working.hidden = true;
+    if (fits) this.#rest();
     if (!fits) return;
     const { x, y, width, height } = this.picture.place;
     for (const [name, value] of Object.entries({ left: x, top: y, width, height })) canvas.style[name] = `${value}px`;

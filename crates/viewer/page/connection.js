@@ -3,6 +3,8 @@
 const WAITS = [500, 1000, 2000, 4000];
 // How long to wait where there is no place.
 const FULL = 5000;
+// A page that nobody sees leaves after this time, and makes room for others.
+const UNSEEN = 10000;
 
 export class Connection extends EventTarget {
   #socket = null;
@@ -15,6 +17,24 @@ export class Connection extends EventTarget {
   constructor() {
     super();
     this.#open();
+    document.addEventListener("visibilitychange", () => this.#see(!document.hidden));
+    addEventListener("pagehide", () => this.#leave());
+    addEventListener("pageshow", ({ persisted }) => persisted && this.#see(true));
+  }
+
+  #away = false;
+  #unseen = null;
+
+  // Whether anybody sees the page.
+  #see(seen) {
+    clearTimeout(this.#unseen);
+    if (!seen) this.#unseen = setTimeout(() => this.#leave(), UNSEEN);
+    else if (this.#away) this.#open();
+  }
+
+  #leave() {
+    this.#away = true;
+    this.#socket?.close();
   }
 
   // The address of something that each visitor has for themselves.
@@ -31,6 +51,7 @@ export class Connection extends EventTarget {
   }
 
   #open() {
+    this.#away = false;
     const address = new URL(this.ours("socket"), document.baseURI);
     address.protocol = address.protocol.replace("http", "ws");
     const socket = new WebSocket(address);
@@ -39,6 +60,7 @@ export class Connection extends EventTarget {
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.#take(data) : this.#takeFrame(data));
     socket.onclose = () => {
       this.#socket = null;
+      if (this.#away) return;
       if (!this.#full) this.#say("lost");
       setTimeout(() => this.#open(), this.#full ? FULL : WAITS[Math.min(this.#lost++, WAITS.length - 1)]);
     };

@@ -1,6 +1,7 @@
 // Puts the page together.
 
 import { Accelerators } from "./accelerators.js";
+import { Address } from "./address.js";
 import { Compare } from "./compare.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
@@ -22,6 +23,7 @@ new Edits(connection);
 new Model(connection);
 new Compare(connection, picture);
 new Accelerators(connection);
+new Address(connection);
 new Drop(connection, (problem) => status.tell(problem));
 new Navigation(connection, picture, { pick: (at) => pick.at(at), clear: () => pick.clear() });
 

@@ -1,5 +1,6 @@
 // What to show of a model: one of its animations and variants, at which time, and in which light.
 
+import { busy } from "./busy.js";
 import { byId, element } from "./element.js";
 
 const section = byId("model");
@@ -28,7 +29,11 @@ export class Model {
       element("div", { class: "row" }, element("label", { for: "time-range" }, "Seconds"), element("div", { class: "pair" }, this.range, this.exact)),
       element("span", { id: "time-help", class: "unseen" }, "The time that is shown, in seconds"),
     );
-    const offer = (what, label) => new Offer(what, label, (name) => connection.send(what, { name }));
+    const offer = (what, label) => new Offer(what, label, (name) => {
+      busy("model", `${label}: opening the scene with it …`);
+      connection.send(what, { name });
+    });
+    for (const done of ["state", "error", "lost"]) connection.addEventListener(done, () => busy("model", ""));
     this.offers = [offer("animation", "Animation"), offer("variant", "Variant"), offer("environment", "Light around")];
     section.replaceChildren(
       element("div", { class: "heading" }, element("h2", { id: "model-title" }, "Model"), this.play),

@@ -5,6 +5,7 @@ import { fromLinear } from "./inputs.js";
 import { LEGEND, drawPaths } from "./paths.js";
 
 const section = byId("pick");
+const facts = byId("facts");
 const COUNTS = [0, 1, 8, 32, 64];
 
 export class Pick {
@@ -40,13 +41,14 @@ export class Pick {
 
   clear() {
     [this.#picked, this.#alone] = [null, null];
-    section.hidden = true;
+    section.hidden = facts.hidden = true;
     this.#draw();
   }
 
   #take(picked) {
     [this.#picked, this.#alone] = [picked, null];
-    section.hidden = false;
+    section.hidden = facts.hidden = false;
+    facts.textContent = words(picked);
     this.#build();
     this.#draw();
   }
@@ -121,4 +123,13 @@ export class Pick {
     };
     place.replaceChildren(...(path ? [element("ol", { class: "events" }, ...path.events.map(line))] : []));
   }
+}
+
+// What was picked, in a line on the picture where the panel is folded.
+function words({ surface }) {
+  if (!surface) return "the surroundings";
+  const object = surface.object === null ? "a light" : surface.object || `object ${surface.number}`;
+  const { name, kind } = surface.material ?? {};
+  const material = kind ? [name ? `${name} (${kind})` : kind] : [];
+  return [object, ...material, `${plain(surface.distance, 4)} m away`].join(" · ");
 }

@@ -1,6 +1,6 @@
 //! The camera that those who watch move: around a point, across, nearer, and through the scene.
 
-use bilux::math::transcendental::{acos, sin_cos_f64};
+use bilux::math::transcendental::{acos, cos_f64, sin_cos_f64};
 use bilux::math::{Aabb, Vec2};
 use bilux::math::{DVec3, Vec3};
 use bilux::presets::Studio;
@@ -115,6 +115,19 @@ impl Eye {
         let point = point.as_dvec3();
         if point.is_finite() && point.distance(self.position) > DISTANCES[0] * self.radius {
             self.pivot = point;
+        }
+    }
+
+    /// Goes to a position, and looks at a point, unless that makes no sense in this scene.
+    pub(crate) fn put(&mut self, position: DVec3, pivot: DVec3, zoom: f64) {
+        let far = position.distance(pivot) / self.radius;
+        let leaning = (pivot - position).normalize_or_zero().dot(self.up).abs();
+        let is_steep = leaning > cos_f64(0.5 * STEEPEST.to_radians());
+        if (0.1 * DISTANCES[0]..=10.0 * DISTANCES[1]).contains(&far) && !is_steep {
+            (self.position, self.pivot) = (position, pivot);
+            if self.is_parallel {
+                self.zoom = zoom;
+            }
         }
     }
 
@@ -245,6 +258,28 @@ mod tests {
         assert_eq!(moved.pivot - eye().pivot, DVec3::new(1.0, 2.0, 0.0));
         moved.fly(0.0, 0.0, 0.5);
         assert!((moved.position - eye().position).distance(DVec3::new(1.0, 2.0, -2.5)) < 1e-6);
+    }
+
+    #[test]
+    fn a_view_that_was_kept_comes_back() {
+        let (mut moved, mut again) = (eye(), eye());
+        moved.orbit(40.0, 25.0);
+        moved.approach(1.5);
+        again.put(moved.position, moved.pivot, moved.zoom);
+        assert_eq!(again, moved);
+        // From straight above there is no up, and what is at itself or not a number is no place.
+        for (position, pivot) in [
+            (DVec3::Y * 9.0, DVec3::Y),
+            (DVec3::Y, DVec3::Y),
+            (DVec3::NAN, DVec3::Y),
+            (DVec3::X * 1e9, DVec3::Y),
+        ] {
+            again.put(position, pivot, 1.0);
+            assert_eq!(again, moved, "{position}");
+        }
+        let mut parallel = Eye { is_parallel: true, ..eye() };
+        parallel.put(moved.position, moved.pivot, 3.0);
+        assert_eq!((parallel.zoom, again.zoom), (3.0, 1.0));
     }
 
     #[test]

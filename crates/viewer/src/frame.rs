@@ -47,6 +47,8 @@ pub(crate) struct Facts {
     pub(crate) difference: Option<f64>,
     /// Where the camera is: position, then the point that it looks at.
     pub(crate) eye: [[f64; 3]; 2],
+    /// Its magnification, if it was moved; nothing where the scene has it.
+    pub(crate) zoom: Option<f64>,
 }
 
 impl Facts {
@@ -103,5 +105,6 @@ fn header(number: u64, picture: &Picture, format: &str, full: [u32; 2], facts: &
         "choice": facts.choice,
         "difference": facts.difference,
         "eye": facts.eye,
+        "zoom": facts.zoom,
     })
 }

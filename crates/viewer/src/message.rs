@@ -153,6 +153,8 @@ pub(crate) enum Move {
     Approach(f64),
     /// Look at what is at a place of the picture, and move around it from now on.
     Focus([f64; 2]),
+    /// To this position, looking at this point, with this magnification: where a page had it before.
+    To([f64; 3], [f64; 3], f64),
     /// Back to where the scene has its camera.
     Home,
 }
@@ -169,6 +171,7 @@ impl Move {
             (Move::Fly(a), Move::Fly(b)) => (0..3).for_each(|i| a[i] += b[i]),
             (Move::Approach(a), Move::Approach(b)) => *a = (*a * b).clamp(1e-6, 1e6),
             (Move::Home, Move::Home) => {}
+            (before @ Move::To(..), Move::To(..)) => *before = next.clone(),
             _ => return false,
         }
         true
@@ -197,6 +200,13 @@ pub(crate) fn parse(text: &str, answers: &Answers) -> Result<Message, String> {
         },
         "focus" => moved(Move::Focus(place(&json)?.map(f64::from))),
         "home" => moved(Move::Home),
+        "view" => {
+            let zoom = json["zoom"].as_f64().unwrap_or(1.0);
+            if !(1e-2..=1e3).contains(&zoom) {
+                return Err("'view' needs a 'zoom' from 0.01 to 1000".to_owned());
+            }
+            moved(Move::To(numbers(&json, "position", 1e9)?, numbers(&json, "pivot", 1e9)?, zoom))
+        }
         "size" => asked(Request::Size(size(&json)?)),
         "set" => match (text_of(&json, "key")?, value(&json["value"])?) {
             (key, value) if key == "time" => of_scene(SceneRequest::Time(value)),
@@ -329,6 +339,7 @@ mod tests {
             (Move::Fly([7.0, 8.0, 9.0]), Move::Fly([14.0, 16.0, 18.0])),
             (Move::Approach(3.0), Move::Approach(9.0)),
             (Move::Home, Move::Home),
+            (Move::To([1.0; 3], [2.0; 3], 1.0), Move::To([1.0; 3], [2.0; 3], 1.0)),
         ];
         for (i, (first, sum)) in all.iter().enumerate() {
             for (j, (second, _)) in all.iter().enumerate() {
@@ -351,6 +362,8 @@ mod tests {
             (r#"{"do":"orbit","by":[1]}"#, "2 numbers"),
             (r#"{"do":"orbit","by":[1,1e300]}"#, "3600"),
             (r#"{"do":"approach","by":0}"#, "factor"),
+            (r#"{"do":"view","position":[1,2,3],"pivot":[1,2]}"#, "3 numbers"),
+            (r#"{"do":"view","position":[1,2,3],"pivot":[1,2,0],"zoom":0}"#, "'zoom'"),
             (r#"{"do":"size","to":[0,10]}"#, "at least one"),
             (r#"{"do":"pick","at":[1,0.5]}"#, "below 1"),
             (r#"{"do":"set","key":"","value":1}"#, "key"),
@@ -376,8 +389,8 @@ mod tests {
 
         #[test]
         fn any_fields_are_read_or_refused(
-            what in "(orbit|look|pan|fly|approach|focus|size|set|show|edit|pick|seen|home|compare|differences|variant|animation|environment)",
-            key in "(by|at|to|key|what|value|number|frame|paths|with|show|name)",
+            what in "(orbit|look|pan|fly|approach|focus|view|size|set|show|edit|pick|seen|home|compare|differences|variant|animation|environment)",
+            key in "(by|at|to|position|pivot|zoom|key|what|value|number|frame|paths|with|show|name)",
             value in "(-?[0-9]{1,30}(\\.[0-9]{1,5})?(e-?[0-9]{1,3})?|\\[[0-9,.-]{0,20}\\]|\"[a-z]{0,9}\"|true|null|\\{\\})",
         ) {
             let _ = parsed(&format!(r#"{{"do":"{what}","{key}":{value}}}"#));

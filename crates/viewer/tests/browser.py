@@ -474,8 +474,13 @@ def phone(browser: Browser, viewer: Viewer) -> None:
     at_least(page, 4)
     after = extent(page)
     assert all(abs(a - b) < 0.03 for a, b in zip(before, after)), (before, after)
+    page.touchscreen.tap(195, 300)
+    expect(page.locator("#facts")).to_be_visible(timeout=20_000)
+    expect(page.locator("#facts")).to_contain_text("m away")
+    shot(page, "phone-facts")
     page.get_by_role("button", name="Controls").tap()
     expect(page.locator("#panel")).to_be_visible()
+    expect(page.locator("#facts")).to_be_hidden()
     at_least(page, 4)
     shot(page, "phone-controls")
     page.touchscreen.tap(120, 250)
@@ -504,6 +509,13 @@ def reload(browser: Browser, viewer: Viewer, scene: Path) -> None:
     scene.write_text(text)
     expect(page.locator("#problem")).to_be_hidden(timeout=20_000)
     at_least(page, 2)
+    # A view that was turned is there again after a reload of the page.
+    page.locator("#view").press("ArrowLeft")
+    expect(page.locator("#command")).to_contain_text("--eye")
+    page.wait_for_function("() => location.hash.startsWith('#view=')")
+    command = page.locator("#command").inner_text()
+    page.reload()
+    expect(page.locator("#command")).to_have_text(command, timeout=20_000)
     page.context.close()
 
 

@@ -1,6 +1,7 @@
 //! Whatever changes a sample changes the fingerprint, so that films of two different pictures never merge silently; and
 //! whatever changes no sample keeps it, so that films of one picture do merge.
 
+use bilux::checkpoint::Identity;
 use bilux::fingerprint::fingerprint;
 use bilux::math::glam::Vec4;
 use bilux::math::motion::{Motion, MotionKey};
@@ -204,7 +205,7 @@ fn value(parameter: &Parameter, text: &str) -> Value {
 }
 
 /// For studio settings the scene has no camera and no light of its own.
-fn fingerprint_of(key: &str, value: Option<Value>) -> String {
+fn job_with(key: &str, value: Option<Value>) -> Job {
     let mut scene = scene();
     if ["ground", "orbit", "up", "front", "focal", "background"].contains(&key) {
         scene.cameras.clear();
@@ -215,7 +216,7 @@ fn fingerprint_of(key: &str, value: Option<Value>) -> String {
     if let Some(value) = value {
         settings.set(key, value);
     }
-    Job::new(&scene, &settings).unwrap_or_else(|error| panic!("{key}: {error}")).fingerprint().to_owned()
+    Job::new(&scene, &settings).unwrap_or_else(|error| panic!("{key}: {error}"))
 }
 
 #[test]
@@ -225,8 +226,12 @@ fn every_setting_is_known_to_change_samples_or_to_keep_them() {
             panic!("say in this table whether '{}' changes samples", parameter.name);
         };
         assert_ne!(*text, parameter.default, "{key}");
-        let is_another = fingerprint_of(key, None) != fingerprint_of(key, Some(value(parameter, text)));
-        assert_eq!(if is_another { Changes } else { Keeps }, *effect, "{key} = {text}");
+        let [plain, other] = [job_with(key, None), job_with(key, Some(value(parameter, text)))];
+        let of = |is_another: bool| if is_another { Changes } else { Keeps };
+        assert_eq!(of(plain.fingerprint() != other.fingerprint()), *effect, "{key} = {text}");
+        // Checkpoints keep a list of their own, which names what differs: the same settings count there.
+        let differences = Identity::of(&plain).differences(&Identity::of(&other));
+        assert_eq!(of(!differences.is_empty()), *effect, "{key} = {text} in a checkpoint: {differences:?}");
     }
     assert!(SETTINGS.iter().all(|(key, ..)| RENDER.parameters.iter().any(|p| p.name == *key)));
 }

@@ -10,6 +10,7 @@ use crate::arguments::{Common, Render};
 use crate::denoisers::{begin_loading, check_scenes};
 use crate::ending::{finished, under_way};
 use crate::interrupt::{Interrupt, interrupt};
+use crate::progress::of_series;
 use crate::sandbox_paths::{SandboxPaths, check_read, folder_of, leads_out};
 use crate::{output, settings_from, signals, usage};
 use anyhow::{Context, bail};
@@ -146,7 +147,8 @@ fn render_one(
     interrupt.ends_itself(false);
     check_read(&target.scene, common)?;
     let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
-    let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
+    let moves_on = arguments.frames.is_some() && arguments.turntable.is_none();
+    let mut scene = input.read(arguments.at.unwrap_or(0.0), moves_on)?;
     input.warn(&scene.warnings)?;
     report_notes(&scene.notes, common);
     input.warn(&still_frames(arguments, &scene))?;
@@ -155,7 +157,9 @@ fn render_one(
     };
     let series = Series::turntable(&scene, &JobRequest::from(user).max_memory(common.max_memory), count)?;
     let mut finished = FinishedFrames::begin(&input, user, target)?;
-    for frame in 0..count {
+    let (first, last) = arguments.frames.unwrap_or((0, count - 1));
+    for frame in first..=last {
+        of_series(frame - first, last - first + 1);
         let (series, numbered) = (series.turned(frame, count), numbered(target, frame));
         if finished.has(frame, &numbered) {
             continue;
@@ -222,6 +226,7 @@ fn render_scene(
     let (series, fps) = (job.series(), job.settings().fps);
     let mut finished = FinishedFrames::begin(input, &user, target)?;
     for frame in first..=last {
+        of_series(frame - first, last - first + 1);
         let numbered = numbered(target, frame);
         if finished.has(frame, &numbered) {
             continue;

@@ -68,6 +68,14 @@ fn check_result(arguments: &Render) -> anyhow::Result<()> {
 fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result<()> {
     let text = pattern.to_string_lossy();
     let numbered = arguments.frames.is_some() || arguments.turntable.is_some();
+    if let (Some(count), Some((_, last))) = (arguments.turntable, arguments.frames)
+        && last >= count
+    {
+        bail!(
+            "--frames: picture {last} is none of --turntable {count}, whose pictures are 0 to {}",
+            count - 1
+        );
+    }
     for name in text.split('{').skip(1).filter_map(|rest| rest.split_once('}').map(|(name, _)| name)) {
         if !NAMES.contains(&name) {
             let names = NAMES.map(str::to_owned);
@@ -101,7 +109,8 @@ pub fn still_frames(arguments: &Render, scene: &SceneBuilder) -> Vec<Warning> {
     let moves = scene.inventory.moves()
         || scene.objects.iter().any(|object| !object.motion.is_still())
         || scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
-    let wants_frames = arguments.frames.is_some_and(|(first, last)| first < last);
+    let wants_frames =
+        arguments.turntable.is_none() && arguments.frames.is_some_and(|(first, last)| first < last);
     let message = "--frames: nothing in this scene moves, so all frames show the same; --turntable N turns the camera \
                    around a model";
     let warning = Warning { message: message.to_owned(), at: Span::default() };

@@ -82,6 +82,50 @@ fn tasks_write_the_frames_of_one_render() {
     assert!(frame(path, 1) != frame(path, 5), "nothing moves");
 }
 
+#[cfg(unix)]
+#[test]
+fn tasks_write_the_pictures_of_one_turn() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    bilux(path).args(["generate", "teapot", "--set", "tessellation=3", "-o", "pot.toml"]).assert().success();
+    let options = ["--spp", "2", "--size", "32x24"];
+    let farm = ["farm", "pot.toml", "--turntable", "5", "--chunks", "2", "-o", "job", "--"];
+    bilux(path).args(farm).args(options).assert().success();
+    let render = ["render", "pot.toml", "--turntable", "5", "-o", "{stem}-{frame}.png"];
+    bilux(path).args(render).args(options).assert().success();
+    assert_eq!(run_array(&path.join("job")), 2);
+    let picture =
+        |folder: &Path, number: u32| std::fs::read(folder.join(format!("pot-{number:04}.png"))).unwrap();
+    for number in 0..5 {
+        assert!(
+            picture(path, number) == picture(&path.join("job/pictures"), number),
+            "picture {number} differs"
+        );
+    }
+    assert!(picture(path, 0) != picture(path, 2), "nothing turns");
+    // A scheduler is told how far a task of several pictures is, as OpenJD's specification has it.
+    let mut task = Command::cargo_bin("bilux").unwrap();
+    let words = [
+        "--progress=openjd",
+        "render",
+        "pot.toml",
+        "--turntable",
+        "5",
+        "--frames",
+        "1-4",
+        "-o",
+        "a-{frame}.png",
+    ];
+    let done = task.current_dir(path).args(words).args(options).assert().success();
+    let said = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+    let told: Vec<f64> =
+        said.lines().filter_map(|line| line.strip_prefix("openjd_progress: ")?.parse().ok()).collect();
+    assert_eq!(told, [25.0, 50.0, 75.0, 100.0], "{said}");
+    assert!(!path.join("a-0000.png").exists() && path.join("a-0004.png").exists());
+    let wrong = ["render", "pot.toml", "--turntable", "5", "--frames", "1-5", "-o", "a-{frame}.png"];
+    bilux(path).args(wrong).assert().code(2);
+}
+
 #[test]
 fn a_job_that_cannot_be_made_leaves_no_folder() {
     let folder = TempDir::new().unwrap();

@@ -9,6 +9,7 @@ mod layers;
 mod manual;
 mod output;
 mod overwriting;
+mod pairs;
 mod picture_layers;
 mod resume;
 mod sensors;

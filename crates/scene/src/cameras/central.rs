@@ -28,6 +28,10 @@ pub(super) trait Projection: Send + Sync + 'static {
     }
     /// [`Camera::height_at`] for a point of the camera's space.
     fn height_at(&self, p: DVec3) -> f64;
+    /// [`Camera::shape`].
+    fn shape(&self) -> Option<f64> {
+        None
+    }
     /// [`Camera::warnings`].
     fn warnings(&self) -> Vec<String> {
         Vec::new()
@@ -54,7 +58,7 @@ pub(super) fn build<P: Projection>(
 ) -> Result<Arc<dyn Camera>, SceneError> {
     let poses = Poses::read(keys)?;
     let (_, reader) = keys.first().ok_or_else(|| SceneError::invalid("no keyframes", &Default::default()))?;
-    check_changes(keys, &["position", "look_at", "up"])?;
+    check_changes(keys, "position look_at up")?;
     let projection = read(reader, f64::from(aspect))?;
     let pinhole = poses.still().zip(projection.matrix()).map(|(pose, matrix)| pinhole(pose, matrix));
     Ok(Arc::new(Central { poses, projection, aside, pinhole }))
@@ -175,6 +179,10 @@ impl<P: Projection> Camera for Central<P> {
 
     fn pinhole(&self) -> Option<Pinhole> {
         self.pinhole
+    }
+
+    fn shape(&self) -> Option<f64> {
+        self.projection.shape()
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -134,6 +134,10 @@ pub trait Camera: Send + Sync {
     fn receives(&self) -> bool {
         false
     }
+    /// The width over height of pictures that show all as it is, if others show it stretched.
+    fn shape(&self) -> Option<f64> {
+        None
+    }
     /// What users should know about its picture: each is a sentence.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
@@ -237,10 +241,11 @@ fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
     (&keys[low].1, &keys[high].1, fraction)
 }
 
-/// Refuses keyframes of parameters other than those that may change over time.
-fn check_changes(keys: CameraKeys, may_change: &[&str]) -> Result<(), SceneError> {
+/// Refuses keyframes of parameters other than those that may change over time, whose names have spaces between them.
+fn check_changes(keys: CameraKeys, may_change: &str) -> Result<(), SceneError> {
+    let may_change: Vec<&str> = may_change.split(' ').collect();
     let Some((_, first)) = keys.first() else { return Ok(()) };
-    let Some(key) = keys.iter().find_map(|(_, other)| other.differs(first, may_change)) else {
+    let Some(key) = keys.iter().find_map(|(_, other)| other.differs(first, &may_change)) else {
         return Ok(());
     };
     let message = format!("the camera's {key} cannot change over time: leave it out of the keyframes");

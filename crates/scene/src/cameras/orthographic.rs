@@ -81,7 +81,7 @@ impl Orthographic {
     pub(super) fn read(keys: CameraKeys, aspect: f32) -> Result<Orthographic, SceneError> {
         let mirrored = keys.first().is_some_and(|(_, reader)| reader.bool("mirrored"));
         let aspect = if mirrored { -aspect } else { aspect };
-        check_changes(keys, &["position", "look_at", "up", "height"])?;
+        check_changes(keys, "position look_at up height")?;
         let keys = keys
             .iter()
             .map(|(time, reader)| Ok((*time, Key::read(reader)?)))

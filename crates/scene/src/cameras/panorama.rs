@@ -177,6 +177,13 @@ impl Projection for Panorama {
         [around.then(|| other_side(film)), over, over.map(other_side)]
     }
 
+    fn shape(&self) -> Option<f64> {
+        Some(match self {
+            Panorama::Equirectangular { range } | Panorama::Cylindrical { range } => range.x / range.y,
+            Panorama::Cube => FACES as f64,
+        })
+    }
+
     fn height_at(&self, p: DVec3) -> f64 {
         let height = match self {
             Panorama::Equirectangular { range } | Panorama::Cylindrical { range } => range.y,

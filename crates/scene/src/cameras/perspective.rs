@@ -87,28 +87,12 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
 };
 
 /// The parameters that keyframes can change.
-const CHANGING: [&str; 16] = [
-    "position",
-    "look_at",
-    "up",
-    "fov",
-    "frame",
-    "aperture",
-    "focus",
-    "blades_rotation",
-    "focus_tilt_x",
-    "focus_tilt_y",
-    "principal_x",
-    "principal_y",
-    "shift_x",
-    "shift_y",
-    "skew",
-    "convergence",
-];
+const CHANGING: &str = "position look_at up fov frame aperture focus blades_rotation focus_tilt_x focus_tilt_y \
+                        principal_x principal_y shift_x shift_y skew convergence";
 
 /// Makes the camera of one eye, so many metres to the right in the picture.
 fn build(keys: CameraKeys, aspect: f32, aside: f64) -> Result<Arc<dyn Camera>, SceneError> {
-    check_changes(keys, &CHANGING)?;
+    check_changes(keys, CHANGING)?;
     let pixel_aspect = keys.first().map_or(1.0, |(_, reader)| reader.number("pixel_aspect"));
     let aspect = aspect * pixel_aspect;
     let keys = keys

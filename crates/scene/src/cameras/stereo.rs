@@ -175,6 +175,11 @@ impl Camera for Pair {
         self.eyes[LEFT].height_at(p, time) * rows
     }
 
+    fn shape(&self) -> Option<f64> {
+        let of_both = |shape: f64| if self.layout == Layout::SideBySide { shape * 2.0 } else { shape * 0.5 };
+        self.eyes[LEFT].shape().map(of_both)
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.eyes[LEFT].warnings()
     }

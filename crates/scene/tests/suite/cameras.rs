@@ -64,6 +64,31 @@ fn square_pixels_are_square() {
     }
 }
 
+/// Pictures that show all as it is, whatever the window: twice as wide as high for all around, and as many times for two eyes.
+#[test]
+fn panoramas_have_a_shape_of_their_own() {
+    let shape = |settings: &[(&str, Value)]| {
+        let mut spec = Spec::new("", "panorama");
+        settings.iter().for_each(|(key, value)| spec.parameters.set(key, value.clone()));
+        camera(&spec, 1.0).shape().unwrap()
+    };
+    let [both, above] = ["side-by-side", "over-under"].map(|stereo| ("stereo", Value::from(stereo)));
+    let wide = [("fov_x", number(180.0)), ("fov", number(60.0))];
+    for (settings, expected) in [
+        (&[][..], 2.0),
+        (&[both], 4.0),
+        (&[above], 1.0),
+        (&[("mapping", Value::from("cube"))], 6.0),
+        (&wide, 3.0),
+    ] {
+        assert!((shape(settings) - expected).abs() < 1e-9, "{settings:?}: {}", shape(settings));
+    }
+    assert!(
+        CAMERAS.iter().filter(|row| camera(&Spec::new("", row.entry.name), 1.0).shape().is_some()).count()
+            == 1
+    );
+}
+
 /// The middle of the picture looks forward, whatever its size; and what a calibrated camera sees at a pixel is at the same place of
 /// a picture that is twice as large: 2 u + 1/2, since pixels have their centres at whole numbers.
 #[test]

@@ -218,6 +218,7 @@ impl Stage {
             rests: self.refinement.level == Level::Full && self.session.is_done(),
             choice: outcome.rendered.choice.as_ref().map(ToString::to_string),
             eye: self.viewpoint.eye.map_or([[0.0; 3]; 2], |eye| [point(eye.position), point(eye.pivot)]),
+            zoom: self.viewpoint.eye.filter(|_| self.viewpoint.is_moved).map(|eye| eye.zoom),
             ..self.refinement.facts.clone()
         };
         let settings = job.settings();

@@ -86,6 +86,8 @@ impl Stage {
         if applied.is_err() {
             (self.user, self.viewpoint) = before;
         } else if changes_camera {
+            // Another camera may have pictures of another shape.
+            self.resize(self.viewpoint.wanted_size);
             self.viewpoint.home = self.home();
             self.viewpoint.go_home();
         }

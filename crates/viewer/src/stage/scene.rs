@@ -52,7 +52,7 @@ impl Stage {
         let pictures = 1 + u64::from(self.comparison.is_some());
         let (room, most) = (&self.common.room, self.common.max_memory);
         let granted = room.take(self.number, [pictures, pixels], &self.version.scene, most);
-        if self.viewpoint.resize(wanted, granted) {
+        if self.viewpoint.resize(wanted, granted, self.session.job().camera().shape()) {
             let home = self.home();
             self.viewpoint.keep_in_view(home);
         }

@@ -54,6 +54,9 @@ impl Viewpoint {
             }
             Move::Fly([right, up, forward]) => eye.fly(right, up, forward),
             Move::Approach(factor) => eye.approach(factor),
+            Move::To(position, pivot, zoom) => {
+                eye.put(position.into(), pivot.into(), zoom);
+            }
             Move::Focus(at) => {
                 if let Some(point) = point_at(job, at.map(|x| x as f32)) {
                     eye.focus(point);
@@ -66,10 +69,13 @@ impl Viewpoint {
 
     /// Wants pictures of this size from now on, and takes smaller ones of the same shape if there is room for fewer pixels.
     /// Returns true if that is another size than before, or the first one.
-    pub(super) fn resize(&mut self, wanted: [u32; 2], granted: u64) -> bool {
-        let pixels = u64::from(wanted[0]) * u64::from(wanted[1]);
+    ///
+    /// `shape` is that which pictures of the camera have, if it is none of a window.
+    pub(super) fn resize(&mut self, wanted: [u32; 2], granted: u64, shape: Option<f64>) -> bool {
+        let fitted = shape.map_or(wanted, |shape| within(wanted, shape));
+        let pixels = u64::from(fitted[0]) * u64::from(fitted[1]);
         let factor = (granted as f64 / pixels.max(1) as f64).sqrt().min(1.0);
-        let size = wanted.map(|side| ((f64::from(side) * factor) as u32).max(1));
+        let size = fitted.map(|side| ((f64::from(side) * factor) as u32).max(1));
         let is_other = size != self.size || self.home.is_none();
         (self.wanted_size, self.size) = (wanted, size);
         is_other
@@ -91,5 +97,25 @@ impl Viewpoint {
         let (job, own) = (session.job(), session.scene().objects.len());
         let bounds = own_bounds(job.completed_scene(), own, job.settings().time);
         self.eye.is_some_and(|eye| bounds.contains(eye.position.as_vec3()))
+    }
+}
+
+/// The largest size of this width over height within another one.
+fn within([width, height]: [u32; 2], shape: f64) -> [u32; 2] {
+    let [wide, high] = [f64::from(width), f64::from(height)];
+    let fitted = if shape * high > wide { [wide, wide / shape] } else { [high * shape, high] };
+    fitted.map(|side| (side.round() as u32).max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shape_fits_into_any_window() {
+        assert_eq!(within([1000, 1000], 2.0), [1000, 500]);
+        assert_eq!(within([1000, 100], 2.0), [200, 100]);
+        assert_eq!(within([390, 844], 6.0), [390, 65]);
+        assert_eq!(within([3, 1], 0.01), [1, 1]);
     }
 }

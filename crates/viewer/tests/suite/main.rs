@@ -1,5 +1,6 @@
 //! The viewer, with clients that speak to it as browsers do.
 
+mod address;
 mod choosing;
 mod common;
 mod comparing;

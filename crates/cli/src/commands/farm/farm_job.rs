@@ -11,6 +11,8 @@ pub(super) struct FarmJob {
     /// The name of the picture, or of its frames.
     pub(super) picture: String,
     pub(super) split: Split,
+    /// The pictures of a whole turn, if the frames are some of them.
+    pub(super) turntable: Option<u32>,
     /// The options of `bilux render`.
     pub(super) options: Vec<Word>,
 }
@@ -33,6 +35,9 @@ impl FarmJob {
     ) -> Vec<String> {
         let mut words = vec!["render".to_owned(), written(&self.scene), "-o".to_owned(), picture.to_owned()];
         words.extend([self.split.flag().to_owned(), range.to_owned()]);
+        words.extend(
+            self.turntable.into_iter().flat_map(|count| ["--turntable".to_owned(), count.to_string()]),
+        );
         words.extend(self.options.iter().map(written));
         words
     }

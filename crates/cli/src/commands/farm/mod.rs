@@ -81,7 +81,8 @@ fn job_of(
     let files = Files::of(&arguments.scene, scene.files.iter().map(AsRef::as_ref), &given)?;
     let scene = Word::File(String::new(), files.name_of(&arguments.scene)?);
     let options = options::words(&arguments.options, &files);
-    Ok((FarmJob { name, scene, picture, split, options }, files))
+    let turntable = arguments.turntable;
+    Ok((FarmJob { name, scene, picture, split, turntable, options }, files))
 }
 
 /// Refuses a folder that has something in it: files of another job would be mixed with those of this one.
@@ -97,7 +98,7 @@ fn check_new(folder: &Path) -> anyhow::Result<()> {
 
 /// The name of the picture, which lies in a folder of its own.
 fn picture_name(arguments: &Farm, stem: &str) -> anyhow::Result<String> {
-    let is_numbered = arguments.frames.is_some();
+    let is_numbered = arguments.frames.is_some() || arguments.turntable.is_some();
     let usual = if is_numbered { format!("{stem}-{{frame}}.png") } else { format!("{stem}.png") };
     let name = arguments.picture.clone().unwrap_or(usual);
     let path = Path::new(&name);
@@ -105,7 +106,9 @@ fn picture_name(arguments: &Farm, stem: &str) -> anyhow::Result<String> {
         bail!("--picture {name}: write a name without folders: pictures go into the job's folder 'pictures'");
     }
     if name.contains("{frame}") && !is_numbered {
-        bail!("--picture {name}: {{frame}} needs several frames: add --frames, or leave it out");
+        bail!(
+            "--picture {name}: {{frame}} needs several frames: add --frames or --turntable, or leave it out"
+        );
     }
     bilux::pictures::format_of_path(path)?;
     Ok(name)

@@ -51,7 +51,7 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
             render.samples.is_some(),
             "each task takes a range of its own: set their number with --spp",
         ),
-        ("--turntable", render.turntable.is_some(), "give the camera keyframes, and write --frames"),
+        ("--turntable", render.turntable.is_some(), "write it before `--`"),
         ("--replay", render.replay.is_some(), "it writes no picture"),
         ("--resume", render.lasting.resume, "a task's working directory is not kept"),
         ("--watch", render.lasting.watch, "a task renders once"),
@@ -86,7 +86,7 @@ pub(super) fn check(render: &Render, farm: &Farm, picture: &str) -> anyhow::Resu
             "write --picture NAME.png, and convert it with `bilux convert`",
         ),
     ];
-    let of_parts = of_parts.into_iter().filter(|_| farm.frames.is_none());
+    let of_parts = of_parts.into_iter().filter(|_| farm.frames.is_none() && farm.turntable.is_none());
     match never.into_iter().chain(of_parts).find(|(_, is_set, _)| *is_set) {
         Some((flag, _, advice)) => bail!("{flag} does not work in the tasks of a farm: {advice}"),
         None => Ok(()),

@@ -19,7 +19,8 @@ impl Split {
     /// If there are more tasks than frames or samples, or if the number of samples is not known before.
     pub(super) fn of(arguments: &Farm, settings: &Settings, by_default: bool) -> anyhow::Result<Split> {
         let chunks = arguments.chunks;
-        if let Some((first, last)) = arguments.frames {
+        let turned = arguments.turntable.map(|count| (0, count - 1));
+        if let Some((first, last)) = arguments.frames.or(turned) {
             let count = u64::from(last - first) + 1;
             check(chunks, count, "frames")?;
             let ranges = ranges(u64::from(first), count, chunks);

@@ -31,10 +31,11 @@ pub(super) fn of(job: &FarmJob) -> anyhow::Result<String> {
         Split::Samples(_) => ("Samples", "{{Param.Parts}}/{{Task.Param.Samples}}.exr".to_owned()),
     };
     let range = format!("{{{{Task.Param.{parameter}}}}}");
-    let words = job.render(&output, &range, |word| match word {
+    let mut words = job.render(&output, &range, |word| match word {
         Word::Text(text) => text.clone(),
         Word::File(before, name) => format!("{before}{{{{Param.Files}}}}/{name}"),
     });
+    words.insert(1, PROGRESS.to_owned());
     let ranges: Vec<String> = job.split.ranges().iter().map(|range| quoted(range)).collect();
     let mut text =
         format!("specificationVersion: jobtemplate-2023-09\nname: {}\n{PARAMETERS}{parts}", quoted(&name));
@@ -53,6 +54,9 @@ pub(super) fn of(job: &FarmJob) -> anyhow::Result<String> {
     }
     Ok(text)
 }
+
+/// Tells the scheduler how far a task is.
+const PROGRESS: &str = "--progress=openjd";
 
 /// What a scheduler may set. Paths are relative to the template.
 const PARAMETERS: &str = "parameterDefinitions:
