@@ -135,7 +135,7 @@ typed! {
     }
     /// Standard general sky of the CIE, from overcast to clear, with the light that it is to give.
     CieSky = "cie-sky" {
-        /// Its number: 1 overcast, 5 uniform, 7 partly cloudy, 12 clear, 13 clear and polluted, 15 turbid; default `1`.
+        /// Its number: 1 overcast, 5 uniform, 7 partly cloudy, 12 clear, 13 clear and polluted, 15 turbid, 16 traditional overcast; default `1`.
         standard: i32,
         /// Elevation of the sun (degrees); default `40`.
         elevation: f32,
