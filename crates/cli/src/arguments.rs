@@ -309,6 +309,11 @@ impl Render {
         self.output.as_deref().unwrap_or(Path::new("-"))
     }
 
+    /// The frames of an animation: those of a turntable are moments of none.
+    pub fn moments(&self) -> Option<(u32, u32)> {
+        self.frames.filter(|_| self.turntable.is_none())
+    }
+
     /// The name of a picture, which says its format: on standard output one of its own.
     pub fn named(&self, output: &Path) -> PathBuf {
         crate::streams::named(output, self.output_format.as_deref())

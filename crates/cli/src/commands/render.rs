@@ -147,8 +147,7 @@ fn render_one(
     interrupt.ends_itself(false);
     check_read(&target.scene, common)?;
     let input = Input::open(&target.scene, arguments, common, interrupt, watched)?;
-    let moves_on = arguments.frames.is_some() && arguments.turntable.is_none();
-    let mut scene = input.read(arguments.at.unwrap_or(0.0), moves_on)?;
+    let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.moments().is_some())?;
     input.warn(&scene.warnings)?;
     report_notes(&scene.notes, common);
     input.warn(&still_frames(arguments, &scene))?;
@@ -204,7 +203,7 @@ fn render_scene(
     let mut job = input.job(scene, &user, series, output)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was set otherwise than by --at.
-        *scene = input.read(job.settings().time, arguments.frames.is_some())?;
+        *scene = input.read(job.settings().time, arguments.moments().is_some())?;
         job = input.job(scene, &user, series, output)?;
     }
     let job = input.with_other_poses(job, scene, &user, series, output)?;
@@ -220,7 +219,7 @@ fn render_scene(
     if by_default && common.verbose > 0 {
         log::report_default_budget(output);
     }
-    let Some((first, last)) = arguments.frames else {
+    let Some((first, last)) = arguments.moments() else {
         return finish(input, &job, target, build_seconds);
     };
     let (series, fps) = (job.series(), job.settings().fps);

@@ -109,8 +109,7 @@ pub fn still_frames(arguments: &Render, scene: &SceneBuilder) -> Vec<Warning> {
     let moves = scene.inventory.moves()
         || scene.objects.iter().any(|object| !object.motion.is_still())
         || scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
-    let wants_frames =
-        arguments.turntable.is_none() && arguments.frames.is_some_and(|(first, last)| first < last);
+    let wants_frames = arguments.moments().is_some_and(|(first, last)| first < last);
     let message = "--frames: nothing in this scene moves, so all frames show the same; --turntable N turns the camera \
                    around a model";
     let warning = Warning { message: message.to_owned(), at: Span::default() };
