@@ -130,12 +130,9 @@ fn significant(value: f64, digits: i32) -> String {
     while decimals > 0 && value.abs() >= power {
         (decimals, power) = (decimals - 1, power * 10.0);
     }
-    while value != 0.0
-        && decimals >= digits
-        && decimals < 12
-        && value.abs() * 10f64.powi(decimals - digits + 1) < 1.0
-    {
-        decimals += 1;
+    let mut scaled = value.abs() * 10.0;
+    while value != 0.0 && decimals >= digits && decimals < 12 && scaled < 1.0 {
+        (decimals, scaled) = (decimals + 1, scaled * 10.0);
     }
     format!("{value:.*}", decimals as usize)
 }

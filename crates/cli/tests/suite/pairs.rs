@@ -92,8 +92,7 @@ fn values() -> Vec<(&'static str, Value)> {
 }
 
 /// Options that this scene has nothing for, or that need another file than a PNG: they are refused on their own.
-const REFUSED: [&str; 8] =
-    ["animation", "define", "layer", "quality", "samples", "subdivide", "variant", "preset"];
+const REFUSED: [&str; 7] = ["animation", "define", "layer", "quality", "samples", "variant", "preset"];
 
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();

@@ -85,8 +85,8 @@ fn whatever_moves_has_a_time_to_choose() {
         };
         scene.objects[1].motion = Motion::from_keys(vec![key(0.0), key(1.5)]).unwrap();
     };
-    let changes: [(fn(&mut SceneBuilder), Json); 3] =
-        [(still, Json::Null), (camera, json!(2.5)), (object, json!(1.5))];
+    type Change = fn(&mut SceneBuilder);
+    let changes = [(still as Change, Json::Null), (camera, json!(2.5)), (object, json!(1.5))];
     for (change, seconds) in changes {
         let viewer = Viewer::with(options(move || {
             let mut scene = cornell()?;

@@ -143,7 +143,11 @@ pub(crate) const CASES: &[Case] = &[
     Case::command("memory as a word", 2, "render triangle.obj -o out.png --max-memory lots"),
     Case::command("a ground that there is not", 2, "render triangle.obj -o out.png --ground floor"),
     Case::command("a kind of glass that there is not", 2, "render triangle.obj -o out.png --glass thick"),
-    Case::command("more pictures than a turn has", 2, "render triangle.obj -o out.png --turntable 4 --frames 0-4"),
+    Case::command(
+        "more pictures than a turn has",
+        2,
+        "render triangle.obj -o out.png --turntable 4 --frames 0-4",
+    ),
     Case::command("a checkpoint every now and then", 2, "render triangle.obj -o out.png --checkpoint often"),
     Case::command("a checkpoint every 0 seconds", 2, "render triangle.obj -o out.png --checkpoint 0"),
     Case::command("a checkpoint of a picture without a name", 2, "render triangle.obj -o - --checkpoint 5"),
