@@ -19,7 +19,7 @@ fn numbers(json: &Json) -> Vec<f64> {
 }
 
 #[test]
-fn a_view_can_be_asked_for_and_is_told() {
+fn a_view_can_be_asked_for_and_comes_back() {
     let viewer = Viewer::start();
     run(async {
         let mut client = Client::connect(&viewer).await;
