@@ -226,6 +226,25 @@ def test_weather_is_read(tmp_path):
     assert weather.occupied().sum() == 3650
 
 
+def test_records_of_half_an_hour_are_of_its_middle(tmp_path):
+    """Two records an hour, which end at minutes 30 and 60 (EnergyPlus, Auxiliary Programs): with other light, so that none is the other's."""
+    halves = []
+    for line in RECORDS:
+        fields = line.split(",")
+        for minute, part in ((30, 0.25), (60, 0.5)):
+            light = [f"{float(value) * part:.2f}" for value in fields[14:16]]
+            halves.append(",".join([*fields[:4], str(minute), *fields[5:14], *light, *fields[16:]]))
+    header = [*HEADER[:7], "DATA PERIODS,1,2,Data,Sunday,1/1,12/31"]
+    half, whole = daylight.read_epw(epw(tmp_path, halves, header)), daylight.read_epw(epw(tmp_path))
+    assert len(half.hour) == 2 * 8760 and half.hour[:4].tolist() == [0.25, 0.75, 1.25, 1.75]
+    np.testing.assert_allclose(half.direct_normal[::2], 0.25 * whole.direct_normal, atol=0.01)
+    np.testing.assert_allclose(half.diffuse_horizontal[1::2], 0.5 * whole.diffuse_horizontal, atol=0.01)
+    # The sun of the whole hour's middle is between those of its halves.
+    noon = 24 * 180 + 9
+    assert half.elevation[2 * noon] < whole.elevation[noon] < half.elevation[2 * noon + 1]
+    assert half.elevation[2 * noon : 2 * noon + 2].mean() == pytest.approx(whole.elevation[noon], abs=0.02)
+
+
 def changed(line, column, value):
     lines = list(RECORDS)
     fields = lines[line].split(",")

@@ -54,7 +54,7 @@ impl Mesh {
     }
 
     /// The volume inside a closed mesh, in units of its space cubed: negative where its faces look inwards.
-    fn signed_volume(&self) -> f64 {
+    pub(crate) fn signed_volume(&self) -> f64 {
         let Some(first) = self.positions.first() else { return 0.0 };
         let beyond = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|i| (self.positions[i as usize] - *first).as_dvec3());

@@ -3,6 +3,7 @@
 //! begin like those and the rest as before, so that none is left out and none gets too large a weight.
 
 use crate::light_choice::{pick, sums, weights};
+use crate::techniques::NO_LIGHT;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{EmissionSample, Scene};
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub(crate) struct Start {
 
 /// What stands for a light where light is sorted by lights; all lights from the 65535th on are one.
 pub(crate) fn light_number(light: usize) -> u16 {
-    u16::try_from(light).unwrap_or(u16::MAX)
+    u16::try_from(light).unwrap_or(NO_LIGHT)
 }
 
 impl Start {

@@ -25,35 +25,76 @@ pub(crate) struct Equiangular {
     /// The angle at the light from the closest point to the start of the ray, and from there to its end.
     begin: f32,
     angle: f32,
+    /// The part of the ray in the light's beam, if it has one.
+    in_beam: Option<InBeam>,
+}
+
+/// The part of a ray in a beam. [The angle there is uniform, too.](Equiangular)
+struct InBeam {
+    /// How often points are there.
+    share: f32,
+    /// Distances along the ray, in metres.
+    ends: [f32; 2],
+    /// The angle at the light from the closest point to its begin, and from there to its end.
+    begin: f32,
+    angle: f32,
 }
 
 /// A small part of the distance to the light, without which a ray through a point light would have its points in one place.
 const CLOSEST: f32 = 1e-3;
 
 impl Equiangular {
-    /// On a ray from `origin` along a unit vector; `None` for lights that are infinitely far away.
+    /// On a ray from `origin` along a unit vector; `None` for lights that are infinitely far away, and where the ray meets none of a
+    /// light.
     #[inline]
     pub(crate) fn new(scene: &Scene, light: usize, origin: Vec3, direction: Vec3) -> Option<Equiangular> {
-        let (middle, reach) = scene.lights().get(light)?.light.middle_and_reach()?;
+        let light = &scene.lights().get(light)?.light;
+        let (middle, reach) = light.middle_and_reach()?;
         let to_light = middle - origin;
         let nearest = to_light.dot(direction);
         let clearance = CLOSEST * CLOSEST * to_light.length_squared() + reach * reach;
         let apart = ((to_light - direction * nearest).length_squared() + clearance).sqrt();
         let begin = -atan(nearest / apart);
-        (apart > 0.0).then_some(Equiangular { nearest, apart, begin, angle: FRAC_PI_2 - begin })
+        let mut points = Equiangular { nearest, apart, begin, angle: FRAC_PI_2 - begin, in_beam: None };
+        if let Some(beam) = light.beam() {
+            points.in_beam =
+                beam.along(-to_light, direction).and_then(|ends| points.between(ends, beam.share));
+            if points.in_beam.is_none() && beam.share == 1.0 {
+                return None;
+            }
+        }
+        (apart > 0.0).then_some(points)
+    }
+
+    /// The part between these distances, with so many of the points; `None` where the light sees it under no angle.
+    fn between(&self, ends: [f32; 2], share: f32) -> Option<InBeam> {
+        let [begin, end] = ends.map(|t| atan((t - self.nearest) / self.apart));
+        (end > begin).then_some(InBeam { share, ends, begin, angle: end - begin })
     }
 
     /// A distance along the ray, in metres, for a random number; it may be far behind everything.
     #[inline]
     pub(crate) fn sample(&self, u: f32) -> f32 {
-        (self.nearest + self.apart * tan(self.begin + self.angle * u)).max(0.0)
+        let at = |angle: f32| self.nearest + self.apart * tan(angle);
+        match &self.in_beam {
+            Some(part) if u < part.share => {
+                at(part.begin + part.angle * (u / part.share)).clamp(part.ends[0], part.ends[1])
+            }
+            Some(part) => at(self.begin + self.angle * ((u - part.share) / (1.0 - part.share))).max(0.0),
+            None => at(self.begin + self.angle * u).max(0.0),
+        }
     }
 
     /// The density of a distance, per metre.
     #[inline]
     pub(crate) fn density(&self, t: f32) -> f32 {
         let from_nearest = t - self.nearest;
-        self.apart / (self.angle * (self.apart * self.apart + from_nearest * from_nearest))
+        let square = self.apart * self.apart + from_nearest * from_nearest;
+        let Some(part) = &self.in_beam else { return self.apart / (self.angle * square) };
+        let is_within = (part.ends[0]..=part.ends[1]).contains(&t);
+        let per_angle =
+            (1.0 - part.share) / self.angle + if is_within { part.share / part.angle } else { 0.0 };
+        per_angle * self.apart / square
     }
 }
 
@@ -141,15 +182,19 @@ mod tests {
 
     #[test]
     fn points_are_where_their_density_says() {
-        let lamp = Spec::new("", "point").with("position", Vec3::new(1.0, 2.0, 0.5));
         let mut builder = SceneBuilder::default();
-        builder.lights.push(lamp);
+        for (kind, angle) in [("point", None), ("spot", Some(40.0f32))] {
+            let lamp = Spec::new("", kind).with("position", Vec3::new(1.0, 2.0, 0.5));
+            builder.lights.push(angle.map_or(lamp.clone(), |angle| lamp.with("angle", angle)));
+        }
         builder.cameras = vec![CameraSpec { spec: Spec::new("", "perspective"), keyframes: Vec::new() }];
         let scene = crate::shapes::built(&builder);
-        for (origin, direction) in
-            [(Vec3::ZERO, Vec3::X), (Vec3::new(3.0, 0.0, 0.0), Vec3::X), (Vec3::Z, Vec3::Y)]
+        let rays = [(Vec3::ZERO, Vec3::X), (Vec3::new(3.0, 0.0, 0.0), Vec3::X), (Vec3::Z, Vec3::Y)];
+        let in_cone = [(Vec3::new(-3.0, 0.1, 0.0), Vec3::X), (Vec3::ZERO, Vec3::new(0.6, 0.8, 0.0))];
+        for (light, (origin, direction)) in
+            rays.map(|ray| (0, ray)).into_iter().chain(in_cone.map(|ray| (1, ray)))
         {
-            let points = Equiangular::new(&scene, 0, origin, direction).unwrap();
+            let points = Equiangular::new(&scene, light, origin, direction).unwrap();
             // The inverse of the cumulative distribution: its slope is one over the density.
             for i in 1..200 {
                 let u = i as f32 / 200.0;
@@ -159,7 +204,10 @@ mod tests {
                     assert!((slope * points.density(at) - 1.0).abs() < 5e-3, "{origin} {direction}: at {u}");
                 }
             }
-            assert!(points.sample(0.0) < 1e-3);
+            let first = points.in_beam.as_ref().map_or(0.0, |part| part.ends[0]);
+            assert!((points.sample(0.0) - first).abs() < 1e-3);
         }
+        // A ray that passes the cone has none.
+        assert!(Equiangular::new(&scene, 1, Vec3::new(-3.0, 3.0, 0.0), Vec3::X).is_none());
     }
 }

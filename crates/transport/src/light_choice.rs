@@ -19,6 +19,8 @@ pub struct LightChoice {
     /// `cdf[i]` is the sum of the shares `0..=i`.
     cdf: Vec<f32>,
     few: bool,
+    /// Some of them shine into narrow cones through fog.
+    has_beams: bool,
     local: Local,
 }
 
@@ -36,7 +38,25 @@ struct Local {
     others: Vec<f32>,
 }
 
+/// The lights of the tree, and all others, are chosen at least this often: what is strong by its irradiance may be behind a wall.
+const LEAST: f64 = 1.0 / 64.0;
+
 impl Local {
+    /// Scales the shares of all lights so that neither these, whose sum this is, nor the others are chosen hardly ever. Returns the new sum.
+    fn shares_of_groups(&self, shares: &mut [f32], others: &mut [f32], sum: f64) -> f64 {
+        let rest: f64 = others.iter().copied().map(f64::from).sum();
+        if sum == 0.0 || rest == 0.0 || sum.min(rest) >= LEAST {
+            return sum;
+        }
+        let wanted = if sum < rest { LEAST } else { 1.0 - LEAST };
+        let [here, there] = [wanted / sum, (1.0 - wanted) / rest].map(|factor| factor as f32);
+        others.iter_mut().for_each(|share| *share *= there);
+        for (share, place) in shares.iter_mut().zip(&self.places) {
+            *share *= if *place == u32::MAX { there } else { here };
+        }
+        wanted
+    }
+
     /// A light of the tree with its probability there, as a light of the scene with its probability.
     fn of(&self, (member, probability): (usize, f32)) -> (usize, f32) {
         (self.lights[member], probability * self.share)
@@ -53,7 +73,8 @@ impl LightChoice {
     pub fn new(scene: &Scene) -> LightChoice {
         let mut irradiances = Irradiances { scene, places: places(scene), found: Vec::new() };
         let irradiances = scene.lights().iter().map(|l| irradiances.of(&*l.light));
-        let choice = LightChoice::weighted(irradiances);
+        let mut choice = LightChoice::weighted(irradiances);
+        choice.has_beams = scene.scatters() && scene.lights().iter().any(|l| l.light.beam().is_some());
         if choice.few {
             return choice;
         }
@@ -68,7 +89,7 @@ impl LightChoice {
         if few {
             shares.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
         }
-        LightChoice { cdf: sums(&shares), shares, few, local: Local::default() }
+        LightChoice { cdf: sums(&shares), shares, few, has_beams: false, local: Local::default() }
     }
 
     /// The same with a tree over lights of these extents and powers.
@@ -88,6 +109,8 @@ impl LightChoice {
             // There may be a million.
             sum += f64::from(std::mem::take(&mut others[light]));
         }
+        let sum = local.shares_of_groups(&mut self.shares, &mut others, sum);
+        self.cdf = sums(&self.shares);
         local.share = sum as f32;
         local.tree = LightTree::new(&members);
         local.others = sums(&others);
@@ -99,6 +122,12 @@ impl LightChoice {
     #[inline]
     pub fn takes_all(&self) -> bool {
         self.few
+    }
+
+    /// True where some lights shine into narrow cones through fog: few of the points that are lit there are found by light samples.
+    #[inline]
+    pub(crate) fn has_beams(&self) -> bool {
+        self.has_beams
     }
 
     /// The lights to sample from a point, in metres, each with its probability there: all, or one by a random number, or one of probability 0 where none
@@ -297,6 +326,25 @@ mod tests {
         let [near, far] = [Vec3::new(5.0, 0.1, 0.0), Vec3::new(-3.0, 0.1, 0.0)].map(Some);
         assert!(choice.probability(5, near) > 5.0 * choice.probability(5, far));
         assert_eq!(choice.probability(6, near), choice.probability(6, far));
+    }
+
+    #[test]
+    fn lights_from_infinity_are_sampled_however_strong_a_lamp_is_and_lamps_however_strong_they_are() {
+        for powers in [[1e8, 1.0, 2.0, 1.0, 3.0, 1.0], [1.0, 1.0, 2.0, 1.0, 3.0, 1e9]] {
+            let extent = |i: usize| {
+                let at = Aabb::of_points([Vec3::X * i as f32]);
+                (i < 4).then(|| (LightExtent::all_around(at), powers[i]))
+            };
+            let choice = LightChoice::weighted(powers.into_iter()).with_tree((0..6).map(extent));
+            for at in [None, Some(Vec3::Y)] {
+                let of = |range: std::ops::Range<usize>| -> f32 {
+                    range.map(|light| choice.probability(light, at)).sum()
+                };
+                let [lamps, others] = [of(0..4), of(4..6)];
+                assert!((lamps + others - 1.0).abs() < 1e-5, "{lamps} and {others}");
+                assert!(lamps.min(others) > 0.99 / 64.0, "{powers:?}: {lamps} and {others}");
+            }
+        }
     }
 
     #[test]

@@ -229,12 +229,8 @@ impl Media {
         if !scene.has_nested() && !scene.disperses() {
             return bsdf;
         }
-        let is_nested = scene.has_nested() && scene.material(surface).nested().is_some();
-        // On the far side of a surface that the path would leave through, those that coincide with it are crossed.
-        let is_left = || self.overlap.contains(surface.object);
-        let outside = if is_left() { self.overlap.with_all_together() } else { self.overlap };
-        let around = if is_nested { outside.without(surface.object).strongest(scene) } else { None };
-        match around {
+        let is_nested = scene.has_nested() && scene.nested(surface.object).is_some();
+        match is_nested.then(|| self.overlap.outside(scene, surface.object)).flatten() {
             Some(outside) => {
                 let bsdf = bsdf.refracting(wavelength, outside.index(wavelength));
                 bsdf.splitting(outside.dispersion != 0.0)
@@ -296,14 +292,14 @@ impl Media {
         let scene = tracer.scene;
         others.iter().for_each(|other| self.meet(scene, other, Vec3::from(ray.direction)));
         let all = || std::iter::once(&surface).chain(&others);
-        let behind = all().fold(self.overlap, |overlap, face| overlap.changed(face.object));
+        let behind = all().fold(self.overlap, |overlap, face| overlap.changed(scene.body(face.object)));
         let strongest = [self.overlap, behind].map(|overlap| overlap.strongest_object(scene));
         let strongest = strongest.into_iter().filter(|&object| object != NONE);
         let strongest = strongest.max_by_key(|&object| scene.nesting(object));
         // The stronger one is left or entered here, unless it is the same in front and behind.
-        let separating = all().find(|face| strongest == Some(face.object));
+        let separating = all().find(|face| strongest == Some(scene.body(face.object)));
         let surface = *separating.unwrap_or(&surface);
-        let rest = all().map(|face| face.object).filter(|object| *object != surface.object);
+        let rest = all().filter(|face| face.object != surface.object).map(|face| scene.body(face.object));
         self.overlap.cross_together(rest);
         Surface { t, ..surface }
     }
@@ -313,8 +309,8 @@ impl Media {
     #[inline]
     fn meet(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
         let leaves = surface.n_geom.dot(direction) > 0.0;
-        if scene.has_nested() && scene.material(surface).nested().is_some() {
-            let object = surface.object;
+        if scene.has_nested() && scene.nested(surface.object).is_some() {
+            let object = scene.body(surface.object);
             if leaves != self.overlap.contains(object) {
                 self.overlap = if leaves { self.overlap.with(object) } else { self.overlap.without(object) };
                 self.inside = self.overlap.strongest_object(scene);
@@ -328,9 +324,9 @@ impl Media {
     #[inline]
     fn cross(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
         let enters = direction.dot(surface.n_geom) < 0.0;
-        if scene.has_nested() && scene.material(surface).nested().is_some() {
-            let all = self.overlap.with_all_together();
-            self.overlap = if enters { all.with(surface.object) } else { all.without(surface.object) };
+        if scene.has_nested() && scene.nested(surface.object).is_some() {
+            let (all, object) = (self.overlap.with_all_together(), scene.body(surface.object));
+            self.overlap = if enters { all.with(object) } else { all.without(object) };
             self.overlap.leave();
             self.inside = self.overlap.strongest_object(scene);
         } else if scene.material(surface).medium().is_some() {

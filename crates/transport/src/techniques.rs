@@ -38,6 +38,10 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     pub(crate) direct: bool,
 }
 
+/// The [origin](Contribution::origin), where light is sorted by lights, of what comes from none of them: from media, and from surfaces that are
+/// not sampled.
+pub(crate) const NO_LIGHT: u16 = u16::MAX;
+
 /// What one technique contributes for one path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contribution<const N: usize = 1> {
@@ -208,7 +212,7 @@ impl<const N: usize> TechniqueCounts<N> {
 impl<const N: usize> Contribution<N> {
     /// A contribution that no other technique finds.
     pub(crate) fn only(light: Rgb) -> Contribution<N> {
-        Contribution { light, own: PerSet::ONE, others: PerSet::ZERO, power_factor: 1.0, origin: 0 }
+        Contribution { light, own: PerSet::ONE, others: PerSet::ZERO, power_factor: 1.0, origin: NO_LIGHT }
     }
 
     /// Its MIS weight: the balance heuristic, except for [`power_factor`].

@@ -418,6 +418,35 @@ mod tests {
         }
     }
 
+    /// A single voxel, at each kind of corner of blocks: what is around it reaches into all blocks that meet there.
+    #[test]
+    fn the_majorants_of_blocks_know_the_voxels_at_their_corners() {
+        let side = 3 * BLOCK;
+        let places = [0, BLOCK - 1, BLOCK, 2 * BLOCK - 1, 2 * BLOCK, side - 1];
+        for at in all([places.len(); 3]).map(|at| at.map(|i| places[i])) {
+            let values: Vec<f32> = all([side; 3]).map(|here| if here == at { 0.7 } else { 0.0 }).collect();
+            let grid = grid([side; 3], &values);
+            let middle = Vec3::from(at.map(|i| i as f32 + 0.5));
+            let mut seen = 0.0;
+            for away in
+                all([3; 3]).map(|away| Vec3::from(away.map(|i| i as f32 - 1.0)) + Vec3::new(0.1, 0.2, -0.15))
+            {
+                // Past the voxel, at less than its side.
+                let from = middle + away * 9.0 + Vec3::new(0.3, -0.4, 0.2);
+                let line = grid.line(from, -away * 2.0);
+                grid.for_each_block(&line, 9.0, |begin, end, majorant| {
+                    for part in 0..=40 {
+                        let value = grid.at(&line, begin + (end - begin) * part as f32 / 40.0);
+                        assert!(value <= majorant * 1.000_001, "{at:?}, {away}: {value} above {majorant}");
+                        seen += value;
+                    }
+                    true
+                });
+            }
+            assert!(seen > 0.1, "{at:?}: {seen}");
+        }
+    }
+
     #[test]
     fn zeros_take_no_space() {
         let at = |[x, y, z]: [usize; 3]| [x, y, z] == [3, 4, 5];

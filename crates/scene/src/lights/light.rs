@@ -1,6 +1,6 @@
 //! What a light source answers.
 
-use super::{EmissionSample, LightExtent, distant};
+use super::{Beam, EmissionSample, LightExtent, distant};
 use crate::classic::ClassicLight;
 use crate::light_sample::LightSample;
 use crate::surface::Surface;
@@ -71,6 +71,11 @@ pub trait Light: LightTracing + ClassicLighting + Any + Send + Sync {
     /// A point in its middle, in metres, and about how far from there it reaches; `None` for an infinite light. What is sampled close to it is
     /// sampled around there.
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
+        None
+    }
+
+    /// The cone from its middle that most of its light goes into, if that is narrow.
+    fn beam(&self) -> Option<Beam> {
         None
     }
 

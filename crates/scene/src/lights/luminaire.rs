@@ -2,8 +2,8 @@
 
 use super::distribution_2d::Distribution2d;
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightExtent, LightSample,
-    LightTracing, given_classic, vector,
+    Beam, BuiltLight, CLASSIC, ClassicLighting, EmissionSample, GROUP, Light, LightEntry, LightExtent,
+    LightSample, LightTracing, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -69,6 +69,7 @@ fn build(reader: &Reader, _: &[Arc<crate::texture::Texture>]) -> Result<BuiltLig
         cells: cells(&distribution),
         per_candela: flux * reader.colour("scale") / lumens as f32,
         lumens,
+        beam: beam(&distribution, axes),
         distribution,
         classic: given_classic(reader),
     })))
@@ -104,6 +105,55 @@ fn cells(distribution: &IntensityDistribution) -> Distribution2d {
     Distribution2d::new(&(0..rows * columns).map(flux).collect::<Vec<_>>(), columns)
 }
 
+/// The fraction of the flux in a beam, and the widest one, in degrees: beyond it a cone says little.
+const IN_BEAM: f64 = 0.9;
+const WIDEST: f64 = 60.0;
+
+/// The cone about the mean direction that most of the flux goes into.
+fn beam(distribution: &IntensityDistribution, axes: [DVec3; 3]) -> Option<Beam> {
+    let (azimuths, polar) = (distribution.azimuths(), distribution.polar_angles());
+    let [pole, zero, quarter] = axes;
+    let along = |polar: f64, azimuth: f64| {
+        let ((sin_theta, cos_theta), (sin_phi, cos_phi)) =
+            (sin_cos_f64(polar.to_radians()), sin_cos_f64(azimuth.to_radians()));
+        pole * cos_theta + (zero * cos_phi + quarter * sin_phi) * sin_theta
+    };
+    // In pieces of cells: lamps that are the same all around have a single cell from plane to plane.
+    let mut pieces = Vec::new();
+    for (row, column) in (0..polar.len() - 1).flat_map(|row| (0..azimuths.len() - 1).map(move |c| (row, c))) {
+        let flux = distribution.flux_of_cell(row, column);
+        let [from, to] = [azimuths[column], azimuths[column + 1]];
+        let count = ((to - from) / WIDEST * 4.0).ceil().max(1.0) as usize;
+        for i in 0..count {
+            let azimuth = from + (to - from) * (i as f64 + 0.5) / count as f64;
+            let corner = |end: usize| along(polar[row + end], azimuth);
+            pieces.push((
+                along(0.5 * (polar[row] + polar[row + 1]), azimuth),
+                [corner(0), corner(1)],
+                flux / count as f64,
+            ));
+        }
+    }
+    let all: f64 = pieces.iter().map(|(.., flux)| flux).sum();
+    let axis = pieces.iter().map(|(middle, _, flux)| *middle * *flux).sum::<DVec3>().try_normalize()?;
+    // Each piece is in the cone if all of it is.
+    let cosine = |[a, b]: &[DVec3; 2]| a.dot(axis).min(b.dot(axis));
+    let mut by_cosine: Vec<_> = pieces.iter().map(|(_, ends, flux)| (cosine(ends), *flux)).collect();
+    by_cosine.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut sum = 0.0;
+    let edge = by_cosine.into_iter().find(|(_, flux)| {
+        sum += flux;
+        sum >= IN_BEAM * all
+    });
+    let cos = edge?.0 as f32;
+    let (_, widest) = sin_cos_f64(WIDEST.to_radians());
+    (f64::from(cos) > widest && cos < 1.0).then_some(Beam {
+        axis: axis.as_vec3(),
+        cos,
+        share: IN_BEAM as f32,
+    })
+}
+
 struct Luminaire {
     position: Vec3,
     /// The pole, the direction of azimuth 0 and that of azimuth 90.
@@ -114,6 +164,7 @@ struct Luminaire {
     per_candela: Rgb,
     /// The flux of the distribution.
     lumens: f64,
+    beam: Option<Beam>,
     classic: Option<Rgb>,
 }
 
@@ -170,6 +221,10 @@ impl Light for Luminaire {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.position, 0.0))
+    }
+
+    fn beam(&self) -> Option<Beam> {
+        self.beam
     }
 
     fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {

@@ -5,6 +5,7 @@
 //! π, so that a diffuse surface there looks the same in both; the parameter `classic` overrides it.
 
 mod ambient;
+mod beam;
 mod cie_sky;
 mod cumulative;
 mod directional;
@@ -34,6 +35,7 @@ mod tree;
 
 pub use crate::light_sample::LightSample;
 pub use crate::sides::Sides;
+pub use beam::Beam;
 pub use cumulative::CumulativePart;
 pub use emission_sample::EmissionSample;
 pub use extent::{DirectionCone, LightExtent};

@@ -1,7 +1,7 @@
 //! `spot`: light from a point into a cone, with a soft edge.
 
 use super::{
-    BuiltLight, CLASSIC, ClassicLighting, DirectionCone, EmissionSample, GROUP, Light, LightEntry,
+    Beam, BuiltLight, CLASSIC, ClassicLighting, DirectionCone, EmissionSample, GROUP, Light, LightEntry,
     LightExtent, LightSample, LightTracing, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
@@ -110,6 +110,10 @@ impl Light for Spot {
 
     fn middle_and_reach(&self) -> Option<(Vec3, f32)> {
         Some((self.position, 0.0))
+    }
+
+    fn beam(&self) -> Option<Beam> {
+        Beam::of_edge(self.axis, self.cos_outer)
     }
 
     fn extent(&self, _shutter: [f32; 2]) -> Option<LightExtent> {

@@ -33,10 +33,12 @@ impl LightTree {
                 branch.children[above[1] as usize] = Child::Branch(index);
             }
             let mut branch = Branch::below(above);
-            if range.len() <= WIDTH {
-                branch.choose_alike(range.len());
+            let is_last = range.len() <= WIDTH;
+            let parts = parts(&mut members, range, depth);
+            if is_last || is_uneven(&members, &parts) {
+                branch.choose_alike(parts.len());
             }
-            for (place, (part, depth)) in parts(&mut members, range, depth).into_iter().enumerate() {
+            for (place, (part, depth)) in parts.into_iter().enumerate() {
                 let place = place as u32;
                 branch.put(place as usize, &members[part.clone()]);
                 if let [(light, ..)] = members[part.clone()] {
@@ -130,6 +132,18 @@ impl Walk {
             }
         }
     }
+}
+
+/// A part may be so many times as strong for each of its lights as another before the other is chosen now and then.
+const UNEVEN: f32 = 64.0;
+
+/// Whether lights of some part are so strong that those of another would hardly ever be chosen: they may be behind a wall.
+fn is_uneven(members: &[Member], parts: &[(Range<usize>, u32)]) -> bool {
+    let mean = |(range, _): &(Range<usize>, u32)| {
+        members[range.clone()].iter().map(|(_, _, power)| power / range.len() as f32).sum::<f32>()
+    };
+    let means = || parts.iter().map(mean);
+    means().fold(0.0, f32::max) > UNEVEN * means().fold(f32::INFINITY, f32::min)
 }
 
 /// Up to four parts of a range of lights, each with its depth: the one with most lights is split first.

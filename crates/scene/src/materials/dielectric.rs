@@ -1,6 +1,7 @@
 //! `dielectric`: glass, water, diamond, smooth or rough.
 
 use super::glasses::{NAMES, glass_indices};
+use super::opacity::ABSENT;
 use super::roughness::{ANISOTROPY, DISTRIBUTION, ROTATION, Roughness, roughness};
 use super::{
     ABSORPTION, AsPrincipled, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN,
@@ -12,7 +13,7 @@ use crate::error::SceneError;
 use crate::media::{DIAMETER, DRAINE_ALPHA, Medium, PHASE, PHASE_ANISOTROPY, SCATTERING};
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
-use crate::texture::ColourMap;
+use crate::texture::{ColourMap, NumberMap};
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::exp;
@@ -81,7 +82,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 pub(super) const PRIORITY: Parameter = Parameter {
     name: "priority",
     summary: "nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones \
-              the one inside the other, and eta is relative to air; 0 ignores overlaps",
+              the one inside the other, and eta is relative to air; 0 ignores overlaps, but glass whose faces lie on \
+              those of other glass touches it, and counts as 1",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
     default: "0",
@@ -152,6 +154,16 @@ struct Glass {
     translucency: f32,
 }
 
+impl Glass {
+    fn is_air(&self) -> bool {
+        self.only_refracts() && Nested::AIR.bends_like(&self.inside())
+    }
+
+    fn inside(&self) -> Nested {
+        Nested { priority: self.priority.max(1), eta: self.eta, dispersion: self.dispersion }
+    }
+}
+
 impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let Glass { eta, dispersion, thin, .. } = *self;
@@ -185,6 +197,10 @@ impl Material for Glass {
         }
     }
 
+    fn opacity(&self) -> Option<&NumberMap> {
+        (self.thin && self.is_air()).then_some(&ABSENT)
+    }
+
     fn needs_tangents(&self) -> bool {
         self.roughness.has_direction()
     }
@@ -194,8 +210,16 @@ impl Material for Glass {
     }
 
     fn nested(&self) -> Option<Nested> {
-        let Glass { eta, dispersion, priority, thin, .. } = *self;
-        (priority > 0 && !thin).then_some(Nested { priority, eta, dispersion })
+        // What is as clear as air has no surface of its own.
+        self.in_contact().filter(|_| self.priority > 0 || self.is_air())
+    }
+
+    fn in_contact(&self) -> Option<Nested> {
+        (!self.thin).then_some(self.inside())
+    }
+
+    fn only_refracts(&self) -> bool {
+        self.tint.texture.is_none() && self.tint.colour == Rgb::WHITE
     }
 
     fn medium(&self) -> Option<Medium<'_>> {

@@ -90,6 +90,14 @@ pub trait Material: Send + Sync {
     fn nested(&self) -> Option<Nested> {
         None
     }
+    /// The same where it touches another such medium: there it takes part even without a priority, as of priority 1.
+    fn in_contact(&self) -> Option<Nested> {
+        self.nested()
+    }
+    /// True when its surface does nothing but bend light: between media of the same index nothing is there.
+    fn only_refracts(&self) -> bool {
+        false
+    }
     /// True for the boundary of a medium without a surface: light passes straight through, without an event.
     fn is_interface(&self) -> bool {
         false
@@ -112,6 +120,14 @@ pub struct Nested {
 }
 
 impl Nested {
+    /// Air, where nothing else is.
+    pub const AIR: Nested = Nested { priority: 0, eta: 1.0, dispersion: 0.0 };
+
+    /// True when all wavelengths have the same index in both.
+    pub fn bends_like(&self, other: &Nested) -> bool {
+        self.eta == other.eta && self.dispersion == other.dispersion
+    }
+
     /// The index at a wavelength.
     pub fn index(&self, wavelength: &Wavelength) -> f32 {
         if self.dispersion == 0.0 { self.eta } else { wavelength.index(self.eta, self.dispersion) }

@@ -135,6 +135,10 @@ impl Material for Mix {
         self.a.nested().or(self.b.nested())
     }
 
+    fn in_contact(&self) -> Option<Nested> {
+        self.a.in_contact().or(self.b.in_contact())
+    }
+
     /// The interior does not depend on where light entered: use the denser of the two.
     fn medium(&self) -> Option<Medium<'_>> {
         let (a, b) = match (self.a.medium(), self.b.medium()) {

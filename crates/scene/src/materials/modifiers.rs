@@ -115,7 +115,8 @@ impl Material for ModifiedMaterial {
     }
 
     fn opacity(&self) -> Option<&NumberMap> {
-        self.opacity.as_ref()
+        // Nothing is left of what is not there.
+        self.material.opacity().or(self.opacity.as_ref())
     }
 
     fn visible_sides(&self) -> Sides {
@@ -128,6 +129,14 @@ impl Material for ModifiedMaterial {
 
     fn nested(&self) -> Option<Nested> {
         self.material.nested()
+    }
+
+    fn in_contact(&self) -> Option<Nested> {
+        self.material.in_contact()
+    }
+
+    fn only_refracts(&self) -> bool {
+        self.glow.is_none() && self.material.only_refracts()
     }
 
     fn is_interface(&self) -> bool {

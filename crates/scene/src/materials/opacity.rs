@@ -19,6 +19,9 @@ pub(super) const OPACITY: Parameter = Parameter {
     default: "1",
 };
 
+/// That of a pane that is as clear as air.
+pub(super) static ABSENT: NumberMap = NumberMap { number: 0.0, range: [0.0; 2], texture: None };
+
 /// The opacity, if it may be below 1.
 pub(super) fn read(reader: &Reader, inputs: &MaterialInputs) -> Result<Option<NumberMap>, SceneError> {
     let map = number_map(reader, OPACITY.name, inputs)?;

@@ -1,11 +1,12 @@
 //! What is known of the boundary of a medium before a ray is traced.
 
 use super::may_pass::MayPass;
+use super::nesting::Nesting;
 use super::scene_light::SceneLight;
 use crate::geometry::Geometry;
-use crate::materials::Material;
+use crate::materials::{Material, Nested};
 use crate::placed::Placed;
-use bilux_math::{Aabb, Vec3};
+use bilux_math::{Aabb, Transform, Vec3};
 use std::sync::Arc;
 
 /// The boundary of a medium that nothing leaves unseen: a closed mesh without holes, which does not move.
@@ -25,14 +26,14 @@ impl Enclosure {
         geometry: &Geometry,
         materials: &[Arc<dyn Material>],
         passes: &[MayPass],
-        lights: &[SceneLight],
-        object_lights: &[Option<u32>],
+        nesting: &Nesting,
+        (lights, object_lights): (&[SceneLight], &[Option<u32>]),
     ) -> Vec<Option<Enclosure>> {
         if !materials.iter().any(|material| material.medium().is_some_and(|medium| medium.scatters())) {
             return Vec::new();
         }
         let lit = lit_places(geometry, lights, object_lights);
-        let of = |(placed, passes): (&Placed, &MayPass)| {
+        let of = |((object, placed), passes): ((usize, &Placed), &MayPass)| {
             let material = &materials[placed.material as usize];
             let scatters = material.medium().is_some_and(|medium| medium.scatters());
             let has_holes = passes.has_holes || passes.is_one_sided;
@@ -42,10 +43,42 @@ impl Enclosure {
             }
             let bounds = widened(to_world.bounds(&placed.mesh.bounds()));
             let holds_light = lit.iter().any(|place| !place.intersection(bounds).is_empty());
-            Some(Enclosure { bounds, is_solid: !material.is_interface(), holds_light })
+            let is_open =
+                material.is_interface() || is_cut_open(object, bounds, geometry, materials, nesting);
+            Some(Enclosure { bounds, is_solid: !is_open, holds_light })
         };
-        geometry.objects().iter().zip(passes).map(of).collect()
+        geometry.objects().iter().enumerate().zip(passes).map(of).collect()
     }
+}
+
+/// Whether light may pass the surface of an object within these bounds without an event: where a stronger medium without a surface has
+/// cut a part of it away, or where the index is the same on both sides.
+fn is_cut_open(
+    object: usize,
+    bounds: Aabb,
+    geometry: &Geometry,
+    materials: &[Arc<dyn Material>],
+    nesting: &Nesting,
+) -> bool {
+    let rank = |object: usize| nesting.ranks.get(object).copied().unwrap_or(0);
+    if rank(object) == 0 {
+        return false;
+    }
+    let material = |placed: &Placed| &*materials[placed.material as usize];
+    let own = material(&geometry.objects()[object]);
+    let index = own.in_contact().filter(|_| own.only_refracts());
+    let is_like =
+        |other: Option<Nested>| index.zip(other).is_some_and(|(index, other)| index.bends_like(&other));
+    let opens = |(other, placed): (usize, &Placed)| {
+        let other_material = material(placed);
+        let is_cut = other_material.is_interface() && rank(other) > rank(object);
+        let is_part = other != object && rank(other) > 0;
+        let may = is_part && (is_cut || is_like(other_material.in_contact()));
+        let reaches =
+            |place: &Transform| !place.bounds(&placed.mesh.bounds()).intersection(bounds).is_empty();
+        may && placed.motion.static_transform().is_none_or(reaches)
+    };
+    is_like(Some(Nested::AIR)) || geometry.objects().iter().enumerate().any(opens)
 }
 
 /// Where the lights are that are not infinitely far away.

@@ -1,10 +1,13 @@
 //! The immutable scene, and the [`Tracer`] with which integrators query it.
 
+mod behind;
 mod clearance;
+mod contact;
 mod enclosure;
 mod may_pass;
 mod mesh_lights;
 mod nesting;
+mod open_boundaries;
 mod parts;
 mod scene_light;
 mod shading;

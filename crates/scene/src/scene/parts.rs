@@ -5,6 +5,7 @@ use super::enclosure::Enclosure;
 use super::may_pass::MayPass;
 use super::mesh_lights::{MeshLights, max_pieces};
 use super::nesting::Nesting;
+use super::open_boundaries::OpenBoundaries;
 use super::scene_light::SceneLight;
 use super::shading::ObjectShading;
 use crate::cameras::Camera;
@@ -32,6 +33,7 @@ pub(crate) struct SceneParts {
     /// Indices of the infinite lights.
     pub(super) infinite: Vec<usize>,
     pub(super) nesting: Nesting,
+    pub(super) open_boundaries: OpenBoundaries,
     /// For each object of triangles, whether its material has an inside of its own.
     pub(super) bounds_medium: Vec<bool>,
     pub(super) has_holes: bool,
@@ -100,12 +102,9 @@ impl SceneParts {
             |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
         let infinite = (0..lights.len()).filter(|&i| lights[i].light.is_infinite()).collect();
         let has_surroundings = lights.iter().any(surrounds);
-        let nesting = Nesting::of(geometry.objects(), &materials);
-        let bounds_medium = |o: &Placed| {
-            let material = &materials[o.material as usize];
-            material.medium().is_some() || material.nested().is_some()
-        };
-        let bounds_medium = geometry.objects().iter().map(bounds_medium).collect();
+        let open_boundaries = OpenBoundaries::of(geometry.objects(), &materials);
+        let nesting = Nesting::of(geometry.objects(), &materials, &open_boundaries);
+        let bounds_medium = bounds_media(&geometry, &materials);
         let passes = MayPass::of_all(&geometry, &materials);
         let hides_backs = passes.iter().any(|passes| passes.is_one_sided || passes.hides_from_camera);
         let has_holes = passes.iter().any(|passes| passes.has_holes);
@@ -113,7 +112,8 @@ impl SceneParts {
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
-        let enclosures = Enclosure::of_all(&geometry, &materials, &passes, &lights, &object_lights);
+        let enclosures =
+            Enclosure::of_all(&geometry, &materials, &passes, &nesting, (&lights, &object_lights));
         let clearance = Clearance::of(&geometry, &materials);
         let has_varying_media = media().any(|medium| medium.density.is_some());
         let has_coloured_distances = media().any(|medium| medium.has_coloured_distances());
@@ -130,6 +130,7 @@ impl SceneParts {
             has_surroundings,
             infinite,
             nesting,
+            open_boundaries,
             bounds_medium,
             has_holes,
             hides_backs,
@@ -156,6 +157,15 @@ impl SceneParts {
             }
         }
     }
+}
+
+/// For each object of triangles, whether its material has an inside of its own.
+fn bounds_media(geometry: &Geometry, materials: &[Arc<dyn Material>]) -> Vec<bool> {
+    let has_inside = |o: &Placed| {
+        let material = &materials[o.material as usize];
+        material.medium().is_some() || material.nested().is_some()
+    };
+    geometry.objects().iter().map(has_inside).collect()
 }
 
 /// Adds the lights of emissive objects, and says which light each object is.

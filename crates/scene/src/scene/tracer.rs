@@ -1,5 +1,6 @@
 //! Ray queries: what rays hit, and what they pass.
 
+use super::open_boundaries::Behind;
 use super::sheets::{End, Sheets};
 use super::{MayPass, Scene, SceneParts};
 use crate::bsdf::OpaqueBaseInputs;
@@ -73,7 +74,7 @@ impl SceneParts {
     /// It does not where the camera sees through its back, nor where the ray starts or ends on the other shell of a
     /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray and the hit, and of nothing
     /// else, except for labels.
-    fn stops(&self, ray: &Ray, hit: &Hit, sheets: Option<&Sheets>, end: Option<End>) -> bool {
+    pub(super) fn stops(&self, ray: &Ray, hit: &Hit, sheets: Option<&Sheets>, end: Option<End>) -> bool {
         let object = self.geometry.object_of(hit);
         let MayPass { has_holes, is_one_sided, hides_from_camera } = self.passes[object as usize];
         if hides_from_camera && ray.mask != u32::MAX {
@@ -135,12 +136,15 @@ pub struct Tracer<'s> {
     end: Option<End>,
     /// What the rays of a batch hit.
     blockers: Vec<Option<Primitive>>,
+    /// The open boundaries around the last point that asked for them.
+    pub(super) behind: Behind,
 }
 
 impl<'s> Tracer<'s> {
     /// A tracer; with `counting`, every node and triangle test is counted.
     pub fn new(scene: &'s Scene, counting: bool) -> Tracer<'s> {
-        Tracer { scene, counters: Counters::default(), counting, end: None, blockers: Vec::new() }
+        let (counters, behind) = (Counters::default(), Behind::default());
+        Tracer { scene, counters, counting, end: None, blockers: Vec::new(), behind }
     }
 
     /// Traces rays between the origin of `ray` and its point at parameter 1, which is on a surface with the normal `n`.

@@ -150,7 +150,7 @@ typed! {
         draine_alpha: f32,
         /// The diameter of droplets: 5 to 15 in clouds, 10 to 20 in fog, 50 in mist (µm); default `15`.
         droplet_diameter: f32,
-        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other, and eta is relative to air; 0 ignores overlaps; default `0`.
+        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other, and eta is relative to air; 0 ignores overlaps, but glass whose faces lie on those of other glass touches it, and counts as 1; default `0`.
         priority: i32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin: bool,
@@ -248,7 +248,7 @@ typed! {
         subsurface_scatter_anisotropy: f32,
         /// Thin-walled: light passes straight through without refraction; default `false`.
         thin_walled: bool,
-        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other, and eta is relative to air; 0 ignores overlaps; default `0`.
+        /// Nested dielectrics: where two overlap, the one with the higher priority fills the overlap, of equal ones the one inside the other, and eta is relative to air; 0 ignores overlaps, but glass whose faces lie on those of other glass touches it, and counts as 1; default `0`.
         priority: i32,
         /// Weight of the clear coat; default `0`.
         coat_weight: impl Into<crate::Value>,

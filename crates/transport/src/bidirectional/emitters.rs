@@ -5,7 +5,7 @@ use crate::emission::light_number;
 use crate::equiangular::Approach;
 use crate::mis::Partial;
 use crate::task::Task;
-use crate::techniques::{Contribution, PerSet, power_factor};
+use crate::techniques::{Contribution, NO_LIGHT, PerSet, power_factor};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::Surface;
 
@@ -23,7 +23,7 @@ pub(crate) struct EmitterHit {
 impl EmitterHit {
     /// What no other technique finds.
     fn only(radiance: Rgb, light: Option<usize>) -> EmitterHit {
-        let light = light.map_or(u16::MAX, light_number);
+        let light = light.map_or(NO_LIGHT, light_number);
         EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0, light }
     }
 

@@ -153,7 +153,10 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let Task { context, tracer, sample } = task;
         let walk = &mut self.walk;
         if walk.depth == 0 {
-            walk.media = Media::at_start(tracer, &walk.ray);
+            let lights = context.scene.lights();
+            let is_far = self.start.is_some_and(|start| lights[start.light].light.is_infinite());
+            let at_start = if is_far { Media::from_infinity } else { Media::at_start };
+            walk.media = at_start(tracer, &walk.ray);
         }
         if let Some(first) = first
             && self.is_equiangular

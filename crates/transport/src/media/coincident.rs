@@ -15,7 +15,7 @@ const PARALLEL: f32 = 0.9;
 
 /// Surfaces of other media where a ray hits the surface of one.
 pub(super) struct Coincident {
-    /// One for each object, nearest first.
+    /// One for each body, nearest first.
     pub(super) others: Vec<Surface>,
     /// The largest distance along the ray.
     pub(super) t: f32,
@@ -25,7 +25,8 @@ impl Coincident {
     /// Those that coincide with the closest surface along a ray; none unless it is that of a medium with a priority.
     pub(super) fn with(tracer: &mut Tracer, ray: &Ray, surface: &Surface) -> Coincident {
         let (scene, direction) = (tracer.scene, Vec3::from(ray.direction));
-        let is_nested = |object| scene.material_of(object).nested().is_some();
+        let is_nested = |object| scene.nested(object).is_some();
+        let is_one = |a, b| scene.body(a) == scene.body(b);
         let mut found = Coincident { others: Vec::new(), t: surface.t };
         if !scene.has_nested() || !is_nested(surface.object) {
             return found;
@@ -36,8 +37,8 @@ impl Coincident {
         let around = Ray { t_min: surface.t, t_max, exclude: surface.primitive, ..*ray };
         for hit in tracer.all_hits(&around) {
             let object = scene.geometry().object_of(&hit);
-            let is_known =
-                object == surface.object || found.others.iter().any(|other| other.object == object);
+            let is_known = is_one(object, surface.object)
+                || found.others.iter().any(|other| is_one(object, other.object));
             if is_known || !is_nested(object) || found.others.len() == MAX_COINCIDENT {
                 continue;
             }

@@ -37,24 +37,38 @@ impl Overlap {
         self.together = [NONE; MAX_COINCIDENT];
     }
 
-    /// False for the surface of a medium inside a [stronger](Scene::nesting) one.
+    /// False for the surface of a medium inside a [stronger](Scene::nesting) one, and for one between media of the same index that does
+    /// nothing else.
     #[inline]
     pub(super) fn separates(&self, scene: &Scene, surface: &Surface) -> bool {
         if !scene.has_nested() {
             return true;
         }
+        let Some(medium) = scene.nested(surface.object) else { return true };
         let material = scene.material(surface);
-        if material.nested().is_none() {
-            return true;
-        }
         if material.is_interface() {
             return false;
         }
         let separates = |media: &Overlap| {
-            let strongest = media.without(surface.object).strongest_object(scene);
+            let strongest = media.without(scene.body(surface.object)).strongest_object(scene);
             strongest == NONE || scene.nesting(surface.object) > scene.nesting(strongest)
         };
-        separates(self) && (self.together[0] == NONE || separates(&self.with_all_together()))
+        if !separates(self) || (self.together[0] != NONE && !separates(&self.with_all_together())) {
+            return false;
+        }
+        !material.only_refracts() || {
+            let outside = self.outside(scene, surface.object).unwrap_or(Nested::AIR);
+            !medium.bends_like(&outside)
+        }
+    }
+
+    /// The strongest medium on the outside of an object's surface that the path has reached.
+    #[inline]
+    pub(super) fn outside(&self, scene: &Scene, object: u32) -> Option<Nested> {
+        // On the far side of a surface that the path would leave through, those that coincide with it are crossed.
+        let body = scene.body(object);
+        let around = if self.contains(body) { self.with_all_together() } else { *self };
+        around.without(body).strongest(scene)
     }
 
     /// The object of the strongest medium.
@@ -68,7 +82,7 @@ impl Overlap {
     pub(super) fn strongest(&self, scene: &Scene) -> Option<Nested> {
         match self.strongest_object(scene) {
             NONE => None,
-            object => scene.material_of(object).nested(),
+            object => scene.nested(object),
         }
     }
 

@@ -111,6 +111,20 @@ fn every_pilot_of_a_large_film_sees_that_photons_have_less_noise_than_paths() {
     }
 }
 
+/// Of light on the bottom of a pool photons are best by far, so `auto` merges; where it may not, it takes the best of what does not.
+#[test]
+fn what_may_never_merge_does_not() {
+    let scene = built(&bilux_scene::generators::generate(&Spec::new("", "pool")).unwrap());
+    let merges = |techniques: &str| ["few", "photons", "vcm"].iter().any(|word| techniques.contains(word));
+    for (merge, may_merge) in [("auto", true), ("never", false)] {
+        let auto = integrators::build(&auto().with("merge", merge)).unwrap();
+        let film = RenderSettings::new(96, 96, 1);
+        let plan = auto.chooser().unwrap().plan(&scene, &*scene.cameras()[0].1, &film);
+        let chosen = plan.choice.candidates[plan.choice.chosen].techniques;
+        assert_eq!(merges(chosen), may_merge, "{merge}: {chosen}");
+    }
+}
+
 #[test]
 fn without_merging_it_has_the_same_mean_as_path() {
     let mut builder = still_life();

@@ -240,8 +240,8 @@ fn dispersed_light_in_water_is_the_same_from_both_ends() {
         assert!(p > UNLIKELY, "{case}: p = {p}");
     }
     // Where the two indices are equal, they are equal at every wavelength, and the prism is invisible.
-    let same = blocks(under_water(1.6, STRONG), integrator("path"), 0);
-    let p = difference(&same, &blocks(under_water(1.6, 0.0), integrator("path"), 400));
+    let same = blocks(under_water(1.6, STRONG), integrator("bdpt"), 0);
+    let p = difference(&same, &blocks(under_water(1.6, 0.0), integrator("bdpt"), 400));
     let q = difference(&path, &blocks(under_water(1.33, 0.0), integrator("path"), 500));
     assert!(p < UNLIKELY && q < UNLIKELY, "water that parts nothing passes: p = {p}, {q}");
 }

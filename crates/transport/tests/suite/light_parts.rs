@@ -176,6 +176,22 @@ fn direct_light_is_that_of_one_event() {
     }
 }
 
+/// The same of what paths meet by chance: with the random numbers of a picture of one event, bit for bit but for the steps of films.
+#[test]
+fn what_a_path_meets_by_chance_is_direct_after_one_event() {
+    let scene = built(&corner());
+    for sampling in ["scattering", "mis"] {
+        let integrator = Spec::new("", "path").with("sampling", sampling);
+        let settings = |max_depth| RenderSettings { max_depth, ..RenderSettings::new(24, 16, 16) };
+        let [direct, indirect] = parts(&scene, &integrator, &settings(6)).by_events.unwrap();
+        let [once, twice] = [1, 2]
+            .map(|depth| shoot(&scene, &*integrators::build(&integrator).unwrap(), &settings(depth)).film);
+        assert!(off(&once, &[direct]) < 1e-4, "{sampling}");
+        assert!(off(&twice, std::slice::from_ref(&once)) > 0.01, "{sampling}: two events bring light");
+        assert!(off(&twice, &[once, indirect]) > 1e-4, "{sampling}: more than two, too");
+    }
+}
+
 #[test]
 fn the_same_for_any_number_of_threads() {
     let scene = built(&mixed());
@@ -219,5 +235,36 @@ fn the_sky_is_in_its_own_group_wherever_it_is_seen() {
         assert!(others.is_black(), "{integrator:?}: {others:?}");
         // Nothing but sky is seen there.
         assert!((found.groups[1].pixel(0, 0).b - 0.5).abs() < 1e-4, "{integrator:?}");
+    }
+}
+
+/// What fire emits, L (1 - exp(-σ d)) before black, is in the last group, and no lamp's, whichever integrator finds it.
+#[test]
+fn fire_is_in_a_group_of_its_own() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 9.0), diffuse(0.0f32));
+    let (emission, absorption) = (Rgb::new(3.0, 2.0, 1.0), Rgb::new(0.4, 0.9, 1.7));
+    let fire = Spec::new("", "interface").with("absorption", absorption).with("medium_emission", emission);
+    let [min, max] = [Vec3::new(-3.0, 0.2, -3.0), Vec3::new(3.0, 1.0, 3.0)];
+    put(&mut builder, "fire", crate::common::media::boxed(min, max), fire);
+    for (x, intensity) in [(1.0, 5.0f32), (-2.0, 3.0)] {
+        let lamp = Spec::new("", "point").with("position", Vec3::new(x, 2.0, 1.0));
+        builder.add_light(lamp.with("intensity", intensity));
+    }
+    look(&mut builder, Vec3::new(0.0, 4.0, 0.01), Vec3::ZERO, 1.0);
+    let scene = built(&builder);
+    let wanted =
+        Rgb::from_array([0, 1, 2].map(|c| {
+            emission[c] * (1.0 - bilux_math::transcendental::exp(-absorption[c] * (max.y - min.y)))
+        }));
+    for name in ["path", "bdpt", "vcm", "auto"] {
+        let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(8, 8, 16) };
+        let groups = parts(&scene, &Spec::new("", name), &settings).groups;
+        for (group, film) in groups.iter().enumerate() {
+            let mean = film.to_rgb().into_iter().sum::<Rgb>() * (1.0 / 64.0);
+            let wanted = if group == 2 { wanted } else { Rgb::BLACK };
+            let off = (0..3).map(|c| (mean[c] - wanted[c]).abs()).fold(0.0, f32::max);
+            assert!(off < 0.03, "{name}, group {group}: {mean:?}, not {wanted:?}");
+        }
     }
 }

@@ -2,7 +2,9 @@
 
 mod absorption;
 mod auto;
+mod beams;
 mod both_ends;
+mod boundaries;
 mod checkpoint;
 mod classic_modes;
 mod common;

@@ -2,8 +2,9 @@
 //! how rarely each light is chosen.
 
 use crate::common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks, least_p};
-use crate::common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
+use crate::common::{along, ball, built, diffuse, floor, look, put, quad, shoot, sky};
 use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::icosphere;
 use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{LightChoice, PixelIntegrator, RenderSettings, integrators};
@@ -191,5 +192,40 @@ fn panels_and_sky_of_one_radiance_are_an_even_sky() {
         for (found, wanted) in mean.to_array().into_iter().zip([0.8, 0.5, 0.2]) {
             assert!((found / wanted - 1.0).abs() < 0.01, "{kind} {sampling}: {mean:?}");
         }
+    }
+}
+
+/// A panel of 2 cm that shines towards -x passes a wall at a distance of 1 m while the shutter is open, among five dim lamps behind the wall: in
+/// its first half it turns its back. The mean of ρ/π L A cos cos' / d² over that time, in closed form.
+#[test]
+fn a_lamp_that_moves_among_many_is_found_where_it_goes() {
+    let mut builder = SceneBuilder::default();
+    put(
+        &mut builder,
+        "wall",
+        quad(Vec3::new(0.0, -9.0, -9.0), Vec3::Y * 18.0, Vec3::Z * 18.0),
+        diffuse(0.8f32),
+    );
+    let shining = diffuse(0.0f32).with("emission", 5000.0f32).with("emission_sides", "front");
+    // Its front is where it is counter-clockwise: towards -x.
+    let panel = quad(Vec3::new(0.0, -0.01, -0.01), Vec3::Z * 0.02, Vec3::Y * 0.02);
+    put(&mut builder, "panel", panel, shining);
+    builder.objects[1].motion = along(Vec3::new(-2.0, 1.0, 0.0), Vec3::new(2.0, 1.0, 0.0));
+    for i in 0..5 {
+        let lamp = Spec::new("", "point").with("position", Vec3::new(-1.0 - i as f32, 1.0, 0.3 * i as f32));
+        builder.lights.push(lamp.with("intensity", 0.01f32));
+    }
+    let eye = Spec::new("", "orthographic").with("position", Vec3::X * 4.0).with("look_at", Vec3::ZERO);
+    builder.cameras = vec![CameraSpec::new(eye.with("height", 0.01f32))];
+    let scene = builder.build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    assert!(!LightChoice::new(&scene).takes_all());
+    // ∫ x²/(x² + 1)² dx/4 over 0..2, of a panel of 4 cm².
+    let integral = 0.5 * (bilux_math::transcendental::atan(2.0) - 0.4) / 4.0;
+    let wanted = 0.8 / std::f32::consts::PI * 5000.0 * 4e-4 * integral;
+    for name in ["path", "bdpt", "vcm"] {
+        let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(8, 8, 256) };
+        let film = shoot(&scene, &*crate::common::integrator(name), &settings).film;
+        let mean = film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 64.0;
+        assert!((mean / wanted - 1.0).abs() < 0.06, "{name}: {mean}, not {wanted}");
     }
 }

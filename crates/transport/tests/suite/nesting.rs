@@ -12,7 +12,7 @@ const OUTER: Rgb = Rgb { r: 0.3, g: 1.0, b: 0.05 };
 const INNER: Rgb = Rgb { r: 2.0, g: 0.1, b: 0.5 };
 
 /// A closed box about the middle of its heights, with sides of these lengths.
-fn block([x, z]: [f32; 2], low: f32, high: f32) -> Arc<Mesh> {
+pub(crate) fn block([x, z]: [f32; 2], low: f32, high: f32) -> Arc<Mesh> {
     let pick = |i: usize, [a, b]: [f32; 2]| if i == 0 { a } else { b };
     let corner = |i: usize| {
         let (x, z) = (pick(i & 1, [-x, x]) / 2.0, pick(i >> 2, [-z, z]) / 2.0);
@@ -23,13 +23,13 @@ fn block([x, z]: [f32; 2], low: f32, high: f32) -> Arc<Mesh> {
     Arc::new(Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() })
 }
 
-fn fog(absorption: Rgb, priority: Option<i64>) -> Spec {
+pub(crate) fn fog(absorption: Rgb, priority: Option<i64>) -> Spec {
     let spec = Spec::new("", "interface").with("absorption", absorption);
     priority.map_or(spec.clone(), |priority| spec.with("priority", Value::Integer(priority)))
 }
 
 /// A bright floor, seen from 6 m above.
-fn bright_floor() -> SceneBuilder {
+pub(crate) fn bright_floor() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(-1.0, 3.0), diffuse(0.0f32).with("emission", 1.0f32));
     look(&mut builder, Vec3::new(0.01, 6.0, 0.02), Vec3::new(0.01, 0.0, 0.02), 1.0);
@@ -39,23 +39,23 @@ fn bright_floor() -> SceneBuilder {
 }
 
 /// What is seen, and by whom.
-fn seen(builder: &SceneBuilder) -> Vec<(&'static str, Rgb)> {
+pub(crate) fn seen(builder: &SceneBuilder, spp: u32) -> Vec<(&'static str, Rgb)> {
     let scene = built(builder);
     let of = |name| {
-        let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(8, 8, 4) };
+        let settings = RenderSettings { max_depth: 64, ..RenderSettings::new(8, 8, spp) };
         let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
         (name, pixels.iter().fold(Rgb::BLACK, |sum, pixel| sum + *pixel) * (1.0 / 64.0))
     };
     ["path", "bdpt", "vcm"].map(of).into()
 }
 
-fn passed(lengths: &[(Rgb, f32)]) -> Rgb {
+pub(crate) fn passed(lengths: &[(Rgb, f32)]) -> Rgb {
     let depth = |channel: usize| lengths.iter().map(|(sigma, length)| sigma[channel] * length).sum::<f32>();
     Rgb::new(exp(-depth(0)), exp(-depth(1)), exp(-depth(2)))
 }
 
-fn assert_seen(case: &str, builder: &SceneBuilder, wanted: Rgb) {
-    for (name, found) in seen(builder) {
+pub(crate) fn assert_seen(case: &str, builder: &SceneBuilder, wanted: Rgb) {
+    for (name, found) in seen(builder, 4) {
         let is_near = |channel: usize| (found[channel] / wanted[channel] - 1.0).abs() < 2e-3;
         assert!((0..3).all(is_near), "{case}, {name}: {found:?}, not {wanted:?}");
     }
@@ -110,6 +110,25 @@ fn the_inner_of_two_placed_media_exists() {
     }
 }
 
+/// What touches the bounds of the other from inside lies within it, too: an upright prism whose edges are in the middle of a block's sides.
+#[test]
+fn what_fills_the_bounds_of_the_other_is_around_it() {
+    let corner = |i: usize, y: f32| Vec3::new([1.0, 0.0, -1.0, 0.0][i], y, [0.0, -1.0, 0.0, 1.0][i]);
+    let positions = (0..4).map(|i| corner(i, 0.7)).chain((0..4).map(|i| corner(i, 1.3))).collect();
+    let sides = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4 + (i + 1) % 4], [i, 4 + (i + 1) % 4, 4 + i]]);
+    let ends = [[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+    let prism = Arc::new(Mesh { positions, triangles: sides.chain(ends).collect(), ..Mesh::default() });
+    for is_outer_first in [true, false] {
+        let mut builder = bright_floor();
+        put(&mut builder, "block", block([2.0, 2.0], 0.7, 1.3), fog(OUTER, None));
+        put(&mut builder, "prism", prism.clone(), fog(INNER, None));
+        if !is_outer_first {
+            builder.objects.swap(1, 2);
+        }
+        assert_seen(&format!("outer first: {is_outer_first}"), &builder, passed(&[(INNER, 0.6)]));
+    }
+}
+
 /// Of glass of an index of 1.5, all reflections between its faces summed: (1 - r) / (1 + r) with r = 0.04.
 #[test]
 fn glass_in_fog_of_the_same_priority_is_there() {
@@ -126,7 +145,7 @@ fn glass_in_fog_of_the_same_priority_is_there() {
         parts.into_iter().for_each(|(name, mesh, material)| put(&mut builder, name, mesh, material));
         // Light that is reflected between the glass and nothing else finds no way back.
         let wanted = passed(&[(OUTER, 1.3)]) * (0.96 / 1.04);
-        for (name, found) in seen(&builder) {
+        for (name, found) in seen(&builder, 4) {
             let error = (found.r / wanted.r - 1.0).abs();
             assert!(error < 0.03, "fog first: {is_fog_first}, {name}: {found:?}, not {wanted:?}");
         }

@@ -46,6 +46,26 @@ fn means(what: &str, scene: &Scene, name: &str, spp: u32) -> [(f64, f64); 3] {
 /// Light that a surface of index 1.5 reflects at once.
 const SPECULAR: f64 = 0.04;
 
+/// The same where light goes nearly straight on at each event, so that it comes far: in a body that is deep and wide enough, which a box of a
+/// few metres is not.
+#[test]
+fn a_deep_body_that_scatters_forwards_has_its_colour() {
+    let colour = Rgb::new(0.8, 0.5, 0.2);
+    let mesh = cuboid(Aabb { min: Vec3::new(-60.0, -60.0, -60.0), max: Vec3::new(60.0, 0.0, 60.0) });
+    for ior in [1.5f32, 2.0] {
+        let material = body(colour, 0.005).with("subsurface_scatter_anisotropy", 0.95f32);
+        let scene = from_above(Arc::new(mesh.clone()), material.with("specular_ior", ior), Vec3::ZERO, 0.5);
+        let amplitude = (f64::from(ior) - 1.0) / (f64::from(ior) + 1.0);
+        let specular = amplitude * amplitude;
+        let found = means(&format!("forwards, index {ior}"), &scene, "path", effort(8, 100));
+        for (c, (mean, error)) in found.into_iter().enumerate() {
+            let wanted = specular + (1.0 - specular) * f64::from(colour[c]);
+            let off = (mean - wanted).abs();
+            assert!(off < 3.5 * error + 3e-3, "{ior}, channel {c}: {mean} ± {error}, not {wanted}");
+        }
+    }
+}
+
 /// By reciprocity, a body seen straight on under an even sky is as bright as it reflects light that comes straight on.
 /// [OpenPBR 1.1]
 #[test]

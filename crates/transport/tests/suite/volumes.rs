@@ -5,7 +5,7 @@ use crate::common::statistics::{
     UNLIKELY, agreement, assert_like_path, assert_like_path_in_turn, assert_unlike_path, assert_vanishes,
     blocks, recorded_means,
 };
-use crate::common::{built, diffuse, effort, floor, look, put, sky, without_mirrors};
+use crate::common::{along, built, diffuse, effort, floor, look, put, shoot, sky, without_mirrors};
 use bilux_math::transcendental::exp_f64;
 use bilux_math::{Quat, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -262,4 +262,38 @@ fn light_tracing_says_that_it_finds_no_fire() {
     let settings = RenderSettings::new(8, 8, 1);
     let found = render(&scene, &*scene.cameras()[0].1, &*integrator, &settings, &Silent);
     assert!(matches!(found, Err(RenderError::Glow)));
+}
+
+/// Smoke of three thicknesses side by side that moves by 2 m along x while the shutter is open, before a bright floor: the mean over that time
+/// of what it lets pass, by its voxels, between whose middles the density is linear.
+#[test]
+fn a_grid_moves_with_its_object_while_the_shutter_is_open() {
+    const VOXELS: [f32; 3] = [0.2, 2.0, 0.7];
+    let [min, max] = [Vec3::new(-3.0, 0.2, -4.0), Vec3::new(3.0, 1.0, 4.0)];
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 9.0), diffuse(0.0f32).with("emission", 1.0f32));
+    let grid = grid_in(min, max, [3, 1, 1], |[x, _, _]| VOXELS[x]);
+    put(&mut builder, "smoke", boxed(min, max), smoke(1.3f32, 0.0f32, grid));
+    builder.objects[1].motion = along(Vec3::X * -1.0, Vec3::X * 1.0);
+    let camera = Spec::new("", "orthographic").with("position", Vec3::Y * 3.0).with("look_at", Vec3::ZERO);
+    let camera = camera.with("up", Vec3::Z).with("height", 0.02f32);
+    builder.cameras = vec![CameraSpec { spec: camera, keyframes: Vec::new() }];
+    let density = |x: f64| {
+        // In voxels of 2 m, from the middle of the first.
+        let at = ((x + 3.0) / 2.0 - 0.5).clamp(0.0, 2.0);
+        let (low, part) = (at.floor().min(1.0), at - at.floor().min(1.0));
+        f64::from(VOXELS[low as usize]) * (1.0 - part) + f64::from(VOXELS[low as usize + 1]) * part
+    };
+    let [opens, closes] = [0.1, 0.9];
+    let passed = |time: f64| exp_f64(-1.3 * 0.8 * density(-(2.0 * time - 1.0)));
+    let wanted =
+        (0..1000).map(|i| passed(opens + (closes - opens) * (f64::from(i) + 0.5) / 1000.0)).sum::<f64>()
+            / 1000.0;
+    let scene = builder.build(&Default::default(), [opens as f32, closes as f32], 1.0).unwrap();
+    for name in ["path", "bdpt"] {
+        let settings = RenderSettings { max_depth: 4, ..RenderSettings::new(16, 16, 64) };
+        let film = shoot(&scene, &*integrators::build(&Spec::new("", name)).unwrap(), &settings).film;
+        let mean = film.to_rgb().iter().map(|pixel| f64::from(pixel.g)).sum::<f64>() / 256.0;
+        assert!((mean / wanted - 1.0).abs() < 0.015, "{name}: {mean}, not {wanted}");
+    }
 }

@@ -9,8 +9,8 @@ use bilux_math::transcendental::{cos, sin_cos};
 /// The maximum number of children.
 pub(super) const WIDTH: usize = 4;
 
-/// How often one of the lights of a last branch is chosen without looking at their importance, since the most important one may be
-/// hidden: over how often one is chosen by it.
+/// How often a child is chosen without looking at importance, since the most important one may be hidden: over how often one is chosen by
+/// it. That is so in a last branch, and where some lights are far stronger than others.
 const CHOSEN_ALIKE: f32 = 0.2;
 
 /// From here on sums of importances may overflow.
@@ -55,7 +55,7 @@ impl Branch {
         Branch { above, ..Branch::default() }
     }
 
-    /// Its `count` children are all lights: each is chosen now and then, however unimportant.
+    /// Each of its `count` children is chosen now and then, however unimportant.
     pub(super) fn choose_alike(&mut self, count: usize) {
         self.alike = CHOSEN_ALIKE / count as f32;
     }

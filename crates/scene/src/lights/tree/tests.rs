@@ -95,6 +95,31 @@ fn it_has_a_fraction_of_the_noise_of_a_choice_by_power() {
     assert!(by_power > 4.0 * own, "{own}, by power {by_power}");
 }
 
+/// Of a lamp behind a wall nothing arrives, however strong it is: the others are found as before, but for a bounded factor.
+#[test]
+fn a_strong_lamp_that_is_hidden_leaves_the_others_their_light() {
+    for count in [12, 200, 3000] {
+        let visible = lamps(count);
+        let places: Vec<Vec3> = (0..30).map(|i| point(i + 5000, 5.0)).collect();
+        let mean_noise = |hidden: &[f32]| {
+            let mut all = visible.clone();
+            all.extend(hidden.iter().enumerate().map(|(i, power)| {
+                (LightExtent::all_around(Aabb::of_points([point(i as u64 + 31, 4.0)])), *power)
+            }));
+            let tree = LightTree::new(&all);
+            let of = |place: &Vec3| noise(&visible, *place, |light| tree.probability(*place, light));
+            places.iter().map(of).sum::<f32>() / places.len() as f32
+        };
+        let alone = mean_noise(&[]);
+        for (hidden, most) in
+            [(&[1e2][..], 70.0), (&[1e4], 70.0), (&[1e6], 70.0), (&[1e8], 70.0), (&[1e4, 1e8], 700.0)]
+        {
+            let found = mean_noise(hidden);
+            assert!(found < most * alone, "{count} lamps with {hidden:?}: {found}, alone {alone}");
+        }
+    }
+}
+
 #[test]
 fn lights_in_one_place_and_in_a_row_make_a_tree_too() {
     let at = |p: Vec3| (LightExtent::all_around(Aabb::of_points([p])), 1.0);

@@ -101,6 +101,17 @@ impl Maps {
         Ok(maps)
     }
 
+    /// True for a clear surface that neither takes a share of light nor adds one, but for what its index reflects and bends.
+    pub(super) fn only_refract(&self) -> bool {
+        let is = |map: &NumberMap, number: f32| map.texture.is_none() && map.number == number;
+        let is_white = |map: &ColourMap| map.texture.is_none() && map.colour == Rgb::WHITE;
+        let others = [&self.base_metalness, &self.coat_weight, &self.fuzz_weight, &self.film_weight];
+        is(&self.transmission_weight, 1.0)
+            && self.specular_ior.texture.is_none()
+            && others.iter().all(|weight| is(weight, 0.0))
+            && (!self.tints_surface || is_white(&self.transmission_color))
+    }
+
     /// The textures, in the order in which points take their colours.
     fn look_ups(&self) -> (LookUps, LookUps) {
         let (mut base, mut rest) = (LookUps::default(), LookUps::default());

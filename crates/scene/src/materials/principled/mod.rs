@@ -9,6 +9,7 @@ mod maps;
 mod point;
 
 use super::dielectric::PRIORITY;
+use super::opacity::ABSENT;
 use super::{
     COAT_NORMAL, COAT_NORMAL_SCALE, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry,
     NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, VISIBLE_SIDES, reflectance,
@@ -18,6 +19,7 @@ use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::media::Medium;
 use crate::surface::Surface;
+use crate::texture::NumberMap;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::atan;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
@@ -249,6 +251,15 @@ impl Principled {
         bsdf
     }
 
+    fn body(&self) -> Nested {
+        let (eta, dispersion) = (self.inside.ior, self.maps.dispersion);
+        Nested { priority: self.priority.max(1), eta, dispersion }
+    }
+
+    fn is_air(&self) -> bool {
+        self.only_refracts() && Nested::AIR.bends_like(&self.body())
+    }
+
     /// The coat's normal at a point.
     #[inline]
     fn coat_normal(&self, surface: &Surface) -> Vec3 {
@@ -337,6 +348,10 @@ impl Material for Principled {
         }
     }
 
+    fn opacity(&self) -> Option<&NumberMap> {
+        (self.maps.thin && self.is_air()).then_some(&ABSENT)
+    }
+
     fn needs_tangents(&self) -> bool {
         is_there(&self.maps.anisotropy) || self.maps.coat_normals.is_some()
     }
@@ -352,11 +367,15 @@ impl Material for Principled {
     }
 
     fn nested(&self) -> Option<Nested> {
-        (self.inside.medium.is_some() && self.priority > 0).then_some(Nested {
-            priority: self.priority,
-            eta: self.inside.ior,
-            dispersion: self.maps.dispersion,
-        })
+        self.in_contact().filter(|_| self.priority > 0 || self.is_air())
+    }
+
+    fn in_contact(&self) -> Option<Nested> {
+        self.inside.medium.map(|_| self.body())
+    }
+
+    fn only_refracts(&self) -> bool {
+        self.maps.only_refract()
     }
 
     fn medium(&self) -> Option<Medium<'_>> {

@@ -75,7 +75,7 @@ mod tests {
     fn half_spaces_of_an_albedo_have_its_colour() {
         for colour in [1e-6, 0.01, 0.2, 0.5, 0.8, 0.97, 0.999] {
             for (anisotropy, eta) in
-                [(0.0, 1.4), (0.8, 1.4), (-0.5, 1.0), (0.9, 1.0), (0.3, 2.4), (0.0, 1.01)]
+                [(0.0, 1.4), (0.8, 1.4), (-0.5, 1.0), (0.9, 1.0), (0.3, 2.4), (0.0, 1.01), (0.9, 2.0)]
             {
                 let absorbed = absorbed_fraction(colour, anisotropy, eta);
                 let light = Slab { absorbed, thickness: f64::INFINITY, anisotropy, eta }.light(24);

@@ -8,17 +8,18 @@
 //! If the weight of every technique is its share of the sum over all techniques, wherever it finds a path, then the
 //! weights of one path add up to 1.
 
+mod banks;
 mod path;
 mod samples;
 
-use self::path::{Flaw, Path};
+use self::path::{Flaw, Fog, Path};
 use crate::failures::SamplePlace;
 use crate::integrators;
 use crate::settings::RenderSettings;
 use crate::shapes;
 use crate::task::Task;
 use crate::techniques::{Contribution, PerSet, TechniqueCounts};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Aabb, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Scene, SceneBuilder, Spec, Texture, Tracer, Value};
 use std::f32::consts::FRAC_PI_4;
@@ -34,6 +35,8 @@ struct Verdict {
     techniques: TechniqueCounts,
     flaw: Flaw,
     fog: Option<Rgb>,
+    /// Where it is; none if it fills the scene.
+    parts: &'static [Aabb],
     compared: usize,
     wrong: usize,
     worst: f64,
@@ -43,9 +46,9 @@ struct Verdict {
 }
 
 impl Verdict {
-    /// The extinction coefficient of the fog in the channel of a sample.
-    fn fog_of(&self, task: &Task) -> Option<f32> {
-        self.fog.map(|fog| fog[usize::from(task.sample.channel)])
+    /// The fog in the channel of a sample.
+    fn fog_of(&self, task: &Task) -> Option<Fog> {
+        self.fog.map(|fog| Fog { extinction: fog[usize::from(task.sample.channel)], parts: self.parts })
     }
 
     fn look(&mut self, task: &Task, found: &Contribution, key: (bool, usize), path: &Path) {
@@ -79,12 +82,31 @@ const SAMPLES: u32 = 16;
 
 /// Checks every path of some samples, by every technique.
 fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw, fog: Option<Rgb>) -> Verdict {
+    verdict_in(scene, techniques, flaw, fog, &[])
+}
+
+/// The same where fog is in these parts of the scene alone.
+fn verdict_in(
+    scene: &Scene,
+    techniques: &TechniqueCounts,
+    flaw: Flaw,
+    fog: Option<Rgb>,
+    parts: &'static [Aabb],
+) -> Verdict {
     let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
     let settings = RenderSettings::new(24, 24, SAMPLES);
     let eye = integrator.camera_rays(scene, &*scene.cameras()[0].1, &settings);
     let mut tracer = Tracer::new(scene, false);
-    let mut verdict =
-        Verdict { techniques: *techniques, flaw, fog, compared: 0, wrong: 0, worst: 0.0, telling: [0; 7] };
+    let mut verdict = Verdict {
+        techniques: *techniques,
+        flaw,
+        fog,
+        parts,
+        compared: 0,
+        wrong: 0,
+        worst: 0.0,
+        telling: [0; 7],
+    };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
         let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };

@@ -6,7 +6,7 @@ use crate::limits::MAX_CONNECTED_ROW;
 use crate::task::Task;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::transcendental::{atan2_f64, exp_f64};
-use bilux_math::{Vec2, Vec3};
+use bilux_math::{Aabb, Vec2, Vec3};
 use bilux_scene::TransportMode;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -39,8 +39,34 @@ pub(super) struct Path {
     pub(super) nodes: Vec<PathVertex>,
     /// The density of camera rays at the last vertex, over the area perpendicular to them.
     pub(super) camera_density: f32,
-    /// The extinction coefficient, in the sample's channel, of the fog that fills the scene.
-    pub(super) fog: Option<f32>,
+    /// The fog that it goes through.
+    pub(super) fog: Option<Fog>,
+}
+
+/// Fog that is the same wherever it is.
+#[derive(Clone, Copy)]
+pub(super) struct Fog {
+    /// The extinction coefficient, in the sample's channel.
+    pub(super) extinction: f32,
+    /// Where it is; none if it fills the scene.
+    pub(super) parts: &'static [Aabb],
+}
+
+impl Fog {
+    /// How much of the line between two points is in it, in metres.
+    fn between(&self, a: Vec3, b: Vec3) -> f64 {
+        let [a, b] = [a, b].map(Vec3::as_dvec3);
+        let length = a.distance(b);
+        if self.parts.is_empty() {
+            return length;
+        }
+        let within = |part: &Aabb| {
+            let [low, high] = [part.min, part.max].map(|corner| (corner.as_dvec3() - a) / (b - a));
+            let (begin, end) = (low.min(high).max_element().max(0.0), low.max(high).min_element().min(1.0));
+            (end - begin).max(0.0)
+        };
+        self.parts.iter().map(within).sum::<f64>() * length
+    }
 }
 
 /// A factor that is left out of the densities, or a mistake in them.
@@ -163,7 +189,8 @@ impl Path {
         let apart = apart2.sqrt();
         let range = FRAC_PI_2 + atan2_f64(nearest, apart);
         let density = apart / (apart2 + (t - nearest) * (t - nearest)) / range;
-        let walked = self.passing(first, t as f32, Flaw::None);
+        let begin = (p + to_camera * t).as_vec3();
+        let walked = self.passing(first, begin, first.from_camera.0, Flaw::None);
         match flaw {
             Flaw::Points => None,
             Flaw::WalkedPoints => Some(1.0),
@@ -188,8 +215,10 @@ impl Path {
         let lengths = self.nodes.windows(2).map(|pair| 4.0 / edge(&pair[0], &pair[1], Flaw::None).sqrt());
         // Each way along an edge has exponentials of rounded exponents, two sums of three channels and a ratio.
         let edges = if self.fog.is_some() { self.nodes.len() + 1 } else { 0 };
+        // Where it begins and ends is rounded, too, and on a slant more.
+        let per_edge = if self.fog.is_some_and(|fog| !fog.parts.is_empty()) { 400.0 } else { 2.0 * 8.0 };
         let roundings =
-            8.0 * self.nodes.len() as f64 + 2.0 * 8.0 * edges as f64 + cosines.chain(lengths).sum::<f64>();
+            8.0 * self.nodes.len() as f64 + per_edge * edges as f64 + cosines.chain(lengths).sum::<f64>();
         roundings / f64::from(1 << 24)
     }
 
@@ -220,15 +249,15 @@ impl Path {
             * f64::from(choice)
             * self.arriving(first, first.from_light.1, first.to_light, flaw);
         if let Some(p) = self.start.p {
-            product *= self.passing(first, p.distance(first.from_light.0), flaw)
-                / distance2(p, first.from_light.0, flaw);
+            product *=
+                self.passing(first, p, first.from_light.0, flaw) / distance2(p, first.from_light.0, flaw);
         }
         let mut all = vec![1.0, picked, product];
         for pair in self.nodes.windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
             product *= a.density(a.to_light, a.to_camera, TransportMode::Importance)
                 * self.arriving(b, b.from_light.1, b.to_light, flaw)
-                * self.passing(b, a.from_camera.0.distance(b.from_light.0), flaw)
+                * self.passing(b, a.from_camera.0, b.from_light.0, flaw)
                 / edge(a, b, flaw);
             all.push(product);
         }
@@ -243,7 +272,7 @@ impl Path {
         if self.fog.is_some() {
             let p = last.from_camera.0;
             let seen = task.context.camera.connect(p, Vec2::ZERO, last.at.time()).unwrap();
-            product *= self.passing(last, seen.p.distance(p), flaw);
+            product *= self.passing(last, seen.p, p, flaw);
         }
         let mut all = vec![1.0, 1.0, product];
         let mode = if flaw == Flaw::Reverse { TransportMode::Importance } else { TransportMode::Radiance };
@@ -258,7 +287,7 @@ impl Path {
         for pair in self.nodes.windows(2).rev() {
             let [b, a] = [&pair[0], &pair[1]];
             product *= density(a) * self.arriving(b, b.from_camera.1, b.to_camera, flaw) / edge(b, a, flaw);
-            product *= self.passing(b, b.from_camera.0.distance(a.from_light.0), flaw);
+            product *= self.passing(b, a.from_light.0, b.from_camera.0, flaw);
             all.push(product);
         }
         let light = &task.context.scene.lights()[self.start.index].light;
@@ -267,7 +296,7 @@ impl Path {
             _ if light.is_delta() => 0.0,
             None => density(first),
             Some(p) => {
-                let survival = self.survival(p.distance(first.from_light.0), flaw);
+                let survival = self.survival(p, first.from_light.0, flaw);
                 density(first) * f64::from(self.start.cos) * survival / distance2(p, first.from_light.0, flaw)
             }
         };
@@ -282,12 +311,12 @@ impl Path {
         if node.at.is_in_medium() { 1.0 } else { cosine(n, direction, flaw) }
     }
 
-    /// The probability of coming to a surface over this distance through the fog, or the density per metre of an event there.
-    fn passing(&self, node: &PathVertex, distance: f32, flaw: Flaw) -> f64 {
-        let Some(fog) = self.fog.filter(|_| node.at.is_in_medium()) else {
-            return self.survival(distance, flaw);
-        };
-        f64::from(fog) * exp_f64(-f64::from(fog) * f64::from(distance))
+    /// The probability of coming to a surface from one point to the other through the fog, or the density per metre of an event there.
+    fn passing(&self, node: &PathVertex, from: Vec3, to: Vec3, flaw: Flaw) -> f64 {
+        match self.fog.filter(|_| node.at.is_in_medium()) {
+            Some(fog) => f64::from(fog.extinction) * self.survival(from, to, Flaw::None),
+            None => self.survival(from, to, flaw),
+        }
     }
 
     /// How often two beams of one metre's width cross at a point of the fog, over the densities of both walks having events there.
@@ -296,7 +325,8 @@ impl Path {
             Flaw::Sine => 1.0,
             _ => node.to_light.as_dvec3().cross(node.to_camera.as_dvec3()).length(),
         };
-        let fog = if flaw == Flaw::Extinction { 1.0 } else { f64::from(self.fog.unwrap_or(1.0)) };
+        let extinction = || self.fog.map_or(1.0, |fog| f64::from(fog.extinction));
+        let fog = if flaw == Flaw::Extinction { 1.0 } else { extinction() };
         sine / (fog * fog)
     }
 
@@ -313,9 +343,9 @@ impl Path {
         Some(4.0 / 3.0 * PI * radius * radius * radius)
     }
 
-    fn survival(&self, distance: f32, flaw: Flaw) -> f64 {
+    fn survival(&self, from: Vec3, to: Vec3, flaw: Flaw) -> f64 {
         let Some(fog) = self.fog.filter(|_| flaw != Flaw::Survival) else { return 1.0 };
-        exp_f64(-f64::from(fog) * f64::from(distance))
+        exp_f64(-f64::from(fog.extinction) * fog.between(from, to))
     }
 }
 

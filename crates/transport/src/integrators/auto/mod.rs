@@ -138,8 +138,9 @@ impl Chooser for Auto {
         };
         let round = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
-        // A point on each of few lights is always sampled; of many, photons find the nearest by themselves.
-        merging.techniques.direct = !lights.takes_all();
+        // A point on each of few lights is always sampled; of many, photons find the nearest by themselves, and what beams light in fog light
+        // subpaths find best.
+        merging.techniques.direct = !lights.takes_all() || lights.has_beams();
         if merging.radius == 0.0 {
             let pixel = pilot::pixel_radius(&round(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
@@ -187,7 +188,10 @@ impl Chooser for Auto {
                 nanoseconds: seen.steps.nanoseconds(set, i + 1),
             })
             .collect();
-        let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&candidates)), candidates };
+        let choice = Choice {
+            chosen: self.given.unwrap_or_else(|| self.choose(&candidates, lights.has_beams())),
+            candidates,
+        };
         Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters }
     }
 }
@@ -205,11 +209,14 @@ impl Auto {
         }
     }
 
-    fn choose(&self, candidates: &[Candidate]) -> usize {
+    /// Beams through fog are photons close to each other: a few pilot samples do not see how noisy they are, so merging is chosen only where
+    /// nothing else finds the light.
+    fn choose(&self, candidates: &[Candidate], has_beams: bool) -> usize {
         let mut best = 0;
         for (i, set) in SETS.iter().enumerate().skip(1) {
             let (candidate, held) = (&candidates[i], &candidates[best]);
-            let is_better = candidate.time_to_error() * WORTH_MORE < held.time_to_error();
+            let is_seen = !has_beams || !set.merges();
+            let is_better = is_seen && candidate.time_to_error() * WORTH_MORE < held.time_to_error();
             let finds_more = held.misses_more_than(candidate);
             let samples_all_light = !candidate.misses_more_than(held);
             if (self.may_merge || !set.merges()) && (finds_more || (is_better && samples_all_light)) {

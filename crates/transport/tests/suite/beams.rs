@@ -1,0 +1,73 @@
+//! Lamps that shine into narrow cones through fog: their light is found where it is, as often as the light of other lamps.
+
+use crate::common::media::boxed;
+use crate::common::{integrator, put, shoot};
+use bilux_math::Vec3;
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{Goniometer, IntensityDistribution, Scene, SceneBuilder, Spec};
+use bilux_transport::RenderSettings;
+use std::sync::Arc;
+
+/// Fog around a lamp, seen from the side.
+fn fog_around(lamp: Spec) -> Scene {
+    let mut builder = SceneBuilder::default();
+    let fog = Spec::new("", "interface").with("scattering", 0.1f32).with("absorption", 0.05f32);
+    put(&mut builder, "fog", boxed(Vec3::new(-6.0, -3.0, -5.0), Vec3::new(6.0, 3.0, 4.0)), fog);
+    builder.add_light(lamp.with("position", Vec3::new(-3.0, 0.2, 0.0)));
+    let eye = Spec::new("eye", "orthographic").with("position", Vec3::Z * 5.0).with("look_at", Vec3::ZERO);
+    builder.cameras = vec![CameraSpec::new(eye.with("height", 1.0f32))];
+    builder.build(&Default::default(), [0.0; 2], 4.0).unwrap()
+}
+
+fn spot(angle: f32) -> Spec {
+    let spot = Spec::new("", "spot").with("look_at", Vec3::new(2.0, 0.0, 0.1)).with("intensity", 100.0f32);
+    spot.with("angle", angle).with("inner_angle", 0.8 * angle)
+}
+
+/// A lamp whose measured intensity falls to a hundredth within ten degrees, and to nothing behind.
+fn measured() -> Spec {
+    let (polar, candela) = (vec![0.0, 2.5, 5.0, 10.0, 30.0, 90.0], vec![900.0, 700.0, 200.0, 9.0, 1.0, 0.0]);
+    let table = IntensityDistribution::new(
+        "beam",
+        Goniometer::C,
+        vec![0.0, 360.0],
+        polar,
+        [&candela[..], &candela].concat(),
+    );
+    Spec::new("", "luminaire")
+        .with("distribution", Arc::new(table.unwrap()))
+        .with("direction", Vec3::new(1.0, 0.0, 0.1))
+        .with("flux", 9.0f32)
+}
+
+/// The mean of a picture, and its noise: the root of the mean square of half the difference of two of its kind, over the mean.
+fn seen(scene: &Scene, name: &str, spp: u32) -> [f64; 2] {
+    let picture = |seed| {
+        let settings = RenderSettings { seed, max_depth: 8, ..RenderSettings::new(64, 16, spp) };
+        shoot(scene, &*integrator(name), &settings).film.to_rgb()
+    };
+    let [a, b] = [1, 2].map(picture);
+    let mean = a.iter().chain(&b).map(|pixel| f64::from(pixel.g)).sum::<f64>() / (2 * a.len()) as f64;
+    let square = |difference: f64| difference * difference;
+    let squares = a.iter().zip(&b).map(|(a, b)| square(f64::from(a.g - b.g))).sum::<f64>();
+    [mean, (0.5 * squares / a.len() as f64).sqrt() / mean]
+}
+
+/// `light` needs no luck to find beams: the others have its mean, and no more than a few times its noise.
+#[test]
+fn beams_in_fog_are_found_by_all() {
+    for (case, lamp, most) in
+        [("6 degrees", spot(6.0), 2.5), ("half a degree", spot(0.5), 4.0), ("measured", measured(), 2.5)]
+    {
+        let scene = fog_around(lamp);
+        let [wanted, noise] = seen(&scene, "light", 64);
+        for name in ["bdpt", "vcm", "auto"] {
+            let [mean, found] = seen(&scene, name, 16);
+            assert!((mean / wanted - 1.0).abs() < 0.05, "{case}, {name}: {mean}, not {wanted}");
+            assert!(found < most * 2.0 * noise, "{case}, {name}: noise {found}, of light {noise}");
+        }
+        // By itself a camera path finds all that is lit at once.
+        let [mean, _] = seen(&scene, "path", 256);
+        assert!((mean / wanted - 1.0).abs() < 0.1, "{case}, path: {mean}, not {wanted}");
+    }
+}
