@@ -17,6 +17,8 @@ pub const MAX_GROUPS: usize = 64;
 
 /// The group of what shines without being a light of the scene.
 const OTHERS: &str = "others";
+/// The same where fire and other media shine.
+const MEDIA: &str = "media";
 
 /// Layers besides those that rendering itself gives.
 pub struct ExtraLayers(Picture);
@@ -266,9 +268,12 @@ impl LightGroups {
         let shines =
             |i: usize| scene.geometry().objects()[i].gives_light && scene.light_index_of(i as u32).is_none();
         // The last group gets what belongs to no light.
-        if (0..scene.geometry().objects().len()).any(shines) || names.is_empty() {
-            names.push(OTHERS.to_owned());
-        }
+        let others = match (0..scene.geometry().objects().len()).any(shines) || names.is_empty() {
+            _ if scene.has_glowing_media() => Some(MEDIA),
+            true => Some(OTHERS),
+            false => None,
+        };
+        names.extend(others.map(str::to_owned));
         LightGroups { of_lights, names }
     }
 

@@ -2,12 +2,13 @@
 
 use crate::Error;
 use bilux_formats::{FormatError, ReadOptions};
+use bilux_math::{DMat3, DVec3};
 use bilux_pictures::Limits;
 use bilux_scene::cameras::CameraSpec;
 pub use bilux_scene::presets::{
     Ground, PRESETS, PresetEntry, Studio, add_fog, add_missing, apply, frame, set_upright, shadow_catcher,
 };
-use bilux_scene::{SceneBuilder, Span, Spec, Value, Warning};
+use bilux_scene::{Parameters, SceneBuilder, Span, Spec, Value, Warning};
 use std::path::Path;
 
 /// Returns a copy of the scene with a camera and lights added where they are missing, and with whatever the user asks
@@ -87,7 +88,7 @@ fn replace_surroundings(scene: &mut SceneBuilder, light: Spec) {
 }
 
 /// Replaces the cameras of a scene by those of a file ([`bilux_formats::read_cameras`]). If it does not say where they are, they
-/// stand where the scene's first camera does, or that of the studio.
+/// stand where the scene's first camera does, or that of the studio: all, or the first, if it says how they stand to that.
 ///
 /// # Errors
 /// If the file cannot be read, or has no cameras.
@@ -99,6 +100,11 @@ pub fn take_cameras(scene: &mut SceneBuilder, file: &Path, options: &ReadOptions
     if !read.are_placed {
         let standing = completed(scene, &Studio::default());
         let first = standing.cameras.first().map(|camera| &camera.spec.parameters);
+        if let Some(first) = first.filter(|_| read.are_relative) {
+            cameras.iter_mut().for_each(|camera| stand_relative_to(first, &mut camera.spec.parameters));
+            scene.cameras = cameras;
+            return Ok(());
+        }
         for key in ["position", "look_at", "up"] {
             let Some((value, at)) = first.and_then(|first| first.find(key)) else { continue };
             cameras
@@ -108,6 +114,30 @@ pub fn take_cameras(scene: &mut SceneBuilder, file: &Path, options: &ReadOptions
     }
     scene.cameras = cameras;
     Ok(())
+}
+
+/// Moves a camera from the frame of another into the world in which that one is.
+fn stand_relative_to(other: &Parameters, own: &mut Parameters) {
+    let number = |value: &Value| match value {
+        Value::Number(number) => *number,
+        Value::Integer(number) => *number as f64,
+        _ => 0.0,
+    };
+    let point = |of: &Parameters, key: &str, default: DVec3| match of.find(key) {
+        Some((Value::List(numbers), _)) => match &numbers.iter().map(number).collect::<Vec<f64>>()[..] {
+            &[x, y, z] => DVec3::new(x, y, z),
+            _ => default,
+        },
+        _ => default,
+    };
+    let position = point(other, "position", DVec3::ZERO);
+    let back = (position - point(other, "look_at", DVec3::NEG_Z)).normalize_or(DVec3::Z);
+    let right = point(other, "up", DVec3::Y).cross(back).normalize_or(back.any_orthonormal_vector());
+    let axes = DMat3::from_cols(right, back.cross(right), back);
+    for (key, origin) in [("position", position), ("look_at", position), ("up", DVec3::ZERO)] {
+        let moved = origin + axes * point(own, key, DVec3::ZERO);
+        own.set(key, Value::List(moved.to_array().map(Value::Number).to_vec()));
+    }
 }
 
 /// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.

@@ -41,7 +41,7 @@ settings! {
     time: f32,
     /// How long the shutter is open (s); default `0`.
     shutter: f32,
-    /// How much later a rolling shutter exposes the last row (s); default `0`.
+    /// How much later a rolling shutter exposes the last row than the first (s); default `0`.
     readout: f32,
     /// Frames per second, for --frames (1/s); default `24`.
     fps: f32,

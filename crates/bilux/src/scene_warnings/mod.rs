@@ -86,12 +86,20 @@ pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -
 /// The kinds of light that are visible themselves.
 const SEEN_LIGHTS: [&str; 4] = ["rect", "sphere", "environment", "sky"];
 
+/// The kinds of cameras that measure the light that arrives.
+const METERS: [&str; 1] = ["irradiance"];
+
 /// Refuses a scene with nothing to see.
 pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
     let is_seen = |light: &Spec| SEEN_LIGHTS.contains(&light.kind.as_str());
     let is_full = |mesh: &Mesh| !mesh.triangles.is_empty() || mesh.stroke_count() > 0;
     let has_shapes = scene.objects.iter().any(|object| is_full(&object.mesh));
     if scene.objects.iter().any(|object| shows_something(&object.mesh)) {
+        return Ok(());
+    }
+    // A meter needs no surface to see.
+    let has_meter = scene.cameras.iter().any(|camera| METERS.contains(&camera.spec.kind.as_str()));
+    if has_meter && !has_shapes && !scene.lights.is_empty() {
         return Ok(());
     }
     let message = match (has_shapes, scene.lights.iter().any(is_seen)) {

@@ -19,8 +19,8 @@ pub use background::Background;
 use background::background;
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value};
-use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+use bilux_transport::{MAX_DEPTH, Stop};
 use names::{find_integrator, tone_curve};
 pub(crate) use shutter::shutter_of;
 use size::calibrated_size;
@@ -71,7 +71,7 @@ pub const RENDER: Entry = Entry {
             "max_depth",
             "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only",
             0,
-            10_000,
+            MAX_DEPTH as i64,
             "16",
         ),
         integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0"),
@@ -107,7 +107,14 @@ pub const RENDER: Entry = Entry {
         ),
         number("time", "the time that the picture shows", "s", -1e9, 1e9, "0"),
         number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0"),
-        number("readout", "how much later a rolling shutter exposes the last row", "s", 0.0, 1e9, "0"),
+        number(
+            "readout",
+            "how much later a rolling shutter exposes the last row than the first",
+            "s",
+            0.0,
+            1e9,
+            "0",
+        ),
         number("fps", "frames per second, for --frames", "1/s", 1e-6, 1e6, "24"),
         text("filter", "the pixel reconstruction filter", "box"),
         choice(

@@ -5,6 +5,8 @@ mod fingerprint;
 mod fingerprint_fields;
 mod fog;
 mod ground;
+mod meters;
+mod nested_formats;
 mod own_light;
 mod parts;
 mod photometry;

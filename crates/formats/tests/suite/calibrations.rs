@@ -4,7 +4,7 @@ use bilux_formats::{CalibratedCameras, FormatError, ReadOptions, read_cameras};
 use bilux_math::transcendental::{atan2_f64, tan_f64};
 use bilux_math::{DVec2, DVec3};
 use bilux_scene::cameras::{CameraSpec, build};
-use bilux_scene::{Camera, Spec};
+use bilux_scene::{Camera, Spec, Value};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -108,6 +108,45 @@ fn opencvs_yaml_and_json_ros_and_kalibr_say_the_same() {
     let pair = read("stereo.yml", &pair).unwrap().cameras;
     assert_eq!([&*pair[0].name, &*pair[1].name], ["1", "2"]);
     assert_eq!([number(&pair[0], "fx"), number(&pair[1], "fx")], [500.0, 400.0]);
+}
+
+/// Two cameras side by side, the second 0.11 m to the right of the first and turned by a quarter to the left; a third one 0.2 m below the
+/// second. Matrices take points from the axes of the camera before to those of this one: to the right, downwards and forwards.
+#[test]
+fn the_cameras_of_a_rig_stand_to_each_other_as_kalibr_says() {
+    let lens = "  distortion_coeffs: [0, 0, 0, 0]\n  distortion_model: radtan\n  intrinsics: [500, 510, 310.5, 245]\n  \
+        resolution: [640, 480]\n";
+    let second = "[[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0.11], [0, 0, 0, 1]]";
+    let third = "[[1, 0, 0, 0], [0, 1, 0, -0.2], [0, 0, 1, 0], [0, 0, 0, 1]]";
+    let chain =
+        format!("cam0:\n{lens}cam1:\n  T_cn_cnm1: {second}\n{lens}cam2:\n  T_cn_cnm1: {third}\n{lens}");
+    let pair = OPENCV.replace("camera_matrix", "M1").replace("distortion_coefficients", "D1");
+    let pair = format!(
+        "{pair}M2: [[400, 0, 320], [0, 400, 240], [0, 0, 1]]\nD2: [0, 0, 0, 0]\nR: [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]\nT: [0, 0, 0.11]\n"
+    );
+    let point = |camera: &Spec, key: &str| match camera.parameters.find(key) {
+        Some((Value::List(values), _)) => values
+            .iter()
+            .map(|v| match v {
+                Value::Number(n) => (n * 1e6).round() / 1e6 + 0.0,
+                _ => f64::NAN,
+            })
+            .collect::<Vec<_>>(),
+        other => panic!("{key}: {other:?}"),
+    };
+    for (file, text) in [("camchain.yaml", chain), ("stereo.yml", pair)] {
+        let found = read(file, &text).unwrap();
+        assert!(found.are_relative && !found.are_placed && found.warnings.is_empty(), "{file}");
+        let cameras = &found.cameras;
+        assert_eq!(point(&cameras[0], "position"), [0.0, 0.0, 0.0]);
+        assert_eq!(point(&cameras[0], "look_at"), [0.0, 0.0, -1.0]);
+        assert_eq!(point(&cameras[1], "position"), [0.11, 0.0, 0.0], "{file}");
+        assert_eq!(point(&cameras[1], "look_at"), [-0.89, 0.0, 0.0], "{file}");
+        assert_eq!(point(&cameras[1], "up"), [0.0, 1.0, 0.0]);
+        if let Some(third) = cameras.get(2) {
+            assert_eq!(point(third, "position"), [0.11, -0.2, 0.0]);
+        }
+    }
 }
 
 const CAMERAS: &str = "# Camera list with one line of data per camera:

@@ -118,3 +118,29 @@ pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
     }
     Some(all)
 }
+
+/// A key without what programs write differently.
+pub(super) fn plain(key: &str) -> String {
+    key.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// The value of the first of these names, with the number of a camera behind it.
+pub(super) fn find<'m>(map: &'m Map<String, Value>, names: &[&str], number: &str) -> Option<&'m Value> {
+    names.iter().find_map(|name| {
+        let wanted = format!("{name}{number}");
+        map.iter().find(|(key, _)| plain(key) == wanted).map(|(_, value)| value)
+    })
+}
+
+/// The numbers of a matrix: OpenCV's, with rows, columns and data, or a list.
+pub(super) fn matrix(value: &Value, what: &str) -> Result<Vec<f64>, String> {
+    let data = value.get("data").unwrap_or(value);
+    let found = numbers(data).ok_or_else(|| format!("{what} is no list of numbers"))?;
+    let side = |key: &str| value.get(key).and_then(Value::as_u64);
+    if let (Some(rows), Some(columns)) = (side("rows"), side("cols"))
+        && rows.checked_mul(columns) != Some(found.len() as u64)
+    {
+        return Err(format!("{what} has {rows} rows and {columns} columns, but {} numbers", found.len()));
+    }
+    Ok(found)
+}

@@ -4,6 +4,7 @@ mod camera;
 mod colmap;
 mod document;
 mod opencv;
+mod rig;
 mod transforms;
 
 use crate::reading::{Reading, Source};
@@ -34,6 +35,8 @@ pub struct CalibratedCameras {
     pub cameras: Vec<Spec>,
     /// Whether the file says where they are.
     pub are_placed: bool,
+    /// Whether it only says how they stand to the first of them, which is then at the origin and looks along -z, with y upwards.
+    pub are_relative: bool,
     /// What the file says and is not used, in sentences.
     pub warnings: Vec<String>,
 }

@@ -1,7 +1,8 @@
 //! OpenCV's calibrations in YAML or JSON, and those of ROS (`camera_info`) and Kalibr, which say the same in other words.
 
 use super::camera::{Lens, Model};
-use super::document::{document, numbers};
+use super::document::{document, find, matrix, numbers, plain};
+use super::rig::Rig;
 use super::{CalibratedCameras, CalibrationFormatEntry};
 use crate::FormatError;
 use crate::reading::{Reading, Source};
@@ -41,6 +42,7 @@ fn read(_: &mut Reading, source: &Source) -> Result<CalibratedCameras, FormatErr
     let own = all.iter().filter_map(|(name, value)| Some((name.as_str(), value.as_object()?)));
     let own: Vec<_> = own.filter(|(_, map)| find(map, MATRIX, "").is_some()).collect();
     let (parts, is_one) = if own.is_empty() { (vec![("", &all)], true) } else { (own, false) };
+    let mut rig = Rig::default();
     for (name, map) in parts {
         for number in ["", "1", "2", "3", "4"] {
             let Some(matrix) = find(map, MATRIX, number) else { continue };
@@ -57,39 +59,15 @@ fn read(_: &mut Reading, source: &Source) -> Result<CalibratedCameras, FormatErr
                 (name, ..) => name,
             };
             read.cameras.push(lens.spec(name, None, &at)?);
+            rig.add(map, number).map_err(|message| FormatError::malformed(message, at.clone()))?;
         }
     }
+    rig.place(&mut read, &at)?;
     if read.cameras.is_empty() {
         let message = "there is no camera matrix: write it as camera_matrix, with 3 rows and 3 columns";
         return Err(FormatError::malformed(message, at));
     }
     Ok(read)
-}
-
-/// A key without what programs write differently.
-fn plain(key: &str) -> String {
-    key.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
-/// The value of the first of these names, with the number of a camera behind it.
-fn find<'m>(map: &'m Map<String, Value>, names: &[&str], number: &str) -> Option<&'m Value> {
-    names.iter().find_map(|name| {
-        let wanted = format!("{name}{number}");
-        map.iter().find(|(key, _)| plain(key) == wanted).map(|(_, value)| value)
-    })
-}
-
-/// The numbers of a matrix: OpenCV's, with rows, columns and data, or a list.
-fn matrix(value: &Value, what: &str) -> Result<Vec<f64>, String> {
-    let data = value.get("data").unwrap_or(value);
-    let found = numbers(data).ok_or_else(|| format!("{what} is no list of numbers"))?;
-    let side = |key: &str| value.get(key).and_then(Value::as_u64);
-    if let (Some(rows), Some(columns)) = (side("rows"), side("cols"))
-        && rows.checked_mul(columns) != Some(found.len() as u64)
-    {
-        return Err(format!("{what} has {rows} rows and {columns} columns, but {} numbers", found.len()));
-    }
-    Ok(found)
 }
 
 fn lens(map: &Map<String, Value>, k: &Value, number: &str, all: &Map<String, Value>) -> Result<Lens, String> {
