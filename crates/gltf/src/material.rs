@@ -10,6 +10,7 @@ use super::remapped::{angles, film};
 use super::scatter::scatter;
 use super::textures::{ChannelSelection, Textures, UvSets};
 use bilux_import::FormatError;
+use bilux_import::as_metal::as_metal;
 use bilux_import::fitting::fitted;
 use bilux_import::reading::Reading;
 use bilux_import::sink::Sink;
@@ -114,8 +115,7 @@ fn fill<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Result<(), FormatE
     }
     if let Some(ior) = node.extension("KHR_materials_ior") {
         let number = ior.number("ior")?.unwrap_or(1.5);
-        // Zero stands for a surface that reflects everything.
-        draft.set("specular_ior", (if number == 0.0 { 10.0 } else { number }) as f32, ior.at());
+        draft.set("specular_ior", number.clamp(1.0, GREATEST_INDEX) as f32, ior.at());
     }
     specular(node, draft)?;
     anisotropy(node, draft)?;
@@ -172,23 +172,45 @@ fn emission<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Result<(), For
     Ok(())
 }
 
+/// The greatest index of refraction that a material has here.
+const GREATEST_INDEX: f64 = 10.0;
+
+/// The reflectance at normal incidence of a file's index of refraction; 0 stands for a surface that reflects everything.
+/// [KHR_materials_ior]
+fn reflectance(ior: f64) -> f32 {
+    let root = if ior == 0.0 { 1.0 } else { (ior - 1.0) / (ior + 1.0) };
+    (root * root) as f32
+}
+
 fn specular<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Result<(), FormatError> {
-    let Some(extension) = node.extension("KHR_materials_specular") else { return Ok(()) };
+    let index = node.extension("KHR_materials_ior").map_or(Ok(None), |ior| ior.number("ior"))?;
+    // Converters of specular colours state an index of 0 or a very large one, so that the colour alone counts.
+    let is_by_colour = index.is_some_and(|index| index == 0.0 || index > GREATEST_INDEX);
+    let whole = reflectance(index.unwrap_or(1.5));
     if draft.number("base_metalness") == Some(1.0) {
-        // The extension applies only to dielectrics.
+        // Both extensions apply only to dielectrics.
         return Ok(());
     }
+    let Some(extension) = node.extension("KHR_materials_specular") else {
+        if is_by_colour {
+            mirror(Rgb::grey(whole), node, draft);
+        }
+        return Ok(());
+    };
     let at = extension.at();
     let weight = extension.number("specularFactor")?.unwrap_or(1.0);
     draft.scalar("specular_weight", weight, extension.get("specularTexture"), Channel::A, &at)?;
     let [r, g, b] = extension.numbers::<3>("specularColorFactor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
     let (mut shade, picture) = (Rgb::new(r, g, b), extension.get("specularColorTexture"));
     let greatest = shade.max_channel();
-    if greatest > 1.0 && node.extension("KHR_materials_transmission").is_none() {
-        // A factor above 1 reflects more than the index of refraction allows, so the index is raised.
-        let ior = draft.number("specular_ior").unwrap_or(1.5) as f32;
-        let (root, most) = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt(), 9.0 / 11.0);
+    let is_opaque = node.extension("KHR_materials_transmission").is_none();
+    if (greatest > 1.0 || (is_by_colour && greatest > 0.0)) && is_opaque {
+        // The index is the one that reflects as much as the greatest channel, which may be more than the file's allows.
+        let (root, most) = ((whole * greatest).sqrt(), 9.0 / 11.0);
         if root > most {
+            if is_by_colour && picture.is_none() && mirror(shade * whole, node, draft) {
+                return Ok(());
+            }
             draft.note("specular reflectance at normal incidence is limited to 0.67", || extension.at());
         }
         let root = root.min(most);
@@ -196,6 +218,17 @@ fn specular<'d>(node: JsonNode<'d>, draft: &mut Draft<'d, '_>) -> Result<(), For
         shade *= 1.0 / greatest;
     }
     draft.colour("specular_color", shade, picture, &at)
+}
+
+/// Makes a metal of what reflects more than any dielectric, where no texture is in the way; false where one is.
+fn mirror(specular: Rgb, node: JsonNode, draft: &mut Draft) -> bool {
+    let (Some(diffuse), Some(_)) = (draft.spec.colour("base_color"), draft.number("base_metalness")) else {
+        return false;
+    };
+    let (base, metalness) = as_metal(diffuse, specular);
+    draft.set("base_color", base, node.at());
+    draft.set("base_metalness", metalness, node.at());
+    true
 }
 
 /// Converts the anisotropy. glTF increases the roughness along a direction; `principled` decreases it across

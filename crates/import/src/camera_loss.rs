@@ -1,7 +1,7 @@
 //! What cameras lose in formats that know only plain perspective ones.
 
 use crate::writing::Writing;
-use bilux_math::transcendental::atan;
+use bilux_math::transcendental::{atan, tan};
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Warns about a camera that is more than a perspective one.
@@ -46,6 +46,16 @@ pub fn field_of_view(spec: &Spec) -> f32 {
         _ => spec.number("fov").unwrap_or(90.0),
     };
     degrees.clamp(1.0, 120.0)
+}
+
+/// The same in a picture of this aspect ratio, which shows more where the camera's `frame` would not fit.
+pub fn field_of_view_in(spec: &Spec, aspect: f32) -> f32 {
+    let vertical = field_of_view(spec);
+    let wider = spec.number("frame").map_or(1.0, |frame| frame / aspect);
+    if wider <= 1.0 {
+        return vertical;
+    }
+    2.0 * atan(tan(0.5 * vertical.to_radians()) * wider).to_degrees()
 }
 
 /// The aspect ratio of the scene's picture, if the scene states its size.

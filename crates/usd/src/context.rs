@@ -23,6 +23,8 @@ pub(super) struct Worn {
 pub(super) struct Context<'r, 'o> {
     pub(super) reading: &'r mut Reading<'o>,
     pub(super) sink: Sink,
+    /// Whether there are lamps, some of which are meshes.
+    pub(super) has_lamps: bool,
 }
 
 impl Context<'_, '_> {

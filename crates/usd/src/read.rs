@@ -34,9 +34,10 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     sink.scene.inventory.variants = variants;
     let mut scene = Scene::new(reading, sink);
     scene.add_all(&stage)?;
+    let has_lamps = scene.context.has_lamps;
     let mut sink = scene.context.sink;
     // Where a file has lights, these are all.
-    sink.scene.environment_unspecified = sink.scene.lights.is_empty();
+    sink.scene.environment_unspecified = !has_lamps && sink.scene.lights.is_empty();
     share_trees(&mut sink.scene);
     if sink.scene.objects.is_empty() && sink.scene.lights.is_empty() {
         sink.oddities.note("there is nothing to render in this file", || stage.layers[0].at(0));

@@ -57,7 +57,7 @@ pub(super) struct Scene<'r, 'o> {
 impl<'r, 'o> Scene<'r, 'o> {
     pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
         let (meshes, volumes, plain, materials, alike, poses) = Default::default();
-        let context = Context { reading, sink };
+        let context = Context { reading, sink, has_lamps: false };
         let (lineage, looks) = Default::default();
         Scene { context, meshes, volumes, plain, materials, alike, poses, lineage, looks }
     }
@@ -143,7 +143,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         let Some((binding, skeleton)) = state.binding.and_then(|b| Some((b, b.skeleton?))) else {
             return Ok(None);
         };
-        let Context { reading, sink } = &mut self.context;
+        let Context { reading, sink, .. } = &mut self.context;
         let pose = match self.poses.get(&skeleton) {
             Some(pose) => pose.clone(),
             None => {
@@ -211,7 +211,7 @@ impl<'r, 'o> Scene<'r, 'o> {
         self.context.reading.budget.take_bytes(12 * array.len() as u64, &stage.layers[0].name)?;
         let mut vertices = points(&array);
         drop(array);
-        let Context { reading, sink } = &mut self.context;
+        let Context { reading, sink, .. } = &mut self.context;
         let bent = match rig {
             Some(rig) => rig.bend(stage, prim, &mut vertices, reading, sink)?,
             None => Bent::default(),

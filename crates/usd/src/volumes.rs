@@ -120,7 +120,7 @@ fn filled(
     let at = stage.at(bound.unwrap_or(prim));
     let name = name_of(stage, bound.unwrap_or(prim));
     let mut spec = Spec { span: at.clone(), ..Spec::new(name, "interface") };
-    let Context { reading, sink } = context;
+    let Context { reading, sink, .. } = context;
     fill(&mut spec, &medium, &DMat4::IDENTITY, &at, (reading, &mut sink.oddities))?;
     let material = sink.scene.add_material(spec);
     reading.budget.take_bytes(mesh.size(), &stage.layers[0].name)?;
@@ -151,7 +151,7 @@ fn grid(
     field: &Field,
     context: &mut Context,
 ) -> Result<Option<Arc<Grid>>, FormatError> {
-    let Context { reading, sink } = context;
+    let Context { reading, sink, .. } = context;
     let at = stage.at(field.prim);
     let name = stage.text(field.prim, "fieldName", &mut reading.budget)?.unwrap_or_default();
     let found = stage.found(field.prim, "filePath", &mut reading.budget)?;

@@ -29,7 +29,7 @@ impl Scene<'_, '_> {
             self.materials.insert(material, known.clone());
             return known.map_or_else(|| self.plain(stage, prim), Ok);
         }
-        let Context { reading, sink } = &mut self.context;
+        let Context { reading, sink, .. } = &mut self.context;
         let shaded = shading::material(stage, material, reading, sink)?;
         let worn =
             shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction, displacement }| {

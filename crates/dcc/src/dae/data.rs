@@ -31,10 +31,16 @@ impl<T: Number> Table<T> {
         let stride = size("stride").filter(|&stride| stride > 0).unwrap_or(1);
         let offset = size("offset").unwrap_or(0);
         let there = numbers.len().saturating_sub(offset).div_ceil(stride);
+        let named = accessor.and_then(|accessor| named_columns(accessor, stride));
+        let needed = named.as_ref().and_then(|columns| columns.last()).map_or(stride, |last| last + 1);
         // Arrays are often longer or shorter than stated.
-        let whole = numbers.len().saturating_sub(offset) / stride;
+        let whole = (numbers.len() + stride).saturating_sub(offset + needed) / stride;
         let len = size("count").unwrap_or(there).min(whole);
-        Ok(Table { numbers, stride, offset, len, width: stride })
+        let Some(columns) = named else { return Ok(Table { numbers, stride, offset, len, width: stride }) };
+        budget.take::<T>(len * columns.len(), source.file())?;
+        let row = |row: usize| columns.iter().map(move |column| offset + row * stride + column);
+        let numbers = (0..len).flat_map(row).map(|at| numbers[at]).collect();
+        Ok(Table { numbers, stride: columns.len(), offset: 0, len, width: columns.len() })
     }
 
     /// A row; `None` beyond the end.
@@ -49,6 +55,21 @@ impl<T: Number> Table<T> {
     pub(super) fn rows(&self) -> impl Iterator<Item = &[T]> {
         (0..self.len).map_while(|row| self.row(row))
     }
+}
+
+/// Strides from which on a row is a matrix.
+const MATRIX: usize = 9;
+
+/// The columns of a row that parameters with names stand for, if these are some of them: a parameter without a name is not part of what
+/// the accessor gives. [Collada 1.4.1, accessor]
+fn named_columns(accessor: Element, stride: usize) -> Option<Vec<usize>> {
+    let params = accessor.children_named("param").take(stride.min(MATRIX));
+    let has_name = |param: &Element| param.attribute("name").is_some_and(|name| !name.trim().is_empty());
+    let is_number = |param: &Element| !param.attribute("type").is_some_and(|kind| kind.contains('x'));
+    let params: Vec<Element> = params.collect();
+    let named: Vec<usize> = (0..params.len()).filter(|&column| has_name(&params[column])).collect();
+    let is_some = !named.is_empty() && named.len() < stride && stride < MATRIX;
+    (is_some && params.iter().all(is_number)).then_some(named)
 }
 
 /// The array of a source, which has one of these names, and its name.

@@ -274,3 +274,26 @@ fn a_camera_takes_the_shape_of_its_picture_along() {
     let frame = back.cameras[0].spec.parameters.find("frame").map(|(value, _)| value.clone());
     assert!(matches!(frame, Some(Value::Number(shape)) if (shape - 1.5).abs() < 1e-6), "{frame:?}");
 }
+
+/// A panel emits on one side or both, as it says; a scene that only its surfaces light gets no studio when it is read again.
+#[test]
+fn panels_keep_their_sides_and_surfaces_that_emit_are_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let sides = |sides: &str| {
+        let scene =
+            read_text("toml", format!("[[light]]\nkind = \"rect\"\n{sides}\n[[model]]\nshape = \"quad\"\n"))
+                .unwrap();
+        let path = folder.path().join("panel.gltf");
+        write(&path, &scene, &WriteOptions::default()).unwrap();
+        // The model has two sides too.
+        std::fs::read_to_string(path).unwrap().matches("\"doubleSided\"").count()
+    };
+    assert_eq!(["", "sides = \"both\"", "sides = \"front\""].map(sides), [2, 2, 1]);
+    let scene = read_text(
+        "toml",
+        "[[material]]\nname = \"a\"\nkind = \"diffuse\"\nemission = 2\n[[model]]\nshape = \"quad\"\nmaterial = \"a\"\n",
+    )
+    .unwrap();
+    let (back, _) = there(&scene, &folder.path().join("a.glb"));
+    assert_eq!((scene.environment_unspecified, back.environment_unspecified), (false, false));
+}

@@ -30,6 +30,7 @@ mod grids_in_scenes;
 mod hostile;
 mod instances;
 mod left_out;
+mod left_unread;
 mod luminaires;
 mod materials_of_exporters;
 mod messages;

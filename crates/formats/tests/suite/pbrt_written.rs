@@ -235,3 +235,32 @@ fn repeated_meshes_become_one_object() {
     let files = std::fs::read_dir(folder.path()).unwrap().count();
     assert_eq!(files, 2, "the scene and one mesh");
 }
+
+/// A camera whose `frame` is wider than the picture shows all of it: tan(fov / 2) times frame over aspect.
+#[test]
+fn a_frame_wider_than_the_picture_stays_whole() {
+    for (size, shorter) in [("64x64", 1.5), ("128x64", 1.0), ("32x64", 1.5)] {
+        let scene = scene(&format!(
+            "[render]\nsize = \"{size}\"\n[camera]\nkind = \"perspective\"\nfov = 40\nframe = 1.5\n\
+             [[model]]\nshape = \"quad\"\n"
+        ));
+        // Of the shorter side, as pbrt has it; the vertical one, as Mitsuba does.
+        let aspect =
+            size.split_once('x').map(|(w, h)| w.parse::<f32>().unwrap() / h.parse::<f32>().unwrap()).unwrap();
+        let tan = bilux_math::transcendental::tan(20f32.to_radians());
+        let degrees = |tan: f32| 2.0 * bilux_math::transcendental::atan(tan).to_degrees();
+        let wanted = [degrees(tan * shorter), degrees(tan * (1.5 / aspect).max(1.0))];
+        let folder = tempfile::tempdir().unwrap();
+        for (name, wanted) in ["x.pbrt", "x.xml"].into_iter().zip(wanted) {
+            let path = folder.path().join(name);
+            write(&path, &scene, &WriteOptions::default()).unwrap();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let (_, rest) = text
+                .split_once(if name == "x.pbrt" { "\"float fov\" [ " } else { "name=\"fov\" value=\"" })
+                .unwrap();
+            let end = rest.find([' ', '"']).unwrap();
+            let found: f32 = rest[..end].parse().unwrap();
+            assert!((found - wanted).abs() < 1e-3, "{size} {name}: {found}, not {wanted}");
+        }
+    }
+}

@@ -188,7 +188,9 @@ impl Document<'_> {
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "Bilux" }));
         root.insert("scene".into(), json!(0));
         let mut scene = if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) };
-        if !self.scene.environment_unspecified && !self.scene.lights.is_empty() {
+        // Light of surfaces that emit is light too.
+        let has_light = !self.scene.lights.is_empty() || self.scene.describes_all_light;
+        if !self.scene.environment_unspecified && has_light {
             scene["extras"] = json!({ SURROUNDINGS: "none" });
         }
         root.insert("scenes".into(), json!([scene]));

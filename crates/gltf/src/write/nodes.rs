@@ -8,7 +8,7 @@ use bilux_import::writing::Writing;
 use bilux_math::{MotionKey, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
-use bilux_scene::{Mesh, Spec};
+use bilux_scene::{Mesh, Spec, Value};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
@@ -41,6 +41,9 @@ impl Document<'_> {
         }
         if number(spec, "aperture").is_some_and(|aperture| aperture > 0.0) {
             writing.warn("glTF files cannot store apertures of cameras: left out");
+        }
+        if matches!(spec.parameters.find("mirrored"), Some((Value::Bool(true), _))) {
+            writing.warn("glTF files cannot store mirrored pictures of cameras: written as not mirrored");
         }
         let point = |key, default: Vec3| vector(spec, key).unwrap_or(default);
         let position = point("position", Vec3::new(0.0, 0.0, 5.0));
@@ -112,11 +115,8 @@ impl Document<'_> {
         let (u, v) = (edge("edge_u", Vec3::X), edge("edge_v", Vec3::Z));
         let radius = number(spec, "radius").unwrap_or(0.5);
         let is_panel = spec.kind == "rect";
-        let one_sided =
-            matches!(spec.parameters.find("sides"), Some((bilux_scene::Value::Text(t), _)) if t == "front");
-        if is_panel && one_sided {
-            writing.warn("lights that emit only at the front are written as emitting on both sides");
-        }
+        let is_one_sided =
+            matches!(spec.parameters.find("sides"), Some((Value::Text(sides), _)) if sides == "front");
         let area = if is_panel { u.cross(v).length() } else { std::f32::consts::PI * radius * radius };
         let radiance = match colour(spec, "radiance").filter(|radiance| !radiance.is_black()) {
             Some(radiance) => radiance,
@@ -128,6 +128,9 @@ impl Document<'_> {
             (super::material::emission(self, radiance), json!({ "name": spec.name }));
         super::material::merge(&mut material, emission);
         material["pbrMetallicRoughness"] = json!({ "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0 });
+        if is_panel && !is_one_sided {
+            material["doubleSided"] = json!(true);
+        }
         let material = self.push("materials", material);
         let mesh: Arc<Mesh> = Arc::new(Mesh { name: String::new(), ..mesh });
         if let Ok(mesh) = self.mesh(&mesh, material, writing) {

@@ -9,7 +9,7 @@ use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_pictures::guarded_decoding;
 use bilux_scene::SceneBuilder;
-use e57::{CartesianCoordinate, E57Reader, Error, Point, PointCloud};
+use e57::{CartesianCoordinate, E57Reader, Error, Point, PointCloud, Quaternion};
 use std::io::Cursor;
 
 /// The first bytes of a file.
@@ -44,7 +44,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         return Err(fail("there are more than 4 billion points: split the file"));
     }
     let is_coloured = scans.iter().any(|scan| scan.has_color() || scan.has_intensity());
-    let mut scan_points = ScanPoints { cloud: Cloud::default(), is_coloured, without_place: 0 };
+    let mut scan_points =
+        ScanPoints { cloud: Cloud::default(), is_coloured, without_place: 0, mended_rotations: 0 };
     scan_points.cloud.reserve(count, is_coloured, &mut reading.budget, source.name)?;
     let mut parts = Vec::new();
     for (number, scan) in scans.iter().enumerate() {
@@ -56,7 +57,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         reading.budget.take_bytes(2 * name.len() as u64, source.name)?;
         parts.push((name, scan_points.cloud.positions.len() - before));
     }
-    let ScanPoints { cloud, without_place, .. } = scan_points;
+    let ScanPoints { cloud, without_place, mended_rotations, .. } = scan_points;
     if cloud.positions.is_empty() {
         return Err(fail("none of its points has a place"));
     }
@@ -68,6 +69,11 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
             &format!("{without_place} points have no place, as where a laser met nothing; they are left out"),
             at,
         );
+    }
+    if mended_rotations > 0 {
+        let what =
+            "quaternions whose length is not 1 are taken as if it were, and those of length 0 turn nothing";
+        oddities.note(what, at);
     }
     if !reader.images().is_empty() {
         oddities.not_shown("photographs", at);
@@ -82,13 +88,19 @@ struct ScanPoints {
     cloud: Cloud,
     is_coloured: bool,
     without_place: u64,
+    /// Scans whose rotation was none.
+    mended_rotations: usize,
 }
 
 impl ScanPoints {
     /// Adds the points of a scan, in the space of the file.
     fn add(&mut self, reader: &mut Reader, scan: &PointCloud) -> Result<(), Error> {
         let has_colours = scan.has_color();
-        let mut points = reader.pointcloud_simple(scan)?;
+        let mut scan = scan.clone();
+        if let Some(transform) = &mut scan.transform {
+            self.mended_rotations += usize::from(make_rotation(&mut transform.rotation));
+        }
+        let mut points = reader.pointcloud_simple(&scan)?;
         points.apply_pose(true);
         points.spherical_to_cartesian(true);
         points.intensity_to_color(false);
@@ -106,6 +118,20 @@ impl ScanPoints {
         }
         Ok(())
     }
+}
+
+/// A larger difference of a quaternion's length from 1 is no rounding.
+const ROUNDING: f64 = 1e-4;
+
+/// Gives a quaternion the length of 1, which the decoder relies on; one of length 0 becomes no rotation. True if it was far from it.
+fn make_rotation(q: &mut Quaternion) -> bool {
+    let length = (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z).sqrt();
+    if length.is_normal() {
+        *q = Quaternion { w: q.w / length, x: q.x / length, y: q.y / length, z: q.z / length };
+    } else {
+        *q = Quaternion::default();
+    }
+    (length - 1.0).abs() > ROUNDING
 }
 
 /// The colour of a point; of a scan without colours, a grey level from its intensity.
@@ -132,5 +158,28 @@ fn reason(error: &Error) -> &'static str {
         }
         Error::Read { .. } => "a page of it is damaged (its checksum is wrong), or the file was cut off",
         _ => "its description of the scans is damaged: export it again",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quaternion_of_any_length_is_a_rotation() {
+        let length = |q: &Quaternion| (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z).sqrt();
+        for (given, wanted, is_said) in [
+            ([2.0, 0.0, 0.0, 2.0], [0.5f64.sqrt(), 0.0, 0.0, 0.5f64.sqrt()], true),
+            ([0.0; 4], [1.0, 0.0, 0.0, 0.0], true),
+            ([f64::NAN, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], false),
+            ([0.6, 0.8 + 1e-6, 0.0, 0.0], [0.6, 0.8, 0.0, 0.0], false),
+        ] {
+            let [w, x, y, z] = given;
+            let mut q = Quaternion { w, x, y, z };
+            let said = make_rotation(&mut q);
+            assert!(said == is_said || w.is_nan(), "{given:?}");
+            let near = [q.w, q.x, q.y, q.z].iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5);
+            assert!(near && (length(&q) - 1.0).abs() < 1e-12, "{given:?}: {q:?}");
+        }
     }
 }

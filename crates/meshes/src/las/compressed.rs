@@ -20,8 +20,8 @@ const ONE_STREAM: u16 = 1;
 /// Where the record has the number of points in a chunk.
 const CHUNK_SIZE: std::ops::Range<usize> = 12..16;
 
-/// What is kept of a point: three coordinates, the intensity and, from here on, the colour.
-const COLOUR: usize = 14;
+/// What is kept of a point: three coordinates, the intensity, two bytes of returns, flags and classes, and, from here on, the colour.
+const COLOUR: usize = 16;
 
 /// The points of a file as records of their own, with the header that describes these.
 pub(super) fn unpacked(
@@ -51,7 +51,12 @@ pub(super) fn unpacked(
     let unpacked = guarded_decoding(|| -> Option<Vec<u8>> {
         let mut from = Cursor::new(source.bytes);
         from.set_position(header.points as u64);
-        let wanted = DecompressionSelection::base().decompress_z().decompress_intensity().decompress_rgb();
+        let wanted = DecompressionSelection::base()
+            .decompress_z()
+            .decompress_intensity()
+            .decompress_flags()
+            .decompress_classification()
+            .decompress_rgb();
         let mut decompressor = LasZipDecompressor::selective(from, vlr, wanted).ok()?;
         let (mut point, mut all) = (vec![0; header.record], Vec::new());
         for _ in 0..header.count {

@@ -12,6 +12,9 @@ const SHORTEST: usize = 227;
 /// The offset of the 64-bit point count in version 1.4.
 const LONG_COUNT: usize = 247;
 
+/// The first point format that has flags in a byte of their own; before, they are in the byte of the class. [LAS 1.4 R15, tables 8 and 16]
+const FIRST_WITH_FLAGS: u8 = 6;
+
 /// For each point format, the minimum size of a record and the offset of its colour. [LAS 1.4 R15, 2.6]
 const FORMATS: [(usize, Option<usize>); 11] = [
     (20, None),
@@ -39,6 +42,8 @@ pub(super) struct Header {
     pub(super) record: usize,
     /// The offset of the colour in a record.
     pub(super) colour: Option<usize>,
+    /// The bit of byte 15 of a record that says that the point is withheld, which means deleted.
+    pub(super) withheld: u8,
     pub(super) scale: DVec3,
     pub(super) offset: DVec3,
 }
@@ -94,7 +99,8 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     if count >= u64::from(u32::MAX) {
         return fail("there are more than 4 billion points: split the file".to_owned());
     }
-    Ok(Header { points, count, is_compressed, record, colour, scale, offset })
+    let withheld = if format < FIRST_WITH_FLAGS { 0x80 } else { 4 };
+    Ok(Header { points, count, is_compressed, record, colour, withheld, scale, offset })
 }
 
 /// The number at an offset; 0 beyond the end.

@@ -14,10 +14,17 @@ use bilux_scene::SceneBuilder;
 
 /// The offset of a point's intensity, in all formats.
 const INTENSITY: usize = 12;
+/// The offset of the byte that says whether a point is withheld, in all formats.
+const FLAGS: usize = 15;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let (bytes, header) = points(reading, source)?;
-    let records = || bytes[header.points..].chunks_exact(header.record).take(header.count as usize);
+    let all = || bytes[header.points..].chunks_exact(header.record).take(header.count as usize);
+    let is_withheld = |record: &&[u8]| record[FLAGS] & header.withheld != 0;
+    let withheld = all().filter(is_withheld).count();
+    // A file of which nothing would be left is shown whole.
+    let is_shown = move |record: &&[u8]| withheld == header.count as usize || !is_withheld(record);
+    let records = || all().filter(is_shown);
     let position = |record: &[u8]| {
         let number = |at: usize| f64::from(u32_at(record, at) as i32);
         DVec3::new(number(0), number(4), number(8)) * header.scale + header.offset
@@ -34,6 +41,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     }
     let mut scene = cloud.into_scene(source.stem());
     let mut oddities = Oddities::default();
+    if withheld > 0 {
+        let left = if withheld == header.count as usize { "all, so they are shown" } else { "left out" };
+        oddities.remark(&format!("{withheld} points are withheld, which means deleted: {left}"), || {
+            whole_file(source.name)
+        });
+    }
     let unused = "classes, returns, angles and times of points, and intensities beside colours";
     oddities.not_used(unused, || whole_file(source.name));
     oddities.into_warnings(&mut scene);
@@ -60,8 +73,9 @@ fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn()
     }
     let mut histogram = vec![0u64; 1 << 16];
     records().for_each(|record| histogram[usize::from(u16_at(record, INTENSITY))] += 1);
+    let count: u64 = histogram.iter().sum();
     let place = |part: f64| {
-        let mut left = (header.count as f64 * part) as u64;
+        let mut left = (count as f64 * part) as u64;
         let mut reaches = |count: &u64| {
             let is_there = left < *count;
             left = left.saturating_sub(*count);

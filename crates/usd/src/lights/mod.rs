@@ -67,6 +67,13 @@ pub(super) fn add(stage: &Stage, prim: u32, world: &DMat4, context: &mut Context
     if links.iter().flat_map(is_listed).any(|paths| !paths.is_empty()) {
         context.sink.oddities.not_shown("which objects a light is for (light linking)", || stage.at(prim));
     }
+    for part in ["diffuse", "specular"] {
+        if number(stage, prim, part, 1.0, context)? != 1.0 {
+            let what =
+                "how much of a light diffuse or specular surfaces get (inputs:diffuse, inputs:specular)";
+            context.sink.oddities.not_shown(what, || stage.at(prim));
+        }
+    }
     if radiance.is_black() {
         return Ok(());
     }
@@ -96,6 +103,12 @@ impl Light<'_> {
 
     fn axis(&self, axis: DVec3) -> DVec3 {
         self.world.transform_vector3(axis)
+    }
+
+    /// Lengths along x and y whose cross product is along -z, where the light goes, also in a space that is mirrored.
+    fn across(&self, width: f64, height: f64) -> [DVec3; 2] {
+        let [u, v] = [self.axis(DVec3::X) * width, self.axis(DVec3::NEG_Y) * height];
+        if self.world.determinant() < 0.0 { [v, u] } else { [u, v] }
     }
 
     fn divided(&self, area: f64) -> Rgb {
@@ -175,7 +188,7 @@ impl Light<'_> {
 
     fn rect(&self, context: &mut Context) -> Result<(), FormatError> {
         let (width, height) = (self.number("width", 1.0, context)?, self.number("height", 1.0, context)?);
-        let (u, v) = (self.axis(DVec3::X) * width, self.axis(DVec3::NEG_Y) * height);
+        let [u, v] = self.across(width, height);
         let area = u.cross(v).length();
         if area <= 0.0 {
             return Ok(());
@@ -205,7 +218,7 @@ impl Light<'_> {
     /// A disc that emits along -z.
     fn disk(&self, context: &mut Context) -> Result<(), FormatError> {
         let radius = self.number("radius", 0.5, context)?;
-        let (u, v) = (self.axis(DVec3::X) * radius, self.axis(DVec3::NEG_Y) * radius);
+        let [u, v] = self.across(radius, radius);
         let area = PI * u.cross(v).length();
         if area > 0.0 && self.shaped(self.divided(area), |d| area * -d.z, context) {
             return Ok(());
@@ -257,6 +270,7 @@ impl Light<'_> {
         if area <= 0.0 {
             return;
         }
+        context.has_lamps = true;
         let scene = &mut context.sink.scene;
         let black = Spec::new(self.name, "diffuse").with("reflectance", 0.0f32);
         let material = black.with("emission", self.divided(area)).with("emission_sides", "front");

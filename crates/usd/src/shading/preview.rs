@@ -4,6 +4,7 @@ use super::draft::Draft;
 use super::network::Input;
 use super::textures::{Painted, Taken, bake, painted};
 use bilux_import::FormatError;
+use bilux_import::as_metal::as_metal;
 use bilux_import::displacement::{Along, Displacement};
 use bilux_math::Rgb;
 
@@ -31,7 +32,8 @@ pub(super) fn preview(draft: &mut Draft) -> Result<(), FormatError> {
         if !draft.set_number("coat_roughness", "clearcoatRoughness", 1.0)? {
             draft.set("coat_roughness", 0.01f32);
         }
-        draft.set("coat_ior", 1.5f32);
+        // One index is that of all specular parts, the coat among them. [UsdPreviewSurface, ior]
+        draft.set("coat_ior", ior);
     }
     let emits =
         draft.is_textured("emissiveColor")? || draft.colour("emissiveColor")?.is_some_and(|c| !c.is_black());
@@ -64,6 +66,9 @@ fn displacement(draft: &mut Draft) -> Result<(), FormatError> {
     Ok(())
 }
 
+/// The root of the greatest reflectance that an index of refraction gives, which is at most 10.
+const MOST: f32 = 9.0 / 11.0;
+
 /// The reflectance at normal incidence, by the index of refraction of its greatest channel.
 fn specular(draft: &mut Draft) -> Result<(), FormatError> {
     if draft.is_textured("specularColor")? {
@@ -77,7 +82,16 @@ fn specular(draft: &mut Draft) -> Result<(), FormatError> {
         draft.set("specular_weight", 0.0f32);
         return Ok(());
     }
-    let root = greatest.sqrt().min(9.0 / 11.0);
+    let root = greatest.sqrt();
+    if root > MOST && !draft.is_textured("diffuseColor")? {
+        // No dielectric reflects so much.
+        let diffuse = draft.colour("diffuseColor")?.unwrap_or(Rgb::grey(UNSTATED));
+        let (base, metalness) = as_metal(diffuse, colour);
+        draft.set("base_color", base);
+        draft.set("base_metalness", metalness);
+        return Ok(());
+    }
+    let root = root.min(MOST);
     draft.set("specular_ior", (1.0 + root) / (1.0 - root));
     draft.set("specular_color", colour * (1.0 / greatest));
     Ok(())

@@ -1,7 +1,7 @@
 //! Writes sensors with film and sampler, and the integrator.
 
 use super::document::{Document, numbers};
-use bilux_import::camera_loss::{field_of_view, not_perspective};
+use bilux_import::camera_loss::{field_of_view_in, not_perspective};
 use bilux_import::values::{number, vector};
 use bilux_import::writing::Writing;
 use bilux_math::Vec3;
@@ -74,7 +74,7 @@ impl Document<'_> {
             others.parameters.0.retain(|(key, ..)| !key.starts_with("principal"));
             not_perspective(&others, "Mitsuba", writing);
             self.text("fov_axis", "y");
-            self.number("fov", field_of_view(spec));
+            self.number("fov", field_of_view_in(spec, width as f32 / height as f32));
             for (key, theirs) in
                 [("principal_x", "principal_point_offset_x"), ("principal_y", "principal_point_offset_y")]
             {

@@ -1,7 +1,7 @@
 //! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
 use super::document::{Document, float, numbers};
-use bilux_import::camera_loss::{field_of_view, not_perspective};
+use bilux_import::camera_loss::{field_of_view_in, not_perspective};
 use bilux_import::values::{number, vector};
 use bilux_import::writing::Writing;
 use bilux_math::Vec3;
@@ -94,7 +94,7 @@ impl Document<'_> {
             return;
         }
         not_perspective(spec, "pbrt", writing);
-        let vertical = field_of_view(spec);
+        let vertical = field_of_view_in(spec, aspect);
         // In pbrt, the field of view applies to the shorter side.
         let shorter = match aspect < 1.0 {
             true => 2.0 * atan(tan(0.5 * vertical.to_radians()) * aspect).to_degrees(),
