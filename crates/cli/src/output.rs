@@ -3,6 +3,7 @@
 use bilux::formats::FormatError;
 use bilux::pictures::PictureError;
 use bilux::transport::RenderError;
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 
@@ -23,7 +24,18 @@ impl std::error::Error for PrintError {}
 /// # Errors
 /// If not all of it could be written; see [`is_closed_pipe`].
 pub fn print(text: impl Display) -> anyhow::Result<()> {
-    print_bytes(format!("{text}\n").as_bytes())
+    print_bytes(format!("{}\n", harmless(&text.to_string())).as_bytes())
+}
+
+/// A text whose control characters are written out, all but the ends of lines and tabs: names in files of strangers may hold some that
+/// change the title of a terminal, or what stands on it.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let is_harmful = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(is_harmful) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |c: char| if is_harmful(c) { c.escape_unicode().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(shown).collect())
 }
 
 /// Writes bytes to standard output.
@@ -50,18 +62,23 @@ pub fn counted<N: Display + PartialEq + From<u8>>(number: N, one: &str, many: &s
 
 /// Prints a line to standard error.
 pub fn eprint(text: impl Display) {
+    eprint_after("", text);
+}
+
+/// The same after a word of our own, which may be in colour.
+fn eprint_after(word: &str, text: impl Display) {
     // If standard error is closed, there is nowhere to report it.
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{word}{}", harmless(&text.to_string()));
 }
 
 /// Prints a warning: something is odd, but the work goes on.
 pub fn warning(text: impl Display) {
-    eprint(format_args!("{}: {text}", painted("warning", "33")));
+    eprint_after(&format!("{}: ", painted("warning", "33")), text);
 }
 
 /// Prints why the work failed.
 pub fn error(error: &anyhow::Error) {
-    eprint(format_args!("{}: {}", painted("error", "31"), message(error)));
+    eprint_after(&format!("{}: ", painted("error", "31")), message(error));
 }
 
 /// An error with its causes, each mentioned once: most libraries' messages already end with their cause's message.

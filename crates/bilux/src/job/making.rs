@@ -186,7 +186,9 @@ fn auto_curve(
     completed: &SceneBuilder,
     settings: &Settings,
 ) -> (&'static str, Option<String>) {
-    if completed.lights.len() == scene.lights.len() || settings.integrator.classic {
+    // A background lights nothing.
+    let lamps = |scene: &SceneBuilder| scene.lights.iter().filter(|light| !light.is_backdrop()).count();
+    if lamps(completed) == lamps(scene) || settings.integrator.classic {
         return ("none", None);
     }
     if !bilux_scene::presets::is_unlit(scene) {

@@ -3,6 +3,7 @@
 
 mod accel;
 mod background;
+mod depth;
 mod idle;
 mod memory;
 mod names;
@@ -69,7 +70,7 @@ pub const RENDER: Entry = Entry {
         ),
         integer(
             "max_depth",
-            "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only",
+            "maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only; 100 with `fog`, if nothing is said",
             0,
             MAX_DEPTH as i64,
             "16",
@@ -339,7 +340,7 @@ impl Settings {
             spp,
             stop,
             seed: reader.integer("seed") as u64,
-            max_depth: reader.integer("max_depth") as u32,
+            max_depth: depth::max_depth(all, &reader),
             threads: reader.integer("threads") as usize,
             camera: match reader.text("camera") {
                 name if name.is_empty() => "0".to_owned(),

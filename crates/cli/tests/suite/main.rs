@@ -15,6 +15,7 @@ mod resume;
 mod sensors;
 mod serve;
 mod servers;
+mod strangers;
 mod streams;
 mod witness;
 mod worker;

@@ -40,7 +40,9 @@ pub(super) fn unpacked(
         .ok_or_else(|| fail("the record that says how they are compressed is missing"))?;
     let record = &*in_chunks(record);
     let vlr = guarded_decoding(|| LazVlr::from_buffer(record).ok()).flatten().ok_or_else(damaged)?;
-    if vlr.items_size() != header.record as u64 {
+    // The decompressor's own sum may overflow.
+    let size: u64 = vlr.items().iter().map(|item| u64::from(item.size())).sum();
+    if size != header.record as u64 {
         return Err(fail("the header and the record of the compression disagree about the size of a point"));
     }
     let held = check_sizes(source.bytes, &header, record, &vlr).ok_or_else(damaged)?;

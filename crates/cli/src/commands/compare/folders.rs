@@ -69,18 +69,27 @@ pub(super) fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8
 
 /// The names of the pictures in a folder.
 fn names(folder: &Path) -> anyhow::Result<BTreeSet<PathBuf>> {
-    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
     let mut names = BTreeSet::new();
-    for entry in entries {
-        let path = entry.with_context(|| folder.display().to_string())?.path();
-        if let Some(name) = path.file_name().filter(|_| is_picture(&path) && path.is_file()) {
-            names.insert(name.into());
-        }
-    }
+    collect(folder, Path::new(""), &mut names)?;
     if names.is_empty() {
         bail!("{}: there are no pictures in this folder", folder.display());
     }
     Ok(names)
+}
+
+/// Adds the pictures in a folder within a folder, and in those within it. Links to folders are not followed: they may lead in a circle.
+fn collect(root: &Path, within: &Path, names: &mut BTreeSet<PathBuf>) -> anyhow::Result<()> {
+    let folder = root.join(within);
+    for entry in std::fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
+        let entry = entry.with_context(|| folder.display().to_string())?;
+        let (path, name) = (entry.path(), within.join(entry.file_name()));
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            collect(root, &name, names)?;
+        } else if is_picture(&path) && path.is_file() {
+            names.insert(name);
+        }
+    }
+    Ok(())
 }
 
 fn row(arguments: &Compare, name: &Path, common: &Common) -> anyhow::Result<Row> {
