@@ -16,9 +16,16 @@ pub(super) struct Suite {
     /// The folder of the package, where cargo too runs its tests.
     pub(super) folder: PathBuf,
     pub(super) tests: Vec<String>,
+    /// Whether its tests lie beside the package's sources.
+    pub(super) is_integration: bool,
 }
 
 impl Suite {
+    /// Whether its tests may start a program of its package, which it does not contain: those of a library or a program cannot.
+    pub(super) fn starts_programs(&self) -> bool {
+        self.is_integration && ["src/main.rs", "src/bin"].iter().any(|place| self.folder.join(place).exists())
+    }
+
     /// The binary as a command, in the surroundings that `cargo test` gives it. What it finds by `env!` is built in.
     pub(super) fn command(&self) -> Command {
         let mut command = Command::new(&self.program);
@@ -53,7 +60,8 @@ fn suite(message: &Value) -> Option<Suite> {
     let is_library = target["kind"][0].as_str()?.contains("lib");
     let name = if is_library { package.clone() } else { format!("{package} {}", target["name"].as_str()?) };
     let program = PathBuf::from(message["executable"].as_str()?);
-    Some(Suite { name, package, program, folder: folder.to_owned(), tests: Vec::new() })
+    let is_integration = target["kind"][0] == "test";
+    Some(Suite { name, package, program, folder: folder.to_owned(), tests: Vec::new(), is_integration })
 }
 
 /// The name in `path+file:///a/b#name@1.0`, or in `path+file:///a/name#1.0`, where it is that of the folder.
@@ -95,6 +103,14 @@ mod tests {
             [("bilux-cli suite", "/t/suite-1"), ("bilux-cli", "/t/cli-1"), ("cli suite", "/t/suite-2")]
         );
         assert!(found.iter().all(|suite| suite.folder == Path::new("/r/crates/cli")));
+        // Only those beside the sources of a package with a program wait for it.
+        let starts = |folder: &str, is_integration| {
+            Suite { folder: crate::process::root().join(folder), is_integration, ..Suite::default() }
+                .starts_programs()
+        };
+        assert_eq!(found.iter().map(|suite| suite.is_integration).collect::<Vec<_>>(), [true, false, true]);
+        assert_eq!([starts("crates/cli", true), starts("crates/cli", false)], [true, false]);
+        assert_eq!([starts("crates/math", true), starts("xtask", true)], [false, true]);
     }
 
     #[test]

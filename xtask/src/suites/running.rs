@@ -38,6 +38,8 @@ struct Work {
 
 struct Waiting {
     chunks: Vec<Chunk>,
+    /// Those that need all to be built.
+    for_programs: Vec<Chunk>,
     is_open: bool,
 }
 
@@ -47,7 +49,7 @@ impl Running {
         let work = Arc::new(Work {
             options,
             times: Times::read(&times_path()),
-            waiting: Mutex::new(Waiting { chunks: Vec::new(), is_open: true }),
+            waiting: Mutex::new(Waiting { chunks: Vec::new(), for_programs: Vec::new(), is_open: true }),
             changed: Condvar::new(),
             report: Mutex::default(),
         });
@@ -59,11 +61,18 @@ impl Running {
         Running { work, workers }
     }
 
-    /// Runs the tests of the binary that one of cargo's messages is about, if they are asked for.
+    /// Runs the tests of the binary that one of cargo's messages is about, if they are asked for. Those that start a program of their
+    /// package wait for [`Running::finish`]: cargo may build it later.
     pub(crate) fn add(&self, message: &Value) -> Result<()> {
         if let Some(suite) = found::listed(message, &self.work.options.packages)? {
+            let has_program = suite.starts_programs();
             let chunks = chunks::divide(suite, &self.work.times);
-            lock(&self.work.waiting).chunks.extend(chunks);
+            let mut waiting = lock(&self.work.waiting);
+            if has_program {
+                waiting.for_programs.extend(chunks)
+            } else {
+                waiting.chunks.extend(chunks)
+            }
             self.work.changed.notify_all();
         }
         Ok(())
@@ -91,7 +100,11 @@ impl Running {
     }
 
     fn close(&mut self) {
-        lock(&self.work.waiting).is_open = false;
+        let mut waiting = lock(&self.work.waiting);
+        let more = std::mem::take(&mut waiting.for_programs);
+        waiting.chunks.extend(more);
+        waiting.is_open = false;
+        drop(waiting);
         self.work.changed.notify_all();
         self.workers.drain(..).for_each(|worker| drop(worker.join()));
     }
@@ -100,7 +113,9 @@ impl Running {
 /// Where the build has failed, what has not begun does not.
 impl Drop for Running {
     fn drop(&mut self) {
-        lock(&self.work.waiting).chunks.clear();
+        let mut waiting = lock(&self.work.waiting);
+        (waiting.chunks, waiting.for_programs) = (Vec::new(), Vec::new());
+        drop(waiting);
         self.close();
     }
 }
