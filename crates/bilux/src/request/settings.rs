@@ -13,7 +13,7 @@ settings! {
     time_limit: f32,
     /// The seed of the random numbers; a different seed gives different noise; default `0`.
     seed: u64,
-    /// Maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only; default `16`.
+    /// Maximum number of scattering events after the camera; those inside skin and milk do not count; 0 is emission only; 100 with `fog`, if nothing is said; default `16`.
     max_depth: u32,
     /// Number of threads; 0 uses all cores; default `0`.
     threads: u32,
