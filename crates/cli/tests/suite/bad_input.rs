@@ -49,8 +49,8 @@ fn files_that_are_not_scenes_are_refused_in_one_sentence() {
     refused("empty.obj", &["empty.obj: the file is empty"]);
     refused("cut.obj", &["cut.obj:3:6: this line has 2 numbers, but needs 3", "cut off"]);
     refused("cut.asc", &["cut.asc:4:1: this vertex has 4 numbers", "cut off"]);
-    refused("program.asc", &["not plain text"]);
-    refused("program.obj", &["program.obj:1:1: this file is not plain text"]);
+    refused("program.asc", &["program.asc: this is a program, which is not a scene"]);
+    refused("program.obj", &["program.obj: this is a program, which is not a scene"]);
     refused("index.obj", &["index.obj:4:1: this face refers to vertex 9, but the file has only 3"]);
     refused("picture.gif", &["picture.gif: this is a GIF picture, not a scene", "convert it to PNG"]);
     assert!(!path.join("out.png").exists());
