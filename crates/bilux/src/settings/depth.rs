@@ -25,7 +25,7 @@ mod tests {
             Settings::resolve(&all).unwrap().max_depth
         };
         let (fog, none) = (("fog", Value::Number(3.0)), ("fog", Value::Number(0.0)));
-        assert_eq!([depth(&[]), depth(&[none]), depth(&[fog.clone()])], [16, 16, 100]);
+        assert_eq!([depth(&[]), depth(&[none]), depth(std::slice::from_ref(&fog))], [16, 16, 100]);
         assert_eq!(depth(&[("max_depth", Value::Integer(7)), fog]), 7);
     }
 }
