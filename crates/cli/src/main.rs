@@ -100,7 +100,14 @@ fn run(arguments: Arguments) -> anyhow::Result<u8> {
 
 /// Prints help or the version to standard output, or what is wrong with the command line to standard error.
 fn print_answer(answer: &clap::Error) -> anyhow::Result<u8> {
-    let printed = answer.print().and_then(|()| std::io::stdout().flush());
+    let text = answer.render();
+    let printed = match (output::calls_itself_dumb(), answer.use_stderr()) {
+        // The library would colour its text where the variable CI is set, whatever the terminal says.
+        (true, true) => write!(std::io::stderr(), "{text}"),
+        (true, false) => write!(std::io::stdout(), "{text}"),
+        _ => answer.print(),
+    };
+    let printed = printed.and_then(|()| std::io::stdout().flush());
     // If standard error is closed, there is nowhere to report the failure.
     if !answer.use_stderr() {
         printed.map_err(output::PrintError)?;

@@ -149,7 +149,12 @@ fn allowing([needed, limit]: [u64; 2]) -> Option<String> {
 
 /// True if standard error is a terminal that moves its cursor and has colours, which one that calls itself dumb does not.
 pub fn is_capable_terminal() -> bool {
-    io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+    io::stderr().is_terminal() && !calls_itself_dumb()
+}
+
+/// True if the terminal says that it knows no codes for colours.
+pub fn calls_itself_dumb() -> bool {
+    std::env::var_os("TERM").is_some_and(|term| term == "dumb")
 }
 
 /// Bold and coloured on a terminal, unless `NO_COLOR` is set.

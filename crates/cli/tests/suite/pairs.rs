@@ -163,7 +163,7 @@ fn every_option_works_with_every_other_or_says_why_not() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     // All with a sandbox, which takes files away; and of all others some, in turn.
     let works: Vec<_> = values.iter().filter(|(name, _)| !REFUSED.contains(name)).collect();
-    let step = effort(7, 1);
+    let step = effort(14, 1);
     let mut pairs = Vec::new();
     for (i, one) in works.iter().enumerate() {
         for (j, other) in works.iter().enumerate().skip(i + 1) {

@@ -127,7 +127,10 @@ fn terminals_get_no_pictures_and_only_what_they_understand() {
     let broken = "render missing.toml -o a.png";
     assert!(!on_terminal(broken, [("TERM", "xterm"), ("NO_COLOR", "1")]).contains('\x1b'));
     assert!(!on_terminal(broken, [("TERM", "dumb"), ("NO_COLOR", "")]).contains('\x1b'));
-    assert!(!on_terminal("rendr", [("TERM", "dumb"), ("NO_COLOR", "")]).contains('\x1b'));
+    // The variable CI, which continuous integration sets, is no terminal either.
+    for line in ["rendr", "--help", "info"] {
+        assert!(!on_terminal(line, [("TERM", "dumb"), ("CI", "true")]).contains('\x1b'), "{line}");
+    }
 }
 
 #[test]

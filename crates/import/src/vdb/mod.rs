@@ -1,6 +1,7 @@
 //! OpenVDB and NanoVDB: smoke, clouds and fire as trees of voxels. See `docs/formats/vdb.md`. [Museth 2013; Museth 2021]
 
 mod archive;
+mod found;
 mod level_sets;
 mod maps;
 mod nano;

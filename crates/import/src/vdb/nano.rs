@@ -1,11 +1,12 @@
 //! NanoVDB: the same trees, laid out in memory as they are in the file. [Museth 2021]
 
+use super::found::Found;
 use super::level_sets::LEVEL_SET;
 use super::nano_tree::{GRID, Numbers, Tree, leaf};
 use super::packing::{unblosc, unzip};
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::grids::{Bytes, Catalogue, LeafValues, Listed, Placed, ReadLeaf, Sparse, Volume};
+use crate::grids::{Bytes, Catalogue, LeafValues, Listed, Placed, ReadLeaf, Volume};
 use crate::reading::Source;
 use bilux_math::{DMat3, DMat4, DVec3};
 use bilux_scene::Mesh;
@@ -146,11 +147,7 @@ pub(super) fn list(source: &Source) -> Result<Catalogue, FormatError> {
 }
 
 pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
-    with_tree(source, listed, budget, |Found { sparse, placed, background, bytes }, budget, leaf| {
-        let volume = sparse.into_volume(&placed, source, budget, leaf)?;
-        let volume = volume.ok_or_else(|| bytes.fail("it has no voxels with values"))?;
-        Ok(Volume { background, ..volume })
-    })
+    with_tree(source, listed, budget, |found, budget, leaf| found.volume(source, budget, leaf))
 }
 
 pub(super) fn surface(
@@ -158,17 +155,7 @@ pub(super) fn surface(
     listed: &Listed,
     budget: &mut Budget,
 ) -> Result<Option<Mesh>, FormatError> {
-    with_tree(source, listed, budget, |found, budget, leaf| {
-        found.sparse.into_surface(&found.placed, source, budget, leaf)
-    })
-}
-
-/// What is in a grid.
-struct Found<'a> {
-    sparse: Sparse,
-    placed: Placed<'a>,
-    background: f32,
-    bytes: Bytes<'a>,
+    with_tree(source, listed, budget, |found, budget, leaf| found.surface(source, budget, leaf))
 }
 
 /// Reads the tree of a grid, and makes something of it.
@@ -197,7 +184,7 @@ fn with_tree<T>(
     let placed = Placed { name: &listed.name, map };
     let (sparse, background) = Tree::follow(bytes, numbers, source, budget)?;
     let mut values = |at: usize, values: &mut LeafValues| leaf(bytes, at, numbers, background, values);
-    make(Found { sparse, placed, background, bytes }, budget, &mut values)
+    make(Found { sparse, placed, background }, budget, &mut values)
 }
 
 /// The bytes of a grid.

@@ -2,6 +2,7 @@
 //! then the values of the leaves in the same order.
 
 use super::archive::{self, find};
+use super::found::Found;
 use super::maps;
 use super::packing::{unblosc, unzip};
 use crate::FormatError;
@@ -32,14 +33,7 @@ struct Encoding {
 }
 
 pub(super) fn read(source: &Source, listed: &Listed, budget: &mut Budget) -> Result<Volume, FormatError> {
-    with_tree(source, listed, budget, |Found { sparse, placed, background }, budget, leaf| {
-        let volume = sparse.into_volume(&placed, source, budget, leaf)?;
-        let volume = volume.ok_or_else(|| {
-            let message = format!("the grid '{}' has no voxels with values", listed.name);
-            Bytes::new(source.bytes, source.name).fail(message)
-        })?;
-        Ok(Volume { background, ..volume })
-    })
+    with_tree(source, listed, budget, |found, budget, leaf| found.volume(source, budget, leaf))
 }
 
 pub(super) fn surface(
@@ -47,16 +41,7 @@ pub(super) fn surface(
     listed: &Listed,
     budget: &mut Budget,
 ) -> Result<Option<Mesh>, FormatError> {
-    with_tree(source, listed, budget, |found, budget, leaf| {
-        found.sparse.into_surface(&found.placed, source, budget, leaf)
-    })
-}
-
-/// What is in a grid.
-struct Found<'a> {
-    sparse: Sparse,
-    placed: Placed<'a>,
-    background: f32,
+    with_tree(source, listed, budget, |found, budget, leaf| found.surface(source, budget, leaf))
 }
 
 /// Reads the tree of a grid, and makes something of it.

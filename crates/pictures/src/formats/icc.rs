@@ -12,7 +12,7 @@ pub(super) fn colour_space(profile: &[u8]) -> Option<ColourSpace> {
 }
 
 /// What a curve is whose value for half is this: straight, that of sRGB and powers near it, or a power.
-pub(super) fn of_middle(light: f64) -> ColourSpace {
+fn of_middle(light: f64) -> ColourSpace {
     // Half of the sRGB curve is .2140, and half to the power of 2.2 is .2176.
     match light {
         light if (light - 0.5).abs() < 0.01 => ColourSpace::LinearRec709,

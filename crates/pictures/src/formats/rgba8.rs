@@ -95,6 +95,7 @@ impl Interleaved {
     }
 
     /// Turns the picture so that its first row or column becomes the last.
+    #[cfg(feature = "ktx2")]
     pub(super) fn flip(&mut self, columns: bool, rows: bool) {
         let channels = self.channels();
         let row = self.width * channels;

@@ -449,7 +449,8 @@ def _numbered(categories: Sequence[str] | Mapping[str, int], first: int) -> dict
     """The numbers of categories by their names, counted from the first if there are only names."""
     names = list(categories)
     numbers = list(categories.values()) if isinstance(categories, Mapping) else list(range(first, first + len(names)))
-    for kind, values in (("the name", names), ("the number", numbers)):
+    lists: list[tuple[str, Sequence[object]]] = [("the name", names), ("the number", numbers)]
+    for kind, values in lists:
         twice = [one for one in values if values.count(one) > 1]
         if twice:
             raise ValueError(f"categories: {kind} {twice[0]!r} is there twice, but each category has its own")

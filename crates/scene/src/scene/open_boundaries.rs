@@ -35,10 +35,10 @@ pub(super) struct OpenBoundary {
 }
 
 /// A sheet in the world.
-struct Sheet {
+struct Sheet<'a> {
     object: u32,
     area: DVec3,
-    triangles: Vec<[Vec3; 3]>,
+    placed: &'a Placed,
 }
 
 impl OpenBoundaries {
@@ -96,9 +96,9 @@ impl OpenBoundaries {
     }
 }
 
-impl Sheet {
+impl<'a> Sheet<'a> {
     /// That of an object, at time 0; `None` where it is closed or next to that.
-    fn of(object: u32, placed: &Placed) -> Option<Sheet> {
+    fn of(object: u32, placed: &'a Placed) -> Option<Sheet<'a>> {
         let to_world = placed.motion.at(0.0);
         let positions = &placed.mesh.positions;
         let normal = |[a, b, c]: [Vec3; 3]| (b - a).as_dvec3().cross((c - a).as_dvec3());
@@ -108,11 +108,7 @@ impl Sheet {
             let n = normal(corners(triangle));
             (area, all) = (area + n, all + n.length());
         }
-        (area.length() > OPEN * all).then(|| Sheet {
-            object,
-            area,
-            triangles: placed.mesh.triangles.iter().map(|t| t.map(|i| positions[i as usize])).collect(),
-        })
+        (area.length() > OPEN * all).then_some(Sheet { object, area, placed })
     }
 }
 
@@ -124,16 +120,21 @@ impl OpenBoundary {
         if area.length() <= OPEN * all {
             return None;
         }
-        let triangles =
-            || sheets.iter().flat_map(|s| s.triangles.iter().map(|triangle| (s.object, triangle)));
-        let count = triangles().count();
+        let count: usize = sheets.iter().map(|sheet| sheet.placed.mesh.triangles.len()).sum();
         let point = |i: usize| {
-            let (object, [a, b, c]) = triangles().nth((2 * i + 1) * count / (2 * POINTS))?;
+            let mut number = (2 * i + 1) * count / (2 * POINTS);
+            let sheet = sheets.iter().find(|sheet| {
+                let has = number < sheet.placed.mesh.triangles.len();
+                number -= if has { 0 } else { sheet.placed.mesh.triangles.len() };
+                has
+            })?;
+            let mesh = &sheet.placed.mesh;
+            let [a, b, c] = mesh.triangles[number].map(|i| mesh.positions[i as usize]);
             // Not in line with one another, where a few triangles have all of them.
             let u = (i as f32 * 0.618 + 0.3).fract();
             let v = (i as f32 * 0.414 + 0.2).fract();
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-            Some((object, *a + (*b - *a) * u + (*c - *a) * v))
+            Some((sheet.object, a + (b - a) * u + (c - a) * v))
         };
         Some(OpenBoundary { object: sheets[0].object, points: (0..POINTS).filter_map(point).collect() })
     }

@@ -5,6 +5,7 @@ use crate::common::{integrator, put, shoot};
 use bilux_math::Vec3;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Goniometer, IntensityDistribution, Scene, SceneBuilder, Spec};
+use bilux_testing::effort;
 use bilux_transport::RenderSettings;
 use std::sync::Arc;
 
@@ -56,18 +57,22 @@ fn seen(scene: &Scene, name: &str, spp: u32) -> [f64; 2] {
 /// `light` needs no luck to find beams: the others have its mean, and no more than a few times its noise.
 #[test]
 fn beams_in_fog_are_found_by_all() {
-    for (case, lamp, most) in
-        [("6 degrees", spot(6.0), 2.5), ("half a degree", spot(0.5), 4.0), ("measured", measured(), 2.5)]
-    {
+    let names = ["bdpt", "vcm", "auto"];
+    let cases =
+        [("6 degrees", spot(6.0), 2.5), ("half a degree", spot(0.5), 4.0), ("measured", measured(), 2.5)];
+    for (turn, (case, lamp, most)) in cases.into_iter().enumerate() {
         let scene = fog_around(lamp);
         let [wanted, noise] = seen(&scene, "light", 64);
-        for name in ["bdpt", "vcm", "auto"] {
+        // In the short form each lamp by two of the three.
+        for name in
+            names.into_iter().enumerate().filter(|(i, _)| effort(*i != turn, true)).map(|(_, name)| name)
+        {
             let [mean, found] = seen(&scene, name, 16);
             assert!((mean / wanted - 1.0).abs() < 0.05, "{case}, {name}: {mean}, not {wanted}");
             assert!(found < most * 2.0 * noise, "{case}, {name}: noise {found}, of light {noise}");
         }
         // By itself a camera path finds all that is lit at once.
-        let [mean, _] = seen(&scene, "path", 256);
+        let [mean, _] = seen(&scene, "path", effort(128, 256));
         assert!((mean / wanted - 1.0).abs() < 0.1, "{case}, path: {mean}, not {wanted}");
     }
 }

@@ -215,8 +215,8 @@ impl Auto {
         let mut best = 0;
         for (i, set) in SETS.iter().enumerate().skip(1) {
             let (candidate, held) = (&candidates[i], &candidates[best]);
-            let is_seen = !has_beams || !set.merges();
-            let is_better = is_seen && candidate.time_to_error() * WORTH_MORE < held.time_to_error();
+            let is_judged = !has_beams || !set.merges();
+            let is_better = is_judged && candidate.time_to_error() * WORTH_MORE < held.time_to_error();
             let finds_more = held.misses_more_than(candidate);
             let samples_all_light = !candidate.misses_more_than(held);
             if (self.may_merge || !set.merges()) && (finds_more || (is_better && samples_all_light)) {
