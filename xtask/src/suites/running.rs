@@ -183,21 +183,31 @@ mod tests {
         let program = folder.join(format!("early-{}", std::process::id()));
         fs::write(&program, SCRIPT).unwrap();
         fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-        let message = |package: &str| {
-            json!({ "package_id": format!("path+file:///r#{package}@0.1.0"), "manifest_path": folder.join("Cargo.toml"),
+        // A package with a program, whose tests wait.
+        let with_program = folder.join(format!("with-program-{}", std::process::id()));
+        fs::create_dir_all(with_program.join("src/bin")).unwrap();
+        let message_in = |place: &std::path::Path, package: &str| {
+            json!({ "package_id": format!("path+file:///r#{package}@0.1.0"), "manifest_path": place.join("Cargo.toml"),
                 "target": { "kind": ["test"], "name": "suite" }, "profile": { "test": true }, "executable": program })
         };
+        let message = |package: &str| message_in(&folder, package);
         // Its times are not kept.
-        let running = Running::start(Options { packages: vec!["bilux-a".to_owned()], is_long: true });
+        let packages = ["bilux-a", "bilux-c"].map(str::to_owned).to_vec();
+        let running = Running::start(Options { packages, is_long: true });
+        running.add(&message_in(&with_program, "bilux-c")).unwrap();
         running.add(&json!({ "profile": { "test": false } })).unwrap();
         running.add(&message("bilux-b")).unwrap();
         running.add(&message("bilux-a")).unwrap();
         while lock(&running.work.report).passed == 0 {
             thread::sleep(Duration::from_millis(5));
         }
+        thread::sleep(Duration::from_millis(50));
+        assert_eq!(lock(&running.work.report).passed, 1);
         let mut totals = Totals::default();
         let error = running.finish(&mut totals).unwrap_err().to_string();
-        assert_eq!((totals, &*error), (Totals { passed: 1, failed: 1 }, "failed: bilux-a suite b"));
+        let wanted = "failed: bilux-a suite b, bilux-c suite b";
+        assert_eq!((totals, &*error), (Totals { passed: 2, failed: 2 }, wanted));
         fs::remove_file(program).unwrap();
+        fs::remove_dir_all(with_program).unwrap();
     }
 }

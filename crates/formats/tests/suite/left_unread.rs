@@ -3,6 +3,8 @@
 use crate::{read_text, warnings};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{SceneBuilder, Spec};
+use laz::{LasZipCompressor, LazItemRecordBuilder, LazVlr};
+use std::io::Cursor;
 
 /// A triangle whose places and texture coordinates are columns of one array of rows.
 fn collada(array: &str, places: &str, uvs: &str) -> SceneBuilder {
@@ -81,6 +83,35 @@ fn las(format: u8, withheld: &[usize]) -> Vec<u8> {
     file
 }
 
+/// The same with compressed points: a record that says how, and the points after it. [LAS 1.4 R15; Isenburg 2013]
+fn laz(format: u8, withheld: &[usize]) -> Vec<u8> {
+    let plain = las(format, withheld);
+    let (mut file, points) = (plain[..375].to_vec(), &plain[375..]);
+    let items = LazItemRecordBuilder::default_for_point_format_id(format, 0).unwrap();
+    let vlr = LazVlr::from_laz_items(items);
+    let mut content = Vec::new();
+    vlr.write_to(&mut content).unwrap();
+    let mut head = [0u8; 54];
+    head[2..16].copy_from_slice(b"laszip encoded");
+    head[18..20].copy_from_slice(&22204u16.to_le_bytes());
+    head[20..22].copy_from_slice(&(content.len() as u16).to_le_bytes());
+    file.extend(head);
+    file.extend(content);
+    let (header, start) = (375u16, file.len() as u32);
+    file[94..96].copy_from_slice(&header.to_le_bytes());
+    file[96..100].copy_from_slice(&start.to_le_bytes());
+    file[100..104].copy_from_slice(&1u32.to_le_bytes());
+    file[104] |= 0x80;
+    let mut to = Cursor::new(file);
+    to.set_position(u64::from(start));
+    let mut compressor = LasZipCompressor::new(to, vlr).unwrap();
+    for point in points.chunks_exact(points.len() / 3) {
+        compressor.compress_one(point).unwrap();
+    }
+    compressor.done().unwrap();
+    compressor.into_inner().into_inner()
+}
+
 #[test]
 fn withheld_points_of_las_are_left_out() {
     let size = |scene: &SceneBuilder| scene.objects[0].mesh.positions.len();
@@ -92,6 +123,8 @@ fn withheld_points_of_las_are_left_out() {
         assert!(extent.max_element() < 10.0, "{format}: {extent}");
         let said = some.notes.iter().map(|note| &*note.message).collect::<Vec<_>>().join("\n");
         assert!(said.contains("1 points are withheld"), "{format}: {said}");
+        let packed = read_text("las", laz(format, &[1])).unwrap();
+        assert_eq!(packed.objects[0].mesh.positions, some.objects[0].mesh.positions, "{format}");
         let none = read_text("las", las(format, &[0, 1, 2])).unwrap();
         assert_eq!(size(&none), size(&all), "{format}");
     }
