@@ -7,6 +7,10 @@ use crate::interaction::MediumPoint;
 use bilux_math::Vec3;
 use bilux_scene::{Medium, Ray, Scene, Surface, Tracer};
 
+/// The least density of events per metre with which a walk comes to a point that is sampled otherwise. It is a divisor of weights, which are infinite
+/// beside a smaller one; a walk has never been there, and next to no light passes to the point.
+const RAREST: f32 = 1e-20;
+
 impl Media {
     /// A point of the medium around, which scatters, at this distance in metres along a ray of unit direction.
     #[inline]
@@ -24,8 +28,8 @@ impl Media {
     }
 
     /// As if a walk along a ray of unit direction had an event in a medium that has [equiangular points](equiangular), at this distance in metres. `first`
-    /// is the first surface along the ray. `None` where something else is there, or a surface before it. Afterwards these are the media
-    /// there.
+    /// is the first surface along the ray. `None` where something else is there, a surface before it, or so much fog that nothing passes.
+    /// Afterwards these are the media there.
     pub(crate) fn travel_to_fog(
         &mut self,
         tracer: &mut Tracer,
@@ -61,7 +65,7 @@ impl Media {
         let density = passage.arriving(None);
         let weight = passage.transmittance * medium.sigma_s / density;
         let arrival = Arrival::Medium(point);
-        (point.is_equiangular && density > 0.0).then_some(Travelled {
+        (point.is_equiangular && density >= RAREST).then_some(Travelled {
             arrival,
             weight,
             passage,

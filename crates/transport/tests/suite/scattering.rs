@@ -218,6 +218,24 @@ fn fog_beside_a_floor_has_its_points_near_lamps_once() {
     assert_like_path("fog beside a floor", &built(&builder), &["bdpt", "light", "vcm"]);
 }
 
+/// Lamps are so far away in fog that the densities of walks to what is near them run out of numbers.
+#[test]
+fn weights_are_finite_in_fog_that_nothing_passes() {
+    let lamp = |x: f32| Spec::new("", "point").with("position", Vec3::new(x, 1.0, -1.0));
+    let lights = [-30.0, 31.0, 33.0, 0.5].map(|x| lamp(x).with("intensity", 50.0f32)).to_vec();
+    let mut builder = SceneBuilder { lights, ..SceneBuilder::default() };
+    put(&mut builder, "fog", boxed(Vec3::splat(-40.0), Vec3::splat(40.0)), medium(0.0f32, 3.0f32));
+    put(&mut builder, "floor", floor(0.0, 39.0), diffuse(0.5f32));
+    look(&mut builder, Vec3::new(0.0, 0.4, 0.4), Vec3::ZERO, 60.0);
+    let scene = built(&builder);
+    for name in ["path", "bdpt", "vcm", "light"] {
+        let film = shoot(&scene, &*integrator(name), &RenderSettings::new(24, 24, 2)).film;
+        let failures = film.sample_failures();
+        assert_eq!(failures.non_finite, 0, "{name}: {:?}", failures.first_non_finite);
+        assert!(film.to_rgb().iter().any(|pixel| pixel.g > 0.0), "{name} sees nothing");
+    }
+}
+
 /// Light that a glass ball casts into fog, seen in the ball: beams find it, and paths that happen to hit the large lamp.
 #[test]
 fn light_that_glass_casts_into_fog_is_as_bright_seen_through_the_glass() {

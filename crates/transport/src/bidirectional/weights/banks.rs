@@ -1,7 +1,7 @@
 //! Weights where fog does not fill the scene: rays come into it away from where they begin.
 
 use super::path::Flaw;
-use super::{FOG, GREY_FOG, Verdict, cameras, filled, sets, verdict, verdict_in};
+use super::{FOG, GREY_FOG, Verdict, cameras, filled, foggy, sets, verdict, verdict_in};
 use crate::shapes;
 use crate::techniques::TechniqueCounts;
 use bilux_math::{Aabb, Vec3};
@@ -35,4 +35,16 @@ fn every_mis_weight_matches_its_definition_in_banks_of_fog() {
         let Verdict { compared, wrong, .. } = verdict(&scene, &techniques, Flaw::None, extinction);
         assert!(wrong > compared / 20, "only {wrong} of {compared} weights differ");
     }
+}
+
+/// A hundred mean free paths and more lie between bodies and lamps: 32-bit numbers run out where the densities of walks are divisors. An exponent of a
+/// hundred is rounded by some 10⁻⁵.
+#[test]
+fn every_mis_weight_matches_its_definition_in_fog_that_nothing_passes() {
+    let thick = GREY_FOG.map(|coefficient| coefficient * 150.0);
+    let scene = foggy(&["point", "rect"], &cameras()[0], Spec::new("", "interface"), thick);
+    let Verdict { compared, wrong, worst, telling, .. } =
+        verdict(&scene, &sets()[0], Flaw::None, Some(thick[0] + thick[1]));
+    assert!(worst < 1e-5, "{wrong} of {compared} weights are wrong, by up to {worst}");
+    assert!(compared > 3000 && telling[6] > 200, "{telling:?}");
 }

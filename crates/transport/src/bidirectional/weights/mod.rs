@@ -65,7 +65,7 @@ impl Verdict {
         self.compared += 1;
         // NaN counts as wrong.
         self.wrong += usize::from(error.is_nan() || error > path.tolerance());
-        self.worst = self.worst.max(error);
+        self.worst = if error.is_nan() { f64::INFINITY } else { self.worst.max(error) };
         let kind = match key {
             (true, 1) => 6,
             (true, i) => 4 + usize::from(path.nodes[i - 2].at.is_in_medium()),
