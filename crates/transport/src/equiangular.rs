@@ -4,7 +4,8 @@
 //! camera subpath has such a point for each light that is sampled, which is connected with that light as an event of the walk is. Which point of the
 //! light is sampled depends on the point of fog alone, so the two ways to this differ in their densities along the ray only, and are weighted by them.
 //!
-//! Rays that leave a point of a medium have none: they are the most in thick fog, and gain the least there.
+//! Rays that leave a point of a medium have none, for they are the most in thick fog, and gain the least there. Where a lamp shines into a
+//! cone, `path` has them on those that meet it: few of its walks have an event in a narrow cone, and nothing else finds what is lit there.
 //!
 //! The angle goes on to infinity, whatever is behind the ray: the density depends on the ray's start, its direction and the light, which other
 //! techniques know too.
@@ -44,11 +45,16 @@ struct InBeam {
 const CLOSEST: f32 = 1e-3;
 
 impl Equiangular {
-    /// On a ray from `origin` along a unit vector; `None` for lights that are infinitely far away, and where the ray meets none of a
-    /// light.
+    /// On a ray; `None` for lights that are infinitely far away, and where the ray meets none of a light, or leaves a medium and does
+    /// not meet the light's beam.
     #[inline]
-    pub(crate) fn new(scene: &Scene, light: usize, origin: Vec3, direction: Vec3) -> Option<Equiangular> {
+    pub(crate) fn new(scene: &Scene, light: usize, ray: &Departure) -> Option<Equiangular> {
+        let Departure { origin, direction, leaves_medium } = *ray;
         let light = &scene.lights().get(light)?.light;
+        let beam = light.beam();
+        if leaves_medium && beam.is_none() {
+            return None;
+        }
         let (middle, reach) = light.middle_and_reach()?;
         let to_light = middle - origin;
         let nearest = to_light.dot(direction);
@@ -56,10 +62,10 @@ impl Equiangular {
         let apart = ((to_light - direction * nearest).length_squared() + clearance).sqrt();
         let begin = -atan(nearest / apart);
         let mut points = Equiangular { nearest, apart, begin, angle: FRAC_PI_2 - begin, in_beam: None };
-        if let Some(beam) = light.beam() {
+        if let Some(beam) = beam {
             points.in_beam =
                 beam.along(-to_light, direction).and_then(|ends| points.between(ends, beam.share));
-            if points.in_beam.is_none() && beam.share == 1.0 {
+            if points.in_beam.is_none() && (beam.share == 1.0 || leaves_medium) {
                 return None;
             }
         }
@@ -98,6 +104,16 @@ impl Equiangular {
     }
 }
 
+/// A ray of a camera subpath as it begins: where its points are depends on nothing else.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Departure {
+    pub(crate) origin: Vec3,
+    /// A unit vector.
+    pub(crate) direction: Vec3,
+    /// It comes from a point of a medium.
+    pub(crate) leaves_medium: bool,
+}
+
 /// An equiangular point, and how it is to be connected.
 pub(crate) struct EquiangularSample {
     pub(crate) light: usize,
@@ -113,9 +129,7 @@ pub(crate) struct EquiangularSample {
 /// How a ray of a camera subpath came to a point of fog.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
-    /// Where it began, and its unit direction.
-    pub(crate) origin: Vec3,
-    pub(crate) direction: Vec3,
+    pub(crate) ray: Departure,
     /// The distance, in metres.
     pub(crate) t: f32,
     /// The density per metre with which a walk has an event there.
@@ -125,16 +139,16 @@ pub(crate) struct Approach {
 impl Approach {
     /// To a vertex, from along `wo`; `None` where there are no equiangular points.
     #[inline]
-    pub(crate) fn of(at: &Interaction, wo: Vec3, by_walk: f32) -> Option<Approach> {
+    pub(crate) fn of(at: &Interaction, wo: Vec3, leaves_medium: bool, by_walk: f32) -> Option<Approach> {
         let Interaction::Medium(point) = at else { return None };
-        let origin = point.p + wo * point.t;
-        point.is_equiangular.then_some(Approach { origin, direction: -wo, t: point.t, by_walk })
+        let ray = Departure { origin: point.p + wo * point.t, direction: -wo, leaves_medium };
+        point.is_equiangular.then_some(Approach { ray, t: point.t, by_walk })
     }
 
     /// How many equiangular points of this light are there, for each event of a walk.
     #[inline]
     pub(crate) fn ratio(&self, scene: &Scene, light: usize) -> f32 {
-        density(scene, light, self.origin, self.direction, self.t) / self.by_walk
+        density(scene, light, &self.ray, self.t) / self.by_walk
     }
 }
 
@@ -152,14 +166,16 @@ impl<const N: usize> Lit<N> {
     /// light; over the density with which a light subpath arrives where the ray begins.
     #[inline]
     pub(crate) fn picked(&self, scene: &Scene, along: Vec3, distance: f32) -> PerSet<N> {
-        self.connected * density(scene, self.light, self.p - along * distance, along, distance)
+        let origin = self.p - along * distance;
+        let ray = Departure { origin, direction: along, leaves_medium: false };
+        self.connected * density(scene, self.light, &ray, distance)
     }
 }
 
 /// The density per metre of a light's equiangular points on a ray; 0 for an infinite light.
 #[inline]
-pub(crate) fn density(scene: &Scene, light: usize, origin: Vec3, direction: Vec3, t: f32) -> f32 {
-    Equiangular::new(scene, light, origin, direction).map_or(0.0, |points| points.density(t))
+pub(crate) fn density(scene: &Scene, light: usize, ray: &Departure, t: f32) -> f32 {
+    Equiangular::new(scene, light, ray).map_or(0.0, |points| points.density(t))
 }
 
 /// Whether rays have such points in a scene: where distances are coloured, their densities are not those of one channel.
@@ -194,7 +210,8 @@ mod tests {
         for (light, (origin, direction)) in
             rays.map(|ray| (0, ray)).into_iter().chain(in_cone.map(|ray| (1, ray)))
         {
-            let points = Equiangular::new(&scene, light, origin, direction).unwrap();
+            let ray = Departure { origin, direction, leaves_medium: light == 1 };
+            let points = Equiangular::new(&scene, light, &ray).unwrap();
             // The inverse of the cumulative distribution: its slope is one over the density.
             for i in 1..200 {
                 let u = i as f32 / 200.0;
@@ -207,7 +224,10 @@ mod tests {
             let first = points.in_beam.as_ref().map_or(0.0, |part| part.ends[0]);
             assert!((points.sample(0.0) - first).abs() < 1e-3);
         }
-        // A ray that passes the cone has none.
-        assert!(Equiangular::new(&scene, 1, Vec3::new(-3.0, 3.0, 0.0), Vec3::X).is_none());
+        // A ray that passes the cone has none, nor has one that leaves a medium and meets no cone.
+        let ray = Departure { origin: Vec3::new(-3.0, 3.0, 0.0), direction: Vec3::X, leaves_medium: false };
+        assert!(Equiangular::new(&scene, 1, &ray).is_none());
+        assert!(Equiangular::new(&scene, 0, &ray).is_some());
+        assert!(Equiangular::new(&scene, 0, &Departure { leaves_medium: true, ..ray }).is_none());
     }
 }

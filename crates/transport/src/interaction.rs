@@ -4,7 +4,7 @@
 //! a medium, without. [Pauly 2000]
 
 use crate::ball::Ball;
-use crate::techniques::{PerSet, TechniqueCounts};
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use crate::way::Place;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, LightSample, Phase, Ray, Surface, TransportMode};
@@ -151,10 +151,12 @@ impl Interaction {
         }
     }
 
-    /// Whether light subpaths are connected with the camera here, and merged, where they come straight from a light.
+    /// How light subpaths find light here where they come straight from a light.
     #[inline]
-    pub(crate) fn finds_direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> bool {
-        techniques.direct || (self.is_in_medium() && !self.is_equiangular())
+    pub(crate) fn direct_light<const N: usize>(&self, techniques: &TechniqueCounts<N>) -> DirectLight {
+        let is_in_medium = self.is_in_medium();
+        let merges = techniques.direct || (is_in_medium && !self.is_equiangular());
+        DirectLight { splats: merges || (is_in_medium && techniques.splats_cones), merges }
     }
 
     /// What the lengths of paths that come along `wo` need of it.

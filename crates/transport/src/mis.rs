@@ -1,7 +1,7 @@
 //! What a subpath carries along for the weights of its techniques.
 
 use crate::limits::MAX_CONNECTED_ROW;
-use crate::techniques::{PerSet, TechniqueCounts};
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 
 /// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
@@ -88,15 +88,15 @@ impl<const N: usize> Partial<N> {
         self.except_direct = self.except_direct * ratio;
     }
 
-    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `finds_direct` is
-    /// whether light subpaths [find direct light](crate::interaction::Interaction::finds_direct_light) here; `row` is the number of events in a row in
+    /// Leaves under the cosine `cos` (1 in a medium), with the forward and reverse densities; `None` for a delta event. `direct` is
+    /// how light subpaths [find direct light](crate::interaction::Interaction::direct_light) here; `row` is the number of events in a row in
     /// media, up to this one; `sine` is that of the [angle](crate::interaction::Interaction::sine) here.
     pub(crate) fn leave(
         &mut self,
         cos: f32,
         sine: f32,
         pdfs: Option<(f32, f32)>,
-        finds_direct: bool,
+        direct: DirectLight,
         row: u32,
     ) {
         match pdfs {
@@ -106,9 +106,12 @@ impl<const N: usize> Partial<N> {
                 self.except_direct = PerSet::ZERO;
             }
             Some((pdf, pdf_back)) => {
-                let found = (self.merged * sine + self.splatted) * (cos / pdf);
-                let [always, except_direct] =
-                    if finds_direct { [found, PerSet::ZERO] } else { [PerSet::ZERO, found] };
+                let merged = self.merged * sine;
+                let found = |by: DirectLight| match by {
+                    DirectLight::NONE => PerSet::ZERO,
+                    by => self.found(merged, by) * (cos / pdf),
+                };
+                let [always, except_direct] = [found(direct), found(direct.others())];
                 if row > 0 {
                     let connected = if row == 1 { self.connected } else { PerSet::ZERO };
                     let settled = (self.settled + self.except_direct) * pdf_back + connected;
@@ -136,12 +139,19 @@ impl<const N: usize> Partial<N> {
         pdf_area: f32,
         pdf_back: f32,
         sine: f32,
-        finds_direct: bool,
+        direct: DirectLight,
     ) -> PerSet<N> {
-        if finds_direct {
+        if direct == DirectLight::ALL {
             return self.others(pdf_area, pdf_back, sine);
         }
-        (self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
+        let found = self.found(self.merged * sine, direct);
+        (found + self.connected + (self.d_vc + self.except_direct) * pdf_back) * pdf_area
+    }
+
+    /// How often these find the vertex, where `merged` is how often merging does.
+    fn found(&self, merged: PerSet<N>, direct: DirectLight) -> PerSet<N> {
+        let counted = |counts: PerSet<N>, is_one| if is_one { counts } else { PerSet::ZERO };
+        counted(merged, direct.merges) + counted(self.splatted, direct.splats)
     }
 
     /// The same over the density of finding this vertex, without merging here.

@@ -1,6 +1,6 @@
 //! Traces the light subpaths of one iteration, whose vertices are kept as photons.
 
-use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex, is_connectible};
+use crate::bidirectional::{BATCH, LightPaths, QueuedSample, Vertex};
 use crate::camera_rays::CameraRays;
 use crate::failures::SamplePlace;
 use crate::photons::{MergeCounts, Merging, PhotonPaths, PhotonWalk, Photons, TracedPhotons};
@@ -103,6 +103,7 @@ impl<const N: usize> Photons<N> {
         let (radius, mut techniques) = (merging.radius(scene, iteration), techniques(&followed.counts));
         // Of many lights one is sampled, seldom the nearest, which photons find by themselves.
         techniques.direct |= !eye.context.lights.takes_all();
+        techniques.splats_cones |= eye.context.lights.has_beams();
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut traced = TracedPhotons::NONE;
@@ -143,7 +144,9 @@ impl<const N: usize> Photons<N> {
                         traced.walks.extend(paths.of(i).filter(is_kept).map(walk));
                     }
                     if has_points(places[i]) {
-                        let is_kept = |vertex: &&Vertex<N>| is_connectible(vertex, &techniques);
+                        let is_kept = |vertex: &&Vertex<N>| {
+                            vertex.depth > 0 || vertex.at.direct_light(&techniques).merges
+                        };
                         let point = |vertex: &Vertex<N>| vertex.medium_photon(scene, channel);
                         traced.points.extend(paths.of(i).filter(is_kept).filter_map(point));
                     }

@@ -36,6 +36,29 @@ pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
     /// heuristic gives photons too much weight. In other media, close to a light, such a point is noise.
     pub(crate) direct: bool,
+    /// Light subpaths are connected with the camera also where they come straight from a light into media with equiangular points, and not merged
+    /// there: some lamp shines into a cone. Of what is lit in a narrow one, points on rays find little, and splats find all.
+    pub(crate) splats_cones: bool,
+}
+
+/// By which techniques light subpaths find light that comes straight from a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DirectLight {
+    /// They are connected with the camera.
+    pub(crate) splats: bool,
+    /// They are merged with camera subpaths.
+    pub(crate) merges: bool,
+}
+
+impl DirectLight {
+    /// By all that they have.
+    pub(crate) const ALL: DirectLight = DirectLight { splats: true, merges: true };
+    pub(crate) const NONE: DirectLight = DirectLight { splats: false, merges: false };
+
+    /// By those that these are not.
+    pub(crate) fn others(self) -> DirectLight {
+        DirectLight { splats: !self.splats, merges: !self.merges }
+    }
 }
 
 /// The [origin](Contribution::origin), where light is sorted by lights, of what comes from none of them: from media, and from surfaces that are
@@ -151,6 +174,7 @@ impl TechniqueCounts {
         points: PerSet([0.0]),
         radius: 0.0,
         direct: true,
+        splats_cones: false,
     };
     /// With or without splats, and with or without connections.
     pub(crate) fn with_splats_and_connections(splats: bool, connections: bool) -> TechniqueCounts {
@@ -183,6 +207,7 @@ impl<const N: usize> TechniqueCounts<N> {
             points: PerSet::ZERO,
             radius: 0.0,
             direct: true,
+            splats_cones: false,
         };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
@@ -190,6 +215,7 @@ impl<const N: usize> TechniqueCounts<N> {
             (all.eta.0[k], all.beams.0[k]) = (set.eta.0[0], set.beams.0[0]);
             all.points.0[k] = set.points.0[0];
             (all.densest, all.radius, all.direct) = (set.densest, set.radius, set.direct);
+            all.splats_cones = set.splats_cones;
         }
         all
     }

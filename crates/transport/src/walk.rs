@@ -1,6 +1,6 @@
 //! A random walk: what every path has while it grows, from whichever end.
 
-use crate::equiangular::{Equiangular, EquiangularSample};
+use crate::equiangular::{Departure, Equiangular, EquiangularSample};
 use crate::interaction::Interaction;
 use crate::limits::Events;
 use crate::media::{Media, MediumPart, Travelled};
@@ -155,13 +155,17 @@ impl Walk {
         if !self.events().and(false).are_within(task.context.max_depth) {
             return;
         }
-        let (origin, direction) = (Vec3::from(self.ray.origin), Vec3::from(self.ray.direction));
+        let ray = Departure {
+            origin: Vec3::from(self.ray.origin),
+            direction: Vec3::from(self.ray.direction),
+            leaves_medium: self.leaves_medium,
+        };
         task.sample.enter_equiangular(self.depth);
         let u = task.sample.sampler.next_1d();
         let lights = &task.context.lights;
         for (light, probability) in lights.sample(u, None) {
             let (u, u_light) = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
-            if let Some(points) = Equiangular::new(task.context.scene, light, origin, direction) {
+            if let Some(points) = Equiangular::new(task.context.scene, light, &ray) {
                 let distance = points.sample(u);
                 visit(task, EquiangularSample { light, probability, points, distance, u_light });
             }

@@ -150,7 +150,7 @@ pub(crate) fn to_light<const N: usize>(
         arriving,
         back,
         z.at.sine(z.wo, sample.wi, techniques),
-        z.at.finds_direct_light(techniques),
+        z.at.direct_light(techniques),
     );
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());

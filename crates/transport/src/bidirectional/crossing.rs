@@ -2,7 +2,7 @@
 
 use super::vertex::count;
 use crate::beam::{Beam, Crossing, medium_of};
-use crate::equiangular::{self, Approach};
+use crate::equiangular::{self, Approach, Departure};
 use crate::photon_beams::PhotonBeams;
 use crate::task::Task;
 use crate::techniques::{Contribution, Technique, TechniqueCounts};
@@ -42,12 +42,12 @@ pub(crate) fn crossed<const N: usize>(
         let mut from_light = y.at(scene, &medium, along_y, None, techniques);
         if let (Some(start), true) = (light.start, is_equiangular && !eye.leaves_medium) {
             let Crossing { distance, by_walk, .. } = from_camera;
-            let approach = Approach {
+            let ray = Departure {
                 origin: Vec3::from(ray.origin),
                 direction: z.line.direction,
-                t: distance,
-                by_walk,
+                leaves_medium: false,
             };
+            let approach = Approach { ray, t: distance, by_walk };
             let also = from_light.partial.connected * approach.ratio(scene, start.light);
             from_light.partial.connected = from_light.partial.connected + also;
         }

@@ -91,9 +91,9 @@ pub(crate) fn connect_to_camera<const N: usize>(
     }
 }
 
-/// Whether light subpaths are connected with the camera at this vertex, and merged.
-pub(crate) fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
-    y.depth > 0 || y.at.finds_direct_light(techniques)
+/// Whether light subpaths are connected with the camera at this vertex.
+fn is_connectible<const N: usize>(y: &Vertex<N>, techniques: &TechniqueCounts<N>) -> bool {
+    y.depth > 0 || y.at.direct_light(techniques).splats
 }
 
 pub(super) fn begin_at_light<'w, const N: usize>(

@@ -33,7 +33,7 @@ pub(crate) use camera_queue::CameraQueue;
 pub(crate) use camera_subpath::CameraSubpath;
 pub(crate) use crossing::crossed;
 pub(crate) use emitters::{emitted, from_infinity};
-pub(crate) use light_paths::{LightPaths, connect_to_camera, is_connectible, light_vertices};
+pub(crate) use light_paths::{LightPaths, connect_to_camera, light_vertices};
 pub(crate) use light_tracing::{LightTracing, LightTracingSamples};
 pub(crate) use merging::merged;
 pub(crate) use queue::{BothEndsQueue, BothEndsSamples};

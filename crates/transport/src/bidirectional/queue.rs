@@ -125,7 +125,8 @@ mod tests {
         let per_set = |often: f32| PerSet([often, 0.0, 2.0 * often]);
         let MergeCounts { densest, radius, .. } = *counts;
         let [eta, beams, points] = [counts.eta, counts.beams, counts.points].map(per_set);
-        TechniqueCounts { splats, connections, eta, beams, densest, points, radius, direct }
+        let splats_cones = false;
+        TechniqueCounts { splats, connections, eta, beams, densest, points, radius, direct, splats_cones }
     }
 
     /// Compares all contributions of all samples, and the steps of all together.

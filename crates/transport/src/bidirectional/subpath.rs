@@ -8,7 +8,7 @@ use crate::interaction::Interaction;
 use crate::media::{Media, MediumPart, Travelled};
 use crate::mis::{Edge, Partial};
 use crate::task::{Context, PathVertex, SampleState, Task, VertexKind};
-use crate::techniques::{PerSet, TechniqueCounts};
+use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::Rgb;
 use bilux_scene::media::Flight;
@@ -210,11 +210,11 @@ impl<'w, const N: usize> Subpath<'w, N> {
         };
         let (wo, t) = (walk.wo(), at.t());
         let edge = Edge { forward: passage.arriving(at.cos(wo)), back };
-        let approach = Approach::of(&at, wo, edge.forward).filter(|_| !walk.leaves_medium);
+        let approach = Approach::of(&at, wo, false, edge.forward).filter(|_| !walk.leaves_medium);
         let distance2 = if self.by_area { 1.0 } else { t * t };
         let connections = if is_at_light { PerSet::ONE } else { self.techniques.connections };
         let straight_from = if is_at_light { self.start.map(|start| start.light) } else { None };
-        let is_left = is_at_light && !at.finds_direct_light(self.techniques);
+        let is_left = is_at_light && !at.direct_light(self.techniques).merges;
         let ball = media.ball(context.scene, &at, self.techniques);
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel, ball) };
         let distance2 = distance2 * self.light_sampling_ratio(context, &at);
@@ -263,14 +263,11 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let cos = at.cos(sample.wi).unwrap_or(1.0);
         let back = || at.pdf_solid_angle(sample.wi, *wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
-        let finds_direct = self.mode == TransportMode::Importance || at.finds_direct_light(self.techniques);
-        self.partial.leave(
-            cos,
-            at.sine(*wo, sample.wi, self.techniques),
-            pdfs,
-            finds_direct,
-            vertex.events.in_row,
-        );
+        let direct = match self.mode {
+            TransportMode::Importance => DirectLight::ALL,
+            TransportMode::Radiance => at.direct_light(self.techniques),
+        };
+        self.partial.leave(cos, at.sine(*wo, sample.wi, self.techniques), pdfs, direct, vertex.events.in_row);
         self.approach = vertex.approach;
         self.lit = vertex.lit(1.0 / sample.pdf_solid_angle);
         self.walk.is_split = vertex.is_split();

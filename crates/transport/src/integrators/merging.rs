@@ -43,7 +43,8 @@ pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to th
 pub(super) const DIRECT: Parameter = Parameter {
     name: "direct",
     summary: "also connect and merge light paths that come straight from a light to a surface or into grey, even fog; in coloured fog and \
-              smoke, and with more than four lights, this is always done",
+              smoke, and with more than four lights, this is always done, and where a lamp shines into a cone through fog they are always \
+              connected with the camera",
     unit: "",
     kind: ParameterKind::Bool,
     default: "false",

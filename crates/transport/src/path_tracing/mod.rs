@@ -1,10 +1,11 @@
 //! Path tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic combines the two.
 //! [Kajiya 1986; Veach 1997, 9.2]
 
+mod fog;
 mod light_connection;
 pub(crate) mod sheet;
 
-use crate::equiangular::{self, Approach, EquiangularSample};
+use crate::equiangular::{self, Approach};
 use crate::interaction::{Interaction, NO_OBJECT};
 use crate::media::{Arrival, Media, Travelled};
 use crate::segment::Segment;
@@ -69,12 +70,11 @@ impl PathTracing {
         loop {
             let (ray, ahead) = path.walk.ahead(task.context.scene, task.sample, TransportMode::Radiance);
             let first = task.tracer.closest(&ray);
-            if let Some(first) = first
-                && self.sampling != Sampling::Scattering
-                && !path.walk.leaves_medium
+            if self.sampling != Sampling::Scattering
+                && (!path.walk.leaves_medium || task.context.lights.has_beams())
                 && equiangular::is_used_in(task.context.scene)
             {
-                self.equiangular(&mut path, first, task);
+                self.equiangular(&mut path, (first, ray.t_max), task);
             }
             let (tracer, mode) = (&mut *task.tracer, TransportMode::Radiance);
             let travelled = path.walk.travel((first, ahead), tracer, task.sample, mode, |_| {});
@@ -133,7 +133,8 @@ impl PathTracing {
         let Some(at) = self.arrive(path, &travelled.arrival, task) else { return false };
         task.sample.reach(|| at.place(wo));
         let by_walk = travelled.passage.arriving(None);
-        let approach = Approach::of(&at, wo, by_walk).filter(|_| !path.walk.leaves_medium);
+        let approach = Approach::of(&at, wo, path.walk.leaves_medium, by_walk)
+            .filter(|approach| !approach.ray.leaves_medium || task.context.lights.has_beams());
         let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
         path.approach = approach;
         let seen = path.walk.seen(task.sample);
@@ -156,26 +157,6 @@ impl PathTracing {
         let at = path.walk.media.interaction(task.context.scene, arrival, &task.sample.wavelength)?;
         path.walk.is_split |= at.splits();
         Some(at)
-    }
-
-    /// Connects the [equiangular points](equiangular) of the path's ray, which hits this surface first, with their lights.
-    fn equiangular(&self, path: &mut Path, first: Surface, task: &mut Task) {
-        let walk = path.walk;
-        walk.each_equiangular(
-            task,
-            |task, EquiangularSample { light, probability, distance, u_light, .. }| {
-                let light = (light, probability);
-                let alike = walk.in_fog(first, distance, task.tracer, task.sample);
-                let Some((alike, Travelled { arrival: Arrival::Medium(point), passage, .. })) = alike else {
-                    return;
-                };
-                let (at, wo) = (Interaction::Medium(point), alike.wo());
-                let approach = Approach::of(&at, wo, passage.arriving(None));
-                let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach };
-                let seen = alike.seen(task.sample);
-                path.light += seen * self.light_sample(task, light, &from, u_light, (alike.depth, seen));
-            },
-        );
     }
 
     /// Collects the light that a surface emits.

@@ -58,21 +58,27 @@ fn seen(scene: &Scene, name: &str, spp: u32) -> [f64; 2] {
 #[test]
 fn beams_in_fog_are_found_by_all() {
     let names = ["bdpt", "vcm", "auto"];
-    let cases =
-        [("6 degrees", spot(6.0), 2.5), ("half a degree", spot(0.5), 4.0), ("measured", measured(), 2.5)];
-    for (turn, (case, lamp, most)) in cases.into_iter().enumerate() {
+    let cases = [
+        ("6 degrees", spot(6.0), [2.5, 1.5]),
+        ("half a degree", spot(0.5), [2.5, 4.0]),
+        ("measured", measured(), [2.5, 1.5]),
+    ];
+    for (turn, (case, lamp, [most, most_of_path])) in cases.into_iter().enumerate() {
         let scene = fog_around(lamp);
         let [wanted, noise] = seen(&scene, "light", 64);
         // In the short form each lamp by two of the three.
         for name in
-            names.into_iter().enumerate().filter(|(i, _)| effort(*i != turn, true)).map(|(_, name)| name)
+            names.into_iter().enumerate().filter(|(i, _)| effort(*i != 2 * turn % 3, true)).map(|(_, name)| name)
         {
             let [mean, found] = seen(&scene, name, 16);
             assert!((mean / wanted - 1.0).abs() < 0.05, "{case}, {name}: {mean}, not {wanted}");
             assert!(found < most * 2.0 * noise, "{case}, {name}: noise {found}, of light {noise}");
         }
-        // By itself a camera path finds all that is lit at once.
-        let [mean, _] = seen(&scene, "path", effort(128, 256));
-        assert!((mean / wanted - 1.0).abs() < 0.1, "{case}, path: {mean}, not {wanted}");
+        // By itself a camera path finds what is lit, at once or after an event elsewhere, by points on its rays.
+        let spp = effort(128, 256);
+        let [mean, found] = seen(&scene, "path", spp);
+        let found = found * f64::from(spp / 16).sqrt();
+        assert!((mean / wanted - 1.0).abs() < 0.05, "{case}, path: {mean}, not {wanted}");
+        assert!(found < most_of_path * 2.0 * noise, "{case}, path: noise {found}, of light {noise}");
     }
 }

@@ -354,6 +354,11 @@ fn densities_in_fog_with_a_factor_left_out_give_other_weights() {
     assert!(wrong > 20, "only {wrong} of {compared} weights know that rows are long");
 }
 
+/// All techniques, but for merging light that comes straight from a light.
+fn splatting_cones() -> TechniqueCounts {
+    TechniqueCounts { direct: false, splats_cones: true, ..sets()[1] }
+}
+
 /// In fog without colour, rays have equiangular points too.
 #[test]
 fn every_mis_weight_matches_its_definition_with_equiangular_points() {
@@ -363,7 +368,7 @@ fn every_mis_weight_matches_its_definition_with_equiangular_points() {
         for camera in [0, 2].map(|camera| cameras()[camera].clone()) {
             let scene = foggy(lights, &camera, Spec::new("", "interface"), GREY_FOG);
             let without_direct = |set: TechniqueCounts| TechniqueCounts { direct: false, ..set };
-            for techniques in [sets()[1], without_direct(sets()[2 + i])] {
+            for techniques in [sets()[1], without_direct(sets()[2 + i]), splatting_cones()] {
                 let Verdict { compared, wrong, worst, telling, .. } =
                     verdict(&scene, &techniques, Flaw::None, extinction);
                 assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
@@ -372,8 +377,14 @@ fn every_mis_weight_matches_its_definition_with_equiangular_points() {
         }
     }
     let scene = foggy(&["rect"], &cameras()[0], Spec::new("", "interface"), GREY_FOG);
-    for flaw in [Flaw::Points, Flaw::WalkedPoints] {
-        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[1], flaw, extinction);
+    let flaws = [
+        (Flaw::Points, sets()[1]),
+        (Flaw::WalkedPoints, sets()[1]),
+        (Flaw::UnseenCones, splatting_cones()),
+        (Flaw::Direct, splatting_cones()),
+    ];
+    for (flaw, techniques) in flaws {
+        let Verdict { compared, wrong, .. } = verdict(&scene, &techniques, flaw, extinction);
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }
 }

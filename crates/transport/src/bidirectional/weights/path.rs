@@ -94,6 +94,8 @@ pub(super) enum Flaw {
     /// Equiangular points are left out, or are as frequent as events of walks.
     Points,
     WalkedPoints,
+    /// Splats of light straight from a light are left out.
+    UnseenCones,
 }
 
 impl Path {
@@ -109,12 +111,14 @@ impl Path {
         let TechniqueCounts { splats, connections, eta, beams, points, .. } = techniques;
         let [splats, connections, eta, beams, points] =
             [splats, connections, eta, beams, points].map(|counts| f64::from(counts.0[0]));
-        // Light subpaths may leave direct light to camera subpaths.
-        let leaves_direct = flaw != Flaw::Direct
+        // Light subpaths may leave direct light to camera subpaths, or merging to splats.
+        let unmerged = flaw != Flaw::Direct
             && match &self.nodes[0].at {
                 Interaction::Surface(..) => !techniques.direct,
                 Interaction::Medium(point) => !techniques.direct && point.is_equiangular,
             };
+        let is_in_fog = self.nodes[0].at.is_in_medium();
+        let leaves_direct = unmerged && !(techniques.splats_cones && is_in_fog && flaw != Flaw::UnseenCones);
         // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
         let mut all = Vec::new();
@@ -141,7 +145,7 @@ impl Path {
         for i in (1..=count).filter(|i| is_open(*i)) {
             let node = &self.nodes[i - 1];
             let copies = match i {
-                1 if leaves_direct => 0.0,
+                1 if unmerged => 0.0,
                 _ if node.at.is_in_medium() => match self.ball(task, node, techniques, flaw) {
                     Some(volume) => points * volume,
                     None => beams * self.crossing(node, flaw),

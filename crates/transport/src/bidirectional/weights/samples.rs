@@ -6,7 +6,7 @@ use crate::beam::Beam;
 use crate::bidirectional::connect::{Connection, to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
-use crate::equiangular::Equiangular;
+use crate::equiangular::{Departure, Equiangular};
 use crate::mis::Partial;
 use crate::photon_beams::PhotonBeams;
 use crate::photon_grid::PhotonPosition;
@@ -42,7 +42,7 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
 fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Traced) {
     let techniques = &{ verdict.techniques };
     let is_seen = |vertex: &Vertex| {
-        !vertex.at.is_delta() && (vertex.depth > 0 || vertex.at.finds_direct_light(techniques))
+        !vertex.at.is_delta() && (vertex.depth > 0 || vertex.at.direct_light(techniques).splats)
     };
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.sample.enter_light_vertex(vertex.depth);
@@ -219,7 +219,7 @@ fn merged_points(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (
     let techniques = &{ verdict.techniques };
     for (a, b) in in_fog(z).into_iter().flat_map(|a| in_fog(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
-        if !is_connectible(light_end, techniques) {
+        if light_end.depth == 0 && !light_end.at.direct_light(techniques).merges {
             continue;
         }
         let photon = light_end.medium_photon(task.context.scene, task.sample.channel);
@@ -318,7 +318,8 @@ fn followed<'w>(
         let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
         for light in 0..task.context.scene.lights().len() {
             let u = task.sample.sampler.next_1d();
-            let Some(angle) = Equiangular::new(task.context.scene, light, origin, direction) else {
+            let departure = Departure { origin, direction, leaves_medium: false };
+            let Some(angle) = Equiangular::new(task.context.scene, light, &departure) else {
                 continue;
             };
             let distance = angle.sample(u);

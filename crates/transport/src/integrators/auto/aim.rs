@@ -46,6 +46,7 @@ fn techniques(own: &MergeCounts, film: &TechniqueCounts, splats: f32) -> Techniq
         points: PerSet([own.points, film.points.0[0], 0.0]),
         radius: film.radius,
         direct: film.direct,
+        splats_cones: film.splats_cones,
     }
 }
 

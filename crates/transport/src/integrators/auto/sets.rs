@@ -65,6 +65,7 @@ impl Set {
             part: merging.part * self.photons,
             techniques: TechniqueCounts {
                 direct: merging.techniques.direct,
+                splats_cones: merging.techniques.splats_cones,
                 ..TechniqueCounts::with_splats_and_connections(self.splats, self.connections)
             },
             ..merging
