@@ -67,9 +67,8 @@ fn beams_in_fog_are_found_by_all() {
         let scene = fog_around(lamp);
         let [wanted, noise] = seen(&scene, "light", 64);
         // In the short form each lamp by two of the three.
-        for name in
-            names.into_iter().enumerate().filter(|(i, _)| effort(*i != 2 * turn % 3, true)).map(|(_, name)| name)
-        {
+        let is_taken = |i: usize| effort(i != 2 * turn % 3, true);
+        for (_, name) in names.into_iter().enumerate().filter(|(i, _)| is_taken(*i)) {
             let [mean, found] = seen(&scene, name, 16);
             assert!((mean / wanted - 1.0).abs() < 0.05, "{case}, {name}: {mean}, not {wanted}");
             assert!(found < most * 2.0 * noise, "{case}, {name}: noise {found}, of light {noise}");
