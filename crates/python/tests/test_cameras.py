@@ -1,5 +1,7 @@
 """Cameras that were calibrated with OpenCV: its own functions are the reference."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -238,6 +240,28 @@ def test_a_camera_that_sees_nothing_is_said():
                 scene.render(size=(32, 24), spp=1, integrator="path")
         else:
             assert not [text for text in warned if "sees none" in text]
+
+
+def test_what_moves_into_the_picture_is_seen():
+    """However small it is there, at the moment that is rendered."""
+    scene = bilux.Scene()
+    number = scene.add_mesh([[-1e-3, -1e-3, 0], [1e-3, -1e-3, 0], [0, 1e-3, 0]], [[0, 1, 2]])
+    places = np.tile(np.eye(4), (2, 1, 1))
+    places[0, 0, 3], places[1, 0, 3] = 90.0, 0.03
+    scene.set_keyframes(number, [0, 2], places)
+    scene.cameras = [bilux.cameras.perspective(position=(0, 0, 5), look_at=(0, 0, 0))]
+    for time, is_said in ((2.0, False), (0.0, True)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            scene.render(size=(32, 24), spp=1, integrator="path", time=time)
+        assert any("sees none" in str(one.message) for one in caught) == is_said, time
+
+
+def test_a_camera_matrix_may_have_any_factor():
+    """Such as one that was multiplied out from homogeneous points: K[2, 2] divides it."""
+    camera, scaled = (bilux.cameras.opencv(matrix, R=pose()[0], t=pose()[1], size=SIZE) for matrix in (K, K * -2.5))
+    points = points_seen(*pose())
+    np.testing.assert_allclose(scaled.project(points), camera.project(points), atol=1e-9)
 
 
 def test_a_camera_without_axes_is_refused_at_once():

@@ -292,6 +292,8 @@ def test_bop_has_poses_and_masks(bop):
         np.testing.assert_array_equal(visible, picture["ids"][..., 0] == number + 1)
         assert not (visible & ~mask).any() and visible.sum() == known["px_count_visib"]
         assert known["visib_fract"] == known["px_count_visib"] / known["px_count_all"]
+        # A valid depth may be that of what hides the object.
+        assert known["px_count_valid"] == np.count_nonzero(depth[mask])
         # The points of the visible surface, taken back into the model by the pose, are on its triangles.
         points = picture["position"][visible] @ eye((1.0, 1.6, 5.0))[:3, :3].T + eye((1.0, 1.6, 5.0))[:3, 3]
         rotation, shift = np.reshape(pose["cam_R_m2c"], (3, 3)), np.array(pose["cam_t_m2c"])
@@ -299,6 +301,7 @@ def test_bop_has_poses_and_masks(bop):
         mesh = scene.mesh(number)
         near = bilux.Accel(mesh.vertices, mesh.triangles).nearest_point(models / 1e3)
         assert near.distance.max(initial=0) < 1e-5
+    assert any(known["px_count_valid"] > known["px_count_visib"] > 0 for known in info["1"])
 
 
 def test_the_bop_toolkit_reads_it(bop):

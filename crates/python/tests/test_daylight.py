@@ -309,6 +309,8 @@ def test_the_figures_of_a_year():
     assert np.allclose(useful, [[0.2, 0.6, 0.2], [0.4, 0.6, 0]])
     assert daylight.annual_sun_exposure(illuminance, 300, 2) == 1.0
     assert daylight.annual_sun_exposure(illuminance, 300, 3) == 0.5
+    # With two intervals in an hour, four of them are two hours.
+    assert [daylight.annual_sun_exposure(illuminance, 300, hours, each=2) for hours in (1, 1.5, 2)] == [1.0, 0.5, 0.0]
     with pytest.raises(ValueError, match="must be"):
         daylight.daylight_autonomy(illuminance, occupied=occupied[1:])
 
@@ -386,6 +388,21 @@ def test_figures_have_the_errors_of_what_they_are_found_from():
     assert np.array_equal(exact.values, daylight.daylight_autonomy(values)) and not exact.errors.any()
     assert daylight.annual_sun_exposure(year, 300, 2).values == pytest.approx(2 / 3)
     assert daylight.useful_daylight_illuminance(year).errors.shape == (3, 3)
+
+
+def test_errors_of_sky_and_sun_in_one_patch_add_up(monkeypatch):
+    """The same samples gave both, so that they are off together; other patches are off on their own."""
+    sky = np.array([[0.0, 0.0], [3.0, 1.0], [0.0, 2.0]])
+    sun = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 5.0]])
+    whole = bilux.Measured(np.array([[0.0, 0.5, 0.25]]), np.array([[0.0, 0.1, 0.2]]))
+    reflected = bilux.Measured(np.array([[0.0, 0.3, 0.125]]), np.array([[0.0, 0.2, 0.05]]))
+    monkeypatch.setattr(daylight, "_coefficients", lambda *_: (whole, reflected))
+    monkeypatch.setattr(daylight, "sky_matrix", lambda *_, sky=True, sun=True, albedo: tables[sky])
+    monkeypatch.setattr(daylight, "direct_sunlight", lambda *_, **__: np.array([[7.0, 9.0]]))
+    tables = {True: sky, False: sun}
+    year = daylight.annual_illuminance(bilux.Scene(), [[0, 0, 0]], None)
+    np.testing.assert_allclose(year.values, [[0.5 * 3 + 0.3 * 4 + 7, 0.5 + 0.25 * 2 + 0.125 * 5 + 9]])
+    np.testing.assert_allclose(year.errors, [[0.1 * 3 + 0.2 * 4, np.hypot(0.1, 0.2 * 2 + 0.05 * 5)]])
 
 
 # Glare

@@ -343,6 +343,18 @@ mod tests {
                 let [lamps, others] = [of(0..4), of(4..6)];
                 assert!((lamps + others - 1.0).abs() < 1e-5, "{lamps} and {others}");
                 assert!(lamps.min(others) > 0.99 / 64.0, "{powers:?}: {lamps} and {others}");
+                let mut counts = [0; 6];
+                for i in 0..20_000 {
+                    let (light, _) = choice.sample((i as f32 + 0.5) / 20_000.0, at).next().unwrap();
+                    counts[light] += 1;
+                }
+                for (light, n) in counts.into_iter().enumerate() {
+                    let said = choice.probability(light, at);
+                    assert!(
+                        (n as f32 / 20_000.0 - said).abs() < 5e-4,
+                        "{powers:?}, light {light}: {n}, {said}"
+                    );
+                }
             }
         }
     }

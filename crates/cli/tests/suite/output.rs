@@ -131,6 +131,14 @@ fn jpeg_and_webp_hold_the_picture() {
     assert!(fine < 0.01 && fine < coarse && coarse < 0.1, "{fine} {coarse}");
     let size = |name: &str| fs::metadata(path.join(name)).unwrap().len();
     assert!(size("q20.jpg") < size("q95.jpg"));
+    // On standard output the format is stated, and has its quality.
+    let piped = |quality: u8| {
+        let options = format!("convert a.png -o - --output-format jpeg --quality {quality}");
+        let output = bilux(path, &options).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout.len()
+    };
+    assert!(piped(20) < piped(95));
     assert_done(path, "convert a.png -o b.webp");
     assert_eq!(fs::read(path.join("b.webp")).unwrap(), fs::read(path.join("a.webp")).unwrap());
 }

@@ -111,19 +111,27 @@ fn every_line_gets_its_result_and_pictures_are_those_of_render() {
 
 #[test]
 fn a_job_that_takes_too_long_is_stopped_and_the_next_is_not() {
-    let folder = folder();
-    let path = folder.path();
-    let long = json!({ "spp": 4_000_000, "size": "100x100", "timeout": 0.5 });
-    let lines =
-        [job(1, "a/card.obj", long), job(2, "a/card.obj", json!({})), job(3, "a/card.obj", json!({}))];
-    let begun = Instant::now();
-    let results = results(path, &["--timeout", "60"], &lines);
-    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
-    assert_eq!(results[0]["status"], 124, "{results:#?}");
-    assert!(results[0]["error"].as_str().unwrap().contains("the time of 0.5 s was up"), "{results:#?}");
-    assert!(path.join("1.png").is_file(), "what was rendered is saved");
-    assert_eq!(results[0]["pictures"][0]["complete"], false);
-    assert_eq!((&results[1]["status"], &results[2]["status"]), (&json!(0), &json!(0)));
+    // On a busy machine nothing may be rendered in half a second.
+    for seconds in [0.5, 8.0] {
+        let folder = folder();
+        let path = folder.path();
+        let long = json!({ "spp": 4_000_000, "size": "100x100", "timeout": seconds });
+        let lines =
+            [job(1, "a/card.obj", long), job(2, "a/card.obj", json!({})), job(3, "a/card.obj", json!({}))];
+        let begun = Instant::now();
+        let results = results(path, &["--timeout", "60"], &lines);
+        assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+        assert_eq!(results[0]["status"], 124, "{results:#?}");
+        let wanted = format!("the time of {seconds} s was up");
+        assert!(results[0]["error"].as_str().unwrap().contains(&wanted), "{results:#?}");
+        assert_eq!((&results[1]["status"], &results[2]["status"]), (&json!(0), &json!(0)));
+        let is_saved = path.join("1.png").is_file();
+        if is_saved || seconds > 0.5 {
+            assert!(is_saved, "what was rendered is saved");
+            assert_eq!(results[0]["pictures"][0]["complete"], false);
+            return;
+        }
+    }
 }
 
 #[test]

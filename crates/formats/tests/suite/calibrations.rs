@@ -120,6 +120,10 @@ fn the_cameras_of_a_rig_stand_to_each_other_as_kalibr_says() {
     let third = "[[1, 0, 0, 0], [0, 1, 0, -0.2], [0, 0, 1, 0], [0, 0, 0, 1]]";
     let chain =
         format!("cam0:\n{lens}cam1:\n  T_cn_cnm1: {second}\n{lens}cam2:\n  T_cn_cnm1: {third}\n{lens}");
+    // The same by the inertial unit, from which both are moved and turned.
+    let unit = "[[0, 1, 0, 0.3], [0, 0, 1, -0.1], [1, 0, 0, 0.2], [0, 0, 0, 1]]";
+    let from_unit = "[[1, 0, 0, 0.2], [0, 0, 1, -0.1], [0, -1, 0, -0.19], [0, 0, 0, 1]]";
+    let imu = format!("cam0:\n  T_cam_imu: {unit}\n{lens}cam1:\n  T_cam_imu: {from_unit}\n{lens}");
     let pair = OPENCV.replace("camera_matrix", "M1").replace("distortion_coefficients", "D1");
     let pair = format!(
         "{pair}M2: [[400, 0, 320], [0, 400, 240], [0, 0, 1]]\nD2: [0, 0, 0, 0]\nR: [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]\nT: [0, 0, 0.11]\n"
@@ -134,7 +138,7 @@ fn the_cameras_of_a_rig_stand_to_each_other_as_kalibr_says() {
             .collect::<Vec<_>>(),
         other => panic!("{key}: {other:?}"),
     };
-    for (file, text) in [("camchain.yaml", chain), ("stereo.yml", pair)] {
+    for (file, text) in [("camchain.yaml", chain), ("camchain-imucam.yaml", imu), ("stereo.yml", pair)] {
         let found = read(file, &text).unwrap();
         assert!(found.are_relative && !found.are_placed && found.warnings.is_empty(), "{file}");
         let cameras = &found.cameras;

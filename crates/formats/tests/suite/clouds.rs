@@ -284,3 +284,34 @@ fn the_first_laz_files_have_no_chunks() {
         assert_eq!(positions(&stream), positions(&chunked), "chunks of {size}");
     }
 }
+
+/// A scan with colours and one with intensities alone, in one file: the second is grey by its own. [ASTM E2807, 8.4.4]
+#[test]
+fn every_scan_of_e57_has_the_colours_that_it_has() {
+    use e57::{E57Writer, Record, RecordValue};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two.e57");
+    let mut writer = E57Writer::from_file(&path, "file").unwrap();
+    let place = [Record::CARTESIAN_X_F32, Record::CARTESIAN_Y_F32, Record::CARTESIAN_Z_F32];
+    let colour = [Record::COLOR_RED_U8, Record::COLOR_GREEN_U8, Record::COLOR_BLUE_U8];
+    let at = |x: f32| [x, 2.0, -1.0].map(RecordValue::Single).to_vec();
+    let mut coloured = writer.add_pointcloud("a", [place.to_vec(), colour.to_vec()].concat()).unwrap();
+    for (x, rgb) in [(0.0, [255, 0, 0]), (1.0, [0, 0, 255])] {
+        coloured.add_point([at(x), rgb.map(RecordValue::Integer).to_vec()].concat()).unwrap();
+    }
+    coloured.finalize().unwrap();
+    let mut grey =
+        writer.add_pointcloud("b", [place.to_vec(), vec![Record::INTENSITY_UNIT_F32]].concat()).unwrap();
+    for (x, intensity) in [(2.0, 0.0), (3.0, 1.0)] {
+        grey.add_point([at(x), vec![RecordValue::Single(intensity)]].concat()).unwrap();
+    }
+    grey.finalize().unwrap();
+    writer.finalize().unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    let colours: Vec<_> = scene.objects.iter().flat_map(|one| one.mesh.vertex_kd.iter().copied()).collect();
+    assert_eq!(colours[..2], [bilux_math::Rgb::new(1.0, 0.0, 0.0), bilux_math::Rgb::new(0.0, 0.0, 1.0)]);
+    // From 0.15 to 0.95 as screens show it.
+    for (found, wanted) in colours[2..].iter().zip([0.0194, 0.8900]) {
+        assert!((*found - bilux_math::Rgb::grey(wanted)).map(f32::abs).max_channel() < 2e-3, "{found:?}");
+    }
+}

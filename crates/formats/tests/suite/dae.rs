@@ -564,19 +564,24 @@ fn morphs_blend_the_colours_of_vertices() {
     let geometries = coloured("g", "1 0 0 1 0 0 1 0 0 1 0 0")
         + &coloured("a", "0 1 0 0 1 0 0 1 0 0 1 0")
         + &coloured("b", "0 0 1 0 0 1 0 0 1 0 0 1");
-    let morph = format!(
-        "<library_controllers><controller id='k'><morph source='#g' method='NORMALIZED'>{}{}<targets>\
+    let morph = |method: &str| {
+        format!(
+            "<library_controllers><controller id='k'><morph source='#g' method='{method}'>{}{}<targets>\
          <input semantic='MORPH_TARGET' source='#t'/><input semantic='MORPH_WEIGHT' source='#w'/></targets></morph></controller>\
          </library_controllers>",
-        source("t", "IDREF_array", "a b", 1),
-        source("w", "float_array", "0.5 0.125", 1)
-    );
+            source("t", "IDREF_array", "a b", 1),
+            source("w", "float_array", "0.5 0.125", 1)
+        )
+    };
     let node = "<node id='n'><instance_controller url='#k'/></node>";
-    let scene =
-        scene(&file("", &format!("<library_geometries>{geometries}</library_geometries>{morph}"), node));
-    let colour = scene.objects[0].mesh.vertex_kd[2];
     // Blended in linear light: red and green and blue of full strength are the same in both spaces.
-    assert!((colour - Rgb::new(0.375, 0.5, 0.125)).map(f32::abs).max_channel() < 1e-6, "{colour:?}");
+    for (method, wanted) in
+        [("NORMALIZED", Rgb::new(0.375, 0.5, 0.125)), ("RELATIVE", Rgb::new(1.0, 0.5, 0.125))]
+    {
+        let libraries = format!("<library_geometries>{geometries}</library_geometries>{}", morph(method));
+        let colour = scene(&file("", &libraries, node)).objects[0].mesh.vertex_kd[2];
+        assert!((colour - wanted).map(f32::abs).max_channel() < 1e-6, "{method}: {colour:?}");
+    }
 }
 
 /// The manifest of a `.zae` names its scene [Collada 1.5, zip archive], whatever else is there.

@@ -371,6 +371,12 @@ fn factors_count_beside_pictures_and_without() {
         (format!(r#"{{"emissiveTexture":{{"index":0}},{strong}}}"#), "emission", Rgb::new(3.0, 6.0, 0.0)),
         (r#"{"normalTexture":{"index":0,"scale":0.25}}"#.to_owned(), "normal_scale", Rgb::grey(0.25)),
         (
+            r#"{"extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatNormalTexture":{"index":0,"scale":1.5}}}}"#
+                .to_owned(),
+            "coat_normal_scale",
+            Rgb::grey(1.5),
+        ),
+        (
             r#"{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0}}}"#.to_owned(),
             "base_color",
             Rgb::new(0.5, 0.25, 1.0),

@@ -835,7 +835,17 @@ fn level_sets_are_drawn_as_surfaces() {
     }
     let [x, y, z] = [0, 1, 2].map(|i| DVec3::from(SKEWED.map(|row| row[i])));
     let volume = x.dot(y.cross(z)) * 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
-    for (name, bytes) in [("OpenVDB", file("", std::slice::from_ref(&surface))), ("NanoVDB", of_nano)] {
+    // The last one is mirrored: its first index runs the other way.
+    let (name, mut mirrored) = affine();
+    mirrored[..3].iter_mut().for_each(|number| *number = -*number);
+    let mirrored = Tree { map: (name, mirrored), ..surface.clone() };
+    for (name, bytes, along_x) in [
+        ("OpenVDB", file("", std::slice::from_ref(&surface)), 1.0),
+        ("NanoVDB", of_nano, 1.0),
+        ("mirrored", file("", &[mirrored]), -1.0),
+    ] {
+        let x = x * along_x;
+        let skewed = |p: DVec3| skewed(p * DVec3::new(along_x, 1.0, 1.0));
         let scene = bilux_formats::read_bytes(&bytes, "", None, "ball", &ReadOptions::default()).unwrap();
         let mesh = &scene.objects[0].mesh;
         let corners = |t: &[u32; 3]| t.map(|i| mesh.positions[i as usize].as_dvec3());

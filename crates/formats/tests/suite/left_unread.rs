@@ -83,7 +83,7 @@ fn las(format: u8, withheld: &[usize]) -> Vec<u8> {
     file
 }
 
-/// The same with compressed points: a record that says how, and the points after it. [LAS 1.4 R15; Isenburg 2013]
+/// The same with compressed points: a record that says how, and the points after it. [LAS 1.4 R15, 2.5]
 fn laz(format: u8, withheld: &[usize]) -> Vec<u8> {
     let plain = las(format, withheld);
     let (mut file, points) = (plain[..375].to_vec(), &plain[375..]);

@@ -115,6 +115,16 @@ fn floodlights_and_headlights_have_their_own_planes() {
     close(head.at(90.0, 0.0), 500.0);
     close(head.at(110.0, 0.0), 40.0);
     close(head.at(90.0, 20.0), 50.0);
+    // One that begins in the middle is the same on its other side.
+    let text = String::from_utf8(std::fs::read(folder().join("headlight_a.ies")).unwrap()).unwrap();
+    let half = text
+        .replace('\r', "")
+        .replace("10 3 5 3", "10 3 3 3")
+        .replace("-40 -20 0 20 40\n0 1 0\n1 5 2\n", "0 20 40\n");
+    let (half, _) = reads(half.as_bytes()).unwrap();
+    for (v, h) in [(90.0, -20.0), (100.0, 10.0), (75.0, -35.0), (90.0, 30.0)] {
+        close(half.at(v, h), head.at(v, h));
+    }
     assert_eq!([head.at(90.0, 41.0), head.at(69.0, 0.0)], [0.0; 2]);
 }
 

@@ -459,10 +459,12 @@ fn memory_is_bounded() {
 #[test]
 fn specular_levels_of_blender_are_no_mirrors() {
     let lines = "newmtl plain\nNs 250\nKa 1 1 1\nKd .2 .1 .05\nKs .5 .5 .5\nNi 1.45\nd 1\nillum 2\n\
-                 newmtl metal\nNs 40\nKa .75 .75 .75\nKd .8 .4 .2\nKs .25 .25 .25\nNi 1.45\nd .5\nillum 3\n";
+                 newmtl metal\nNs 40\nKa .75 .75 .75\nKd .8 .4 .2\nKs .25 .25 .25\nNi 1.45\nd .5\nillum 3\n\
+                 newmtl veiled\nNs 40\nKa .5 .5 .5\nKd .8 .4 .2\nKs .25 .25 .25\nNi 1.45\nd .5\nillum 6\n";
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
-    let face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl plain\nf 1 2 3\nusemtl metal\nf 1 3 2\n";
+    let face =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl plain\nf 1 2 3\nusemtl metal\nf 1 3 2\nusemtl veiled\nf 2 1 3\n";
     std::fs::write(&path, format!("mtllib a.mtl\n{face}")).unwrap();
     let materials = |first: &str| {
         std::fs::write(folder.path().join("a.mtl"), format!("{first}\n{lines}")).unwrap();
@@ -471,7 +473,7 @@ fn specular_levels_of_blender_are_no_mirrors() {
     for (first, smooth) in
         [("# Blender 4.1.0 MTL File: 'a.blend'", 1000.0f32), ("# Blender MTL File: 'a.blend'", 900.0)]
     {
-        let [plain, metal] = &materials(first)[..2] else { panic!() };
+        let [plain, metal, veiled] = &materials(first)[..3] else { panic!() };
         let near = |spec: &Spec, key: &str, wanted: f32| {
             let found = spec.number(key).unwrap();
             assert!((found - wanted).abs() < 1e-5, "{first}, {key}: {found}, not {wanted}");
@@ -487,6 +489,7 @@ fn specular_levels_of_blender_are_no_mirrors() {
         near(metal, "specular_ior", 1.329_431_3);
         near(metal, "specular_roughness", 1.0 - (40.0 / smooth).sqrt());
         near(metal, "base_metalness", 0.75);
+        near(veiled, "base_metalness", 0.5);
         near(metal, "opacity", 0.5);
     }
     for first in ["# Exported by another program", "", "# not Blender"] {

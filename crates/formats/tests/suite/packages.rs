@@ -73,13 +73,14 @@ fn a_pack_has_its_textures_beside_the_folders_of_its_formats() {
     assert_eq!(shown(&read(&path, &open).unwrap()), Some(1), "with files outside");
 }
 
-/// The longest end of a name that exists counts: two files have the same last part.
+/// The longest end of a name that exists counts: three files have the same last part.
 #[test]
 fn names_of_other_machines_are_found_by_their_ends() {
     let folder = tempfile::tempdir().unwrap();
     let top = folder.path().join("pack");
     picture(&top.join("skins/old/wood.png"), RED);
     picture(&top.join("skins/wood.png"), GREEN);
+    picture(&top.join("wood.png"), GREEN);
     std::fs::create_dir_all(top.join(".git")).unwrap();
     for (name, found) in [
         ("/disk/a/pack/skins/old/wood.png", Some(0)),

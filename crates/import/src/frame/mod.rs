@@ -77,3 +77,38 @@ fn move_objects(scene: &mut SceneBuilder, by: &Turn) {
         object.motion = object.motion.then(&by);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Vec3;
+    use bilux_scene::cameras::CameraSpec;
+    use bilux_scene::{Parameters, Spec, StrokeWidths, Value};
+
+    /// From centimetres with z up: what a camera's keyframes say, and the widths of points and lines.
+    #[test]
+    fn keyframes_of_cameras_and_widths_of_strokes_change_with_the_frame() {
+        let mut scene = SceneBuilder { up: UpHint::Is(Axis::Z), unit: 0.01, ..SceneBuilder::default() };
+        scene.stroke_widths = StrokeWidths { points: 50.0, lines: 20.0 };
+        let at = |x: f32| {
+            let mut changes = Parameters::default();
+            changes.set("position", Value::from(Vec3::new(x, -400.0, 50.0)));
+            changes.set("up", Value::from(Vec3::Z));
+            changes
+        };
+        let spec = Spec::new("", "perspective").with("position", Vec3::new(100.0, -400.0, 50.0));
+        scene.cameras = vec![CameraSpec { spec, keyframes: vec![(0.0, at(100.0)), (2.0, at(300.0))] }];
+        let framed = in_frame(&scene, Frame::METRES);
+        let StrokeWidths { points, lines } = framed.stroke_widths;
+        assert!((points - 0.5).abs() < 1e-6 && (lines - 0.2).abs() < 1e-6, "{points}, {lines}");
+        for ((time, changes), (when, x)) in framed.cameras[0].keyframes.iter().zip([(0.0, 1.0), (2.0, 3.0)]) {
+            let found = |key: &str| {
+                let (value, _) = changes.find(key).unwrap();
+                Spec::new("", "").with("v", value.clone()).vector("v").unwrap()
+            };
+            assert_eq!(*time, when);
+            assert!(found("position").distance(Vec3::new(x, 0.5, 4.0)) < 1e-5, "{}", found("position"));
+            assert!(found("up").distance(Vec3::Y) < 1e-6, "{}", found("up"));
+        }
+    }
+}

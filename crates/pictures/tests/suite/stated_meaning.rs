@@ -86,6 +86,8 @@ fn the_curve_of_a_profile_counts() {
         (b"rTRC", power(2.2), srgb),
         (b"rTRC", function(0, &[1.0]), half),
         (b"rTRC", function(3, &[2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045]), srgb),
+        // An offset above, and another one below the straight part.
+        (b"rTRC", function(4, &[1.0, 0.6, 0.0, 1.0, 0.0, 0.2 - 0.6 / 510.0, 0.0]), half),
         // No curve at all, and a damaged one.
         (b"desc", power(1.0), srgb),
         (b"rTRC", b"curv\0\0\0\0\0\0\xff\xff\0\0".to_vec(), srgb),
@@ -131,6 +133,13 @@ fn radiance_states_primaries() {
     let wrong = hdr("PRIMARIES=.7 .3 .2\n", [0, 128, 0, 129]);
     let error = read_bytes(&wrong, None, &Limits::default()).unwrap_err().to_string();
     assert!(error.contains("eight numbers"), "{error}");
+}
+
+/// Corrections have a factor for each channel, and all of them multiply. [Radiance, file formats]
+#[test]
+fn corrections_of_a_radiance_picture_are_divided_by() {
+    let header = "COLORCORR=2 0.5 4\nEXPOSURE=2\nCOLORCORR=1 1 0.25\n";
+    near(light(read(&hdr(header, [128, 64, 32, 129]), "hdr")), [0.25, 0.5, 0.125]);
 }
 
 /// What begins with a blank is about the pictures that this one was made from. [Radiance, file formats]

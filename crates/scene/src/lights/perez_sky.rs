@@ -205,6 +205,35 @@ mod tests {
         }
     }
 
+    /// The formula is used above a brightness of 0.2 where the clearness is from 1.065 to 2.8. [Radiance, gendaylit]
+    #[test]
+    fn dark_skies_have_the_least_brightness_of_their_range() {
+        for (clearness, is_limited) in
+            [(1.03, false), (1.15, true), (1.35, true), (1.7, true), (2.3, true), (2.9, false), (8.0, false)]
+        {
+            let [dark, least] = [0.1, 0.2].map(|brightness| perez_coefficients(clearness, brightness, 0.9));
+            assert_eq!(dark == least, is_limited, "{clearness}");
+        }
+    }
+
+    /// Found from the light of a sky that the sun lights through more air than at the zenith: 20 degrees high through 2.904 times as much.
+    /// [Kasten 1966]
+    #[test]
+    fn brightness_follows_from_the_air_that_the_sun_shines_through() {
+        let sky = |brightness: f32| {
+            let spec =
+                crate::Spec::new("", "perez-sky").with("elevation", 20.0f32).with("brightness", brightness);
+            let spec = spec.with("diffuse", 20.0f32).with("clearness", 5.0f32).with("direct", 40.0f32);
+            let crate::lights::BuiltLight::Several(lights) = crate::lights::build(&spec, &[]).unwrap() else {
+                panic!("a sky and a sun")
+            };
+            lights[0].le(bilux_math::Vec3::new(0.3, 0.5, -0.8).normalize()).g
+        };
+        let stated = 20.0 * LUMENS_PER_WATT * 2.904 / 127_500.0;
+        assert!((sky(0.0) / sky(stated) - 1.0).abs() < 1e-3, "{} {}", sky(0.0), sky(stated));
+        assert!((sky(0.0) / sky(stated / 2.904) - 1.0).abs() > 1e-2, "{}", sky(stated / 2.904));
+    }
+
     #[test]
     fn clearness_is_one_without_the_sun() {
         assert_eq!(perez_clearness(0.0, 100.0, 0.7), 1.0);

@@ -271,3 +271,25 @@ fn all_that_has_keyframes_moves_between_them() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// Both precisions mean the same, of pictures as they are and mirrored: away from the middle, and back along the ray.
+#[test]
+fn points_are_seen_in_the_same_place_by_both_precisions() {
+    for row in CAMERAS {
+        let can_mirror = row.entry.parameters.iter().any(|parameter| parameter.name == "mirrored");
+        for mirrored in if can_mirror { &[false, true][..] } else { &[false] } {
+            let mut spec = Spec::new("", row.entry.name);
+            if can_mirror {
+                spec = spec.with("mirrored", *mirrored);
+            }
+            let camera = camera(&spec, 1.5);
+            let Some([origin, direction]) = camera.ray_f64(DVec2::new(0.3, 0.6), 0.0) else { continue };
+            let p = origin + direction * 3.0;
+            let places = [camera.project_f64(p, 0.0), camera.project(p.as_vec3(), 0.0).map(Vec2::as_dvec2)];
+            for film in places.into_iter().flatten() {
+                let off = film.distance(DVec2::new(0.3, 0.6));
+                assert!(off < 1e-4, "{}, mirrored {mirrored}: {film}", row.entry.name);
+            }
+        }
+    }
+}

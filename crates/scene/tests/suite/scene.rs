@@ -213,3 +213,21 @@ fn what_is_placed_before_it_moves_is_seen_on_its_way() {
         }
     }
 }
+
+/// What is rough spreads what it lets through as what it reflects, in the modes without transport; and each by as much as is stated.
+#[test]
+fn frosted_glass_spreads_both_of_its_rays() {
+    let classic = |glass: Spec| {
+        let mut builder = builder();
+        builder.objects[0].material = builder.add_material(glass);
+        let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let ray = bilux_scene::Ray::new([0.1, 1.0, 0.1], [0.0, -1.0, 0.0]);
+        let surface = Tracer::new(&scene, false).closest(&ray).unwrap();
+        let material = scene.material(&surface).classic(&surface);
+        [material.gloss, material.translucency]
+    };
+    let [gloss, translucency] = classic(Spec::new("", "dielectric").with("roughness", 0.3f32));
+    assert!(gloss > 0.01 && translucency == gloss, "{gloss}, {translucency}");
+    let stated = Spec::new("", "dielectric").with("gloss", 4.0f32).with("translucency", 9.0f32);
+    assert_eq!(classic(stated), [4f32, 9.0].map(f32::to_radians));
+}

@@ -151,3 +151,23 @@ fn part_of_sky(scene: &Scene, found: &FoundLight) -> f32 {
     let shining = found.light.map_or(Rgb::BLACK, |index| scene.lights()[index].light.le(towards));
     found.radiance.luminance() / shining.luminance()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two samples of each independent sequence, whose means are 0, 1, 2 …: their mean has the standard deviation of them over the root
+    /// of their number.
+    #[test]
+    fn errors_are_those_of_the_mean_of_the_sequences() {
+        let replicates = (0..REPLICATES).map(|i| [2.0 * f64::from(i), 0.0]).collect();
+        let mut row = [[PartOfSky::default(); 2]];
+        Sums { replicates }.estimates(2 * REPLICATES, &mut row);
+        let n = f64::from(REPLICATES);
+        let deviation = (n * (n + 1.0) / 12.0).sqrt();
+        let [all, reflected] = row[0];
+        assert!((f64::from(all.mean) / (PI * (n - 1.0) / 2.0) - 1.0).abs() < 1e-6, "{all:?}");
+        assert!((f64::from(all.error) / (PI * deviation / n.sqrt()) - 1.0).abs() < 1e-6, "{all:?}");
+        assert_eq!(reflected, PartOfSky { mean: 0.0, error: 0.0 });
+    }
+}

@@ -3,6 +3,7 @@
 mod absorption;
 mod auto;
 mod beams;
+mod bodies;
 mod both_ends;
 mod boundaries;
 mod checkpoint;

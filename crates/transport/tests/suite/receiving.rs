@@ -2,7 +2,7 @@
 
 use crate::common::media::boxed;
 use crate::common::{built, diffuse, floor, integrator, put, quad};
-use bilux_math::transcendental::{atan2_f64, sin, sin_cos};
+use bilux_math::transcendental::{atan2_f64, exp_f64, sin, sin_cos};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::{CameraSpec, SensorPoint, SensorPoints, build};
 use bilux_scene::{Scene, SceneBuilder, Spec};
@@ -11,6 +11,7 @@ use bilux_transport::{
     daylight_coefficients, received, render, sunlight,
 };
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// Irradiance and standard error of a point.
 fn measured(scene: &Scene, [p, normal]: [Vec3; 2], spp: u32) -> [f64; 2] {
@@ -269,6 +270,19 @@ fn panes_let_their_part_of_the_sun_through() {
             up * share
         );
     }
+    // A wedge turns it away, so that the point sees the sun in another direction.
+    let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
+    let mut wedge = (*boxed(Vec3::new(-99.0, 1.0, -99.0), Vec3::new(99.0, 2.0, 99.0))).clone();
+    wedge.positions.iter_mut().filter(|p| p.y > 1.5).for_each(|p| p.y += 0.1 * (p.x + 99.0));
+    put(&mut builder, "wedge", Arc::new(wedge), Spec::new("", "dielectric").with("eta", 1.5f32));
+    assert_eq!(sun_at(&built(&builder), [Vec3::ZERO, Vec3::Y], &[sun(60.0, 130.0)]), [0.0]);
+    // From within smoke, by Beer's law.
+    let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
+    let smoke = Spec::new("", "interface").with("absorption", 0.7f32);
+    put(&mut builder, "smoke", boxed(Vec3::new(-99.0, -5.0, -99.0), Vec3::new(99.0, 1.5, 99.0)), smoke);
+    let found = sun_at(&built(&builder), [Vec3::ZERO, Vec3::Y], &[sun(40.0, 130.0)]);
+    let wanted = up * exp_f64(-0.7 * 1.5 / up);
+    assert!((f64::from(found[0]) / wanted - 1.0).abs() < 1e-4, "{} for {wanted}", found[0]);
     let mut builder = lit_by(Spec::new("", "environment").with("radiance", 1.0f32));
     put(&mut builder, "paper", floor(1.0, 200.0), diffuse(0.9f32));
     assert_eq!(sun_at(&built(&builder), [Vec3::ZERO, Vec3::Y], &[sun(40.0, 130.0)]), [0.0]);

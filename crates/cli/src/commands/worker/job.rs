@@ -261,7 +261,11 @@ mod tests {
     };
 
     fn read(text: &str) -> Result<Job, Refused> {
-        Job::read(Line::Text(text.to_owned()), &FREE)
+        read_within(text, &FREE)
+    }
+
+    fn read_within(text: &str, limits: &Limits) -> Result<Job, Refused> {
+        Job::read(Line::Text(text.to_owned()), limits)
     }
 
     #[test]
@@ -269,7 +273,7 @@ mod tests {
         let job = read(
             r#"{"id": {"a": [1]}, "scene": "--help", "output": "-x.png", "size": [64, 48], "spp": 4, "timeout": 60,
             "max_memory": "512M", "fast": false, "denoise": true, "aov": ["albedo", "depth"], "set": {"fps": 30},
-            "change": ["light:0:intensity=5"], "orbit": [-30, 10], "seed": null}"#,
+            "change": ["light:0:intensity=5", "light:1:scale=2"], "orbit": [-30, 10], "seed": null}"#,
         )
         .unwrap();
         assert_eq!(job.id["a"][0], 1);
@@ -283,7 +287,10 @@ mod tests {
         assert_eq!(render.aov, ["albedo", "depth"]);
         assert_eq!(
             (render.set, render.studio.change),
-            (vec!["fps=30".to_owned()], vec!["light:0:intensity=5".to_owned()])
+            (
+                vec!["fps=30".to_owned()],
+                ["light:0:intensity=5", "light:1:scale=2"].map(str::to_owned).to_vec()
+            )
         );
         assert_eq!(render.studio.orbit.as_deref(), Some("-30,10"));
         assert_eq!(parsed.common.max_memory, 512 << 20);
@@ -304,6 +311,17 @@ mod tests {
             assert_eq!(parsed.common.max_memory, 1 << 30);
             assert_eq!(job.timeout, Some(Duration::from_secs(2)));
             assert!(job.confines.is_some());
+        }
+        // Each limit by itself.
+        for (name, limits) in [
+            ("strict", Limits { strict: true, ..FREE }),
+            ("sandbox", Limits { sandbox: true, ..FREE }),
+            ("allow-outside", Limits { allow_outside: true, ..FREE }),
+        ] {
+            let job = read_within(r#"{"scene": "a.glb", "output": "a.png"}"#, &limits).unwrap();
+            let common = Arguments::try_parse_from(&job.command).unwrap().common;
+            let found = [common.strict, common.sandbox, common.allow_outside];
+            assert_eq!(found, ["strict", "sandbox", "allow-outside"].map(|one| one == name), "{name}");
         }
     }
 

@@ -93,6 +93,9 @@ fn textures_in_the_file_lie_as_it_says() {
     assert_eq!((at(vec![], [0.25, 0.5]), at(vec![], [0.75, 0.5])), (red, blue));
     assert_eq!(at(vec![p("Translation", &[0.5, 0.0, 0.0])], [0.25, 0.5]), blue);
     assert_eq!(at(vec![p("Scaling", &[2.0, 1.0, 1.0])], [0.375, 0.5]), blue);
+    // Each direction is clamped by its own mode.
+    assert_eq!(at(vec![p("WrapModeU", &[1.0])], [1.25, 0.5]), blue);
+    assert_eq!(at(vec![p("WrapModeV", &[1.0])], [1.25, 0.5]), red);
     // A quarter turn takes v to -u.
     assert_eq!(at(vec![p("Rotation", &[0.0, 0.0, 90.0])], [0.5, 0.25]), blue);
     let missing = with(
