@@ -299,6 +299,16 @@ def test_the_sky_gives_the_light_of_the_weather(tmp_path):
     assert np.all(np.abs(by_patches - values) < 0.03 * values + 5 * errors), (by_patches, values)
 
 
+def test_missing_dew_points_are_those_of_usual_air(tmp_path):
+    """99.9 stands for missing, in files of EnergyPlus."""
+    lines = list(RECORDS)
+    for number, dew in ((2, "99.9"), (5, "99.8")):
+        fields = lines[number].split(",")
+        fields[7] = dew
+        lines[number] = ",".join(fields)
+    assert daylight.read_epw(epw(tmp_path, lines)).dew_point[:7].tolist() == [6.0, 6.0, 10.0, 6.0, 6.0, 99.8, 6.0]
+
+
 def test_the_figures_of_a_year():
     illuminance = np.array([[0, 50, 299, 300, 3001, 900], [400, 400, 400, 400, 50, 50]], float)
     occupied = np.array([False, True, True, True, True, True])

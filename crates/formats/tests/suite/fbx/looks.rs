@@ -81,23 +81,25 @@ fn textures_in_the_file_lie_as_it_says() {
     );
     let texture = |list: Vec<N>| object("Texture", 4, "t", "", vec![properties(list)]);
     let links = || vec![link(3, 2, ""), link(4, 3, "DiffuseColor"), link(5, 4, "")];
-    let at = |list: Vec<N>, uv: [f32; 2]| {
+    let of = |list: Vec<N>| {
         let scene = read_all(&with(vec![phong(vec![]), texture(list), video.clone()], links()));
         let Some((bilux_scene::Value::Texture(index), _)) = scene.materials[0].parameters.find("base_color")
         else {
             panic!("{:?}", scene.materials)
         };
-        scene.textures[*index].at(bilux_math::Vec2::from(uv))
+        scene.textures[*index].clone()
     };
+    let at = |list: Vec<N>, uv: [f32; 2]| of(list).at(bilux_math::Vec2::from(uv));
     let (red, blue) = (Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 0.0, 1.0));
     assert_eq!((at(vec![], [0.25, 0.5]), at(vec![], [0.75, 0.5])), (red, blue));
     assert_eq!(at(vec![p("Translation", &[0.5, 0.0, 0.0])], [0.25, 0.5]), blue);
     assert_eq!(at(vec![p("Scaling", &[2.0, 1.0, 1.0])], [0.375, 0.5]), blue);
-    // Each direction is clamped by its own mode.
-    assert_eq!(at(vec![p("WrapModeU", &[1.0])], [1.25, 0.5]), blue);
-    assert_eq!(at(vec![p("WrapModeV", &[1.0])], [1.25, 0.5]), red);
     // A quarter turn takes v to -u.
     assert_eq!(at(vec![p("Rotation", &[0.0, 0.0, 90.0])], [0.5, 0.25]), blue);
+    // Each direction is clamped by its own mode.
+    use bilux_scene::texture::Wrap::{Clamp, Repeat};
+    assert_eq!(of(vec![p("WrapModeU", &[1.0])]).wrap, [Clamp, Repeat]);
+    assert_eq!(of(vec![p("WrapModeV", &[1.0])]).wrap, [Repeat, Clamp]);
     let missing = with(
         vec![phong(vec![]), texture(vec![ps("UVSet", "a")])],
         vec![link(3, 2, ""), link(4, 3, "DiffuseColor")],
