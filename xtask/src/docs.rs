@@ -96,7 +96,10 @@ fn pages() -> Result<BTreeMap<String, String>> {
     for command in command_pages::COMMANDS {
         let path = format!("{}/{command}.md", command_pages::FOLDER);
         links.push(format!("[`{command}`]({path})"));
-        pages.insert(path, command_pages::page(command, &bilux(&[command, "--help"])?));
+        let help = bilux(&[command, "--help"])?;
+        let part = |part: &str| Ok((part.to_owned(), bilux(&[command, part, "--help"])?));
+        let parts = command_pages::parts(&help).into_iter().map(part).collect::<Result<Vec<_>>>()?;
+        pages.insert(path, command_pages::page_with_parts(command, &help, &parts));
     }
     front += &(links.join(", ") + "\n");
     pages.insert("README.md".to_owned(), front);

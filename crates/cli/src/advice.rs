@@ -18,9 +18,8 @@ pub fn added(mut error: clap::Error) -> clap::Error {
             (ErrorKind::UnknownArgument, Some(ContextValue::String(name)), _) => {
                 line.about_renamed(name).or_else(|| line.about_unknown(name, &error))
             }
-            (ErrorKind::InvalidSubcommand, _, Some(ContextValue::String(name))) => {
-                of_file(name).or_else(|| of_command(name))
-            }
+            (ErrorKind::InvalidSubcommand, _, Some(ContextValue::String(name))) => line.about_command(name),
+            (ErrorKind::MissingSubcommand, ..) => line.about_missing(KIND),
             _ => None,
         };
     if let Some(tip) = tip {
@@ -74,6 +73,17 @@ impl Line {
         })
     }
 
+    /// What to write instead of an unknown command, or an unknown benchmark.
+    fn about_command(&self, name: &str) -> Option<String> {
+        let known = Arguments::command();
+        // That of the benchmarks, if the word is in the place of one.
+        let of = known.find_subcommand(&self.command).filter(|command| command.has_subcommands());
+        let names = of.unwrap_or(&known).get_subcommands().map(|one| one.get_name().to_owned());
+        let near = nearest_name(name, &names.collect::<Vec<_>>());
+        let in_place_of_command = if of.is_none() { of_file(name) } else { None };
+        in_place_of_command.or_else(|| near.map(|near| format!("a similar subcommand exists: '{near}'")))
+    }
+
     /// What to write instead of an option that other programs have.
     fn about_renamed(&self, name: &str) -> Option<String> {
         let (.., advice) =
@@ -109,6 +119,9 @@ impl Line {
     }
 }
 
+/// What the help calls a benchmark.
+const KIND: &str = "<KIND>";
+
 /// What to write for a command whose argument is missing.
 const EXAMPLES: &[(&str, &str, &str)] = &[
     ("render", "<SCENE>", "name the scene and the picture, such as `bilux render model.glb -o picture.png`"),
@@ -134,7 +147,7 @@ const EXAMPLES: &[(&str, &str, &str)] = &[
         "name the scene and a folder, such as `bilux farm walk.toml --frames 0-47 --chunks 8 -o job`",
     ),
     ("farm", "--chunks", "say how many tasks there are, such as `--chunks 8`"),
-    ("bench", "<KIND>", "name a benchmark, such as `bilux bench rays`; `bilux bench --help` lists them"),
+    ("bench", KIND, "name a benchmark, such as `bilux bench rays`; `bilux bench --help` lists them"),
     ("list", "<WHAT>", "name a list, such as `bilux list integrators`; `bilux list --help` lists them"),
     ("completions", "<SHELL>", "name a shell: bash, elvish, fish, powershell or zsh"),
 ];
@@ -164,11 +177,4 @@ fn of_file(name: &str) -> Option<String> {
     let extension = path.extension()?.to_str()?;
     let is_scene = bilux::formats::format_named(extension).is_some() || path.is_file();
     is_scene.then(|| format!("to render a scene, write `bilux render {name} -o picture.png`"))
-}
-
-/// The command that is called most like this.
-fn of_command(name: &str) -> Option<String> {
-    let known = Arguments::command();
-    let names: Vec<String> = known.get_subcommands().map(|one| one.get_name().to_owned()).collect();
-    nearest_name(name, &names).map(|near| format!("a similar subcommand exists: '{near}'"))
 }

@@ -1,7 +1,7 @@
 //! The command line. Help, shell completions and man pages are all generated from this one description.
 
 use crate::choices::{Choices, Posed};
-pub use crate::measuring::{Bench, BenchKind};
+pub use crate::measuring::Bench;
 use crate::values::{
     Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
     parse_lengths, parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed,

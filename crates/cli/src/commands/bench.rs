@@ -1,29 +1,24 @@
 //! `bilux bench`: benchmarks.
 
 use super::{DONE, check_folder, read_options};
-use crate::arguments::{Bench, BenchKind, Common};
+use crate::arguments::{Bench, Common};
+use crate::measuring::{BenchKind, LoadBench, ModelsBench, RaysBench, RenderBench, Repeated, SpeedBench};
 use crate::{output, usage};
 use anyhow::{Context, anyhow};
 use bilux::settings::{parse_size, size_error};
 use bilux_bench::Options;
 
 pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
-    let defaults = Options::default();
     if common.sandbox {
         return Err(usage::wrong(anyhow!(
             "--sandbox: benchmarks load other engines and write files, so they cannot run in it: leave it out"
         )));
     }
-    let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", size_error(text)));
-    let size = arguments.size.as_ref().map(size).transpose().map_err(usage::wrong)?;
-    let options = Options {
-        counts: arguments.counts.clone(),
-        accels: arguments.accel.clone(),
-        size,
-        repeats: arguments.repeats.unwrap_or(defaults.repeats),
-        layout: arguments.layout.clone().unwrap_or(defaults.layout),
+    let picture = match &arguments.kind {
+        BenchKind::Paper(paper) => paper.output.as_ref(),
+        _ => None,
     };
-    if let Some(path) = &arguments.output {
+    if let Some(path) = picture {
         check_folder(path).map_err(usage::wrong)?;
         bilux::pictures::format_of_path(path).map_err(usage::wrong)?;
     }
@@ -32,33 +27,90 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
             output::eprint(format_args!("measuring {what}"));
         }
     };
-    let report = match arguments.kind {
-        BenchKind::Paper => bilux_bench::paper::run(&options, &progress)?,
-        BenchKind::Teapots => bilux_bench::teapots::run(&options, &progress)?,
-        BenchKind::Frames => bilux_bench::frames::run(&options, &progress)?,
-        BenchKind::Visibility => bilux_bench::visibility::run(&options, &progress)?,
-        BenchKind::Build => bilux_bench::build::run(&options, &progress)?,
-        BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &progress)?,
-        BenchKind::Render => render(arguments, common, &progress)?,
-        BenchKind::Load => load(arguments, common, &progress)?,
-        BenchKind::Models => models(arguments, &progress)?,
-        BenchKind::Speed => speed(arguments, common, &progress)?,
-    };
+    let report = report(&arguments.kind, common, &progress)?;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?)?;
     } else {
         output::print(report.text.trim_end())?;
     }
-    if let Some(path) = &arguments.output {
-        let picture = report.picture.context("-o: this benchmark produces no picture: leave it out")?;
-        bilux::pictures::write(path, &picture, &Default::default())?;
+    if let (Some(path), Some(figures)) = (picture, report.picture) {
+        bilux::pictures::write(path, &figures, &Default::default())?;
     }
     Ok(DONE)
 }
 
+/// Runs a benchmark.
+fn report(
+    kind: &BenchKind,
+    common: &Common,
+    progress: bilux_bench::ProgressFn,
+) -> anyhow::Result<bilux_bench::Report> {
+    Ok(match kind {
+        BenchKind::Paper(of) => {
+            let options = Options { size: size(of.size.as_ref())?, ..Options::default() };
+            bilux_bench::paper::run(&options, progress)?
+        }
+        BenchKind::Teapots(of) => {
+            let options = Options {
+                counts: of.counts.clone(),
+                accels: of.structures.accel.clone(),
+                size: size(of.picture.size.as_ref())?,
+                ..repeated(&of.repeated)
+            };
+            bilux_bench::teapots::run(&options, progress)?
+        }
+        BenchKind::Frames(of) => {
+            let options = Options {
+                counts: of.counts.into_iter().collect(),
+                accels: of.structures.accel.clone(),
+                size: size(of.picture.size.as_ref())?,
+                ..Options::default()
+            };
+            bilux_bench::frames::run(&options, progress)?
+        }
+        BenchKind::Visibility(of) => {
+            let options = Options {
+                counts: of.counts.into_iter().collect(),
+                size: size(of.picture.size.as_ref())?,
+                ..repeated(&of.repeated)
+            };
+            bilux_bench::visibility::run(&options, progress)?
+        }
+        BenchKind::Build(of) => {
+            let options = Options {
+                counts: of.counts.clone(),
+                accels: of.structures.accel.clone(),
+                ..repeated(&of.repeated)
+            };
+            bilux_bench::build::run(&options, progress)?
+        }
+        BenchKind::Rays(of) => bilux_bench::rays::run(&rays(of, common)?, progress)?,
+        BenchKind::Render(of) => render(of, common, progress)?,
+        BenchKind::Load(of) => load(of, common, progress)?,
+        BenchKind::Models(of) => models(of, progress)?,
+        BenchKind::Speed(of) => speed(of, common, progress)?,
+    })
+}
+
+/// The width and the height, if they are given.
+fn size(text: Option<&String>) -> anyhow::Result<Option<(u32, u32)>> {
+    let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", size_error(text)));
+    text.map(size).transpose().map_err(usage::wrong)
+}
+
+/// How often, and where teapots stand meanwhile.
+fn repeated(of: &Repeated) -> Options {
+    let defaults = Options::default();
+    Options {
+        repeats: of.repeats.unwrap_or(defaults.repeats),
+        layout: of.layout.clone().unwrap_or(defaults.layout),
+        ..defaults
+    }
+}
+
 /// Runs `bench render`, or makes its references.
 fn render(
-    arguments: &Bench,
+    arguments: &RenderBench,
     common: &Common,
     progress: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
@@ -86,7 +138,7 @@ fn render(
 
 /// Runs `bench load` with one process per file, so that each file's memory is measured on its own.
 fn load(
-    arguments: &Bench,
+    arguments: &LoadBench,
     common: &Common,
     progress: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
@@ -124,12 +176,12 @@ fn load(
 }
 
 /// Runs `bench models` with this program itself.
-fn models(arguments: &Bench, progress: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
+fn models(arguments: &ModelsBench, progress: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::models::{Options, SECONDS, run};
     let options = Options {
         program: std::env::current_exe()?,
         files: arguments.scenes.clone(),
-        seconds: arguments.seconds.last().copied().unwrap_or(SECONDS),
+        seconds: arguments.seconds.unwrap_or(SECONDS),
         references: arguments.references.clone(),
     };
     Ok(run(&options, progress)?)
@@ -137,7 +189,7 @@ fn models(arguments: &Bench, progress: bilux_bench::ProgressFn) -> anyhow::Resul
 
 /// Runs `bench speed`, which measures memory with this program itself.
 fn speed(
-    arguments: &Bench,
+    arguments: &SpeedBench,
     common: &Common,
     progress: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
@@ -155,7 +207,7 @@ fn speed(
         embree: against.transpose()?.unwrap_or(defaults.embree),
         program: std::env::current_exe()?,
         repeats: arguments.repeats.unwrap_or(defaults.repeats),
-        seconds: arguments.seconds.last().copied().unwrap_or(defaults.seconds),
+        seconds: arguments.seconds.unwrap_or(defaults.seconds),
         share: defaults.share,
     };
     Ok(run(&options, progress)?)
@@ -165,7 +217,7 @@ fn speed(
 const MINUTE: f64 = 60.0;
 
 /// The options of `bench rays`.
-fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays::Options> {
+fn rays(arguments: &RaysBench, common: &Common) -> anyhow::Result<bilux_bench::rays::Options> {
     let defaults = bilux_bench::rays::Options::default();
     let (numbers, files): (Vec<&String>, Vec<&String>) =
         arguments.rays.iter().partition(|text| text.parse::<u64>().is_ok());
@@ -181,7 +233,7 @@ fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays:
     Ok(bilux_bench::rays::Options {
         scenes: arguments.scenes.clone(),
         read: read_options(common),
-        accels: arguments.accel.clone(),
+        accels: arguments.structures.accel.clone(),
         count,
         rounds: arguments.rounds.unwrap_or(defaults.rounds),
         against: arguments.against.clone(),

@@ -40,13 +40,16 @@ fn write_pages(folder: &Path) -> std::io::Result<()> {
     let mut command = command();
     clap_mangen::generate_to(command.clone(), folder)?;
     command.build();
-    let names = command.get_subcommands().filter_map(|one| one.get_display_name());
-    for name in names.chain(["bilux"]) {
+    let mut left = vec![&command];
+    while let Some(command) = left.pop() {
+        let name = command.get_display_name().unwrap_or_else(|| command.get_name());
         let page = folder.join(format!("{name}.1"));
         // There is no page about `help`.
         if page.is_file() {
             std::fs::write(&page, readable(&std::fs::read_to_string(&page)?))?;
         }
+        // Benchmarks have pages of their own.
+        left.extend(command.get_subcommands());
     }
     Ok(())
 }
@@ -80,7 +83,7 @@ mod tests {
     fn every_page_has_its_examples() {
         let folder = std::env::temp_dir().join(format!("bilux-pages-{}", std::process::id()));
         pages(Some(&folder)).unwrap();
-        for name in ["bilux", "bilux-render", "bilux-compare", "bilux-schema"] {
+        for name in ["bilux", "bilux-render", "bilux-compare", "bilux-schema", "bilux-bench-render"] {
             let page = std::fs::read_to_string(folder.join(format!("{name}.1"))).unwrap();
             assert!(page.contains(".SH EXAMPLE") && !page.contains(".SH EXTRA"), "{name}");
         }

@@ -198,13 +198,58 @@ fn wrong_command_lines_exit_with_2_and_help() {
 
 #[test]
 fn the_help_of_bench_names_every_row_of_speed() {
-    let assert = bilux(folder().path()).args(["bench", "--help"]).assert().code(0);
+    let assert = bilux(folder().path()).args(["bench", "speed", "--help"]).assert().code(0);
     let help = String::from_utf8(assert.get_output().stdout.clone()).unwrap();
-    let rows = help.split("the rows to measure:").nth(1).and_then(|rest| rest.split('[').next()).unwrap();
+    let rows = help.split("The rows to measure:").nth(1).and_then(|rest| rest.split('[').next()).unwrap();
     let rows: Vec<&str> =
         rows.split([',', ' ', '\n']).filter(|word| !word.is_empty() && *word != "and").collect();
     let names: Vec<&str> = bilux_bench::speed::MEASUREMENTS.iter().map(|m| m.name).collect();
     assert_eq!(rows, names, "{help}");
+}
+
+/// The names of the options of a benchmark that its help describes, other than those of every command.
+fn options_of_bench(kind: &str) -> Vec<String> {
+    let folder = folder();
+    let assert = bilux(folder.path()).args(["bench", kind, "--help"]).assert().code(0);
+    let help = String::from_utf8(assert.get_output().stdout.clone()).unwrap();
+    let names = help.lines().filter_map(|line| {
+        let option = line.trim_start();
+        // What it means is indented further.
+        let is_option = option.starts_with('-') && line.len() - option.len() < 8;
+        let (_, rest) = option.split_once("--").filter(|_| is_option)?;
+        rest.split([' ', '<', '.']).next().map(str::to_owned)
+    });
+    let common = "json quiet verbose progress help max-memory strict allow-outside sandbox";
+    names.filter(|name| !common.split(' ').any(|common| common == name)).collect()
+}
+
+/// The help of a benchmark is about that benchmark, and what it would not heed is refused.
+#[test]
+fn each_benchmark_has_its_own_help_and_takes_no_other_options() {
+    let sorted = |words: &str| {
+        let mut words: Vec<String> = words.split(' ').map(str::to_owned).collect();
+        words.sort();
+        words
+    };
+    for (kind, options) in [
+        ("render", "scenes integrators seconds reference-seconds seeds threads report make-references"),
+        ("rays", "accel rays rounds against dump mesh hits"),
+        ("paper", "size output"),
+        ("load", "repeats"),
+    ] {
+        let mut described = options_of_bench(kind);
+        described.sort();
+        assert_eq!(described, sorted(options), "{kind}");
+    }
+    let folder = folder();
+    let said = failing(folder.path(), 2, &["bench", "load", "--seeds", "3"]);
+    assert!(said.contains("unexpected argument '--seeds'"), "{said}");
+    // Options of every command and benchmark may stand before its name and behind it.
+    let sizes = [["--json", "paper", "--size"], ["paper", "--json", "--size"]];
+    for [first, second, third] in sizes {
+        let said = failing(folder.path(), 2, &["bench", first, second, third, "5"]);
+        assert!(said.contains("write 5x5"), "{said}");
+    }
 }
 
 #[test]
