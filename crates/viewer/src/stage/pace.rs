@@ -10,6 +10,9 @@ const SOON: Duration = Duration::from_millis(40);
 const CLEAN: Duration = Duration::from_millis(450);
 const CLEAN_SAMPLES: f64 = 4.0;
 
+/// How long a clean picture may stay until the one in full size is there, if there can be a larger one between them.
+const PATIENCE: Duration = Duration::from_secs(2);
+
 /// The maximum divisor of width and height.
 const SMALLEST: u32 = 16;
 
@@ -48,6 +51,15 @@ impl Pace {
         self.fitting(size, 2, CLEAN.as_secs_f64() / CLEAN_SAMPLES)
     }
 
+    /// The divisor of the picture after a clean one: 1 if the samples of the full size that it takes are there soon enough, and
+    /// else half of the divisor. So nothing stays on the screen for longer than a few times what it took to get there, however
+    /// slow the scene is.
+    pub(super) fn after_clean(&self, size: [u32; 2], divisor: u32, samples: u32) -> u32 {
+        let [w, h] = size.map(f64::from);
+        let is_soon = w * h * self.each * f64::from(samples) <= PATIENCE.as_secs_f64();
+        if is_soon || divisor <= 2 { 1 } else { divisor.div_ceil(2) }
+    }
+
     /// The smallest divisor from `least` with which a sample of all pixels takes no longer than `seconds`.
     fn fitting(&self, size: [u32; 2], least: u32, seconds: f64) -> u32 {
         let fits = |divisor: &u32| {
@@ -61,6 +73,32 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// From the smallest clean picture to the full size, each picture takes at most some four times as long as the one before, or
+    /// no longer than one waits for.
+    #[test]
+    fn nothing_stays_much_longer_than_what_was_before_it() {
+        let size = [1280, 720];
+        let time = |pace: &Pace, divisor: u32, samples: u32| {
+            let [w, h] = divided(size, divisor).map(f64::from);
+            w * h * pace.each * f64::from(samples)
+        };
+        for seconds in [0.01, 0.3, 4.0, 60.0, 2000.0] {
+            let mut pace = Pace::new();
+            pace.learn(size, Duration::ZERO, Duration::from_secs_f64(seconds));
+            let (mut divisor, mut steps, samples) = (pace.clean_divisor(size), 0, 3);
+            while divisor > 1 {
+                let next = pace.after_clean(size, divisor, samples);
+                let (before, after) = (time(&pace, divisor, samples), time(&pace, next, samples));
+                assert!(
+                    next < divisor && (after <= PATIENCE.as_secs_f64() || after <= 4.6 * before),
+                    "{seconds}: {next}"
+                );
+                (divisor, steps) = (next, steps + 1);
+            }
+            assert!(steps <= 4 && (seconds > 0.5 || steps == 1), "{seconds}: {steps} steps");
+        }
+    }
 
     #[test]
     fn slower_pictures_are_smaller() {

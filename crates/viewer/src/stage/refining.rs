@@ -104,14 +104,20 @@ impl Stage {
                 self.answer_waiting();
                 self.go_on_from(divisor)
             }
-            Level::Clean(_) => {
-                let is_enough = self.refinement.changed.elapsed() >= CLEAN || samples >= CLEAN_SAMPLES;
+            Level::Clean(divisor) => {
+                let is_late = self.refinement.changed.elapsed() >= CLEAN;
+                // A larger one has as many samples as the full size would have when it is first shown.
+                let is_enough = is_late && samples >= self.refinement.enough || samples >= CLEAN_SAMPLES;
                 if !is_enough && !self.session.is_done() {
                     return Ok(());
                 }
                 self.publish()?;
                 self.refinement.enough = samples.div_ceil(2);
-                self.enter(Level::Full)
+                let (size, enough) = (self.viewpoint.size, self.refinement.enough);
+                match self.refinement.pace.after_clean(size, divisor, enough) {
+                    1 => self.enter(Level::Full),
+                    larger => self.enter(Level::Clean(larger)),
+                }
             }
             Level::Full => {
                 self.refinement.rests = self.session.is_done();
