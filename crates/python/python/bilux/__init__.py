@@ -29,6 +29,7 @@ from ._bilux import (
     read_picture,
 )
 from ._errors import Error, FormatError, Interrupted, PictureError, RenderError, SceneError, SceneWarning
+from ._makers import cameras, lights, materials
 from ._scene import Scene, generate, load
 from ._tables import (
     Entry,
@@ -36,15 +37,12 @@ from ._tables import (
     Table,
     accels,
     aovs,
-    cameras,
     denoisers,
     densities,
     filters,
     formats,
     generators,
     integrators,
-    lights,
-    materials,
     metrics,
     picture_formats,
     sensor,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from ._bilux import Spec, rows
 from ._calibrated import of_opencv
@@ -99,6 +99,24 @@ class Table:
         return f"<bilux.{self._name.replace('-', '_')}: {', '.join(self)}>"
 
 
+_Function = TypeVar("_Function", bound=Callable[..., Spec])
+
+
+class _Made:
+    """A function of a table, which the table makes with its documentation."""
+
+    def __init__(self, function: Callable[..., Spec]) -> None:
+        self._function = function
+
+    def __get__(self, makers: Makers | None, owner: object = None) -> Callable[..., Spec]:
+        return self._function if makers is None else makers._maker(self._function.__name__)
+
+
+def made(function: _Function) -> _Function:
+    """A function of a table: what it says are its parameters and their types, for editors and checkers of types."""
+    return _Made(function)  # type: ignore[return-value]
+
+
 class Makers(Table):
     """A table of what scenes are made of: each entry's name is a function that makes one.
 
@@ -107,7 +125,12 @@ class Makers(Table):
         >>> lamp = bilux.lights.point(position=(0, 3, 0), intensity=10)
     """
 
-    def __getattr__(self, kind: str) -> Callable[..., Spec]:
+    if not TYPE_CHECKING:  # For types, there are only the functions that are written down (`_makers`).
+
+        def __getattr__(self, kind):
+            return self._maker(kind)
+
+    def _maker(self, kind: str) -> Callable[..., Spec]:
         # What has a dash in its name has an underscore here.
         if not kind.startswith("_") and kind.replace("_", "-") in self._entries:
             kind = kind.replace("_", "-")
@@ -138,9 +161,9 @@ class Cameras(Makers):
         >>> camera = bilux.cameras.perspective(position=(0, 1, 4), look_at=(0, 0, 0), fov=35)
     """
 
-    def __getattr__(self, kind: str) -> Callable[..., Spec]:
+    def _maker(self, kind: str) -> Callable[..., Spec]:
         known = kind.replace("_", "-")
-        make = super().__getattr__(known if known in self._entries and not kind.startswith("_") else kind)
+        make = super()._maker(known if known in self._entries and not kind.startswith("_") else kind)
         return of_opencv(known, make) if known.startswith("opencv") else make
 
     def __dir__(self) -> list[str]:
@@ -149,15 +172,12 @@ class Cameras(Makers):
 
 accels = Table("accels", "acceleration structures for ray queries")
 aovs = Table("aovs", "what a render can give besides its picture")
-cameras = Cameras("cameras", "kinds of camera")
 denoisers = Table("denoisers", "denoisers, the best first")
 densities = Table("densities", "densities of media that are formulas, for `Grid.computed`")
 filters = Table("filters", "pixel reconstruction filters")
 formats = Table("formats", "formats of scene files")
 generators = Table("generators", "built-in scenes")
 integrators = Table("integrators", "algorithms that compute light")
-lights = Makers("lights", "light sources")
-materials = Makers("materials", "what surfaces are made of")
 metrics = Table("metrics", "measures of how much a picture differs from a reference")
 picture_formats = Table("picture-formats", "formats of picture files")
 sensor = Table("sensor", "what can be said of a sensor, for `Picture.sensor`")

@@ -1,6 +1,7 @@
-//! The types of `bilux_scene::typed` match the tables, parameter by parameter.
+//! The types of `bilux_scene::typed`, and those of the makers in Python, match the tables, parameter by parameter.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::cameras::CAMERAS;
 use bilux_scene::{LIGHTS, MATERIALS};
 use std::fmt::Write;
 
@@ -62,23 +63,120 @@ fn rust_type(kind: ParameterKind) -> &'static str {
     }
 }
 
+/// How Python's module of makers begins.
+const MAKERS: &str = "\"\"\"The functions that make materials, lights and cameras, with their parameters, for editors and checkers of types.
+
+Generated from the tables by `cargo xtask docs`; do not edit by hand.
+\"\"\"
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, SupportsFloat, SupportsIndex, TypedDict
+
+from ._tables import Cameras, Makers, made
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
+    from ._bilux import Spec
+";
+
+/// What a camera of OpenCV takes besides: its matrices.
+const OF_OPENCV: &str = "\
+        K: ArrayLike | None = None,
+        world_to_camera: ArrayLike | None = None,
+        *,
+        camera_to_world: ArrayLike | None = None,
+        distortion: ArrayLike | None = None,
+        size: tuple[int, int] | None = None,
+        R: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        beyond: str = \"error\",
+";
+
+/// Words that no parameter in Python can have as its name.
+const KEYWORDS: [&str; 8] = ["from", "in", "is", "as", "with", "class", "lambda", "global"];
+
+/// A class of makers, and the types of their parameters.
+fn makers(class: &str, base: &str, rows: impl Iterator<Item = Entry> + Clone) -> String {
+    let mut text = String::new();
+    for row in rows.clone() {
+        let _ = write!(text, "\n\nclass {class}{}(TypedDict, total=False):\n", camel_case(row.name));
+        let _ = writeln!(text, "    \"\"\"Parameters of `{}`.\"\"\"\n", row.name);
+        for parameter in row.parameters {
+            assert!(!KEYWORDS.contains(&parameter.name), "{}.{}", row.name, parameter.name);
+            let _ = writeln!(text, "    {}: {}", parameter.name, python_type(parameter.kind));
+        }
+        if row.parameters.is_empty() {
+            text += "    pass\n";
+        }
+    }
+    let _ = write!(
+        text,
+        "\n\nclass {class}Makers({base}):\n    \"\"\"The functions of a table; see `{base}`.\"\"\"\n"
+    );
+    for row in rows {
+        let takes = if row.name.starts_with("opencv") { OF_OPENCV } else { "        *,\n" };
+        let _ = write!(
+            text,
+            "\n    @made\n    def {}(\n        self,\n{takes}        name: str = \"\",\n        **parameters: \
+             Unpack[{class}{}],\n    ) -> Spec:\n        raise NotImplementedError\n",
+            row.name.replace('-', "_"),
+            camel_case(row.name)
+        );
+    }
+    text
+}
+
+fn python_type(kind: ParameterKind) -> &'static str {
+    match kind {
+        ParameterKind::Bool => "bool",
+        ParameterKind::Integer { .. } => "SupportsIndex",
+        ParameterKind::Number { .. } => "SupportsFloat",
+        ParameterKind::Colour { .. } | ParameterKind::Vector => "ArrayLike",
+        ParameterKind::Choice(_) | ParameterKind::Text => "str",
+        // Textures, other specs and the like, in any of the forms that they can have.
+        _ => "Any",
+    }
+}
+
 fn compare(file: &str, is: &str, wanted: &str) {
     if is == wanted {
         // Writing the same once more would make cargo build all crates anew.
         return;
     }
     if std::env::var_os(WRITE).is_some() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/typed").join(file);
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
         std::fs::write(path, wanted).unwrap();
     } else {
-        panic!("src/typed/{file} is not what the table says: run `cargo xtask docs`");
+        panic!("{file} is not what the table says: run `cargo xtask docs`");
     }
+}
+
+#[test]
+fn every_maker_of_python_has_its_parameters() {
+    let materials = MATERIALS.iter().map(|row| row.entry);
+    let lights = LIGHTS.iter().map(|row| row.entry);
+    let cameras = CAMERAS.iter().map(|row| row.entry);
+    let wanted = [
+        MAKERS,
+        &makers("Material", "Makers", materials),
+        &makers("Light", "Makers", lights),
+        &makers("Camera", "Cameras", cameras),
+        "\n\ncameras = CameraMakers(\"cameras\", \"kinds of camera\")\n",
+        "lights = LightMakers(\"lights\", \"light sources\")\n",
+        "materials = MaterialMakers(\"materials\", \"what surfaces are made of\")\n",
+    ];
+    let file = "../python/python/bilux/_makers.py";
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    compare(file, &std::fs::read_to_string(path).unwrap_or_default(), &wanted.concat());
 }
 
 #[test]
 fn every_material_and_light_has_its_type() {
     let materials = source("Materials", MATERIALS.iter().map(|row| row.entry));
-    compare("materials.rs", include_str!("../../src/typed/materials.rs"), &materials);
+    compare("src/typed/materials.rs", include_str!("../../src/typed/materials.rs"), &materials);
     let lights = source("Lights", LIGHTS.iter().map(|row| row.entry));
-    compare("lights.rs", include_str!("../../src/typed/lights.rs"), &lights);
+    compare("src/typed/lights.rs", include_str!("../../src/typed/lights.rs"), &lights);
 }
