@@ -73,7 +73,7 @@ pub use request::{Denoised, JobRequest};
 pub use series::Series;
 pub use session::{Edit, Session};
 pub use settings::Settings;
-pub use writing::lost_alpha;
+pub use writing::{lost_alpha, lost_transparency};
 
 use bilux_scene::{SceneBuilder, Spec};
 use std::path::Path;

@@ -12,9 +12,21 @@ use std::path::Path;
 /// # Errors
 /// If no picture format has the file's extension.
 pub fn lost_alpha(picture: &Picture, path: &Path, behind: Option<Rgb>) -> Result<Option<Warning>, Error> {
+    let is_transparent = picture.channel("A").is_some_and(|alpha| alpha.iter().any(|&alpha| alpha < 1.0));
+    lost_transparency(is_transparent, path, behind)
+}
+
+/// The same of any picture, by whether it is transparent.
+///
+/// # Errors
+/// If no picture is written in a format of this name.
+pub fn lost_transparency(
+    is_transparent: bool,
+    path: &Path,
+    behind: Option<Rgb>,
+) -> Result<Option<Warning>, Error> {
     let format = bilux_pictures::format_of_path(path)?;
-    let transparent = picture.channel("A").is_some_and(|alpha| alpha.iter().any(|&alpha| alpha < 1.0));
-    if !transparent || format.holds_alpha || behind.is_some() && format.for_display {
+    if !is_transparent || format.holds_alpha || behind.is_some() && format.for_display {
         return Ok(None);
     }
     let instead = if format.for_display { "white" } else { "black" };

@@ -1,7 +1,10 @@
 //! Converts decoded pictures to the texels of textures.
 
 use bilux_math::Rgb;
-use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
+use bilux_pictures::{
+    Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_interleaved_bytes, read_rgba8,
+    read_stored_bytes,
+};
 use bilux_scene::Texture;
 use bilux_scene::texture::{Image, Texels};
 
@@ -15,9 +18,6 @@ pub enum SampleMeaning {
     /// Raw numbers.
     Numbers,
 }
-
-/// How a PNG begins.
-const PNG: &[u8] = b"\x89PNG";
 
 /// A picture file's texels, and what is wrong with the file though it could be read.
 pub struct Decoded {
@@ -39,13 +39,46 @@ pub fn decoded(
         let image = Image { width, height, texels: Texels::Bytes(texels) };
         return Ok(Some(Decoded { image, warnings }));
     }
-    let mut picture = read_bytes(bytes, hint, limits)?.with_main(layer)?;
+    let mut picture = match means {
+        SampleMeaning::Colours => read_bytes(bytes, hint, limits)?,
+        // What a file says of its colours counts neither where a format says what they are, nor for numbers.
+        SampleMeaning::SrgbColours | SampleMeaning::Numbers => read_stored_bytes(bytes, hint, limits)?,
+    };
+    picture = picture.with_main(layer)?;
     let warnings = std::mem::take(&mut picture.warnings);
-    // What a PNG says of its colours does not count where a format says what they are.
-    if means == SampleMeaning::SrgbColours && bytes.starts_with(PNG) {
-        picture.colour_space = ColourSpace::Srgb;
-    }
     Ok(image_of(picture, means).map(|image| Decoded { image, warnings }))
+}
+
+/// True for a picture whose samples programs take as numbers if nobody says what they are: those of more than 8 bits, and those
+/// of one channel, unless the file says that they are colours. [UsdPreviewSurface, `sourceColorSpace`: auto]
+pub fn is_raw_unless_said(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> bool {
+    if says_colours(bytes) {
+        return false;
+    }
+    match read_interleaved_bytes(bytes, hint, limits) {
+        Ok(Some(stored)) => stored.is_grey(),
+        // What is not in sRGB is light already, such as the floats of an EXR.
+        Ok(None) => read_bytes(bytes, hint, limits).is_ok_and(|it| it.colour_space == ColourSpace::Srgb),
+        Err(_) => false,
+    }
+}
+
+/// True for a PNG with a chunk about its colours, all of which come before the pixels.
+fn says_colours(bytes: &[u8]) -> bool {
+    let Some(mut rest) = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n") else { return false };
+    while let Some((length, behind)) = rest.split_first_chunk::<4>() {
+        let Some((name, behind)) = behind.split_first_chunk::<4>() else { return false };
+        match name {
+            b"sRGB" | b"gAMA" | b"iCCP" | b"cICP" => return true,
+            b"IDAT" => return false,
+            _ => {}
+        }
+        // The data, and four bytes of a check sum.
+        let length = u32::from_be_bytes(*length) as usize;
+        let Some(next) = length.checked_add(4).and_then(|length| behind.get(length..)) else { return false };
+        rest = next;
+    }
+    false
 }
 
 /// The texels of a picture, as bytes if it was 8-bit; `None` if it has no colour channels.

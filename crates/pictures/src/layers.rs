@@ -2,6 +2,7 @@
 
 use crate::picture::qualified;
 use crate::{Channel, Picture, PictureError};
+use std::ops::Range;
 
 /// The channels that belong to no layer.
 const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];
@@ -25,6 +26,17 @@ impl Picture {
         let mut picture = self.like();
         let main = self.channels.iter().filter(|c| MAIN.contains(&&c.name[..]));
         picture.channels.extend(main.cloned());
+        picture
+    }
+
+    /// Some rows of the same.
+    pub(crate) fn main_rows(&self, rows: Range<usize>) -> Picture {
+        let mut picture = self.like_rows(rows.len());
+        let samples = rows.start * self.width()..rows.end * self.width();
+        for channel in self.channels.iter().filter(|c| MAIN.contains(&&c.name[..])) {
+            let samples = channel.samples[samples.clone()].to_vec();
+            picture.channels.push(Channel { name: channel.name.clone(), samples });
+        }
         picture
     }
 

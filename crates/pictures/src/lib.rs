@@ -44,9 +44,10 @@ pub use crop::Crop;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::{PictureError, reason};
 pub use formats::{
-    BitDepth, ForeignFormat, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, foreign_format,
-    format_named, format_of_path, guarded_decoding, is_decoding, open_regular, read, read_bytes, read_crop,
-    read_crop_bytes, read_rgba8, read_with, write, write_atomically, write_bytes,
+    BitDepth, ForeignFormat, Interleaved, PICTURE_FORMATS, PictureFormatEntry, Rgba8, Source, WriteOptions,
+    foreign_format, format_named, format_of_path, guarded_decoding, is_decoding, open_regular, read,
+    read_bytes, read_crop, read_crop_bytes, read_interleaved, read_interleaved_bytes, read_rgba8,
+    read_stored_bytes, read_with, write, write_atomically, write_bytes, write_source, write_source_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};

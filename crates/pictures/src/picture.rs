@@ -245,9 +245,14 @@ impl Picture {
 
     /// A picture of the same size and meaning, without planes and metadata.
     pub(crate) fn like(&self) -> Picture {
+        self.like_rows(self.height)
+    }
+
+    /// The same with a number of rows.
+    pub(crate) fn like_rows(&self, height: usize) -> Picture {
         Picture {
             width: self.width,
-            height: self.height,
+            height,
             channels: Vec::new(),
             integer_planes: Vec::new(),
             colour_space: self.colour_space,

@@ -161,7 +161,9 @@ fn decoded(
     {
         return Ok((Some(Image { width, height, texels: Texels::Bytes(texels) }), warnings));
     }
-    let picture = bilux::pictures::read_bytes(bytes, extension, limits)?.with_main(layer)?;
+    // What a file says of its colours does not count for numbers.
+    let read = if data { bilux::pictures::read_stored_bytes } else { bilux::pictures::read_bytes };
+    let picture = read(bytes, extension, limits)?.with_main(layer)?;
     let (width, height, warnings) = (picture.width(), picture.height(), picture.warnings.clone());
     let picture = if data { picture } else { picture.into_linear() };
     let alpha = picture.channel("A").map_or_else(Vec::new, <[f32]>::to_vec);

@@ -3,11 +3,14 @@
 use super::Job;
 use crate::description::{options, row_vectors};
 use crate::display::Display;
-use crate::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, SETTINGS, SOFTWARE};
+use crate::metadata::{ASKED, FINGERPRINT, IRRADIANCE, MEASURES, PIXEL_SHAPE, SETTINGS, SOFTWARE};
 use crate::settings::{Background, Settings};
 use crate::{Error, Outcome};
 use bilux_pictures::{Picture, WriteOptions};
 use std::path::Path;
+
+/// What differs less from a square pixel is a rounding.
+const SQUARE: f64 = 1e-4;
 
 impl Job {
     /// The options for writing a picture of this job, with automatic exposure if the settings ask for it.
@@ -89,6 +92,14 @@ impl Job {
         }
         if let Some(to_film) = &matrices.to_film {
             note("worldToNDC", row_vectors(to_film));
+            // What a metre across is on the film in pixels, and a metre upwards.
+            let lens = *to_film * matrices.to_camera.inverse();
+            let [across, upwards] = [lens.x_axis.x, lens.y_axis.y].map(f64::from).map(f64::abs);
+            let [width, height] = [self.settings().width, self.settings().height].map(f64::from);
+            let shape = upwards * height / (across * width);
+            if shape.is_normal() && (shape - 1.0).abs() > SQUARE {
+                note(PIXEL_SHAPE, format!("{:.4}", shape));
+            }
         }
         // What was interrupted cannot be made again.
         if !outcome.rendered.cancelled {

@@ -76,3 +76,28 @@ fn a_rig_stands_where_the_scenes_camera_does() {
     assert!((first - wanted).length() < 0.02, "{first}, not {wanted}");
     assert!((second - first - Vec2::new(-500.0 * 0.2 / depth, 0.0)).length() < 0.02, "{second}, {first}");
 }
+
+/// The shape of pixels is in the picture, for programs that show them in their shape; square ones are not mentioned.
+#[test]
+fn pixels_that_are_no_squares_are_said() {
+    let said = |kind: &str, shape: f32, size: [u32; 2]| {
+        let mut scene = bilux::generate(&Spec::new("", "teapot")).unwrap();
+        let eye =
+            spec(kind, &[("position", Vec3::new(1.0, 2.0, 5.0)), ("look_at", Vec3::new(0.2, 0.1, 0.0))]);
+        let eye =
+            if kind == "perspective" { eye.with("pixel_aspect", shape).with("skew", 0.2f32) } else { eye };
+        scene.cameras = vec![CameraSpec::new(eye)];
+        let request = JobRequest::new().size(size[0], size[1]).integrator("path").spp(1).camera("0");
+        let job = Job::new(&scene, request).unwrap();
+        let outcome = job.render(&Quiet).unwrap();
+        let mut picture = outcome.picture().unwrap();
+        job.describe(&mut picture, &outcome, None);
+        picture.metadata.get("pixelAspectRatio").map(|text| text.parse::<f32>().unwrap())
+    };
+    for (shape, size) in [(1.5, [24, 16]), (0.8, [16, 24])] {
+        let found = said("perspective", shape, size).unwrap();
+        assert!((found - shape).abs() < 1e-3, "{found}, not {shape}");
+    }
+    assert_eq!(said("perspective", 1.0, [24, 16]), None);
+    assert_eq!(said("orthographic", 1.0, [16, 24]), None);
+}

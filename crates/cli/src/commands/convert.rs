@@ -15,7 +15,7 @@ use crate::usage;
 use anyhow::{anyhow, bail};
 use bilux::formats::check_not_read;
 use bilux::pictures::formats::WriteOptions;
-use bilux::pictures::{Limits, Picture};
+use bilux::pictures::{Limits, Picture, Source};
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
@@ -68,7 +68,17 @@ fn is_table(output: &Path) -> bool {
 
 fn convert_picture(given: &Given, arguments: &Convert, common: &Common) -> anyhow::Result<()> {
     let (output, format) = (&arguments.output, arguments.output_format.as_deref());
-    let picture = given.picture(&Limits::new(common.max_memory), common)?;
+    let limits = Limits::new(common.max_memory);
+    if arguments.heat_map.is_none()
+        && arguments.layer.is_none()
+        && let Some(stored) = given.stored_picture(&limits, common)?
+    {
+        // As numbers it would take four times as much memory.
+        let lost = bilux::lost_transparency(stored.is_transparent(), &named(output, format), None)?;
+        report_warnings(lost.as_slice(), common)?;
+        return outputs::write_source(output, format, Source::Bytes(&stored), &options_of(arguments));
+    }
+    let picture = given.picture(&limits, common)?;
     if let Some(channel) = &arguments.heat_map {
         let plan = Plan::of(&picture, channel, arguments)?;
         if !common.quiet {
@@ -83,9 +93,12 @@ fn convert_picture(given: &Given, arguments: &Convert, common: &Common) -> anyho
     let named = named(output, format);
     let picture = converted(picture, arguments, &named, common)?;
     warn_lost_alpha(&picture, &named, None, common)?;
-    let mut options = WriteOptions::default();
-    options.quality = arguments.quality.unwrap_or(options.quality);
-    outputs::write(output, format, &picture, &options)
+    outputs::write(output, format, &picture, &options_of(arguments))
+}
+
+fn options_of(arguments: &Convert) -> WriteOptions {
+    let options = WriteOptions::default();
+    WriteOptions { quality: arguments.quality.unwrap_or(options.quality), ..options }
 }
 
 /// Refuses what only pictures have.

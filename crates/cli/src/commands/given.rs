@@ -8,7 +8,9 @@ use crate::assignments::from_flag;
 use crate::usage;
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
-use bilux::pictures::{Limits, PICTURE_FORMATS, Picture, foreign_format};
+use bilux::pictures::{
+    Interleaved, Limits, PICTURE_FORMATS, Picture, foreign_format, read_interleaved, read_interleaved_bytes,
+};
 use bilux::scene::{SceneBuilder, SceneError};
 use std::io::Read;
 use std::path::Path;
@@ -72,6 +74,23 @@ impl<'a> Given<'a> {
         self.format.is_empty()
             && (PICTURE_FORMATS.iter().any(|row| (row.sniff)(bytes))
                 || foreign_format(bytes).is_some_and(|format| format.is_picture))
+    }
+
+    /// Reads a picture that is stored in sRGB bytes, and reports what is wrong with it; `None` for any other picture.
+    ///
+    /// # Errors
+    /// If it is none, or takes more memory than is allowed.
+    pub fn stored_picture(&self, limits: &Limits, common: &Common) -> anyhow::Result<Option<Interleaved>> {
+        let (read, path) = match &self.piped {
+            Some(bytes) => {
+                let path = Path::new(STANDARD_INPUT);
+                (read_interleaved_bytes(bytes, None, limits).map_err(|error| error.in_file(path)), path)
+            }
+            None => (read_interleaved(self.path, limits), self.path),
+        };
+        let Some(mut stored) = read? else { return Ok(None) };
+        report(&std::mem::take(&mut stored.warnings), path, common)?;
+        Ok(Some(stored))
     }
 
     /// Reads a picture, of a part of a larger one only the part, and reports what is wrong with it.

@@ -5,7 +5,7 @@ use crate::output;
 use crate::streams::{PNG, is_stdout, named};
 use anyhow::bail;
 use bilux::pictures::formats::{WriteOptions, format_of_path};
-use bilux::pictures::{Picture, format_named};
+use bilux::pictures::{Picture, Source, format_named};
 use bilux::scene::SceneError;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -59,9 +59,22 @@ pub fn write(
     picture: &Picture,
     options: &WriteOptions,
 ) -> anyhow::Result<()> {
+    write_source(output, format, Source::Planes(picture), options)
+}
+
+/// Writes a picture from any source.
+///
+/// # Errors
+/// If that fails.
+pub fn write_source(
+    output: &Path,
+    format: Option<&str>,
+    picture: Source,
+    options: &WriteOptions,
+) -> anyhow::Result<()> {
     if is_stdout(output) {
-        let bytes = bilux::pictures::write_bytes(format.unwrap_or(PNG), picture, options)?;
+        let bytes = bilux::pictures::write_source_bytes(format.unwrap_or(PNG), picture, options)?;
         return output::print_bytes(&bytes);
     }
-    Ok(bilux::pictures::write(output, picture, options)?)
+    Ok(bilux::pictures::write_source(output, picture, options)?)
 }

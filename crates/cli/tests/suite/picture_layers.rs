@@ -1,7 +1,7 @@
 //! Pictures that commands read: layers of an EXR, pictures that are turned or cut short, pictures given as scenes.
 
 use bilux::math::Rgb;
-use bilux::pictures::{Picture, read, write};
+use bilux::pictures::{BitDepth, Picture, WriteOptions, read, write};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -142,4 +142,37 @@ fn pictures_that_are_not_read_are_named() {
         let (code, said) = run(path, command);
         assert!(code == 1 && said.contains(part), "{command}: {code} {said}");
     }
+}
+
+/// Bytes are converted as bytes, and not as the numbers that they stand for, which take eight times as much. What does not fit is
+/// said, with what to do.
+#[test]
+fn a_picture_of_bytes_is_converted_in_the_memory_of_its_bytes() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let (width, height) = (1024usize, 768usize);
+    let mut picture = Picture::new(width, height).unwrap();
+    picture.colour_space = bilux::pictures::ColourSpace::Srgb;
+    for (channel, name) in ["R", "G", "B"].into_iter().enumerate() {
+        let sample = |i: usize| ((i % width) * (channel + 1) / 5 + i / width) as f32 % 256.0 / 255.0;
+        picture.push_channel(name, (0..width * height).map(sample).collect()).unwrap();
+    }
+    let options = WriteOptions::default();
+    write(path("bytes.png"), &picture, &options).unwrap();
+    write(path("deep.png"), &picture, &WriteOptions { bit_depth: BitDepth::Sixteen, ..options }).unwrap();
+    // Three bytes a pixel, and not one more.
+    let limit = (width * height * 3).to_string();
+    for format in ["png", "ppm", "webp", "jpg", "exr"] {
+        let output = format!("out.{format}");
+        done(folder.path(), &format!("convert bytes.png -o {output} --max-memory {limit}"));
+        let (before, after) = (picture.clone().into_linear(), read(path(&output)).unwrap().into_linear());
+        let off = |x: usize, y: usize| {
+            (0..3).map(|c| (before.rgb(x, y)[c] - after.rgb(x, y)[c]).abs()).fold(0.0, f32::max)
+        };
+        let worst = [(0, 0), (1000, 700), (517, 300)].map(|(x, y)| off(x, y)).into_iter().fold(0.0, f32::max);
+        assert!(worst < if format == "jpg" { 0.1 } else { 1e-5 }, "{format}: {worst}");
+    }
+    let (status, said) = run(folder.path(), &format!("convert deep.png -o out.png --max-memory {limit}"));
+    assert_eq!(status, 1, "{said}");
+    assert!(said.contains("1024 x 768 pixels need") && said.contains("--max-memory"), "{said}");
 }

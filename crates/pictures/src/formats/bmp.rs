@@ -20,8 +20,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(b"BM"),
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read_stored: None,
     read_crop: None,
-    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
+    read_interleaved: Some(|bytes, limits| guarded(FORMAT, || decode(bytes, limits).map(Some))),
     write: None,
 };
 
@@ -227,7 +228,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
             samples
         }
     };
-    let mut whole = Interleaved { width, height, samples, warnings: Vec::new() };
+    let mut whole = Interleaved::new(width, height, samples);
     whole.make_opaque_if_all_transparent();
     Ok(whole)
 }

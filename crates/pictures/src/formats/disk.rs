@@ -4,7 +4,7 @@ use super::unfinished::Unfinished;
 use crate::{Limits, PictureError};
 use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Opens a regular file for reading.
 ///
@@ -35,16 +35,39 @@ pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Pictu
 
 /// Writes a file atomically: a reader sees either the old file or the new one, never a partial one. The bytes go into
 /// a new file next to the target, which is renamed over it once they are on the disk; if that fails, the new file is
-/// removed. Links are followed, and anything that is not a regular file (a pipe, a terminal) is written to directly.
+/// removed. Links are followed, also to files that do not exist yet, and a file that is replaced keeps its permissions.
+/// Anything that is not a regular file (a pipe, a terminal) is written to directly.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
+    let target = target_of(path);
+    let before = fs::metadata(&target).ok();
+    if before.as_ref().is_some_and(|metadata| !metadata.is_file()) {
         return fs::write(&target, bytes).map_err(|source| PictureError::Io { action: "write it", source });
     }
     let (unfinished, file) =
         create_beside(&target).map_err(|source| PictureError::Io { action: "write beside it", source })?;
+    if let Some(before) = before {
+        // A file system that has no permissions, or does not let them be set, is no reason to lose a picture.
+        let _ = file.set_permissions(before.permissions());
+    }
     let written = fill(file, bytes).and_then(|()| unfinished.complete(&target));
     written.map_err(|source| PictureError::Io { action: "write it", source })
+}
+
+/// Longer chains of links are circles, as for the system.
+const MAX_LINKS: usize = 40;
+
+/// The file that a path stands for: that at the end of all links, whether it exists or not.
+fn target_of(path: &Path) -> PathBuf {
+    if let Ok(found) = fs::canonicalize(path) {
+        return found;
+    }
+    let mut target = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        let Ok(next) = fs::read_link(&target) else { return target };
+        target = target.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
+    }
+    // A circle: what is written there replaces the link.
+    path.to_owned()
 }
 
 fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {

@@ -32,8 +32,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits, Wanted::DisplayWindow)),
+    read_stored: None,
     read_crop: Some(read_crop),
-    read_rgba8: None,
+    read_interleaved: None,
     write: Some(exr_write::write),
 };
 
@@ -214,6 +215,12 @@ impl Frame {
             .map_or(REC709, |c| [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y].map(f64::from)));
         from_chroma(&mut picture, luminance(primaries));
         to_rec709(&mut picture, primaries);
+        let shape = meta.headers.first().map_or(1.0, |header| header.shared_attributes.pixel_aspect);
+        if shape.is_normal() && shape > 0.0 && (shape - 1.0).abs() > 1e-4 {
+            picture.metadata.insert(exr_write::PIXEL_ASPECT.to_owned(), shape.to_string());
+            let what = format!("its pixels are {shape} times as wide as high, and are taken as squares");
+            picture.warnings.push(what);
+        }
         for header in &meta.headers {
             for (name, value) in header.all_named_attributes() {
                 let value = match value {

@@ -3,6 +3,7 @@
 //! The header and tables are written here and not by the library, which keeps texts in a hash map: their order would
 //! change from run to run, and the same picture must always give the same bytes.
 
+use super::Source;
 use super::WriteOptions;
 use super::primaries::REC709;
 use crate::limits::MAX_SIDE;
@@ -13,6 +14,8 @@ use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, LineOrder, SampleType, Text};
 use ::exr::meta::header::{Header, standard_names};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 pub(super) const FORMAT: &str = "EXR";
 
@@ -22,9 +25,32 @@ struct Plane<'a> {
     samples: Samples<'a>,
 }
 
+#[derive(Clone, Copy)]
 enum Samples<'a> {
     Floats(&'a [f32]),
     Integers(&'a [u32]),
+}
+
+/// What a file says before its samples.
+struct Layout<'a> {
+    size: [usize; 2],
+    crop: Option<Crop>,
+    metadata: &'a BTreeMap<String, String>,
+    /// The name of each plane, in the order of the file, and whether it has integers.
+    planes: Vec<(&'a str, bool)>,
+}
+
+impl<'a> Layout<'a> {
+    /// Of a picture with these planes, and so many rows.
+    fn of(picture: &'a Picture, rows: usize, planes: &[Plane<'a>]) -> Layout<'a> {
+        let kind = |plane: &Plane<'a>| (plane.name, matches!(plane.samples, Samples::Integers(_)));
+        Layout {
+            size: [picture.width(), rows],
+            crop: picture.crop,
+            metadata: &picture.metadata,
+            planes: planes.iter().map(kind).collect(),
+        }
+    }
 }
 
 /// Rows that are compressed together.
@@ -37,25 +63,55 @@ const STANDARD_TEXTS: [&str; 7] =
 /// Attributes that are matrices, and in our metadata their sixteen numbers.
 pub(super) const MATRICES: [&str; 2] = ["worldToCamera", "worldToNDC"];
 
-pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
-    let linear = picture.colour_space == ColourSpace::LinearRec709 && picture.alpha == Alpha::Premultiplied;
-    let picture = if linear { Cow::Borrowed(picture) } else { Cow::Owned(picture.clone().into_linear()) };
-    let planes = sorted_planes(&picture)?;
-    let [_, top] = corner(&picture)?;
-    let mut bytes = header_bytes(&picture, &planes)?;
-    let header = library_header(&picture, &planes);
-    let blocks = picture.height().div_ceil(BLOCK_ROWS);
+/// The attribute that says how wide a pixel is over its height, and its key in our metadata unless that is 1.
+pub(super) const PIXEL_ASPECT: &str = "pixelAspectRatio";
+
+pub(super) fn write(picture: Source, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    match picture {
+        Source::Planes(picture) => {
+            let is_linear =
+                picture.colour_space == ColourSpace::LinearRec709 && picture.alpha == Alpha::Premultiplied;
+            let picture =
+                if is_linear { Cow::Borrowed(picture) } else { Cow::Owned(picture.clone().into_linear()) };
+            let planes = sorted_planes(&picture)?;
+            let width = picture.width();
+            let layout = Layout::of(&picture, picture.height(), &planes);
+            file_of(&layout, |rows| Ok(block_bytes(&planes, width, rows)))
+        }
+        Source::Bytes(bytes) => {
+            // The numbers of a few rows at a time: those of all of them would take four times as much as the bytes.
+            let numbers = |rows: Range<usize>| Ok(bytes.rows(FORMAT, rows)?.into_linear());
+            let mut first = numbers(0..1)?;
+            first.metadata.clone_from(&bytes.metadata);
+            let layout = Layout::of(&first, bytes.height, &sorted_planes(&first)?);
+            file_of(&layout, |rows| {
+                let (part, count) = (numbers(rows.clone())?, rows.len());
+                Ok(block_bytes(&sorted_planes(&part)?, bytes.width, 0..count))
+            })
+        }
+    }
+}
+
+/// The bytes of a file, from those of some of its rows.
+fn file_of(
+    layout: &Layout,
+    rows_of: impl Fn(Range<usize>) -> Result<Vec<u8>, PictureError>,
+) -> Result<Vec<u8>, PictureError> {
+    let [width, height] = layout.size;
+    let [_, top] = corner(layout)?;
+    let mut bytes = header_bytes(layout)?;
+    let header = library_header(layout);
+    let blocks = height.div_ceil(BLOCK_ROWS);
     let table = bytes.len();
     bytes.resize(table + 8 * blocks, 0);
     for block in 0..blocks {
         let offset = (bytes.len() as u64).to_le_bytes();
         bytes[table + 8 * block..][..8].copy_from_slice(&offset);
         let first = block * BLOCK_ROWS;
-        let rows = first..(first + BLOCK_ROWS).min(picture.height());
-        let section = IntegerBounds::new((0, first as i32), (picture.width(), rows.len()));
-        let data = block_bytes(&planes, picture.width(), rows);
+        let rows = first..(first + BLOCK_ROWS).min(height);
+        let section = IntegerBounds::new((0, first as i32), (width, rows.len()));
         let packed = Compression::ZIP16
-            .compress_image_section_to_le(&header, data, section)
+            .compress_image_section_to_le(&header, rows_of(rows)?, section)
             .map_err(|error| unwritable(error.to_string()))?;
         bytes.extend_from_slice(&(top + first as i32).to_le_bytes());
         bytes.extend_from_slice(&(packed.len() as i32).to_le_bytes());
@@ -65,12 +121,13 @@ pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, Pict
 }
 
 /// The left and upper corner of the picture in the larger one that it is a part of.
-fn corner(picture: &Picture) -> Result<[i32; 2], PictureError> {
-    let Some(Crop { x, y, whole }) = picture.crop else { return Ok([0; 2]) };
+fn corner(layout: &Layout) -> Result<[i32; 2], PictureError> {
+    let Some(Crop { x, y, whole }) = layout.crop else { return Ok([0; 2]) };
     let fits = |at: usize, side: usize, whole: usize| {
         whole as u64 <= MAX_SIDE && at.checked_add(side).is_some_and(|end| end <= whole)
     };
-    if !fits(x, picture.width(), whole[0]) || !fits(y, picture.height(), whole[1]) {
+    let [columns, rows] = layout.size;
+    if !fits(x, columns, whole[0]) || !fits(y, rows, whole[1]) {
         let [width, height] = whole;
         return Err(unwritable(format!(
             "its place at {x},{y} is not within a picture of {width} x {height}"
@@ -99,20 +156,19 @@ fn sorted_planes(picture: &Picture) -> Result<Vec<Plane<'_>>, PictureError> {
 }
 
 /// The header that the library's compressor needs.
-fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
-    let channels = planes
+fn library_header(layout: &Layout) -> Header {
+    let channels = layout
+        .planes
         .iter()
-        .map(|plane| ChannelDescription {
-            name: Text::from_slice_unchecked(plane.name.as_bytes()),
-            sample_type: match plane.samples {
-                Samples::Floats(_) => SampleType::F32,
-                Samples::Integers(_) => SampleType::U32,
-            },
+        .map(|&(name, is_integer)| ChannelDescription {
+            name: Text::from_slice_unchecked(name.as_bytes()),
+            sample_type: if is_integer { SampleType::U32 } else { SampleType::F32 },
             quantize_linearly: false,
             sampling: Vec2(1, 1),
         })
         .collect();
-    Header::new(Text::from_slice_unchecked(b""), (picture.width(), picture.height()), channels).with_encoding(
+    let [width, height] = layout.size;
+    Header::new(Text::from_slice_unchecked(b""), (width, height), channels).with_encoding(
         Compression::ZIP16,
         BlockDescription::ScanLines,
         LineOrder::Increasing,
@@ -120,16 +176,16 @@ fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
 }
 
 /// Everything before the offset table.
-fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureError> {
-    let corner @ [left, top] = corner(picture)?;
-    let size = [picture.width(), picture.height()];
+fn header_bytes(layout: &Layout) -> Result<Vec<u8>, PictureError> {
+    let corner @ [left, top] = corner(layout)?;
+    let size = layout.size;
     let window = |corners: [[i32; 2]; 2]| -> Vec<u8> {
         corners.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect()
     };
     let data_window = window([corner, [left + size[0] as i32 - 1, top + size[1] as i32 - 1]]);
-    let whole = picture.crop.map_or(size, |crop| crop.whole);
+    let whole = layout.crop.map_or(size, |crop| crop.whole);
     let display_window = window([[0; 2], whole.map(|side| side as i32 - 1)]);
-    let long = planes.iter().map(|plane| plane.name).chain(picture.metadata.keys().map(|key| &key[..]));
+    let long = layout.planes.iter().map(|(name, _)| *name).chain(layout.metadata.keys().map(|key| &key[..]));
     let long_names = if long.into_iter().any(|name| name.len() > 31) { 0x400 } else { 0 };
     let mut bytes = vec![0x76, 0x2f, 0x31, 0x01];
     bytes.extend_from_slice(&(2u32 | long_names).to_le_bytes());
@@ -138,7 +194,7 @@ fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureE
         bytes.extend_from_slice(&(value.len() as i32).to_le_bytes());
         bytes.extend_from_slice(value);
     };
-    attribute("channels", "chlist", &channel_list(planes));
+    attribute("channels", "chlist", &channel_list(&layout.planes));
     attribute(
         "chromaticities",
         "chromaticities",
@@ -148,10 +204,12 @@ fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureE
     attribute("dataWindow", "box2i", &data_window);
     attribute("displayWindow", "box2i", &display_window);
     attribute("lineOrder", "lineOrder", &[0]);
-    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    let shape = layout.metadata.get(PIXEL_ASPECT).and_then(|text| text.parse().ok());
+    let shape: f32 = shape.filter(|shape: &f32| shape.is_normal() && *shape > 0.0).unwrap_or(1.0);
+    attribute(PIXEL_ASPECT, "float", &shape.to_le_bytes());
     attribute("screenWindowCenter", "v2f", &[0; 8]);
     attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
-    for (key, value) in &picture.metadata {
+    for (key, value) in layout.metadata.iter().filter(|(key, _)| *key != PIXEL_ASPECT) {
         if let Some(matrix) = MATRICES.contains(&&key[..]).then(|| matrix(value)).flatten() {
             attribute(key, "m44f", &floats(&matrix));
             continue;
@@ -174,11 +232,11 @@ fn floats(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
 }
 
-fn channel_list(planes: &[Plane]) -> Vec<u8> {
+fn channel_list(planes: &[(&str, bool)]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    for plane in planes {
-        let kind = if matches!(plane.samples, Samples::Integers(_)) { 0 } else { 2 };
-        bytes.extend_from_slice(plane.name.as_bytes());
+    for &(name, is_integer) in planes {
+        let kind = if is_integer { 0 } else { 2 };
+        bytes.extend_from_slice(name.as_bytes());
         bytes.push(0);
         // Type; whether perceptually linear, and three unused bytes; no subsampling in x and y.
         [kind, 0, 1, 1].iter().for_each(|field: &i32| bytes.extend_from_slice(&field.to_le_bytes()));

@@ -4,7 +4,7 @@
 //! step, since it truncates where we round): so integers up to 255 are preserved exactly.
 
 use super::primaries::{self, Primaries, REC709, are_same, to_rec709};
-use super::{PictureFormatEntry, WriteOptions, require_colour};
+use super::{PictureFormatEntry, Source, WriteOptions, require_colour};
 use crate::limits::{reserved, zeroed};
 use crate::picture::clamp_sample;
 use crate::{Limits, Picture, PictureError};
@@ -24,8 +24,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(b"#?"),
     read,
+    read_stored: None,
     read_crop: None,
-    read_rgba8: None,
+    read_interleaved: None,
     write: Some(write),
 };
 
@@ -35,7 +36,7 @@ const FORMAT: &str = "HDR";
 const BYTES_PER_PIXEL: u64 = 3 * 4;
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
-    let mut source = Source { bytes, at: 0 };
+    let mut source = Unread { bytes, at: 0 };
     let header = Header::read(&mut source)?;
     let [width, height] = header.size();
     let pixels = limits.check(FORMAT, width as u64, height as u64, BYTES_PER_PIXEL)?;
@@ -85,7 +86,7 @@ struct Axis {
 }
 
 impl Header {
-    fn read(source: &mut Source) -> Result<Header, PictureError> {
+    fn read(source: &mut Unread) -> Result<Header, PictureError> {
         let (mut exposure, mut xyz, mut primaries) = ([1.0f32; 3], false, REC709);
         loop {
             let line = source.line("the header")?;
@@ -202,12 +203,12 @@ fn resolution(line: &str) -> Result<[Axis; 2], PictureError> {
 }
 
 /// The bytes, and the current position.
-struct Source<'a> {
+struct Unread<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl<'a> Source<'a> {
+impl<'a> Unread<'a> {
     fn take(&mut self, count: usize) -> Result<&'a [u8], PictureError> {
         let taken = self.at.checked_add(count).and_then(|end| self.bytes.get(self.at..end));
         self.at += count;
@@ -353,9 +354,10 @@ fn rec709_from_xyz(xyz: Rgb) -> Rgb {
     )
 }
 
-fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
-    require_colour(FORMAT, picture)?;
-    let picture = picture.clone().into_linear();
+fn write(picture: Source, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let picture = picture.planes(FORMAT)?;
+    require_colour(FORMAT, &picture)?;
+    let picture = picture.into_owned().into_linear();
     let (width, height) = (picture.width(), picture.height());
     let [r, g, b] = picture.rgb_planes().unwrap_or_default();
     let mut bytes = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();

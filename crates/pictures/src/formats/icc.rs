@@ -1,17 +1,32 @@
-//! The tone curve of an ICC profile: what the samples of a picture mean. [ICC.1:2022]
+//! ICC profiles of the kind that pictures have, a curve for each channel and a matrix: what samples mean. [ICC.1:2022]
 
+use super::meaning::Meaning;
+use super::primaries::{self, Matrix, REC709};
 use crate::ColourSpace;
 use bilux_math::transcendental::{ln_f64, powf_f64};
 
-/// How samples are encoded by the curve of red, or of grey; `None` if the profile has no such curve, or is damaged.
-///
-/// The value of the curve in its middle tells: no two curves in use meet there. The primaries are not looked at.
-pub(super) fn colour_space(profile: &[u8]) -> Option<ColourSpace> {
-    let curve = tag(profile, *b"rTRC").or_else(|| tag(profile, *b"kTRC"))?;
-    Some(of_middle(middle(curve)?))
+/// What samples are by a profile; `None` if it has no curve of red or of grey, or is damaged.
+pub(super) fn meaning(profile: &[u8]) -> Option<Meaning> {
+    let curve = |name: &[u8; 4]| Curve::of(tag(profile, *name)?);
+    let first = curve(b"rTRC").or_else(|| curve(b"kTRC"))?;
+    let Some(matrix) = matrix(profile).filter(|matrix| !primaries::is_identity(matrix, SAME)) else {
+        return Some(Meaning::Plain(of_middle(first.light(0.5))));
+    };
+    let [green, blue] = [b"gTRC", b"bTRC"].map(|name| curve(name).unwrap_or_else(|| first.clone()));
+    Some(Meaning::Wide { curves: Box::new([first, green, blue]), matrix })
 }
 
-/// What a curve is whose value for half is this: straight, that of sRGB and powers near it, or a power.
+/// What of a profile `bytes` says, sRGB without one or with one that says nothing.
+pub(super) fn meaning_or_srgb(profile: Option<&[u8]>) -> Meaning {
+    profile.and_then(meaning).unwrap_or(Meaning::Plain(ColourSpace::Srgb))
+}
+
+/// Entries of the matrix to Rec. 709 that differ less from those of a unit matrix are roundings of the same primaries: makers
+/// of profiles of sRGB do not agree on their third digits.
+const SAME: f64 = 0.02;
+
+/// What a curve is whose value for half is this: straight, that of sRGB and powers near it, or a power. No two curves in use
+/// meet there.
 fn of_middle(light: f64) -> ColourSpace {
     // Half of the sRGB curve is .2140, and half to the power of 2.2 is .2176.
     match light {
@@ -19,6 +34,32 @@ fn of_middle(light: f64) -> ColourSpace {
         light if (light - 0.216).abs() < 0.008 || !(1e-3..0.999).contains(&light) => ColourSpace::Srgb,
         light => ColourSpace::Gamma((ln_f64(light) / ln_f64(0.5)).recip() as f32),
     }
+}
+
+/// The white of the space that profiles connect: D50. [ICC.1:2022, 7.2.16]
+const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
+
+/// From light of a profile's primaries to Rec. 709. The profile has them adapted to D50 by Bradford's matrix, as Rec. 709 is
+/// here. [ICC.1:2022, annexes E and F]
+fn matrix(profile: &[u8]) -> Option<Matrix> {
+    let column = |name: &[u8; 4]| {
+        let xyz = tag(profile, *name).filter(|data| data.starts_with(b"XYZ "))?;
+        let number = |i: usize| Some(f64::from(u32_at(xyz, 8 + 4 * i)?.cast_signed()) / 65536.0);
+        Some([number(0)?, number(1)?, number(2)?])
+    };
+    let [r, g, b] = [column(b"rXYZ")?, column(b"gXYZ")?, column(b"bXYZ")?];
+    let from = [0, 1, 2].map(|row: usize| [r[row], g[row], b[row]]);
+    let to = primaries::inverse(&primaries::adapted_to(REC709, D50)?)?;
+    let mut matrix = primaries::multiply(&to, &from);
+    for row in &mut matrix {
+        let white: f64 = row.iter().sum();
+        // White stays white in spite of roundings. What is farther from it is no profile of a picture.
+        if !(0.9..1.1).contains(&white) {
+            return None;
+        }
+        row.iter_mut().for_each(|entry| *entry /= white);
+    }
+    Some(matrix)
 }
 
 /// The bytes of a tag. [ICC.1:2022, 7.3]
@@ -30,30 +71,70 @@ fn tag(profile: &[u8], signature: [u8; 4]) -> Option<&[u8]> {
     profile.get(start..start.checked_add(length)?)
 }
 
-/// The value of a curve for half: of a table, of a power, or of a function with parameters. [ICC.1:2022, 10.6 and 10.18]
-fn middle(curve: &[u8]) -> Option<f64> {
-    match curve.get(..4)? {
-        b"curv" => match u32_at(curve, 8)? as usize {
-            0 => Some(0.5),
-            1 => Some(powf_f64(0.5, f64::from(u16_at(curve, 12)?) / 256.0)),
-            count => {
-                let at = |i: usize| u16_at(curve, 12 + 2 * i).map(|value| f64::from(value) / 65535.0);
-                Some(0.5 * (at((count - 1) / 2)? + at(count / 2)?))
+/// From a sample to light.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Curve {
+    /// One that pictures have.
+    Known(ColourSpace),
+    /// A power.
+    Power(f64),
+    /// Light at equal steps of samples, two or more. [ICC.1:2022, 10.6]
+    Table(Vec<f32>),
+    /// A function of this kind with parameters g, a, b, c, d, e and f, as far as it has them. [ICC.1:2022, 10.18]
+    Function { kind: u16, numbers: [f64; 7] },
+}
+
+impl Curve {
+    fn of(curve: &[u8]) -> Option<Curve> {
+        match curve.get(..4)? {
+            b"curv" => match u32_at(curve, 8)? as usize {
+                0 => Some(Curve::Power(1.0)),
+                1 => Some(Curve::Power(f64::from(u16_at(curve, 12)?) / 256.0)),
+                count => {
+                    let entries = curve.get(12..12 + count.checked_mul(2)?)?.as_chunks::<2>().0;
+                    let light = |pair: &[u8; 2]| f32::from(u16::from_be_bytes(*pair)) / 65535.0;
+                    Some(Curve::Table(entries.iter().map(light).collect()))
+                }
+            },
+            b"para" => {
+                let kind = u16_at(curve, 8)?;
+                let count = *[1, 3, 4, 5, 7].get(usize::from(kind))?;
+                let mut numbers = [0.0; 7];
+                for (i, number) in numbers.iter_mut().take(count).enumerate() {
+                    *number = f64::from(u32_at(curve, 12 + 4 * i)?.cast_signed()) / 65536.0;
+                }
+                Some(Curve::Function { kind, numbers })
             }
-        },
-        b"para" => {
-            let number = |i: usize| Some(f64::from(u32_at(curve, 12 + 4 * i)? as i32) / 65536.0);
-            let power = |base: f64| Some(powf_f64(base.max(0.0), number(0)?));
-            match u16_at(curve, 8)? {
-                0 => power(0.5),
-                // Half is above the straight part of every curve in use.
-                1 | 3 => power(number(1)? * 0.5 + number(2)?),
-                2 => Some(power(number(1)? * 0.5 + number(2)?)? + number(3)?),
-                4 => Some(power(number(1)? * 0.5 + number(2)?)? + number(5)?),
-                _ => None,
+            _ => None,
+        }
+    }
+
+    /// The light of a sample, which is within 0 and 1.
+    pub(super) fn light(&self, sample: f64) -> f64 {
+        match self {
+            Curve::Known(space) => f64::from(space.decode(sample as f32)),
+            Curve::Power(power) => powf_f64(sample.max(0.0), *power),
+            Curve::Table(entries) => {
+                let at = sample.clamp(0.0, 1.0) * (entries.len() - 1) as f64;
+                let below = (at as usize).min(entries.len() - 2);
+                let [low, high] = [entries[below], entries[below + 1]].map(f64::from);
+                low + (high - low) * (at - below as f64)
+            }
+            Curve::Function { kind, numbers: [g, a, b, c, d, e, f] } => {
+                let power = |base: f64| powf_f64(base.max(0.0), *g);
+                let bent = power(a * sample + b);
+                match kind {
+                    0 => power(sample),
+                    // Below where its base is 0, a power is 0.
+                    1 => bent,
+                    2 => bent + c,
+                    3 if sample >= *d => bent,
+                    3 => c * sample,
+                    _ if sample >= *d => bent + e,
+                    _ => c * sample + f,
+                }
             }
         }
-        _ => None,
     }
 }
 

@@ -2,9 +2,11 @@
 
 use super::faults::jpeg::{as_jfif, explain, is_one_scan, is_progressive, is_whole};
 use super::guard::guarded;
+use super::icc;
+use super::meaning::Meaning;
 use super::orientation::Orientation;
 use super::rgba8::Interleaved;
-use super::{PictureFormatEntry, WriteOptions, check_sides, opaque_planes};
+use super::{BitDepth, PictureFormatEntry, Source, WriteOptions, check_sides};
 use crate::limits::reserved;
 use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -26,9 +28,15 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: true,
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(&[0xff, 0xd8, 0xff]),
-    read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_stored: Some(|bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.0.picture(FORMAT))),
     read_crop: None,
-    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
+    read_interleaved: Some(|bytes, limits| {
+        guarded(FORMAT, || {
+            let (stored, meaning) = decode(bytes, limits)?;
+            Ok(meaning.is_srgb().then_some(stored))
+        })
+    }),
     write: Some(write),
 };
 
@@ -38,8 +46,15 @@ const FORMAT: &str = "JPEG";
 /// while a picture is turned.
 const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
 
-/// The bytes of one or three channels, as they are shown. Of a file that was cut short, what is there.
-fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let (stored, meaning) = decode(bytes, limits)?;
+    let mut picture = stored.picture(FORMAT)?;
+    meaning.apply(&mut picture);
+    Ok(picture)
+}
+
+/// The bytes of one or three channels, as they are shown, and what they mean. Of a file that was cut short, what is there.
+fn decode(bytes: &[u8], limits: &Limits) -> Result<(Interleaved, Meaning), PictureError> {
     let bytes = &*as_jfif(bytes);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options());
     decoder.decode_headers().map_err(|error| explain(&error, bytes))?;
@@ -56,7 +71,9 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     samples.truncate(pixels * channels);
     let orientation = decoder.exif().map_or(Orientation::of(1), |data| Orientation::of_exif(data));
     let (width, height) = (info.width.into(), info.height.into());
-    orientation.apply(FORMAT, Interleaved { width, height, samples, warnings })
+    let stored = Interleaved { warnings, ..Interleaved::new(width, height, samples) };
+    let meaning = icc::meaning_or_srgb(decoder.icc_profile().as_deref());
+    Ok((orientation.apply(FORMAT, stored)?, meaning))
 }
 
 fn options() -> DecoderOptions {
@@ -114,16 +131,16 @@ fn loss(bytes: &[u8], space: ColorSpace, height: usize) -> Result<String, Pictur
 const CONTINUED: usize = 64;
 
 /// Baseline JPEG, which every program reads. Chroma has full resolution from a quality of 90 on, and half below.
-fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+fn write(picture: Source, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let unwritable = |error: jpeg_encoder::EncodingError| PictureError::Unwritable {
         format: FORMAT,
         what: error.to_string(),
     };
     let [width, height] = check_sides(FORMAT, picture, usize::from(u16::MAX))?;
-    let planes = opaque_planes(FORMAT, picture, options)?;
-    let colours = if planes.names.len() == 1 { ColorType::Luma } else { ColorType::Rgb };
+    let shown = picture.opaque(FORMAT, &WriteOptions { bit_depth: BitDepth::Eight, ..*options })?;
+    let colours = if shown.names.len() == 1 { ColorType::Luma } else { ColorType::Rgb };
     let mut bytes = Vec::new();
     let encoder = Encoder::new(&mut bytes, options.quality.clamp(1, 100));
-    encoder.encode(&planes.to_u8(&planes.names), width, height, colours).map_err(unwritable)?;
+    encoder.encode(&shown.samples, width, height, colours).map_err(unwritable)?;
     Ok(bytes)
 }

@@ -1,9 +1,9 @@
 //! KTX2, read only: textures of glTF files, compressed by Basis Universal. [KTX 2.0]
 
+use super::PictureFormatEntry;
 use super::faults::ktx2::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
-use super::{PictureFormatEntry, Rgba8};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use bilux_math::registry::Entry;
@@ -21,8 +21,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| bytes.starts_with(MAGIC),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_stored: None,
     read_crop: None,
-    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
+    read_interleaved: Some(|bytes, limits| guarded(FORMAT, || read_interleaved(bytes, limits))),
     write: None,
 };
 
@@ -194,8 +195,7 @@ impl<'a> Header<'a> {
                 samples
             }
         };
-        let (width, height, warnings) = (self.width, self.height, Vec::new());
-        let mut whole = Interleaved { width, height, samples, warnings };
+        let mut whole = Interleaved::new(self.width, self.height, samples);
         if let Some(swizzle) = self.swizzle {
             whole.samples = swizzled(&whole.samples, whole.channels(), swizzle);
         }
@@ -235,11 +235,11 @@ fn channels_of(kind: u32) -> Option<usize> {
     }
 }
 
-/// See [`super::read_rgba8`]; `None` if the file says that its colours are linear, or multiplied by alpha.
-fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+/// See [`super::read_interleaved`]; `None` if the file says that its colours are linear, or multiplied by alpha.
+fn read_interleaved(bytes: &[u8], limits: &Limits) -> Result<Option<Interleaved>, PictureError> {
     let header = Header::read(bytes, limits)?;
     let is_plain = header.is_srgb && !header.is_premultiplied;
-    if is_plain { Ok(header.unpacked(bytes)?.rgba8()) } else { Ok(None) }
+    is_plain.then(|| header.unpacked(bytes)).transpose()
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
@@ -294,7 +294,7 @@ mod tests {
             }
             let error = (squares / (3.0 * 240.0)).sqrt();
             assert!(error < most, "{name}: {error}");
-            let at_once = read_rgba8(&bytes, &Limits::default()).unwrap();
+            let at_once = read_interleaved(&bytes, &Limits::default()).unwrap();
             assert_eq!(at_once.is_none(), name.contains("linear"), "{name}");
         }
     }

@@ -12,6 +12,7 @@ mod icc;
 mod jpeg;
 #[cfg(feature = "ktx2")]
 mod ktx2;
+mod meaning;
 mod orientation;
 mod pfm;
 mod planes;
@@ -19,6 +20,7 @@ mod png;
 mod pnm;
 mod primaries;
 mod rgba8;
+mod source;
 mod tga;
 mod tiff;
 mod tokens;
@@ -28,12 +30,12 @@ mod webp;
 pub use disk::{open_regular, write_atomically};
 pub use foreign::{FOREIGN_FORMATS, ForeignFormat, foreign_format};
 pub use guard::{guarded_decoding, is_decoding};
-pub use rgba8::Rgba8;
+pub use rgba8::{Interleaved, Rgba8};
+pub use source::Source;
 pub use unfinished::{Unfinished, remove_unfinished};
 
 use crate::error::nearest;
-use crate::picture::quantise;
-use crate::tonemap::{TONEMAPS, ToneMapEntry, to_display};
+use crate::tonemap::{TONEMAPS, ToneMapEntry};
 use crate::{Limits, Picture, PictureError};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -70,20 +72,22 @@ pub struct PictureFormatEntry {
     pub holds_alpha: bool,
     /// Reads a whole file.
     pub read: ReadFn,
+    /// Reads samples as they are stored, whatever the file says of its colours; `None` if the format says nothing of them.
+    pub read_stored: Option<ReadFn>,
     /// Reads of a picture that is a part of a larger one only that part; `None` if the format has no such pictures.
     pub read_crop: Option<ReadFn>,
     /// Reads a file that stores sRGB bytes, and returns none for other files; `None` where that would save nothing.
-    pub read_rgba8: Option<ReadRgba8Fn>,
+    pub read_interleaved: Option<ReadInterleavedFn>,
     /// Writes a whole file; `None` if the format is read only.
     pub write: Option<WriteFn>,
 }
 
 /// Type of the function that reads a format.
 pub type ReadFn = fn(&[u8], &Limits) -> Result<Picture, PictureError>;
-/// Type of the function that reads a format into four bytes per pixel.
-pub type ReadRgba8Fn = fn(&[u8], &Limits) -> Result<Option<Rgba8>, PictureError>;
+/// Type of the function that reads a format into the bytes that it stores.
+pub type ReadInterleavedFn = fn(&[u8], &Limits) -> Result<Option<Interleaved>, PictureError>;
 /// Type of the function that writes a format.
-pub type WriteFn = fn(&Picture, &WriteOptions) -> Result<Vec<u8>, PictureError>;
+pub type WriteFn = fn(Source, &WriteOptions) -> Result<Vec<u8>, PictureError>;
 
 /// Options for writers. Each writer uses only those that it knows.
 #[derive(Clone, Copy, Debug)]
@@ -112,6 +116,13 @@ pub enum BitDepth {
 
 /// The default JPEG quality: no visible artefacts, in a sixth of a PNG's bytes.
 pub const DEFAULT_QUALITY: u8 = 92;
+
+impl WriteOptions {
+    /// True if bytes in sRGB come out as they are.
+    fn is_neutral(&self) -> bool {
+        self.exposure == 0.0 && self.tone_map.entry.name == TONEMAPS[0].entry.name && self.behind.is_none()
+    }
+}
 
 impl Default for WriteOptions {
     fn default() -> WriteOptions {
@@ -162,13 +173,46 @@ pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<P
     (row_of(bytes, hint)?.read)(bytes, limits)
 }
 
+/// The same, whatever the file says of its colours: for numbers that are no colours, and for formats that say themselves what
+/// the colours of their textures are.
+pub fn read_stored_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
+    let row = row_of(bytes, hint)?;
+    (row.read_stored.unwrap_or(row.read))(bytes, limits)
+}
+
 /// Decodes a picture that is stored in sRGB bytes. Returns `None` for any other picture, which [`read_bytes`]
 /// reads. Where both apply, they give the same result, and this function takes a quarter of the memory.
 ///
 /// # Errors
 /// As [`read_bytes`].
 pub fn read_rgba8(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
-    row_of(bytes, hint)?.read_rgba8.map_or(Ok(None), |read| read(bytes, limits))
+    Ok(read_interleaved_bytes(bytes, hint, limits)?.and_then(|stored| stored.rgba8()))
+}
+
+/// The same, with as many bytes per pixel as the file has, for another file.
+///
+/// # Errors
+/// As [`read_bytes`].
+pub fn read_interleaved_bytes(
+    bytes: &[u8],
+    hint: Option<&str>,
+    limits: &Limits,
+) -> Result<Option<Interleaved>, PictureError> {
+    row_of(bytes, hint)?.read_interleaved.map_or(Ok(None), |read| read(bytes, limits))
+}
+
+/// The same from a file.
+///
+/// # Errors
+/// As [`read_with`].
+pub fn read_interleaved(
+    path: impl AsRef<Path>,
+    limits: &Limits,
+) -> Result<Option<Interleaved>, PictureError> {
+    let path = path.as_ref();
+    let bytes = disk::read_within(path, limits).map_err(|error| error.in_file(path))?;
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    read_interleaved_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
 }
 
 /// The format of these bytes.
@@ -188,6 +232,18 @@ fn row_of(bytes: &[u8], hint: Option<&str>) -> Result<&'static PictureFormatEntr
 /// Writes a picture file atomically: first next to the target, then renamed over it. The extension chooses the
 /// format.
 pub fn write(path: impl AsRef<Path>, picture: &Picture, options: &WriteOptions) -> Result<(), PictureError> {
+    write_source(path, Source::Planes(picture), options)
+}
+
+/// The same of any source. From bytes come the same files as from the planes that they stand for.
+///
+/// # Errors
+/// If the picture does not fit into the format, or the file cannot be written.
+pub fn write_source(
+    path: impl AsRef<Path>,
+    picture: Source,
+    options: &WriteOptions,
+) -> Result<(), PictureError> {
     let path = path.as_ref();
     let row = format_of_path(path)?;
     let bytes = encode(row, picture, options).map_err(|error| error.in_file(path))?;
@@ -196,6 +252,18 @@ pub fn write(path: impl AsRef<Path>, picture: &Picture, options: &WriteOptions) 
 
 /// The bytes of a picture file of this format, by name or extension.
 pub fn write_bytes(format: &str, picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    write_source_bytes(format, Source::Planes(picture), options)
+}
+
+/// The same of any source.
+///
+/// # Errors
+/// If the format cannot be written, or the picture does not fit into it.
+pub fn write_source_bytes(
+    format: &str,
+    picture: Source,
+    options: &WriteOptions,
+) -> Result<Vec<u8>, PictureError> {
     let row = format_named(format).filter(|row| row.write.is_some());
     encode(row.ok_or_else(|| unknown(format, "written", |row| row.write.is_some()))?, picture, options)
 }
@@ -218,7 +286,7 @@ pub fn format_named(name: &str) -> Option<&'static PictureFormatEntry> {
 
 fn encode(
     row: &PictureFormatEntry,
-    picture: &Picture,
+    picture: Source,
     options: &WriteOptions,
 ) -> Result<Vec<u8>, PictureError> {
     let writer = row.write.ok_or_else(|| unknown(row.entry.name, "written", |row| row.write.is_some()))?;
@@ -237,46 +305,8 @@ fn known(able: fn(&PictureFormatEntry) -> bool) -> String {
     rows.map(|row| row.entry.name).collect::<Vec<_>>().join(", ")
 }
 
-/// The planes that a display format writes, in its order: `R G B` or `Y`, and `A` if present.
-pub(crate) struct DisplayPlanes {
-    pub(crate) picture: Picture,
-    pub(crate) names: Vec<&'static str>,
-}
-
-/// The main picture exposed, tone mapped and encoded, as the options say.
-fn display_planes(
-    format: &'static str,
-    picture: &Picture,
-    options: &WriteOptions,
-) -> Result<DisplayPlanes, PictureError> {
-    require_colour(format, picture)?;
-    let mut picture = to_display(picture, options.exposure, options.tone_map)?;
-    if let Some(behind) = options.behind {
-        picture = picture.before(behind);
-    }
-    let grey = picture.channel("R").is_none();
-    let mut names = if grey { vec!["Y"] } else { vec!["R", "G", "B"] };
-    if picture.channel("A").is_some() {
-        names.push("A");
-    }
-    Ok(DisplayPlanes { picture, names })
-}
-
-/// The same for a format without alpha: transparent pixels are composited over white, unless the options have another
-/// colour.
-fn opaque_planes(
-    format: &'static str,
-    picture: &Picture,
-    options: &WriteOptions,
-) -> Result<DisplayPlanes, PictureError> {
-    let behind = options.behind.or_else(|| picture.channel("A").map(|_| Rgb::WHITE));
-    let mut planes = display_planes(format, picture, &WriteOptions { behind, ..*options })?;
-    planes.names.retain(|&name| name != "A");
-    Ok(planes)
-}
-
 /// Rejects sides that are too long for a format.
-fn check_sides(format: &'static str, picture: &Picture, most: usize) -> Result<[u16; 2], PictureError> {
+fn check_sides(format: &'static str, picture: Source, most: usize) -> Result<[u16; 2], PictureError> {
     let (width, height) = (picture.width(), picture.height());
     match [width, height].map(u16::try_from) {
         [Ok(w), Ok(h)] if width.max(height) <= most => Ok([w, h]),
@@ -300,25 +330,4 @@ fn require_colour(format: &'static str, picture: &Picture) -> Result<(), Picture
         "it needs the channels R, G and B, or Y, but the picture has {names}; write .exr instead, or choose a layer"
     );
     Err(PictureError::Unwritable { format, what })
-}
-
-impl DisplayPlanes {
-    /// Interleaved samples of 0..=255, rounded half up; NaN becomes 0.
-    pub(crate) fn to_u8(&self, names: &[&str]) -> Vec<u8> {
-        self.interleave(names, |sample| [quantise(sample, 255.0) as u8])
-    }
-
-    /// Interleaved big-endian samples of 0..=65535, rounded half up; NaN becomes 0.
-    pub(crate) fn to_u16_be(&self, names: &[&str]) -> Vec<u8> {
-        self.interleave(names, |sample| (quantise(sample, 65535.0) as u16).to_be_bytes())
-    }
-
-    fn interleave<const N: usize>(&self, names: &[&str], encode: impl Fn(f32) -> [u8; N]) -> Vec<u8> {
-        let planes: Vec<&[f32]> = names.iter().filter_map(|name| self.picture.channel(name)).collect();
-        let mut bytes = Vec::with_capacity(self.picture.pixel_count() * planes.len() * N);
-        for i in 0..self.picture.pixel_count() {
-            planes.iter().for_each(|plane| bytes.extend_from_slice(&encode(plane[i])));
-        }
-        bytes
-    }
 }

@@ -124,8 +124,7 @@ mod tests {
             (8, 3, "BDFACE"),
         ];
         for (number, width, letters) in shown {
-            let stored =
-                Interleaved { width: 2, height: 3, samples: b"ABCDEF".to_vec(), warnings: Vec::new() };
+            let stored = Interleaved::new(2, 3, b"ABCDEF".to_vec());
             let turned = Orientation::of(number).apply("test", stored).unwrap();
             assert_eq!((turned.width, turned.samples), (width, letters.as_bytes().to_vec()), "{number}");
             let mut planes = Picture::new(2, 3).unwrap();

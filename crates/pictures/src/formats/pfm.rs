@@ -1,7 +1,7 @@
 //! PFM: 32-bit floats, uncompressed, bottom row first. [Debevec PFM]
 
 use super::tokens::Tokens;
-use super::{PictureFormatEntry, WriteOptions, require_colour};
+use super::{PictureFormatEntry, Source, WriteOptions, require_colour};
 use crate::limits::reserved;
 use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -19,8 +19,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'F' | b'f', blank, ..] if blank.is_ascii_whitespace()),
     read,
+    read_stored: None,
     read_crop: None,
-    read_rgba8: None,
+    read_interleaved: None,
     write: Some(write),
 };
 
@@ -66,9 +67,10 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
 }
 
 /// Little-endian, scale 1.
-fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
-    require_colour(FORMAT, picture)?;
-    let picture = picture.clone().into_linear();
+fn write(picture: Source, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let picture = picture.planes(FORMAT)?;
+    require_colour(FORMAT, &picture)?;
+    let picture = picture.into_owned().into_linear();
     let grey = picture.channel("R").is_none();
     let planes = picture.rgb_planes().unwrap_or_default();
     let planes = if grey { &planes[..1] } else { &planes[..] };

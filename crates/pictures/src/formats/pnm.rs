@@ -1,7 +1,7 @@
 //! PBM, PGM and PPM, in text and binary: the simplest picture formats. [Netpbm]
 
 use super::tokens::Tokens;
-use super::{BitDepth, PictureFormatEntry, WriteOptions, opaque_planes};
+use super::{BitDepth, PictureFormatEntry, Source, WriteOptions};
 use crate::limits::reserved;
 use crate::{ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -19,8 +19,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'1'..=b'6', next, ..] if next.is_ascii_whitespace() || *next == b'#'),
     read,
+    read_stored: None,
     read_crop: None,
-    read_rgba8: None,
+    read_interleaved: None,
     write: Some(write),
 };
 
@@ -136,15 +137,14 @@ fn read_binary(data: &[u8], layout: &Layout) -> Result<Vec<Vec<f32>>, PictureErr
 }
 
 /// P6 or P5. The format has no alpha.
-fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
-    let planes = opaque_planes(FORMAT, picture, options)?;
-    let names = &planes.names;
-    let magic = if names.len() == 1 { "P5" } else { "P6" };
-    let (maximum, data) = match options.bit_depth {
-        BitDepth::Eight => (255, planes.to_u8(names)),
-        BitDepth::Sixteen => (65535, planes.to_u16_be(names)),
+fn write(picture: Source, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let shown = picture.opaque(FORMAT, options)?;
+    let magic = if shown.names.len() == 1 { "P5" } else { "P6" };
+    let maximum = match options.bit_depth {
+        BitDepth::Eight => 255,
+        BitDepth::Sixteen => 65535,
     };
     let mut bytes = format!("{magic}\n{} {}\n{maximum}\n", picture.width(), picture.height()).into_bytes();
-    bytes.extend_from_slice(&data);
+    bytes.extend_from_slice(&shown.samples);
     Ok(bytes)
 }

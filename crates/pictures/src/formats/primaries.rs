@@ -12,7 +12,7 @@ pub(super) const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], 
 /// Smaller differences are roundings of the same primaries.
 const SAME: f64 = 1e-3;
 
-type Matrix = [[f64; 3]; 3];
+pub(super) type Matrix = [[f64; 3]; 3];
 
 /// Converts the colours of the main picture and of all layers. Collinear primaries, which span no gamut, leave the
 /// picture as it is.
@@ -58,9 +58,9 @@ fn planes(picture: &Picture, names: &[String; 3]) -> Option<[Vec<f32>; 3]> {
 }
 
 /// The matrix from linear colours of these primaries to linear Rec. 709, with white mapped to white. [Lindbloom RGB]
-fn matrix_to_rec709(from: Primaries) -> Option<Matrix> {
+pub(super) fn matrix_to_rec709(from: Primaries) -> Option<Matrix> {
     let to_xyz = xyz_from_rgb(from)?;
-    let adapted = multiply(&adaptation(from[3], REC709[3])?, &to_xyz);
+    let adapted = multiply(&adaptation(xyz(from[3]), xyz(REC709[3]))?, &to_xyz);
     let matrix = multiply(&inverse(&xyz_from_rgb(REC709)?)?, &adapted);
     matrix.as_flattened().iter().all(|m| m.is_finite()).then_some(matrix)
 }
@@ -80,9 +80,20 @@ fn xyz_from_rgb(primaries: Primaries) -> Option<Matrix> {
 /// Sharpened cone responses: Bradford's matrix. [Lindbloom RGB]
 const BRADFORD: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
 
-/// Chromatic adaptation of XYZ from one white point to another.
-fn adaptation(from: [f64; 2], to: [f64; 2]) -> Option<Matrix> {
-    let [from, to] = [from, to].map(|white| apply(&BRADFORD, xyz(white)));
+/// True for a unit matrix, to within a number in each entry.
+pub(super) fn is_identity(matrix: &Matrix, off: f64) -> bool {
+    let one = |row: usize, column: usize| if row == column { 1.0 } else { 0.0 };
+    (0..9).all(|i| (matrix[i / 3][i % 3] - one(i / 3, i % 3)).abs() <= off)
+}
+
+/// From linear colours of these primaries to XYZ whose white is this one.
+pub(super) fn adapted_to(primaries: Primaries, white: [f64; 3]) -> Option<Matrix> {
+    Some(multiply(&adaptation(xyz(primaries[3]), white)?, &xyz_from_rgb(primaries)?))
+}
+
+/// Chromatic adaptation of XYZ from one white to another.
+fn adaptation(from: [f64; 3], to: [f64; 3]) -> Option<Matrix> {
+    let [from, to] = [from, to].map(|white| apply(&BRADFORD, white));
     let scaled = [0, 1, 2].map(|row: usize| BRADFORD[row].map(|m| m * to[row] / from[row]));
     Some(multiply(&inverse(&BRADFORD)?, &scaled))
 }
@@ -91,12 +102,12 @@ fn apply(matrix: &Matrix, v: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
+pub(super) fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| [0, 1, 2].map(|column: usize| (0..3).map(|k| row[k] * b[k][column]).sum()))
 }
 
 /// The inverse by cofactors; `None` if the matrix is singular.
-fn inverse(m: &Matrix) -> Option<Matrix> {
+pub(super) fn inverse(m: &Matrix) -> Option<Matrix> {
     let cofactor = |row: usize, column: usize| {
         let at = |i: usize, j: usize| m[(row + i) % 3][(column + j) % 3];
         at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)

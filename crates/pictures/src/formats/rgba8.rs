@@ -1,7 +1,10 @@
-//! Pictures as bytes: textures take four per pixel, without a detour through planes.
+//! Pictures as bytes: textures take four per pixel, and other files as many as there are channels, without a detour through
+//! planes, which take four times as much.
 
 use super::planes::planes_of;
 use crate::{Alpha, ColourSpace, Picture, PictureError};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Bytes of an sRGB picture with straight alpha.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,34 +20,67 @@ pub struct Rgba8 {
 }
 
 /// Interleaved bytes of one to four channels (grey, grey and alpha, colour, colour and alpha), in sRGB with straight
-/// alpha.
-pub(super) struct Interleaved {
+/// alpha: a picture as its file has it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Interleaved {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) samples: Vec<u8>,
+    /// Texts that are stored with the picture.
+    pub metadata: BTreeMap<String, String>,
     /// What is wrong with the file, though it could be read.
-    pub(super) warnings: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 impl Interleaved {
+    pub(super) fn new(width: usize, height: usize, samples: Vec<u8>) -> Interleaved {
+        Interleaved { width, height, samples, ..Interleaved::default() }
+    }
+
     pub(super) fn channels(&self) -> usize {
         self.samples.len() / (self.width * self.height).max(1)
     }
 
-    /// The same as planes.
-    pub(super) fn picture(&self, format: &'static str) -> Result<Picture, PictureError> {
-        let names: &[&str] = match self.channels() {
+    /// True if its only colour is grey.
+    pub fn is_grey(&self) -> bool {
+        self.channels() < 3
+    }
+
+    /// True if a pixel is not opaque.
+    pub fn is_transparent(&self) -> bool {
+        let channels = self.channels();
+        matches!(channels, 2 | 4)
+            && self.samples.iter().skip(channels - 1).step_by(channels).any(|&alpha| alpha < 255)
+    }
+
+    /// The names of the channels.
+    pub(super) fn names(&self) -> &'static [&'static str] {
+        match self.channels() {
             1 => &["Y"],
             2 => &["Y", "A"],
             3 => &["R", "G", "B"],
             _ => &["R", "G", "B", "A"],
-        };
-        let mut picture = Picture::new(self.width, self.height)?;
+        }
+    }
+
+    /// The same as planes.
+    pub(super) fn picture(&self, format: &'static str) -> Result<Picture, PictureError> {
+        let mut picture = self.rows(format, 0..self.height)?;
+        picture.warnings.clone_from(&self.warnings);
+        picture.metadata.clone_from(&self.metadata);
+        Ok(picture)
+    }
+
+    /// Some rows as planes, without texts.
+    pub(super) fn rows(&self, format: &'static str, rows: Range<usize>) -> Result<Picture, PictureError> {
+        let names = self.names();
+        let mut picture = Picture::new(self.width, rows.len())?;
         picture.colour_space = ColourSpace::Srgb;
         picture.alpha = Alpha::Straight;
-        picture.warnings.clone_from(&self.warnings);
         let number = |byte: &u8| f32::from(*byte) / 255.0;
-        let planes = planes_of(format, self.samples.iter(), names.len(), picture.pixel_count(), number)?;
+        let row = self.width * names.len();
+        let samples = self.samples.get(rows.start * row..rows.end * row).unwrap_or_default();
+        let planes = planes_of(format, samples.iter(), names.len(), picture.pixel_count(), number)?;
         for (name, plane) in names.iter().zip(planes) {
             picture.push_channel(*name, plane)?;
         }

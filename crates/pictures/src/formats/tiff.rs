@@ -1,10 +1,12 @@
 //! TIFF, read only: a format of scans, maps and film textures. [TIFF 6.0]
 
+use super::PictureFormatEntry;
 use super::faults::tiff::{colours, explain, unsupported};
 use super::guard::guarded;
+use super::icc;
+use super::meaning::Meaning;
 use super::orientation::Orientation;
 use super::rgba8::Interleaved;
-use super::{PictureFormatEntry, Rgba8};
 use crate::limits::{reserved, zeroed};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -27,8 +29,9 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     holds_alpha: false,
     sniff: |bytes| [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].into_iter().any(|mark| bytes.starts_with(mark)),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_stored: Some(|bytes, limits| guarded(FORMAT, || Ok(read_stored(bytes, limits)?.0))),
     read_crop: None,
-    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
+    read_interleaved: Some(|bytes, limits| guarded(FORMAT, || read_interleaved(bytes, limits))),
     write: None,
 };
 
@@ -66,6 +69,8 @@ struct Decoded {
     in_planes: bool,
     /// The corner in which the first pixel is, from 1 to 8.
     orientation: u16,
+    /// What the samples mean, unless they are floats.
+    meaning: Meaning,
 }
 
 /// True when no text of the first directory claims to be longer than the file. The decoder allocates memory for the
@@ -152,6 +157,9 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         .find_tag_unsigned::<u16>(Tag::Orientation)
         .map_err(|error| explain(error, bytes))?
         .unwrap_or(1);
+    // A damaged profile says nothing.
+    let profile = decoder.find_tag(Tag::IccProfile).ok().flatten().and_then(|value| value.into_u8_vec().ok());
+    let meaning = icc::meaning_or_srgb(profile.as_deref());
     let mut samples = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut samples).map_err(|error| explain(error, bytes))?;
     if layout.sample_format == SampleFormat::Int {
@@ -160,7 +168,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     let (width, height, channels) = (width as usize, height as usize, usize::from(channels));
     let in_planes = layout.planes > 1;
     let mut decoded =
-        Decoded { width, height, samples, bits, channels, colours, opacity, in_planes, orientation };
+        Decoded { width, height, samples, bits, channels, colours, opacity, in_planes, orientation, meaning };
     decoded.unpack_bits()?;
     Ok(decoded)
 }
@@ -240,11 +248,11 @@ impl Decoded {
     }
 }
 
-/// See [`super::read_rgba8`]; `None` for samples of more bits, or with premultiplied alpha.
-fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+/// See [`super::read_interleaved`]; `None` for samples of more bits, or with premultiplied alpha.
+fn read_interleaved(bytes: &[u8], limits: &Limits) -> Result<Option<Interleaved>, PictureError> {
     let decoded = decode(bytes, limits)?;
     let DecodingResult::U8(all) = &decoded.samples else { return Ok(None) };
-    if decoded.opacity == Opacity::Premultiplied {
+    if decoded.opacity == Opacity::Premultiplied || !decoded.meaning.is_srgb() {
         return Ok(None);
     }
     let ([width, height], turned) = decoded.turned();
@@ -253,10 +261,19 @@ fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureErr
         let part = (0..decoded.taken()).map(|channel| all.get(decoded.place(channel, pixel)).copied());
         samples.extend(part.map(|sample| sample.unwrap_or(0)));
     }
-    Ok(Interleaved { width, height, samples, warnings: Vec::new() }.rgba8())
+    Ok(Some(Interleaved::new(width, height, samples)))
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let (mut picture, meaning) = read_stored(bytes, limits)?;
+    // Floats are light already.
+    if picture.colour_space != ColourSpace::LinearRec709 {
+        meaning.apply(&mut picture);
+    }
+    Ok(picture)
+}
+
+fn read_stored(bytes: &[u8], limits: &Limits) -> Result<(Picture, Meaning), PictureError> {
     let decoded = decode(bytes, limits)?;
     let ([width, height], _) = decoded.turned();
     let mut picture = Picture::new(width, height)?;
@@ -280,5 +297,5 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     if let Some(alpha) = alpha {
         picture.push_channel("A", alpha)?;
     }
-    Ok(picture)
+    Ok((picture, decoded.meaning))
 }

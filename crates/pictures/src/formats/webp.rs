@@ -2,9 +2,11 @@
 
 use super::faults::webp::explain;
 use super::guard::guarded;
+use super::icc;
+use super::meaning::Meaning;
 use super::orientation::Orientation;
 use super::rgba8::Interleaved;
-use super::{PictureFormatEntry, WriteOptions, check_sides, display_planes};
+use super::{BitDepth, PictureFormatEntry, Source, WriteOptions, check_sides};
 use crate::limits::zeroed;
 use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -23,9 +25,15 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: true,
     holds_alpha: true,
     sniff: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
-    read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_stored: Some(|bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.0.picture(FORMAT))),
     read_crop: None,
-    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
+    read_interleaved: Some(|bytes, limits| {
+        guarded(FORMAT, || {
+            let (stored, meaning) = decode(bytes, limits)?;
+            Ok(meaning.is_srgb().then_some(stored))
+        })
+    }),
     write: Some(write),
 };
 
@@ -35,8 +43,15 @@ const FORMAT: &str = "WebP";
 /// turned.
 const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
 
-/// Reads the first frame of an animation.
-fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let (stored, meaning) = decode(bytes, limits)?;
+    let mut picture = stored.picture(FORMAT)?;
+    meaning.apply(&mut picture);
+    Ok(picture)
+}
+
+/// Reads the first frame of an animation, and what its samples mean.
+fn decode(bytes: &[u8], limits: &Limits) -> Result<(Interleaved, Meaning), PictureError> {
     let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|error| explain(&error, bytes))?;
     decoder.set_memory_limit(usize::try_from(limits.max_bytes).unwrap_or(usize::MAX));
     let (width, height) = decoder.dimensions();
@@ -50,31 +65,31 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     decoder.read_image(&mut samples).map_err(|error| explain(&error, bytes))?;
     // Damage in the metadata does not affect the picture.
     let exif = decoder.exif_metadata().ok().flatten().unwrap_or_default();
-    let (width, height) = (width as usize, height as usize);
-    Orientation::of_exif(&exif).apply(FORMAT, Interleaved { width, height, samples, warnings: Vec::new() })
+    let profile = decoder.icc_profile().ok().flatten();
+    let stored = Interleaved::new(width as usize, height as usize, samples);
+    Ok((Orientation::of_exif(&exif).apply(FORMAT, stored)?, icc::meaning_or_srgb(profile.as_deref())))
 }
 
 /// Longer sides do not fit in 14 bits.
 const LONGEST_SIDE: usize = 1 << 14;
 
 /// Lossless, which is all that the encoder supports.
-fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+fn write(picture: Source, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let unwritable = |error: image_webp::EncodingError| PictureError::Unwritable {
         format: FORMAT,
         what: error.to_string(),
     };
     let [width, height] = check_sides(FORMAT, picture, LONGEST_SIDE)?;
-    let planes = display_planes(FORMAT, picture, options)?;
-    let colours = match planes.names.len() {
+    let shown = picture.for_display(FORMAT, &WriteOptions { bit_depth: BitDepth::Eight, ..*options })?;
+    let colours = match shown.names.len() {
         1 => ColorType::L8,
         2 => ColorType::La8,
         3 => ColorType::Rgb8,
         _ => ColorType::Rgba8,
     };
     let mut bytes = Vec::new();
-    let samples = planes.to_u8(&planes.names);
     WebPEncoder::new(&mut bytes)
-        .encode(&samples, width.into(), height.into(), colours)
+        .encode(&shown.samples, width.into(), height.into(), colours)
         .map_err(unwritable)?;
     Ok(bytes)
 }

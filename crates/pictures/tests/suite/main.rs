@@ -3,9 +3,11 @@
 mod corpus;
 mod damaged_and_turned;
 mod denoise;
+mod files;
 mod hostile;
 mod jpeg_scans;
 mod metrics;
+mod profiles;
 mod round_trips;
 mod sensor;
 mod shared_files;

@@ -3,8 +3,8 @@
 
 use bilux_math::Rgb;
 use bilux_pictures::{
-    Alpha, BitDepth, ColourSpace, Crop, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
-    read_bytes, read_crop_bytes, write, write_bytes,
+    Alpha, BitDepth, ColourSpace, Crop, Limits, PICTURE_FORMATS, Picture, PictureError, Source, WriteOptions,
+    read, read_bytes, read_crop_bytes, read_interleaved_bytes, write, write_bytes, write_source_bytes,
 };
 
 /// Values that a careless writer loses: signed zero, subnormal, huge, infinite, NaN.
@@ -117,6 +117,21 @@ fn exr_keeps_matrices_as_numbers() {
     picture.metadata.insert("worldToNDC".to_owned(), "no matrix".to_owned());
     let error = write_bytes("exr", &picture, &WriteOptions::default()).unwrap_err().to_string();
     assert!(error.contains("'worldToNDC'"), "{error}");
+}
+
+/// Pictures of cameras whose pixels are no squares: programs that heed the attribute show them undistorted.
+#[test]
+fn exr_keeps_the_shape_of_pixels_and_says_it() {
+    let mut picture = noise(3, 2, &["R", "G", "B"]);
+    assert!(round_trip("exr", &picture, &WriteOptions::default()).warnings.is_empty());
+    picture.metadata.insert("pixelAspectRatio".to_owned(), "1.5".to_owned());
+    let bytes = write_bytes("exr", &picture, &WriteOptions::default()).unwrap();
+    let name = b"pixelAspectRatio\0float\0\x04\0\0\0";
+    let at = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len();
+    assert_eq!(bytes[at..at + 4], 1.5f32.to_le_bytes());
+    let back = read_bytes(&bytes, None, &Limits::default()).unwrap();
+    assert_eq!((&*back.metadata["pixelAspectRatio"], back.to_rgb()), ("1.5", picture.to_rgb()));
+    assert!(back.warnings[0].contains("1.5 times as wide as high"), "{:?}", back.warnings);
 }
 
 #[test]
@@ -323,4 +338,51 @@ fn a_layer_is_not_taken_for_one_whose_name_ends_alike() {
     assert_eq!(picture.clone().with_main(Some("direct")).unwrap().rgb(0, 0), Rgb::grey(1.0));
     assert_eq!(picture.clone().with_main(Some("Indirect")).unwrap().rgb(0, 0), Rgb::grey(2.0));
     assert!(picture.with_main(Some("rect")).is_err());
+}
+
+/// Files from the bytes of another file are those from its numbers, with alpha and texts, in every format and over any
+/// background. The last picture has more rows than are converted at a time.
+#[test]
+fn files_from_bytes_are_those_from_numbers() {
+    for (names, [width, height], is_opaque) in [
+        (&["Y"][..], [31, 40], true),
+        (&["Y", "A"], [40, 31], false),
+        (&["R", "G", "B"], [33, 17], true),
+        (&["R", "G", "B", "A"], [17, 33], true),
+        (&["R", "G", "B", "A"], [1 << 12, 257], false),
+    ] {
+        let mut picture = noise(width, height, names);
+        if let (true, Some(alpha)) = (is_opaque, picture.channel_mut("A")) {
+            alpha.fill(1.0);
+        }
+        (picture.colour_space, picture.alpha) = (ColourSpace::Srgb, Alpha::Straight);
+        picture.metadata.insert("Software".to_owned(), "a camera".to_owned());
+        let file = write_bytes("png", &picture, &WriteOptions::default()).unwrap();
+        let numbers = read_bytes(&file, None, &Limits::default()).unwrap();
+        let stored = read_interleaved_bytes(&file, None, &Limits::default()).unwrap().unwrap();
+        assert_eq!(stored.is_transparent(), !is_opaque, "{names:?}");
+        let plain = WriteOptions::default();
+        let deep = WriteOptions { bit_depth: BitDepth::Sixteen, ..plain };
+        let over = WriteOptions { behind: Some(Rgb::new(0.1, 0.5, 0.9)), exposure: -1.5, ..plain };
+        for row in PICTURE_FORMATS.iter().filter(|row| row.write.is_some()) {
+            for (number, options) in [plain, deep, over].iter().enumerate() {
+                let from_numbers = write_bytes(row.entry.name, &numbers, options).unwrap();
+                let from_bytes = write_source_bytes(row.entry.name, Source::Bytes(&stored), options).unwrap();
+                assert!(from_bytes == from_numbers, "{} {number} {names:?}", row.entry.name);
+            }
+        }
+    }
+}
+
+/// A limit of memory is one of what is needed: bytes in files of bytes take no more than themselves.
+#[test]
+fn bytes_need_no_more_memory_than_themselves() {
+    let picture = noise(64, 64, &["R", "G", "B"]);
+    let file = write_bytes("png", &picture, &WriteOptions::default()).unwrap();
+    let limits = Limits::new(64 * 64 * 3 + 4096);
+    assert!(read_bytes(&file, None, &limits).is_err());
+    assert!(read_interleaved_bytes(&file, None, &limits).unwrap().is_some());
+    let deep = WriteOptions { bit_depth: BitDepth::Sixteen, ..WriteOptions::default() };
+    let file = write_bytes("png", &picture, &deep).unwrap();
+    assert_eq!(read_interleaved_bytes(&file, None, &Limits::default()).unwrap(), None);
 }

@@ -109,14 +109,27 @@ fn code_points_count_before_profiles_and_gammas() {
     near(light(read(&both, "png")), [0.2159; 3]);
     let gamma = png(&[(b"gAMA", &100_000u32.to_be_bytes()), (b"iCCP", &straight)]);
     near(light(read(&gamma, "png")), [half; 3]);
-    // What is not shown is said: PQ, HLG, and the primaries of Rec. 2020.
-    for (codes, word) in [([9, 16, 0, 1], "PQ"), ([1, 18, 0, 1], "HLG"), ([9, 1, 0, 1], "primaries")] {
+    // What is not shown is said: PQ, HLG, and primaries that are not converted, of film.
+    for (codes, word) in [([9, 16, 0, 1], "PQ"), ([1, 18, 0, 1], "HLG"), ([8, 1, 0, 1], "primaries")] {
         let bytes = png(&[(b"cICP", &codes)]);
         let warnings = read(&bytes, "png").warnings;
         assert!(warnings.len() == 1 && warnings[0].contains(word), "{warnings:?}");
         assert_eq!(read_rgba8(&bytes, None, &Limits::default()).unwrap(), None);
     }
     assert!(read(&png(&[(b"cICP", &[1, 13, 0, 1])]), "png").warnings.is_empty());
+}
+
+/// Primaries of Rec. 2020 and of P3 are converted, by the tables of ITU-R BT.2087 and of SMPTE EG 432-1: of equal samples white.
+/// Not equal ones are tested by profiles, which share the matrix.
+#[test]
+fn code_points_of_wide_primaries_are_converted() {
+    for code in [9, 12] {
+        let bytes = png(&[(b"cICP", &[code, 13, 0, 1])]);
+        let picture = read(&bytes, "png");
+        assert!(picture.warnings.is_empty(), "{:?}", picture.warnings);
+        assert_eq!(picture.colour_space, ColourSpace::LinearRec709);
+        near(light(picture), [0.2159; 3]);
+    }
 }
 
 fn hdr(header: &str, rgbe: [u8; 4]) -> Vec<u8> {
