@@ -62,6 +62,11 @@ pub(super) fn place<'d>(
             }
         };
         sink.scene.lights.push(Spec { span: lamp.at.clone(), ..light });
+        if element.name() == "ambient" && !sink.scene.lights.iter().any(Spec::is_backdrop) {
+            // The format has no sky: such a lamp lights what there is, and nothing is seen of it behind that.
+            let nothing = Spec::new("behind ambient light", "environment").with("radiance", Rgb::BLACK);
+            sink.scene.lights.push(nothing.with("backdrop", true));
+        }
     }
     Ok(())
 }

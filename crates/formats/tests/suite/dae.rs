@@ -394,7 +394,9 @@ fn cameras_and_lights_are_those_of_the_file() {
     assert_eq!(read.cameras[1].spec.number("height"), Some(3.0), "six units of half a metre");
     let pi = std::f32::consts::PI;
     let kinds: Vec<&str> = read.lights.iter().map(|light| &*light.kind).collect();
-    assert_eq!(kinds, ["directional", "point", "spot", "environment"]);
+    assert_eq!(kinds, ["directional", "point", "spot", "environment", "environment"]);
+    let behind: Vec<bool> = read.lights.iter().map(bilux_scene::Spec::is_backdrop).collect();
+    assert_eq!(behind, [false, false, false, false, true]);
     assert!((read.lights[0].colour("irradiance").unwrap().r - pi).abs() < 1e-5);
     // At 2 units, or 1 metre, a white surface is white: 1 / (0.25 · 2²) of an irradiance of π.
     assert!((read.lights[1].colour("intensity").unwrap().r - pi).abs() < 1e-5);
@@ -632,5 +634,74 @@ fn columns_of_bezier_curves_have_their_own_tangents() {
         let wanted = points.map(|p| p.iter().zip(weights).map(|(p, w)| p * w).sum::<f64>() as f32);
         let found = corners(&scene)[0];
         assert!((found - Vec3::from(wanted)).length() < 1e-3, "{time}: {found}, not {wanted:?}");
+    }
+}
+
+/// A lamp without a place lights what there is; nobody sees it behind that, since the format has no sky.
+#[test]
+fn light_from_all_around_is_no_background() {
+    let lamp = |id: &str, colour: &str| {
+        format!(
+            "<light id='{id}'><technique_common><ambient><color>{colour}</color></ambient></technique_common></light>"
+        )
+    };
+    let libraries =
+        format!("<library_lights>{}{}</library_lights>", lamp("a", "0.2 0.4 1"), lamp("b", "1 0.5 0.25"));
+    let read = scene(&placed("", &libraries, "<instance_light url='#a'/><instance_light url='#b'/>"));
+    let lit: Vec<Rgb> =
+        read.lights.iter().filter(|l| !l.is_backdrop()).map(|l| l.colour("radiance").unwrap()).collect();
+    let linear = |c: f32| bilux_math::colour::srgb_decode(c);
+    assert!((lit[0].r - linear(0.2)).abs() < 1e-5 && (lit[1].b - linear(0.25)).abs() < 1e-5, "{lit:?}");
+    let behind: Vec<_> = read.lights.iter().filter(|light| light.is_backdrop()).collect();
+    assert_eq!((lit.len(), behind.len()), (2, 1));
+    assert_eq!(behind[0].colour("radiance"), Some(Rgb::BLACK));
+}
+
+/// Meshes have two sets of texture coordinates: who asks for a third one is told.
+#[test]
+fn a_third_set_of_texture_coordinates_is_named() {
+    let effect = |set: &str| {
+        format!(
+            "<library_effects><effect id='e'><profile_COMMON><technique sid='t'><lambert><diffuse><texture texture='i' \
+             texcoord='{set}'/></diffuse></lambert></technique></profile_COMMON></effect></library_effects>\
+             <library_materials><material id='mat'><instance_effect url='#e'/></material></library_materials>\
+             <library_images><image id='i'><init_from>none.png</init_from></image></library_images>"
+        )
+    };
+    let source = "<source id='uv'><float_array id='uva' count='2'>0.25 0.75</float_array><technique_common><accessor \
+                  source='#uva' count='1' stride='2'><param name='S' type='float'/><param name='T' type='float'/>\
+                  </accessor></technique_common></source>";
+    let inputs: String = [3, 7, 9]
+        .iter()
+        .enumerate()
+        .map(|(i, set)| format!("<input semantic='TEXCOORD' source='#uv' offset='{}' set='{set}'/>", i + 1))
+        .collect();
+    let corners = (0..3).map(|vertex| format!("{vertex} 0 0 0")).collect::<Vec<_>>().join(" ");
+    let triangle = format!(
+        "<library_geometries><geometry id='g'><mesh><source id='p'><float_array id='pa' count='9'>0 0 0 1 0 0 0 1 0\
+         </float_array><technique_common><accessor source='#pa' count='3' stride='3'><param name='X' type='float'/>\
+         <param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common></source>{source}\
+         <vertices id='v'><input semantic='POSITION' source='#p'/></vertices><triangles count='1' material='m'>\
+         <input semantic='VERTEX' source='#v' offset='0'/>{inputs}<p>{corners}</p></triangles></mesh></geometry>\
+         </library_geometries>"
+    );
+    let bound: String = [("FIRST", 3), ("SECOND", 7), ("THIRD", 9)]
+        .iter()
+        .map(|(name, set)| {
+            format!("<bind_vertex_input semantic='{name}' input_semantic='TEXCOORD' input_set='{set}'/>")
+        })
+        .collect();
+    let node = format!(
+        "<node><instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='m' \
+         target='#mat'>{bound}</instance_material></technique_common></bind_material></instance_geometry></node>"
+    );
+    for (set, is_said) in [("FIRST", false), ("SECOND", false), ("THIRD", true)] {
+        // The picture is there, so that it is looked at.
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("none.png"), b"P3 1 1 255 9 99 199\n").unwrap();
+        let path = folder.path().join("sets.dae");
+        std::fs::write(&path, file("", &(effect(set) + &triangle), &node)).unwrap();
+        let read = read(&path, &ReadOptions::default()).unwrap();
+        assert_eq!(warnings(&read).contains("third set"), is_said, "{set}: {}", warnings(&read));
     }
 }

@@ -13,11 +13,13 @@ pub(in crate::dae) struct Worn<'d> {
     pub(in crate::dae) material: Option<Element<'d>>,
     /// The names by which textures call the second set of texture coordinates.
     pub(in crate::dae) second_set: Vec<&'d str>,
+    /// The names by which textures call sets after the second, which meshes here do not have.
+    pub(in crate::dae) further_sets: Vec<&'d str>,
 }
 
 impl Worn<'_> {
-    fn key(&self) -> (Option<NodeId>, &[&str]) {
-        (self.material.map(Element::key), &self.second_set)
+    fn key(&self) -> (Option<NodeId>, &[&str], &[&str]) {
+        (self.material.map(Element::key), &self.second_set, &self.further_sets)
     }
 }
 
@@ -67,15 +69,19 @@ impl<'d> Bindings<'d> {
         let Some((_, binding, material)) = found else {
             let direct = symbol.name.and_then(|name| document.target(name));
             let material = direct.filter(|element| element.name() == "material");
-            return Worn { material, second_set: Vec::new() };
+            return Worn { material, second_set: Vec::new(), further_sets: Vec::new() };
         };
-        let second = symbol.sets.get(1).copied();
-        let inputs = binding.children_named("bind_vertex_input").take(MAX_NAMES);
-        let is_second = |input: &Element| {
+        let (mut second_set, mut further_sets) = (Vec::new(), Vec::new());
+        for input in binding.children_named("bind_vertex_input").take(MAX_NAMES) {
             let set = input.attribute("input_set").and_then(|set| set.trim().parse::<u32>().ok());
-            input.attribute("input_semantic") == Some("TEXCOORD") && second.is_some() && set == second
-        };
-        let second_set = inputs.filter(is_second).filter_map(|input| input.attribute("semantic")).collect();
-        Worn { material: Some(*material), second_set }
+            let is_uv = input.attribute("input_semantic") == Some("TEXCOORD");
+            let place = symbol.sets.iter().position(|known| is_uv && Some(*known) == set);
+            match place {
+                Some(1) => second_set.extend(input.attribute("semantic")),
+                Some(2..) => further_sets.extend(input.attribute("semantic")),
+                _ => {}
+            }
+        }
+        Worn { material: Some(*material), second_set, further_sets }
     }
 }

@@ -143,6 +143,10 @@ impl<'d> Filling<'_, '_, 'd, '_> {
         };
         let set = map.attribute("texcoord");
         let second_uv = set.is_some_and(|set| self.worn.second_set.contains(&set));
+        if set.is_some_and(|set| self.worn.further_sets.contains(&set)) {
+            let what = "a texture has a third set of texture coordinates, and is placed by the first: use one of the first two";
+            sink.oddities.note(what, || map.at());
+        }
         Ok(Some(Texture { second_uv, ..texture }))
     }
 }
