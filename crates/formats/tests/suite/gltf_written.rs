@@ -4,7 +4,7 @@ use crate::round_trips::corners;
 use crate::shared_files::{files, scenes};
 use crate::{read_text, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Motion, MotionKey, Quat, Rgb, Vec2, Vec3};
 use bilux_scene::generators::shapes;
 use bilux_scene::texture::UvPair;
 use bilux_scene::{Object, SceneBuilder, Spec, Texture, Value};
@@ -296,4 +296,47 @@ fn panels_keep_their_sides_and_surfaces_that_emit_are_light() {
     .unwrap();
     let (back, _) = there(&scene, &folder.path().join("a.glb"));
     assert_eq!((scene.environment_unspecified, back.environment_unspecified), (false, false));
+}
+
+/// Times of glTF begin at 0. What moves from before that on is at 0 where it was, and goes on as it did.
+#[test]
+fn keys_before_the_beginning_leave_the_rest_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let key = |time_seconds: f32, at: [f32; 3], degrees: f32, size: f32| MotionKey {
+        time_seconds,
+        translation: Vec3::from(at),
+        rotation: Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), degrees.to_radians()),
+        scale: Vec3::new(size, 1.0, 2.0 * size),
+    };
+    let crossing = [
+        key(-3.0, [9.0, 9.0, 9.0], 300.0, 1.0),
+        key(-1.0, [1.0, 2.0, -3.0], 20.0, 1.5),
+        key(3.0, [5.0, -2.0, 1.0], 110.0, 0.5),
+        key(4.0, [0.0, 1.0, 7.0], 10.0, 2.0),
+    ];
+    for (name, keys, says) in [
+        ("crossing", &crossing[..], true),
+        ("over", &crossing[..2], true),
+        ("begins", &[key(0.0, [1.0, 2.0, 3.0], 5.0, 1.0), crossing[2]], false),
+        ("later", &crossing[2..], false),
+    ] {
+        let mut scene = SceneBuilder::default();
+        let material = scene.add_material(Spec::new("plain", "principled"));
+        let motion = Motion::from_keys(keys.to_vec()).unwrap();
+        let mesh = Arc::new(shapes::quad(Vec3::ZERO, Vec3::X, Vec3::Y));
+        scene.objects.push(Object { motion: motion.clone(), ..Object::new(name, mesh, material) });
+        let path = folder.path().join(format!("{name}.gltf"));
+        let (_, said) = there(&scene, &path);
+        assert_eq!(said.iter().any(|one| one.contains("begin at 0 seconds")), says, "{name}: {said:?}");
+        let json: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        let times = json["animations"][0]["samplers"][0]["input"].as_u64().unwrap() as usize;
+        assert!(json["accessors"][times]["min"][0].as_f64().unwrap() >= 0.0, "{name}");
+        for time in [0.0, 0.75, 2.9, 3.5, 9.0] {
+            let back = read(&path, &ReadOptions { time, ..ReadOptions::default() }).unwrap();
+            let corner = Vec3::new(0.3, -1.0, 0.7);
+            let (wanted, found) =
+                (motion.at(time).point(corner), back.objects[0].motion.at(time).point(corner));
+            assert!(wanted.distance(found) < 1e-4, "{name} at {time}: {found}, not {wanted}");
+        }
+    }
 }

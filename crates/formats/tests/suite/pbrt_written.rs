@@ -264,3 +264,28 @@ fn a_frame_wider_than_the_picture_stays_whole() {
         }
     }
 }
+
+/// What pbrt cannot say of a picture that shines is said; of one that lies as pbrt puts it, nothing is.
+#[test]
+fn pictures_that_shine_say_what_is_lost_of_their_place() {
+    use bilux_scene::Texture;
+    use bilux_scene::texture::{UvTransform, Wrap};
+    let placed = UvTransform::from_array([2.0, 0.0, 0.0, 3.0, 0.25, 0.5]);
+    for (transform, second_uv, wrap, is_lost) in [
+        (None, false, [Wrap::Repeat; 2], false),
+        (Some(placed), false, [Wrap::Repeat; 2], true),
+        (None, true, [Wrap::Repeat; 2], true),
+        (None, false, [Wrap::Clamp, Wrap::Repeat], true),
+    ] {
+        let mut original = scene(
+            "[[material]]\nname = \"lamp\"\nkind = \"diffuse\"\n[[model]]\nshape = \"quad\"\n\
+                                  material = \"lamp\"\n",
+        );
+        let picture = Texture { transform, second_uv, wrap, ..Texture::missing("lamp.png") };
+        original.textures.push(picture.into());
+        let lamp = original.objects[0].material;
+        original.materials[lamp].parameters.set("emission", Value::Texture(original.textures.len() - 1));
+        let (said, _) = there_and_back(&original, tempfile::tempdir().unwrap().path());
+        assert_eq!(said.iter().any(|one| one.contains("how this one is placed")), is_lost, "{said:?}");
+    }
+}

@@ -113,7 +113,7 @@ impl Document<'_> {
             }
             let index = self.push("nodes", Json::Object(node));
             if !keys.is_empty() {
-                self.animate(index, &keys);
+                self.animate(index, &keys, writing);
             }
             child = Some(index);
         }

@@ -10,11 +10,34 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
 use bilux_scene::{Mesh, Spec, Value};
 use serde_json::{Value as Json, json};
+use std::borrow::Cow;
 use std::sync::Arc;
+
+/// The keys from 0 seconds on, the first of which is there if there are any before it: times below 0 are not allowed.
+/// [glTF 2.0, 3.11]
+fn from_zero(keys: &[MotionKey]) -> Cow<'_, [MotionKey]> {
+    let later = keys.partition_point(|key| key.time_seconds <= 0.0);
+    let Some(before) = later.checked_sub(1).map(|last| keys[last]) else { return Cow::Borrowed(keys) };
+    if later == 1 && before.time_seconds == 0.0 {
+        return Cow::Borrowed(keys);
+    }
+    let mut at_zero = MotionKey { time_seconds: 0.0, ..before };
+    if let Some(after) = keys.get(later) {
+        let part = -before.time_seconds / (after.time_seconds - before.time_seconds);
+        at_zero.translation = before.translation.lerp(after.translation, part);
+        at_zero.rotation = before.rotation.normalize().slerp(after.rotation.normalize(), part);
+        at_zero.scale = before.scale.lerp(after.scale, part);
+    }
+    Cow::Owned(std::iter::once(at_zero).chain(keys[later..].iter().copied()).collect())
+}
 
 impl Document<'_> {
     /// Adds an animation of a node with linear interpolation between these keys.
-    pub(super) fn animate(&mut self, node: usize, keys: &[MotionKey]) {
+    pub(super) fn animate(&mut self, node: usize, keys: &[MotionKey], writing: &mut Writing) {
+        if keys.first().is_some_and(|key| key.time_seconds < 0.0) {
+            writing.warn("animations of glTF begin at 0 seconds: what moves before that is left out");
+        }
+        let keys = &*from_zero(keys);
         let times = self.buffer.keys(&keys.iter().map(|key| [key.time_seconds]).collect::<Vec<_>>());
         let outputs = [
             (

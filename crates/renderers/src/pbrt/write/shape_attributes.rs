@@ -7,6 +7,7 @@ use bilux_import::FormatError;
 use bilux_import::values::{colour, number, texture};
 use bilux_import::writing::Writing;
 use bilux_math::Rgb;
+use bilux_scene::texture::Wrap;
 use bilux_scene::{Spec, Value};
 use std::fmt::Write;
 
@@ -70,6 +71,13 @@ impl Document<'_> {
         let greatest = scale.max_channel();
         if scale != Rgb::grey(scale.r) {
             writing.warn("pbrt scales an emission texture by one number: the maximum channel is used");
+        }
+        let plain = (None, false, [Wrap::Repeat; 2]);
+        if (texture.transform, texture.second_uv, texture.wrap) != plain {
+            writing.warn(
+                "pbrt places emission textures by the first texture coordinates of the mesh, and repeats them: how this one is \
+                 placed is left out",
+            );
         }
         let file = self.picture(&texture, false, AS_IT_IS, writing)?;
         Ok(Some(format!(" \"string filename\" \"{file}\"{}", float("scale", greatest))))
