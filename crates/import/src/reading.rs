@@ -4,7 +4,7 @@ use crate::archive::OpenMember;
 use crate::budget::Budget;
 use crate::displacement::{Displacement, Moved};
 use crate::gzip;
-use crate::images::{Decoded, SampleMeaning, decoded, mend};
+use crate::images::{Decoded, SampleMeaning, decoded, is_raw_unless_said, mend};
 use crate::locating::Locator;
 use crate::opening::open;
 use crate::subdivision::PendingCage;
@@ -44,6 +44,8 @@ impl Source<'_> {
 pub enum Texels {
     /// Colours, converted to linear light.
     Colours,
+    /// Colours, unless the picture is one that programs take as numbers if nobody says what it is.
+    Unsaid,
     /// Raw numbers, of all channels or of one.
     Numbers(Option<Channel>),
 }
@@ -369,7 +371,11 @@ impl<'o> Reading<'o> {
         }
         let bytes = self.load(&path)?;
         let hint = path.extension().and_then(|e| e.to_str());
-        let is_data = holds != Texels::Colours;
+        let is_data = match holds {
+            Texels::Colours => false,
+            Texels::Unsaid => is_raw_unless_said(&bytes, hint, &Limits::new(self.budget.left() / 2)),
+            Texels::Numbers(_) => true,
+        };
         let means = if is_data { SampleMeaning::Numbers } else { SampleMeaning::Colours };
         let image = self.decode(&bytes, hint, layer, means, name, at)?;
         self.release(bytes);

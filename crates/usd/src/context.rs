@@ -15,6 +15,8 @@ pub(super) struct Worn {
     pub(super) uvs: [Option<Text>; 2],
     pub(super) uses_colours: bool,
     pub(super) uses_opacities: bool,
+    /// The bits of the colour of meshes that have none, if it uses theirs.
+    pub(super) without_colours: Option<[u32; 3]>,
     /// It depends on a direction on the surface.
     pub(super) has_direction: bool,
 }

@@ -42,6 +42,8 @@ pub(super) struct Scene<'r, 'o> {
     pub(super) volumes: HashMap<VolumeKey, Option<Part>>,
     /// Of surfaces without a material, by their colours and opacities.
     pub(super) plain: HashMap<([u32; 3], u32, bool), usize>,
+    /// Materials that use the colours of vertices, as they are for meshes that have none.
+    pub(super) uncoloured: HashMap<usize, usize>,
     /// What prims `Material` are, if something that can be read.
     pub(super) materials: HashMap<u32, Option<Worn>>,
     /// The same by all that is said of them.
@@ -56,10 +58,10 @@ pub(super) struct Scene<'r, 'o> {
 
 impl<'r, 'o> Scene<'r, 'o> {
     pub(super) fn new(reading: &'r mut Reading<'o>, sink: Sink) -> Scene<'r, 'o> {
-        let (meshes, volumes, plain, materials, alike, poses) = Default::default();
+        let (meshes, volumes, plain, uncoloured, materials, alike, poses) = Default::default();
         let context = Context { reading, sink, has_lamps: false };
         let (lineage, looks) = Default::default();
-        Scene { context, meshes, volumes, plain, materials, alike, poses, lineage, looks }
+        Scene { context, meshes, volumes, plain, uncoloured, materials, alike, poses, lineage, looks }
     }
 
     /// Adds all prims, as they are at the time of the stage.

@@ -21,25 +21,66 @@ impl Scene<'_, '_> {
             return self.plain(stage, prim);
         };
         if let Some(known) = self.materials.get(&material) {
-            return known.clone().map_or_else(|| self.plain(stage, prim), Ok);
+            return match known.clone() {
+                Some(worn) => self.with_colours(stage, prim, worn),
+                None => self.plain(stage, prim),
+            };
         }
         // Copies of a material have the same opinions.
         let said = self.said_below(stage, material);
         if let Some(known) = self.alike.get(&said).cloned() {
             self.materials.insert(material, known.clone());
-            return known.map_or_else(|| self.plain(stage, prim), Ok);
+            return match known {
+                Some(worn) => self.with_colours(stage, prim, worn),
+                None => self.plain(stage, prim),
+            };
         }
         let Context { reading, sink, .. } = &mut self.context;
         let shaded = shading::material(stage, material, reading, sink)?;
-        let worn =
-            shaded.map(|Shaded { spec, uvs, uses_colours, uses_opacities, has_direction, displacement }| {
-                let index = sink.scene.add_material(spec);
-                reading.displacements.extend(displacement.map(|map| (Moved::Material(index), map)));
-                Worn { index, uvs, uses_colours, uses_opacities, has_direction }
-            });
+        let worn = shaded.map(|shaded| {
+            let Shaded {
+                spec,
+                uvs,
+                uses_colours,
+                uses_opacities,
+                without_colours,
+                has_direction,
+                displacement,
+            } = shaded;
+            let without_colours = without_colours.map(|colour| colour.to_array().map(f32::to_bits));
+            let index = sink.scene.add_material(spec);
+            reading.displacements.extend(displacement.map(|map| (Moved::Material(index), map)));
+            Worn { index, uvs, uses_colours, uses_opacities, without_colours, has_direction }
+        });
         self.materials.insert(material, worn.clone());
         self.alike.insert(said, worn.clone());
-        worn.map_or_else(|| self.plain(stage, prim), Ok)
+        match worn {
+            Some(worn) => self.with_colours(stage, prim, worn),
+            None => self.plain(stage, prim),
+        }
+    }
+
+    /// What a surface wears that has a material: if that uses the colours of vertices, and there are none, with the colour that
+    /// it states for that.
+    fn with_colours(&mut self, stage: &Stage, prim: u32, worn: Worn) -> Result<Worn, FormatError> {
+        let Some(bits) = worn.without_colours.filter(|_| worn.uses_colours) else { return Ok(worn) };
+        let colour = Rgb::from_array(bits.map(f32::from_bits));
+        if self.shown(stage, prim)?[0].is_some() {
+            return Ok(worn);
+        }
+        let index = match self.uncoloured.get(&worn.index) {
+            Some(&known) => known,
+            None => {
+                self.context.reading.budget.take_bytes(PLAIN_BYTES, &stage.layers[0].name)?;
+                let scene = &mut self.context.sink.scene;
+                let mut spec = scene.materials[worn.index].clone();
+                spec.parameters.set("base_color", colour.clamp(0.0, 1.0));
+                let index = scene.add_material(spec);
+                self.uncoloured.insert(worn.index, index);
+                index
+            }
+        };
+        Ok(Worn { index, uses_colours: false, ..worn })
     }
 
     /// `displayColor` and `displayOpacity` of a prim. Of those of the prims above it, only what is the same everywhere counts.

@@ -195,7 +195,7 @@ impl Native<'_, '_> {
                         "a texture is replaced by a uniform grey of 0.5".to_owned(),
                         Some(Texture::missing_light(name)),
                     ),
-                    Texels::Colours => (
+                    Texels::Colours | Texels::Unsaid => (
                         "a texture is replaced by a magenta checker".to_owned(),
                         Some(Texture::missing(name)),
                     ),

@@ -62,6 +62,7 @@ mod usd_clips;
 mod usd_instancers;
 mod usd_materialx;
 mod usd_skeletons;
+mod usd_textures;
 mod usd_truth;
 mod usd_volumes;
 mod usd_written;

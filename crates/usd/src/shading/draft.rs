@@ -19,6 +19,8 @@ pub(crate) struct Shaded {
     pub(crate) uvs: [Option<Text>; 2],
     pub(crate) uses_colours: bool,
     pub(crate) uses_opacities: bool,
+    /// The colour of meshes that have none, if it uses theirs.
+    pub(crate) without_colours: Option<Rgb>,
     pub(crate) has_direction: bool,
     /// The map that moves its surfaces.
     pub(crate) displacement: Option<Displacement>,

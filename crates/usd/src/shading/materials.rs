@@ -42,6 +42,7 @@ pub(crate) fn material(
             uvs: [None, None],
             uses_colours: false,
             uses_opacities: false,
+            without_colours: None,
             has_direction: false,
             displacement: None,
         };

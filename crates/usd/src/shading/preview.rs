@@ -7,6 +7,8 @@ use bilux_import::FormatError;
 use bilux_import::as_metal::as_metal;
 use bilux_import::displacement::{Along, Displacement};
 use bilux_math::Rgb;
+use bilux_scene::texture::Image;
+use std::sync::Arc;
 
 /// The diffuse colour of surfaces that state none.
 const UNSTATED: f32 = 0.18;
@@ -71,12 +73,25 @@ const MOST: f32 = 9.0 / 11.0;
 
 /// The reflectance at normal incidence, by the index of refraction of its greatest channel.
 fn specular(draft: &mut Draft) -> Result<(), FormatError> {
-    if draft.is_textured("specularColor")? {
-        draft.set("specular_ior", 10.0f32);
-        draft.set_colour("specular_color", "specularColor", 1.0)?;
-        return Ok(());
-    }
-    let colour = draft.colour("specularColor")?.unwrap_or(Rgb::BLACK).clamp(0.0, 1.0);
+    let colour = match draft.input("specularColor")? {
+        Input::Node(node, output) => {
+            let taken = Taken { is_data: false, factor: 1.0, threshold: None };
+            match painted(draft, node, &output, taken)? {
+                Some(Painted::Texture(mut map)) => {
+                    // The index is that of the brightest texel, of which the others are fractions.
+                    let greatest = map.texels().map(Rgb::max_channel).fold(0.0, f32::max);
+                    let root = greatest.clamp(1e-6, MOST * MOST).sqrt();
+                    map.factor = map.factor * (1.0 / (root * root));
+                    draft.set("specular_ior", (1.0 + root) / (1.0 - root));
+                    return draft.set_texture("specular_color", map);
+                }
+                Some(Painted::Constant(colour)) => Some(colour),
+                None => None,
+            }
+        }
+        _ => draft.colour("specularColor")?,
+    };
+    let colour = colour.unwrap_or(Rgb::BLACK).clamp(0.0, 1.0);
     let greatest = colour.max_channel();
     if greatest <= 0.0 {
         draft.set("specular_weight", 0.0f32);
@@ -127,7 +142,10 @@ pub(super) fn normal(draft: &mut Draft, name: &str) -> Result<(), FormatError> {
     let taken = Taken { is_data: true, factor: 1.0, threshold: None };
     let plain = plain_scale(draft, node)?;
     let Some(Painted::Texture(mut found)) = painted(draft, node, &output, taken)? else { return Ok(()) };
-    if let Some(original) = plain {
+    // One with a border is another image.
+    let is_whole =
+        |original: &Arc<Image>| (original.width, original.height) == (found.image.width, found.image.height);
+    if let Some(original) = plain.filter(is_whole) {
         found.image = original;
         found.is_data = true;
         found.factor = Rgb::WHITE;
@@ -143,10 +161,7 @@ pub(super) fn normal(draft: &mut Draft, name: &str) -> Result<(), FormatError> {
 }
 
 /// The image of a normal map whose scale and bias are the usual ones.
-fn plain_scale(
-    draft: &mut Draft,
-    node: u32,
-) -> Result<Option<std::sync::Arc<bilux_scene::texture::Image>>, FormatError> {
+fn plain_scale(draft: &mut Draft, node: u32) -> Result<Option<Arc<Image>>, FormatError> {
     use super::network::constant;
     let stage = draft.stage;
     let budget = &mut draft.reading.budget;

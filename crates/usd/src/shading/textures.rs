@@ -10,7 +10,7 @@ use bilux_import::FormatError;
 use bilux_import::reading::Texels as Meaning;
 use bilux_math::Rgb;
 use bilux_scene::Texture;
-use bilux_scene::texture::{Channel, Image, Texels, Wrap};
+use bilux_scene::texture::{Channel, Image, Texels, UvTransform, Wrap};
 use std::sync::Arc;
 
 /// What a parameter takes of a texture.
@@ -45,25 +45,39 @@ pub(super) fn painted(
     let id = kind(draft.stage, linear.node, &mut draft.reading.budget)?;
     let name = id.strip_prefix("ND_").unwrap_or(&id);
     if name.starts_with("UsdPrimvarReader") || name.starts_with("geom") {
-        return vertex_colours(draft, linear.node, name);
+        let fallback = constant(draft.stage, linear.node, "fallback", &mut draft.reading.budget)?;
+        let fallback = fallback.and_then(|stated| instead(&stated, None, &linear, taken));
+        return vertex_colours(draft, linear.node, name, fallback);
     }
     picture(draft, &linear, taken, name.starts_with("UsdUVTexture"))
 }
 
-/// The colours of vertices in place of a texture: the material is then white, and the mesh has the colours.
-fn vertex_colours(draft: &mut Draft, node: u32, id: &str) -> Result<Option<Painted>, FormatError> {
+/// The colours of vertices in place of a texture: the material is then white, and the mesh has the colours. Meshes that have none,
+/// and primvars that are not read, have what the node states for that.
+fn vertex_colours(
+    draft: &mut Draft,
+    node: u32,
+    id: &str,
+    fallback: Option<Painted>,
+) -> Result<Option<Painted>, FormatError> {
     let budget = &mut draft.reading.budget;
     let name = match constant(draft.stage, node, "varname", budget)? {
         Some(found) => Some(found),
         None => constant(draft.stage, node, "geomprop", budget)?,
     };
     match name.as_ref().and_then(|found| found.value.text()).map(|text| &**text) {
-        Some("displayColor") => draft.shaded.uses_colours = true,
+        Some("displayColor") => {
+            draft.shaded.uses_colours = true;
+            if let Some(Painted::Constant(colour)) = fallback {
+                draft.shaded.without_colours = Some(colour);
+            }
+        }
         Some("displayOpacity") => draft.shaded.uses_opacities = true,
         other => {
             let what =
                 format!("primvars read by {id} other than displayColor ({})", other.unwrap_or("unnamed"));
             draft.not_shown(&what);
+            return Ok(fallback);
         }
     }
     Ok(None)
@@ -82,11 +96,15 @@ fn picture(
     let stated = stage.metadata(node, "inputs:file", "colorSpace");
     let stated =
         space.as_ref().and_then(|found| found.value.text()).or(stated.as_ref().and_then(Value::text));
-    let is_raw = match stated.map(|text| text.to_ascii_lowercase()) {
-        Some(text) if text == "raw" || text.contains("lin") || text.contains("data") => true,
-        Some(text) if text.contains("srgb") => false,
-        // What is not said follows from what it is for.
-        _ => taken.is_data,
+    let meaning = match stated.map(|text| text.to_ascii_lowercase()) {
+        Some(text) if text == "raw" || text.contains("lin") || text.contains("data") => {
+            Meaning::Numbers(None)
+        }
+        Some(text) if text.contains("srgb") => Meaning::Colours,
+        // What is not said follows from what it is for, and of colours from the picture.
+        _ if taken.is_data => Meaning::Numbers(None),
+        _ if is_preview => Meaning::Unsaid,
+        _ => Meaning::Colours,
     };
     let channel = match &*linear.output {
         "r" | "outr" => Some(Channel::R),
@@ -95,7 +113,7 @@ fn picture(
         "a" | "outa" => Some(Channel::A),
         _ => None,
     };
-    let mut texture = match loaded(draft, node, &file, is_raw)? {
+    let mut texture = match loaded(draft, node, &file, meaning)? {
         Ok(Some(texture)) => texture,
         Ok(None) => return Ok(None),
         Err(name) => {
@@ -107,11 +125,16 @@ fn picture(
         }
     };
     let keys = if is_preview { ["wrapS", "wrapT"] } else { ["uaddressmode", "vaddressmode"] };
-    for (wrap, key) in texture.wrap.iter_mut().zip(keys) {
-        *wrap = wrapping(constant(stage, node, key, &mut draft.reading.budget)?);
+    let mut has_border = [false; 2];
+    for ((wrap, is_black), key) in texture.wrap.iter_mut().zip(&mut has_border).zip(keys) {
+        let mode = constant(stage, node, key, &mut draft.reading.budget)?;
+        let mode = mode.as_ref().and_then(|found| found.value.text());
+        (*wrap, *is_black) =
+            (wrapping(mode.map(|text| &**text)), mode.is_some_and(|text| &**text == "black"));
     }
     let placing = placing(draft, node, is_preview)?;
     texture.transform = placing.transform;
+    surround(draft, &mut texture, has_border)?;
     let uvs = &mut draft.shaded.uvs;
     let slot = uvs.iter().position(|slot| slot.as_ref().is_none_or(|known| *known == placing.name));
     match slot {
@@ -193,7 +216,7 @@ fn loaded(
     draft: &mut Draft,
     node: u32,
     file: &Found,
-    is_raw: bool,
+    meaning: Meaning,
 ) -> Result<Result<Option<Texture>, String>, FormatError> {
     let Some(name) = file.value.text().filter(|name| !name.is_empty()) else { return Ok(Ok(None)) };
     let mut name = name.to_string();
@@ -203,7 +226,6 @@ fn loaded(
     }
     let at = draft.stage.at(node);
     let folder = draft.stage.layers[file.layer as usize].folder.clone();
-    let meaning = if is_raw { Meaning::Numbers(None) } else { Meaning::Colours };
     match draft.reading.texture(folder.as_deref(), &name, meaning, &at) {
         Ok(texture) => Ok(Ok(Some(Texture { channel: None, ..Texture::clone(&texture) }))),
         Err(error @ FormatError::TooLarge { .. }) => Err(error),
@@ -214,8 +236,48 @@ fn loaded(
     }
 }
 
-fn wrapping(mode: Option<Found>) -> Wrap {
-    match mode.as_ref().and_then(|found| found.value.text()).map(|text| &**text) {
+/// Surrounds the picture with black texels across these axes, of which those at its edges go on for ever: `black` is no way to
+/// wrap here. Between the last texels and the border, texels are blended as everywhere.
+fn surround(draft: &mut Draft, texture: &mut Texture, axes: [bool; 2]) -> Result<(), FormatError> {
+    if axes == [false; 2] {
+        return Ok(());
+    }
+    let [left, top] = axes.map(usize::from);
+    let (width, height) = (texture.image.width, texture.image.height);
+    let [across, down] = [width + 2 * left, height + 2 * top];
+    draft.reading.budget.take_bytes((16 * across * down) as u64, &texture.name)?;
+    let inside = |i: usize| {
+        let (x, y) = ((i % across).wrapping_sub(left), (i / across).wrapping_sub(top));
+        (x < width && y < height).then(|| y * width + x)
+    };
+    let places = || (0..across * down).map(inside);
+    let texels = match &texture.image.texels {
+        Texels::Bytes(bytes) => Texels::Bytes(places().map(|i| i.map_or([0; 4], |i| bytes[i])).collect()),
+        Texels::Floats { colours, alpha } => Texels::Floats {
+            colours: places().map(|i| i.map_or(Rgb::BLACK, |i| colours[i])).collect(),
+            // Without alpha, what is inside is opaque.
+            alpha: places().map(|i| i.map_or(0.0, |i| alpha.get(i).copied().unwrap_or(1.0))).collect(),
+        },
+        Texels::Formula(_) => return Ok(()),
+    };
+    texture.image = Arc::new(Image { width: across, height: down, texels });
+    let plain = UvTransform::from_array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let [a, b, c, d, x, y] = texture.transform.unwrap_or(plain).to_array();
+    let [scale_u, scale_v] = [width as f32 / across as f32, height as f32 / down as f32];
+    let [shift_u, shift_v] = [left as f32 / across as f32, top as f32 / down as f32];
+    texture.transform = Some(UvTransform::from_array([
+        a * scale_u,
+        b * scale_v,
+        c * scale_u,
+        d * scale_v,
+        x * scale_u + shift_u,
+        y * scale_v + shift_v,
+    ]));
+    Ok(())
+}
+
+fn wrapping(mode: Option<&str>) -> Wrap {
+    match mode {
         Some("clamp" | "black" | "constant") => Wrap::Clamp,
         Some("mirror") => Wrap::Mirror,
         _ => Wrap::Repeat,
