@@ -13,7 +13,7 @@ use bilux_import::files;
 use bilux_import::formats::Formats;
 use bilux_import::grids;
 use bilux_meshes::{asc, e57, las, obj, off, ply, stl, threemf, xyz};
-use bilux_renderers::{mitsuba, pbrt};
+use bilux_renderers::{mitsuba, pbrt, radiance};
 use bilux_scene::{SceneBuilder, Warning};
 use std::path::Path;
 
@@ -36,6 +36,7 @@ pub static SCENE_FORMATS: &[SceneFormatEntry] = &[
     bilux_usd::CRATE,
     bilux_usd::PACKAGE,
     mitsuba::ENTRY,
+    radiance::ENTRY,
     obj::ENTRY,
     ply::ENTRY,
     stl::ENTRY,

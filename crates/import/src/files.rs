@@ -76,7 +76,7 @@ fn keeping_digits(
 }
 
 /// The formats whose readers take positions relative to [`Reading::origin`].
-const KEEPING_DIGITS: [&str; 8] = ["obj", "ply", "stl", "off", "asc", "gltf", "fbx", "collada"];
+const KEEPING_DIGITS: [&str; 9] = ["obj", "ply", "stl", "off", "asc", "gltf", "fbx", "collada", "radiance"];
 
 /// The origin of a model so far from zero that f32 coordinates have lost digits that the file may hold.
 fn far_origin(row: &SceneFormatEntry, scene: &SceneBuilder) -> Option<DVec3> {

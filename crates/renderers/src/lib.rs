@@ -1,4 +1,5 @@
-//! Readers and writers of the scenes of other renderers: Mitsuba and pbrt.
+//! Readers and writers of the scenes of other renderers: Mitsuba, pbrt and Radiance.
 
 pub mod mitsuba;
 pub mod pbrt;
+pub mod radiance;

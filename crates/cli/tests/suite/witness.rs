@@ -3,7 +3,9 @@
 //! run in the long form of the suites, and if they are named: `cargo test -p bilux-cli --test suite witness`.
 //! `witness/smallvcm.py`, which no test starts, compares means and errors with SmallVCM.
 //!
-//! `BILUX_MITSUBA=FOLDER cargo test -p bilux-cli --test suite scenes_of_mitsuba -- --nocapture` prints a table of them.
+//! `BILUX_MITSUBA=FOLDER cargo test -p bilux-cli --test suite scenes_of_mitsuba -- --nocapture` prints a table of them, and
+//! `BILUX_RADIANCE=FOLDER cargo test -p bilux-cli --test suite scenes_of_radiance -- --nocapture` one of scenes of Radiance, if the Python
+//! package `pyradiance` is installed: `witness/radiance.py`.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use std::process::Command;
@@ -56,6 +58,22 @@ fn scenes_of_mitsuba_are_as_bright_as_there() {
         let status = python().args([script, env!("CARGO_BIN_EXE_bilux")]).arg(folder).status();
         assert!(status.unwrap().success());
     }
+}
+
+#[test]
+fn scenes_of_radiance_are_as_bright_as_there() {
+    let Some(folder) = std::env::var_os("BILUX_RADIANCE") else {
+        eprintln!("skipped: BILUX_RADIANCE does not name a folder of scenes");
+        return;
+    };
+    let found = python().args(["-c", "import pyradiance, numpy"]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: `pip install pyradiance numpy`, and name the interpreter in $BILUX_PYTHON if need be");
+        return;
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/radiance.py");
+    let status = python().args([script, env!("CARGO_BIN_EXE_bilux")]).arg(folder).status();
+    assert!(status.unwrap().success());
 }
 
 #[test]

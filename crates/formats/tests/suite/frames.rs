@@ -72,6 +72,7 @@ fn sources() -> Vec<(&'static str, Vec<u8>, bool)> {
         ("gltf", gltf(&metres).into_bytes(), true),
         ("pbrt", pbrt(&metres, &indices).into_bytes(), true),
         ("mitsuba", mitsuba().into_bytes(), true),
+        ("radiance", radiance(&corners(1.0, Z_UP)).into_bytes(), true),
         ("archive", package(&[("a.obj", obj.as_bytes())]), false),
         ("toml", b"[[model]]\nshape = \"box\"\nmatrix = [[3, 0, 0, 1.5], [0, 1, 0, 0.5], [0, 0, 2, -1], [0, 0, 0, 1]]\n".to_vec(), true),
     ]
@@ -153,6 +154,12 @@ fn mitsuba() -> String {
     "<scene version=\"3.0.0\"><shape type=\"cube\"><transform name=\"to_world\"><scale x=\"1.5\" y=\"0.5\" z=\"1\"/>\
      <translate x=\"1.5\" y=\"0.5\" z=\"-1\"/></transform></shape></scene>"
         .to_owned()
+}
+
+fn radiance(metres: &[DVec3]) -> String {
+    let corner = |i: usize| format!(" {} {} {}", metres[i].x, metres[i].y, metres[i].z);
+    let polygon = |f: [usize; 3]| format!("m polygon p 0 0 9{}\n", f.map(corner).concat());
+    format!("void plastic m 0 0 5 .5 .5 .5 0 0\n{}", faces(polygon))
 }
 
 fn printable(points: &[DVec3]) -> Vec<u8> {

@@ -48,6 +48,7 @@ mod pbrt_written;
 mod ply;
 mod ply_types;
 mod public_reports;
+mod radiance;
 mod round_trips;
 mod shared_files;
 mod step;
