@@ -15,7 +15,7 @@ use bilux_scene::Spec;
 const LEAST_FRESNEL: f64 = 0.018;
 
 /// The greatest reflectance that `principled` has at normal incidence, with an index of 10.
-const MOST_OF_INDEX: f64 = 0.66;
+const HIGHEST_BY_INDEX: f64 = 0.66;
 
 /// The colour, the share of gloss, and its roughness; that of the types that are brushed is the mean.
 fn parts(world: &mut World, of: &Primitive, brushed: bool) -> ([f64; 3], f64, f64) {
@@ -50,7 +50,7 @@ fn is_brushed(of: &Primitive) -> bool {
 
 pub(super) fn plastic(world: &mut World, of: &Primitive) -> Result<Spec, FormatError> {
     let (colour, specular, alpha) = parts(world, of, is_brushed(of));
-    if alpha <= 0.0 && (LEAST_FRESNEL..=MOST_OF_INDEX).contains(&specular) {
+    if alpha <= 0.0 && (LEAST_FRESNEL..=HIGHEST_BY_INDEX).contains(&specular) {
         let root = specular.sqrt() as f32;
         let spec =
             Spec::new("", "principled").with("base_color", share(colour)).with("specular_roughness", 0.0f32);
