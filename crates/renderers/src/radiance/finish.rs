@@ -1,7 +1,7 @@
 //! Finishes a scene after all files are read.
 
+use super::sources;
 use super::world::World;
-use super::{polygons, sources};
 use bilux_import::FormatError;
 use bilux_import::sharing::share_trees;
 use bilux_import::sink::Sink;
@@ -16,7 +16,9 @@ pub(super) fn finish(
     cameras: Vec<CameraSpec>,
     file: &Arc<str>,
 ) -> Result<SceneBuilder, FormatError> {
-    polygons::finish(&mut world)?;
+    for (object, at) in std::mem::take(&mut world.polygons).objects(&world.materials) {
+        world.object(object, &at)?;
+    }
     sources::finish(&mut world)?;
     if world.objects.is_empty() && world.lights.is_empty() {
         world.oddities.note("there is nothing to render in this file", || whole_file(file));

@@ -1,37 +1,11 @@
 //! Surfaces that emit light.
 
-use super::looks::{Look, PlacedSky};
+use super::look::Lamp;
 use super::units::light;
 use super::world::{World, turned};
 use bilux_import::FormatError;
 use bilux_math::DVec3;
-use bilux_scene::{Span, Spec};
-use std::rc::Rc;
-
-/// A material that emits light.
-#[derive(Clone, Debug)]
-pub(super) struct Lamp {
-    /// Its modifier, by which it is the same again.
-    pub(super) index: usize,
-    pub(super) name: Rc<str>,
-    /// Its radiance in Radiance's units.
-    pub(super) colour: [f64; 3],
-    pub(super) emission: Emission,
-    /// A sky, whose brightness is a factor on it.
-    pub(super) sky: Option<PlacedSky>,
-    pub(super) at: Span,
-}
-
-/// The directions that light leaves in, and what eyes see.
-#[derive(Clone, Debug)]
-pub(super) enum Emission {
-    /// The same in all.
-    Even,
-    /// Within a cone with this whole angle around a direction.
-    Spot { degrees: f64, aim: DVec3 },
-    /// The same in all directions; eyes see another material.
-    Illum(Box<Look>),
-}
+use bilux_scene::Spec;
 
 /// The material of a lamp's surfaces, which are black by themselves and emit from their fronts.
 pub(super) fn material(world: &mut World, lamp: &Lamp) -> Result<usize, FormatError> {

@@ -1,44 +1,14 @@
 //! What surfaces look like: what their modifiers come to.
 
 use super::kinds::{Finish, Kind};
-use super::lights::{Emission, Lamp};
+use super::look::{Emission, Lamp, Look, PlacedSky};
 use super::materials;
 use super::modifiers::Reference;
-use super::sky::Sky;
 use super::world::World;
 use bilux_import::FormatError;
 use bilux_math::DVec3;
 use bilux_scene::{Span, Spec, Value};
-use std::collections::HashMap;
 use std::rc::Rc;
-
-/// What a surface looks like.
-#[derive(Clone, Debug)]
-pub(super) enum Look {
-    /// It is not there.
-    Nothing,
-    /// A material, by its index.
-    Material(usize),
-    Lamp(Rc<Lamp>),
-}
-
-/// The brightness of a sky, turned as it stands in the scene.
-#[derive(Clone, Debug)]
-pub(super) struct PlacedSky {
-    pub(super) sky: Rc<Sky>,
-    /// Towards the sun, with z up.
-    pub(super) sun: DVec3,
-}
-
-/// What is known of looks so far.
-#[derive(Default)]
-pub(super) struct Looks {
-    known: HashMap<usize, Look>,
-    /// The material of surfaces whose modifier nothing defines.
-    undefined: Option<usize>,
-    /// The materials of lamps, by the modifiers that these are.
-    pub(super) lamps: HashMap<usize, usize>,
-}
 
 /// Longer chains of modifiers, and mixtures of mixtures that are deeper, are refused.
 const MAX_CHAIN: usize = 1000;

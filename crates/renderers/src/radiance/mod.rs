@@ -3,12 +3,14 @@
 
 mod command;
 mod compose;
+mod distant;
 mod files;
 mod finish;
 mod genbox;
 mod kinds;
 mod lexer;
 mod lights;
+mod look;
 mod looks;
 mod materials;
 mod modifiers;
@@ -18,6 +20,7 @@ mod reader;
 mod rif;
 mod round;
 mod sky;
+mod sky_model;
 mod sources;
 mod statement;
 mod surfaces;

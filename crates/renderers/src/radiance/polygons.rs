@@ -1,10 +1,11 @@
 //! Polygons, as one mesh of each material.
 
-use super::world::World;
 use bilux_import::FormatError;
+use bilux_import::budget::Budget;
+use bilux_import::oddities::Oddities;
 use bilux_import::polygon::Triangulator;
 use bilux_math::{DVec3, Vec3};
-use bilux_scene::{Mesh, Object, Span, Visibility};
+use bilux_scene::{Mesh, Object, Span, Spec, Visibility};
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -39,37 +40,67 @@ struct Group {
 /// What a vertex takes with its place in the table.
 const VERTEX: u64 = 64;
 
-/// Adds a polygon by its corners in the world, in which its front is where they run counter-clockwise.
-pub(super) fn add(world: &mut World, key: Key, corners: &[DVec3], at: &Span) -> Result<(), FormatError> {
-    let count = corners.len() as u64;
-    world.reading.budget.take_bytes(count * (VERTEX + size_of::<[[u32; 3]; 2]>() as u64), &at.file)?;
-    let World { polygons: Polygons { groups, by_key, triangulator }, oddities, reading, .. } = world;
-    let index = match by_key.get(&key) {
-        Some(index) => *index,
-        None => {
-            reading.budget.take_bytes(2 * size_of::<Group>() as u64, &at.file)?;
-            by_key.insert(key.clone(), groups.len());
-            let (mesh, vertices) = (Mesh::default(), HashMap::new());
-            groups.push(Group { key, mesh, vertices, at: at.clone() });
-            groups.len() - 1
+impl Polygons {
+    /// Adds a polygon by its corners in the world, in which its front is where they run counter-clockwise.
+    pub(super) fn add(
+        &mut self,
+        key: Key,
+        corners: &[DVec3],
+        at: &Span,
+        budget: &mut Budget,
+        oddities: &mut Oddities,
+    ) -> Result<(), FormatError> {
+        let count = corners.len() as u64;
+        budget.take_bytes(count * (VERTEX + size_of::<[[u32; 3]; 2]>() as u64), &at.file)?;
+        let Polygons { groups, by_key, triangulator } = self;
+        let index = match by_key.get(&key) {
+            Some(index) => *index,
+            None => {
+                budget.take_bytes(2 * size_of::<Group>() as u64, &at.file)?;
+                by_key.insert(key.clone(), groups.len());
+                let (mesh, vertices) = (Mesh::default(), HashMap::new());
+                groups.push(Group { key, mesh, vertices, at: at.clone() });
+                groups.len() - 1
+            }
+        };
+        let Group { mesh, vertices, .. } = &mut groups[index];
+        let indices: Vec<u32> =
+            corners.iter().map(|corner| vertex(mesh, vertices, corner.as_vec3())).collect();
+        let points = indices.iter().map(|&i| mesh.positions[i as usize]);
+        let triangles = &mut mesh.triangles;
+        let whole = triangulator.triangulate(points, |t| {
+            let [a, b, c] = t.map(|corner| indices[corner as usize]);
+            // The seams to the holes of a polygon have the same corners twice.
+            if a != b && b != c && c != a {
+                triangles.push([a, b, c]);
+            }
+        });
+        if whole.is_none() {
+            let what = "a concave polygon has too many corners: it is drawn as if it were convex";
+            oddities.note(what, || at.clone());
         }
-    };
-    let Group { mesh, vertices, .. } = &mut groups[index];
-    let indices: Vec<u32> = corners.iter().map(|corner| vertex(mesh, vertices, corner.as_vec3())).collect();
-    let points = indices.iter().map(|&i| mesh.positions[i as usize]);
-    let triangles = &mut mesh.triangles;
-    let whole = triangulator.triangulate(points, |t| {
-        let [a, b, c] = t.map(|corner| indices[corner as usize]);
-        // The seams to the holes of a polygon have the same corners twice.
-        if a != b && b != c && c != a {
-            triangles.push([a, b, c]);
-        }
-    });
-    if whole.is_none() {
-        oddities
-            .note("a concave polygon has too many corners: it is drawn as if it were convex", || at.clone());
+        Ok(())
     }
-    Ok(())
+
+    /// An object of each mesh, with the place of its first polygon.
+    pub(super) fn objects(self, materials: &[Spec]) -> Vec<(Object, Span)> {
+        let groups = self.groups.into_iter().filter(|group| !group.mesh.triangles.is_empty());
+        groups.map(|group| group.object(materials)).collect()
+    }
+}
+
+impl Group {
+    fn object(self, materials: &[Spec]) -> (Object, Span) {
+        let Group { key, mut mesh, at, .. } = self;
+        let of_material = materials.get(key.material).map_or("", |spec| &spec.name);
+        let name = match &key.prefix {
+            Some(prefix) => format!("{prefix}.{of_material}"),
+            None => of_material.to_owned(),
+        };
+        mesh.name.clone_from(&name);
+        let visibility = if key.is_hidden { Visibility::NoCamera } else { Visibility::Full };
+        (Object { visibility, ..Object::new(&name, Arc::new(mesh), key.material) }, at)
+    }
 }
 
 /// The index of a vertex at a position.
@@ -80,23 +111,4 @@ fn vertex(mesh: &mut Mesh, vertices: &mut HashMap<[u32; 3], u32>, position: Vec3
         mesh.positions.push(position);
         (mesh.positions.len() - 1) as u32
     })
-}
-
-/// Makes objects of all polygons.
-pub(super) fn finish(world: &mut World) -> Result<(), FormatError> {
-    for Group { key, mut mesh, at, .. } in std::mem::take(&mut world.polygons).groups {
-        if mesh.triangles.is_empty() {
-            continue;
-        }
-        let of_material = world.materials.get(key.material).map_or("", |spec| &spec.name);
-        let name = match &key.prefix {
-            Some(prefix) => format!("{prefix}.{of_material}"),
-            None => of_material.to_owned(),
-        };
-        mesh.name.clone_from(&name);
-        let visibility = if key.is_hidden { Visibility::NoCamera } else { Visibility::Full };
-        let object = Object { visibility, ..Object::new(&name, Arc::new(mesh), key.material) };
-        world.object(object, &at)?;
-    }
-    Ok(())
 }

@@ -1,31 +1,18 @@
 //! Sources: what is infinitely far away, as suns and skies.
 
-use super::lights::{Emission, Lamp};
-use super::looks::PlacedSky;
+use super::distant::DistantSource;
+use super::look::{Emission, Lamp, PlacedSky};
 use super::place::Place;
-use super::sky::Form;
+use super::sky_model::Form;
 use super::units::light;
 use super::world::{World, turned, turned_f32};
 use bilux_import::FormatError;
-use bilux_math::transcendental::{asin_f64, atan2_f64, cos_f64, sin_cos_f64, sin_f64};
+use bilux_math::transcendental::{asin_f64, atan2_f64, cos_f64, sin_cos_f64};
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::{Span, Spec, Texture, Value};
 use std::f64::consts::{PI, TAU};
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// A source in its place.
-pub(super) struct DistantSource {
-    name: Rc<str>,
-    /// Towards its middle, with z up.
-    direction: DVec3,
-    /// Its angular diameter.
-    degrees: f64,
-    /// Its radiance in Radiance's units; with a sky a factor on that.
-    colour: [f64; 3],
-    sky: Option<PlacedSky>,
-    at: Span,
-}
 
 /// Sources of this diameter and more are parts of a sky.
 const LEAST_SKY: f64 = 90.0;
@@ -91,20 +78,6 @@ pub(super) fn finish(world: &mut World) -> Result<(), FormatError> {
         world.light(spec, &sun.at)?;
     }
     caps(world, &sorted.others)
-}
-
-impl DistantSource {
-    /// The irradiance of a surface that faces it.
-    fn irradiance(&self) -> [f64; 3] {
-        let sin = sin_f64((0.5 * self.degrees).to_radians());
-        self.colour.map(|c| c * PI * sin * sin)
-    }
-
-    /// What it is below the horizon.
-    fn ground(&self) -> [f64; 3] {
-        let factor = self.sky.as_ref().map_or(1.0, |placed| placed.sky.ground);
-        self.colour.map(|c| c * factor)
-    }
 }
 
 fn sorted(sources: Vec<DistantSource>, world: &mut World) -> Sorted {

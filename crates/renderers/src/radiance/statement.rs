@@ -3,7 +3,7 @@
 use super::command::Command;
 use super::kinds::{self, KINDS, Kind, Row};
 use super::lexer::{Lexer, Word};
-use super::sky::{Sky, given};
+use super::sky_model::{Sky, given};
 use bilux_import::FormatError;
 use bilux_import::budget::Budget;
 use bilux_import::float::parse_f64;
@@ -108,7 +108,9 @@ fn primitive(lexer: &mut Lexer, budget: &mut Budget, file: &Arc<str>) -> Result<
         let word = lexer.word_after_comments().ok_or_else(|| cut_off(lexer, "a number"))?;
         made.reals.push(real(lexer, word)?);
     }
-    made.sky = given(&made).map(Rc::new);
+    if made.kind == Kind::Pattern {
+        made.sky = given(&made.strings, &made.reals, &made.at).map(Rc::new);
+    }
     Ok(made)
 }
 

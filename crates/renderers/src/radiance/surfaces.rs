@@ -1,8 +1,9 @@
 //! Surfaces in their places.
 
 use super::kinds::Kind;
-use super::lights::{self, Emission, Lamp};
-use super::looks::{Look, look};
+use super::lights;
+use super::look::{Emission, Lamp, Look};
+use super::looks::look;
 use super::place::Place;
 use super::polygons;
 use super::round::{Form, placed};
@@ -133,7 +134,8 @@ fn draw(
         Shape::Polygon(ref corners) => {
             let key = polygons::Key { material, prefix: place.prefix.clone(), is_hidden };
             let corners: Vec<DVec3> = corners.iter().map(|corner| world.point(*corner)).collect();
-            polygons::add(world, key, &corners, at)
+            let World { polygons, reading, oddities, .. } = world;
+            polygons.add(key, &corners, at, &mut reading.budget, oddities)
         }
         Shape::Round { form, inwards, origin, along, radius } => {
             let matrix = match form {

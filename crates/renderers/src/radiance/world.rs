@@ -1,10 +1,10 @@
 //! What a scene is made of so far.
 
-use super::looks::Looks;
+use super::distant::DistantSource;
+use super::look::Looks;
 use super::modifiers::Modifiers;
 use super::polygons::Polygons;
 use super::round::RoundShapes;
-use super::sources::DistantSource;
 use bilux_import::FormatError;
 use bilux_import::oddities::Oddities;
 use bilux_import::reading::Reading;

@@ -3,7 +3,7 @@
 //! Ward's gloss has the microfacets of Beckmann's distribution with the same alpha, and reflects the same share of the light from
 //! all directions; only gloss without roughness grows towards grazing angles, about as Fresnel's equations have it.
 
-use super::mix;
+use super::mix::mix;
 use crate::radiance::statement::Primitive;
 use crate::radiance::units::share;
 use crate::radiance::world::World;

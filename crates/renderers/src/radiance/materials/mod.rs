@@ -2,13 +2,14 @@
 
 mod clear;
 mod glossy;
+mod mix;
 mod other;
 
 use super::kinds::Finish;
 use super::statement::Primitive;
 use super::world::World;
 use bilux_import::FormatError;
-use bilux_scene::{Span, Spec, Value};
+use bilux_scene::Spec;
 
 /// A material of a primitive, by its index; `None` for one that is not seen. Lengths in it have this factor.
 pub(super) fn material(
@@ -42,17 +43,4 @@ pub(super) fn material(
     };
     let spec = Spec { name: of.name.to_string(), ..spec };
     world.material(spec, &of.at).map(Some)
-}
-
-/// Two materials in one, with this share of the second.
-fn mix(world: &mut World, a: Spec, b: Spec, amount: f64, at: &Span) -> Result<Spec, FormatError> {
-    if amount <= 0.0 {
-        return Ok(a);
-    }
-    if amount >= 1.0 {
-        return Ok(b);
-    }
-    let (a, b) = (world.material(a, at)?, world.material(b, at)?);
-    let mix = Spec::new("", "mix").with("a", Value::Material(a)).with("b", Value::Material(b));
-    Ok(mix.with("amount", amount as f32))
 }

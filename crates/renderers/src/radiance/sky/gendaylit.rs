@@ -2,7 +2,8 @@
 
 use super::moment::{Moment, Site};
 use super::perez::{Air, water};
-use super::{Form, Options, Sky, Sun, statements};
+use super::{Options, Sun, statements};
+use crate::radiance::sky_model::{Form, Sky};
 use crate::radiance::statement::Statement;
 use crate::radiance::units::EFFICACY;
 use bilux_import::FormatError;

@@ -1,11 +1,10 @@
 //! `gensky`: skies of the CIE before its standard of 2003, with or without their suns. [Ward 1994]
 
-use super::formula::{Formula, clear, intermediate, level};
 use super::moment::{Moment, Site};
-use super::{Form, Options, Sky, Sun, statements};
+use super::{Options, Sun, statements};
+use crate::radiance::sky_model::{Sky, Weather, form, level_irradiance};
 use crate::radiance::statement::Statement;
 use bilux_import::FormatError;
-use bilux_math::DVec3;
 use bilux_math::transcendental::{cos_f64, sin_f64, tan_f64};
 use bilux_scene::Span;
 use std::f64::consts::{PI, TAU};
@@ -17,15 +16,6 @@ const OF_SUN: f64 = 208.0;
 
 /// The angular diameter of its suns in degrees.
 const DIAMETER: f64 = 0.5;
-
-/// What kind of sky.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Weather {
-    Clear,
-    Overcast,
-    Uniform,
-    Intermediate,
-}
 
 /// An amount of light that is found by the program, a radiance, or an irradiance of level ground.
 #[derive(Clone, Copy, Debug)]
@@ -88,16 +78,6 @@ pub(in super::super) fn generate(words: &[Rc<str>], at: &Span) -> Result<Vec<Sta
     Ok(statements(Sky { form, sun: towards, level, ground }, seen, at))
 }
 
-/// How the brightness is distributed, with this radiance of the zenith.
-pub(super) fn form(weather: Weather, zenith: f64) -> Form {
-    match weather {
-        Weather::Clear => Form::Cie { standard: 12, zenith },
-        Weather::Overcast => Form::Cie { standard: 16, zenith },
-        Weather::Uniform => Form::Cie { standard: 5, zenith },
-        Weather::Intermediate => Form::Formula(Formula::Intermediate { zenith }),
-    }
-}
-
 /// The solid angle of its suns.
 fn solid_angle() -> f64 {
     TAU * (1.0 - cos_f64((0.5 * DIAMETER).to_radians()))
@@ -113,16 +93,4 @@ fn zenith_luminance(weather: Weather, altitude: f64, turbidity: f64) -> f64 {
             Weather::Clear => clear,
             Weather::Intermediate => 0.5 * (overcast + clear),
         }
-}
-
-/// What level ground receives of a sky whose zenith has a radiance of 1.
-pub(super) fn level_irradiance(weather: Weather, sun: DVec3) -> f64 {
-    match weather {
-        Weather::Uniform => PI,
-        Weather::Overcast => 7.0 / 9.0 * PI,
-        Weather::Clear => level(|direction| clear(direction, sun)) / clear(DVec3::Z, sun),
-        Weather::Intermediate => {
-            level(|direction| intermediate(direction, sun)) / intermediate(DVec3::Z, sun)
-        }
-    }
 }

@@ -1,46 +1,19 @@
 //! Skies and suns as Radiance's generators of skies make them.
 
-mod formula;
 mod gendaylit;
 mod gensky;
-mod given;
 mod moment;
 mod perez;
 
 use super::kinds::{Finish, Kind};
+use super::sky_model::Sky;
 use super::statement::{Primitive, Statement};
 use bilux_import::FormatError;
 use bilux_import::float::parse_f64;
-use bilux_math::DVec3;
 use bilux_scene::Span;
-pub(super) use formula::Formula;
 pub(super) use gendaylit::generate as gendaylit;
 pub(super) use gensky::generate as gensky;
-pub(super) use given::given;
 use std::rc::Rc;
-
-/// How bright a sky is, in Radiance's units.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sky {
-    pub(super) form: Form,
-    /// Towards the sun, with z up.
-    pub(super) sun: DVec3,
-    /// The irradiance of level ground by the sky alone.
-    pub(super) level: f64,
-    /// The radiance of the ground below it.
-    pub(super) ground: f64,
-}
-
-/// How the brightness is distributed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Form {
-    /// A standard sky of the CIE, by its number in Bilux and the radiance of its zenith.
-    Cie { standard: i32, zenith: f64 },
-    /// That of Perez, by its clearness and brightness.
-    Perez { clearness: f64, brightness: f64 },
-    /// One that Bilux has no light for.
-    Formula(Formula),
-}
 
 /// The diameter of the sun and its radiance, if it is to be seen.
 struct Sun {

@@ -1,18 +1,18 @@
 //! Skies as the generators write them: patterns by functions of Radiance's library.
 
-use super::formula::{Formula, level};
-use super::gensky::{Weather, form, level_irradiance};
-use super::{Form, Sky};
-use crate::radiance::statement::Primitive;
+use super::formula::{Formula, Weather, level, level_irradiance};
+use super::sky::{Form, Sky, form};
 use crate::radiance::xform::Xform;
 use bilux_math::DVec3;
+use bilux_scene::Span;
+use std::rc::Rc;
 
 /// The sky of a pattern, if it is one of `gensky` or `gendaylit`.
-pub(in super::super) fn given(of: &Primitive) -> Option<Sky> {
-    let [_, file, turns @ ..] = &of.strings[..] else { return None };
-    let (matrix, _) = Xform::parse(turns, &of.at).ok()?.copy(0);
+pub(in super::super) fn given(strings: &[Rc<str>], reals: &[f64], at: &Span) -> Option<Sky> {
+    let [_, file, turns @ ..] = strings else { return None };
+    let (matrix, _) = Xform::parse(turns, at).ok()?.copy(0);
     let direction = |reals: &[f64]| matrix.transform_vector3(DVec3::from_slice(reals)).normalize_or(DVec3::Z);
-    match (&**file, &of.reals[..]) {
+    match (&**file, reals) {
         ("skybright.cal", &[kind, zenith, ground, ref rest @ ..]) => {
             let weather = match kind {
                 1.0 => Weather::Clear,

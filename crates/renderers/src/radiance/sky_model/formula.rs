@@ -77,3 +77,24 @@ fn perez(direction: DVec3, sun: DVec3, [a, b, c, d, e]: [f64; 5]) -> f64 {
     let gradation = 1.0 + a * exp_f64(b / direction.z.max(LOWEST));
     (gradation * (1.0 + c * exp_f64(d * angle) + e * cos * cos)).max(0.0)
 }
+
+/// What kind of sky.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Weather {
+    Clear,
+    Overcast,
+    Uniform,
+    Intermediate,
+}
+
+/// What level ground receives of a sky whose zenith has a radiance of 1.
+pub(in super::super) fn level_irradiance(weather: Weather, sun: DVec3) -> f64 {
+    match weather {
+        Weather::Uniform => PI,
+        Weather::Overcast => 7.0 / 9.0 * PI,
+        Weather::Clear => level(|direction| clear(direction, sun)) / clear(DVec3::Z, sun),
+        Weather::Intermediate => {
+            level(|direction| intermediate(direction, sun)) / intermediate(DVec3::Z, sun)
+        }
+    }
+}
