@@ -50,6 +50,7 @@ pub mod opening;
 pub mod options;
 pub mod phong;
 pub mod placement;
+mod plain;
 pub mod ply;
 pub mod polygon;
 pub mod polygon_mesh;

@@ -7,6 +7,7 @@ use crate::gzip;
 use crate::images::{Decoded, SampleMeaning, decoded, is_raw_unless_said, mend};
 use crate::locating::Locator;
 use crate::opening::open;
+pub use crate::plain::{default_material, plain_material};
 use crate::subdivision::PendingCage;
 use crate::text::{is_marked, plain, plain_size, whole_file};
 use crate::{FormatError, ReadOptions};
@@ -385,20 +386,4 @@ impl<'o> Reading<'o> {
         self.textures.insert(key, texture.clone());
         Ok(texture)
     }
-}
-
-/// The material of files that do not describe any.
-pub fn default_material() -> Spec {
-    Spec::new("default", "phong")
-}
-
-/// The default material for vertices with kd or ks. These are the reflectances themselves, so the material's own
-/// factors are 1.
-pub fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
-    let mut spec = default_material();
-    for (key, _) in [("kd", vertex_kd), ("ks", vertex_ks)].iter().filter(|(_, given)| *given) {
-        "vertices".clone_into(&mut spec.name);
-        spec.parameters.set(key, 1.0);
-    }
-    spec
 }

@@ -68,7 +68,9 @@ fn scenes_of_radiance_are_as_bright_as_there() {
     };
     let found = python().args(["-c", "import pyradiance, numpy"]).output();
     if !found.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: `pip install pyradiance numpy`, and name the interpreter in $BILUX_PYTHON if need be");
+        eprintln!(
+            "skipped: `pip install pyradiance numpy`, and name the interpreter in $BILUX_PYTHON if need be"
+        );
         return;
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/witness/radiance.py");

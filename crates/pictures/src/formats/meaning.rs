@@ -1,6 +1,6 @@
 //! What a file says its samples are: by a curve alone, or by a curve for each channel and primaries of its own.
 
-use super::icc::Curve;
+use super::curve::Curve;
 use super::primaries::Matrix;
 use crate::{ColourSpace, Picture};
 

@@ -1,8 +1,9 @@
 //! PNG: reads everything that the format can hold; writes sRGB with 8 or 16 bits. [PNG]
 
+use super::curve::Curve;
 use super::faults::png::explain;
 use super::guard::guarded;
-use super::icc::{self, Curve};
+use super::icc;
 use super::meaning::Meaning;
 use super::orientation::Orientation;
 use super::planes::planes_of;

@@ -1,8 +1,8 @@
 //! Where writers get their pictures from: planes, or the bytes of another file. Files for a display are made a strip of rows
 //! at a time, so that what is made on the way is never as large as the picture.
 
+use super::options::{BitDepth, WriteOptions, require_colour};
 use super::rgba8::Interleaved;
-use super::{BitDepth, WriteOptions, require_colour};
 use crate::limits::reserved;
 use crate::picture::quantise;
 use crate::tonemap::to_display;
