@@ -137,7 +137,8 @@ fn specular_colours_of_a_picture_are_those_of_constants() {
     let bytes = write_bytes("png", &picture, &deep).unwrap();
     let scene = cube("specularColor", "token inputs:sourceColorSpace = \"sRGB\"", workflow, &bytes);
     let ior = scene.materials[scene.objects[0].material].number("specular_ior").unwrap();
-    let at_normal = ((ior - 1.0) / (ior + 1.0)).powi(2);
+    let root = (ior - 1.0) / (ior + 1.0);
+    let at_normal = root * root;
     for (x, wanted) in pixels.into_iter().enumerate() {
         let found = texture(&scene, "specular_color").texel(x, 0) * at_normal;
         let off = (0..3).map(|c| (found[c] - wanted[c]).abs()).fold(0.0, f32::max);

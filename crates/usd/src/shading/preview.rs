@@ -81,7 +81,7 @@ fn specular(draft: &mut Draft) -> Result<(), FormatError> {
                     // The index is that of the brightest texel, of which the others are fractions.
                     let greatest = map.texels().map(Rgb::max_channel).fold(0.0, f32::max);
                     let root = greatest.clamp(1e-6, MOST * MOST).sqrt();
-                    map.factor = map.factor * (1.0 / (root * root));
+                    map.factor *= 1.0 / (root * root);
                     draft.set("specular_ior", (1.0 + root) / (1.0 - root));
                     return draft.set_texture("specular_color", map);
                 }
