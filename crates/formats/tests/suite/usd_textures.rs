@@ -19,12 +19,14 @@ struct Of<'a> {
 
 const PLAIN: Of = Of { channels: &["R", "G", "B"], depth: BitDepth::Eight, says: false };
 
-/// A PNG of two texels: a half of what there can be, and a quarter, in each channel.
+/// A PNG of two texels: a half of what there can be, and a quarter, in each channel but alpha.
 fn png(of: Of) -> Vec<u8> {
     let mut picture = Picture::new(2, 1).unwrap();
     picture.colour_space = ColourSpace::Srgb;
     for name in of.channels {
-        picture.push_channel(*name, vec![0.5, 0.25]).unwrap();
+        // Opaque, so that colours are not divided by it.
+        let samples = if *name == "A" { vec![1.0; 2] } else { vec![0.5, 0.25] };
+        picture.push_channel(*name, samples).unwrap();
     }
     let options = WriteOptions { bit_depth: of.depth, ..WriteOptions::default() };
     let bytes = write_bytes("png", &picture, &options).unwrap();
