@@ -138,8 +138,10 @@ fn advice_on_memory_is_enough() {
     let folder = folder();
     let path = folder.path();
     bilux(path, "render a.toml -o a.png --size 400x300 --spp 1 -i path -q").assert().success();
+    // Bytes of that size fit into a megabyte, and are converted as such; these are planes.
+    bilux(path, "render a.toml -o deep.png --bits 16 --size 300x200 --spp 1 -i path -q").assert().success();
     for line in [
-        "convert a.png -o b.png",
+        "convert deep.png -o b.png",
         "compare a.png a.png",
         "sensor a.png -o s.png",
         "render a.toml -o c.png --size 400x300 --spp 1",

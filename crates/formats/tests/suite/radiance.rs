@@ -635,3 +635,25 @@ fn skies_that_generators_have_written_are_the_same() {
     assert!((found / wanted - 1.0).abs() < 0.01, "{found}, not {wanted}");
     assert!((map.texel(0, map.height() - 1).r - 24.21 * 1.4 * LUMENS).abs() < 1e-3);
 }
+
+/// Objects of OBJ files may be called as shapes and materials of Radiance are.
+#[test]
+fn objects_of_obj_are_no_statements() {
+    for name in ["sphere", "light", "glass"] {
+        for first in ["0 0 1", "0 0 0", "0.5 0 1", "0 1 0", "1 0 0"] {
+            let text = format!("o {name}\nv {first}\nv 2 0 0\nv 0 3 0\nf 1 2 3\n");
+            let scene =
+                bilux_formats::read_bytes(text.as_bytes(), "", None, "a", &ReadOptions::default()).unwrap();
+            assert_eq!(scene.objects[0].mesh.triangles.len(), 1, "{name}, {first}");
+        }
+    }
+    let scene = bilux_formats::read_bytes(
+        b"void light l\n0\n0 # none\n3 1 1 1\nl sphere s 0 0 # place, radius\n4 0 0 1 .5",
+        "",
+        None,
+        "a",
+        &ReadOptions::default(),
+    );
+    let scene = scene.unwrap();
+    assert_eq!(scene.objects.len() + scene.lights.len(), 1);
+}

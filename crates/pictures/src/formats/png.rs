@@ -59,7 +59,11 @@ fn decode<'b>(
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(|error| explain(&error, bytes))?;
     let (width, height) = (header.width, header.height);
-    limits.check(FORMAT, width.into(), height.into(), 1 + own)?;
+    if limits.check(FORMAT, width.into(), height.into(), 1 + own).is_err() {
+        // How much it is exactly is not known yet; what the message asks for is enough: of a palette or of alpha by one colour, too.
+        let bound = 4 * if header.bit_depth == ::png::BitDepth::Sixteen { 2 } else { 1 };
+        limits.check(FORMAT, width.into(), height.into(), bound + own.max(bound))?;
+    }
     let mut reader = decoder.read_info().map_err(|error| explain(&error, bytes))?;
     // The decoder trusts the length of a palette.
     if reader.info().palette.as_ref().is_some_and(|palette| palette.is_empty() || palette.len() % 3 != 0) {

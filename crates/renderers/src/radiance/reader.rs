@@ -11,6 +11,7 @@ use super::statement::parse;
 use super::views;
 use super::world::World;
 use bilux_import::FormatError;
+use bilux_import::float::parse_f64;
 use bilux_import::reading::{Reading, Source};
 use bilux_import::text::{name_of, whole_file};
 use bilux_scene::cameras::CameraSpec;
@@ -33,11 +34,33 @@ pub(super) fn sniff(bytes: &[u8]) -> bool {
         }
         Some(_) => {}
     }
-    let [_, kind, _, count] = [(); 4].map(|()| lexer.word().map_or(&b""[..], |word| word.text));
+    let [_, kind, _] = [(); 3].map(|()| lexer.word().map_or(&b""[..], |word| word.text));
     match kinds::named(kind) {
-        Some(row) => row.kind == Kind::Alias || !count.is_empty() && count.iter().all(u8::is_ascii_digit),
+        Some(row) => row.kind == Kind::Alias || has_arguments(&mut lexer),
         None => is_rif_of_scene(&file, bytes),
     }
+}
+
+/// True where three lists follow, each after the number of its entries: of any words, of integers, and of numbers. The object `sphere`
+/// of an OBJ file has its vertices there. A file that goes on beyond what is looked at is taken at its word.
+fn has_arguments(lexer: &mut Lexer) -> bool {
+    let mut all = 0;
+    for are_numbers in [false, true, true] {
+        // A comment may stand before a number.
+        lexer.peek();
+        let Some(word) = lexer.word() else { return false };
+        let count = std::str::from_utf8(word.text).ok().and_then(|text| text.parse::<u32>().ok());
+        let Some(count) = count else { return false };
+        all += u64::from(count);
+        for _ in 0..count {
+            match lexer.word() {
+                Some(word) if are_numbers && parse_f64(word.text).is_none() => return false,
+                Some(_) => {}
+                None => return true,
+            }
+        }
+    }
+    all > 0
 }
 
 /// True for a list of variables that names a scene.
