@@ -50,3 +50,30 @@ impl Settings {
         self.exposure + own.map_or(0.0, |judged| judged.exposure())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A colour behind the picture is in files for displays; light has no background.
+    #[test]
+    fn transparency_that_a_format_loses_is_said() {
+        let said = |is_transparent: bool, name: &str, behind: Option<Rgb>| {
+            let lost = lost_transparency(is_transparent, Path::new(name), behind).unwrap();
+            lost.map(|warning| warning.message)
+        };
+        let red = Some(Rgb::new(1.0, 0.0, 0.0));
+        for (name, behind, is_said) in [
+            ("a.jpg", None, true),
+            ("a.jpg", red, false),
+            ("a.pfm", None, true),
+            ("a.pfm", red, true),
+            ("a.png", None, false),
+            ("a.exr", red, false),
+        ] {
+            assert_eq!(said(true, name, behind).is_some(), is_said, "{name} {behind:?}");
+            assert_eq!(said(false, name, behind), None);
+        }
+        assert!(said(true, "a.pfm", red).unwrap().contains("black"));
+    }
+}

@@ -407,6 +407,16 @@ mod tests {
         assert!(!motion.is_still() && motion.is_still_over([-1.0, 0.5]) && !motion.is_still_over([0.0, 1.5]));
     }
 
+    /// A chain moves while any of its parts does.
+    #[test]
+    fn a_chain_is_still_only_while_all_of_it_is() {
+        let place = Motion::still(Transform::translate(Vec3::X).unwrap());
+        for chain in [place.then(&spin()), spin().then(&place), spin().then(&spin())] {
+            assert!(!chain.is_still_over([0.5, 2.0]) && !chain.is_still(), "{chain:?}");
+            assert!(chain.is_still_over([3.5, 9.0]), "{chain:?}");
+        }
+    }
+
     #[test]
     fn midway_is_half_the_distance_half_the_angle_and_the_mean_scale() {
         let p = spin().at(2.0).point(Vec3::X);

@@ -9,7 +9,8 @@ use crate::scene::Scene;
 use crate::values;
 use crate::watch::{Stopped, Watch, follow};
 use bilux::Job;
-use bilux::scene::cameras::{SensorPoint, SensorPoints};
+use bilux::scene::Spec;
+use bilux::scene::cameras::{CameraSpec, SensorPoint, SensorPoints};
 use bilux::transport::{Estimate, PartOfSky, SkyPatches};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -93,8 +94,8 @@ pub(crate) fn sunlight<'py>(
 }
 
 /// A light that shines from everywhere.
-fn even_sky() -> bilux::scene::Spec {
-    bilux::scene::Spec::new("sky", "environment").with("radiance", 1.0f32)
+fn even_sky() -> Spec {
+    Spec::new("sky", "environment").with("radiance", 1.0f32)
 }
 
 /// The number of the patch in each direction.
@@ -141,7 +142,7 @@ fn measured<T: Send>(
     py: Python<'_>,
     scene: &Bound<'_, Scene>,
     (settings, max_memory, callback): (&Bound<'_, PyDict>, u64, Option<&Bound<'_, PyAny>>),
-    only: Option<bilux::scene::Spec>,
+    only: Option<Spec>,
     work: impl Fn(&Job, &Watch) -> Result<Option<T>, bilux::Error> + Sync,
 ) -> PyResult<T> {
     crate::forks::check()?;
@@ -149,6 +150,11 @@ fn measured<T: Send>(
     let mut builder = scene.get().builder(py).clone();
     if let Some(light) = only {
         builder.lights = vec![light];
+    }
+    if builder.objects.is_empty() {
+        // Lights alone are no picture, but a camera that measures needs no surface to see, and neither do points.
+        let spec = Spec::new("points", "irradiance");
+        builder.cameras.push(CameraSpec { spec, keyframes: Vec::new() });
     }
     let built = &scene.get().built;
     let (found, stopped) = follow(py, callback, |watch| {

@@ -610,3 +610,20 @@ def test_evalglare_finds_the_same_glare(tmp_path):
     theirs = {name.strip(): float(number) for name, number in zip(names, numbers, strict=False)}
     assert daylight.glare_probability(light, camera) == pytest.approx(theirs["dgp"], abs=0.005)
     assert daylight.unified_glare_rating(light, camera) == pytest.approx(theirs["ugr"], abs=0.3)
+
+
+def test_lights_alone_and_the_sun_through_a_pane_are_measured():
+    scene = bilux.Scene()
+    scene.add_light(bilux.lights.point(position=(1, 2, 0), intensity="500 cd"))
+    values, errors = scene.illuminance([[0, 0, 0], [1, 0, 0]], spp=16)
+    assert values == pytest.approx([500 * 2 / 5**1.5, 125], rel=1e-5) and np.all(errors < 1e-3)
+    sunny = bilux.Scene()
+    sunny.add_light(bilux.lights.directional(direction=(0, -4, -3), irradiance="1000 lx"))
+    pane = bilux.materials.dielectric(thin=True, tint=0.8)
+    sunny.add_mesh([[-50, 2, 50], [50, 2, 50], [50, 2, -50], [-50, 2, -50]], [[0, 1, 2], [0, 2, 3]], material=pane)
+    values, errors = sunny.illuminance([[0, 0, 0]], spp=16)
+    inside = math.sqrt(1 - 0.36 / 2.25)
+    across, along = (0.8 - 1.5 * inside) / (0.8 + 1.5 * inside), (1.5 * 0.8 - inside) / (1.5 * 0.8 + inside)
+    reflected = (across**2 + along**2) / 2
+    wanted = 1000 * 0.8 * 0.8 * (1 - reflected) / (1 + reflected)
+    assert values == pytest.approx([wanted], rel=1e-4) and np.all(errors < 1e-3 * wanted)

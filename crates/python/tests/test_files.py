@@ -3,9 +3,11 @@
 import io
 import pickle
 import re
+import struct
 import subprocess
 import sys
 import zipfile
+import zlib
 
 import numpy as np
 import pytest
@@ -139,6 +141,21 @@ def test_textures_from_open_files_and_as_pickles(tmp_path):
         assert (again.shape, again.name) == (texture.shape, texture.name)
         pictures = [textured(each).render(size=24, spp=2, integrator="path").pixels for each in (texture, again)]
         np.testing.assert_array_equal(*pictures)
+    # What a file says of its colours does not count for numbers.
+    def png(chunks):
+        rows = b"".join(b"\0" + struct.pack(">12H", *(1500 * i + 9000 * y for i in range(12))) for y in range(3))
+        parts = [(b"IHDR", struct.pack(">IIBBBBB", 4, 3, 16, 2, 0, 0, 0)), *chunks, (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
+        packed = [struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts]
+        return b"\x89PNG\r\n\x1a\n" + b"".join(packed)
+
+    straight = png([(b"gAMA", struct.pack(">I", 100_000))])
+    shown = {
+        (data, chunks): textured(bilux.Texture.read(chunks, data=data)).render(size=24, spp=2, integrator="path").pixels
+        for data in (True, False)
+        for chunks in (png([]), straight)
+    }
+    np.testing.assert_array_equal(shown[True, png([])], shown[True, straight])
+    assert np.abs(shown[False, png([])] - shown[False, straight]).max() > 0.01
     bilux.Picture(light).save(tmp_path / "light.pfm")
     with open(tmp_path / "light.pfm", "rb") as file:
         assert bilux.Texture.read(file).shape == (4, 5)

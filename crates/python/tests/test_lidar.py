@@ -78,6 +78,18 @@ def test_the_file_of_points_is_read_again(tmp_path):
     points = bilux.load(tmp_path / "cloud.ply")
     low, high = points.bounds
     assert np.allclose(low, cloud.points.min(axis=0), atol=0.5) and np.allclose(high, cloud.points.max(axis=0), atol=0.5)
+    # Two echoes of one pulse, and one of another.
+    scene = wall(10)
+    scene.add_mesh(*SQUARE, material=bilux.materials.translucent(), transform=at(0, 0, -4, 0.02))
+    both = scene.lidar([[0, 0, -1], [0.4, 0, -1]], divergence=20, rays=400)
+    both.save(tmp_path / "both.ply")
+    head, body = (tmp_path / "both.ply").read_bytes().split(b"end_header\n", 1)
+    kinds = {"float": "<f4", "int": "<i4", "uchar": "u1", "double": "<f8"}
+    columns = [line.split() for line in head.decode().splitlines() if line.startswith("property")]
+    rows = np.frombuffer(body, [(name, kinds[kind]) for _, kind, name in columns])
+    assert rows["return_number"].tolist() == both.number.tolist() and rows["number_of_returns"].tolist() == both.count.tolist()
+    assert sorted(zip(both.number.tolist(), both.count.tolist(), strict=True)) == [(1, 1), (1, 2), (2, 2)]
+    assert np.allclose(rows["intensity"], both.intensity) and rows["object"].tolist() == both.object.tolist()
     with pytest.raises(ValueError, match=".ply"):
         cloud.save(tmp_path / "cloud.xyz")
     with pytest.raises(ValueError, match="colours"):

@@ -52,8 +52,8 @@ impl<T> ShadowRays<T> {
             let passed = match (occluded[i], media.get(i)) {
                 (false, None) => Passage::CLEAR,
                 (false, Some(through)) => through.unoccluded(tracer.scene, &rays[i]),
-                // What it hits may separate nothing.
-                (true, Some(through)) if has_nested => {
+                // What it hits may separate nothing, or be a pane.
+                (true, Some(through)) if has_nested || through.panes > 0 => {
                     // Asked again, and counted once.
                     tracer.counters.rays -= 1;
                     let Some(passed) = through.visible(tracer, &rays[i], normals[i]) else { continue };

@@ -255,6 +255,20 @@ mod tests {
         }
     }
 
+    /// Noise falls with the root of the number of samples: a third of it takes nine times as many.
+    #[test]
+    fn samples_are_expected_by_the_square_of_the_noise() {
+        let stop = Stop { noise: Some(0.02), time_limit: None };
+        let settings = RenderSettings { stop, ..RenderSettings::new(1, 1, 1000) };
+        let mut watch = StopMonitor::new(&settings, Duration::ZERO);
+        assert_eq!(watch.expected(), 1000);
+        watch.done = 16;
+        for (noise, expected) in [(0.06, 144), (0.02, 16), (0.01, 16), (0.5, 1000)] {
+            watch.reached = Some(Reached { spp: 16, noise: Some(noise), bias: None });
+            assert!(watch.expected().abs_diff(expected) <= 1, "{noise}: {}", watch.expected());
+        }
+    }
+
     #[test]
     fn passes_come_in_quarters_of_a_power_of_two() {
         let settings = RenderSettings::new(1, 1, 40);

@@ -55,6 +55,8 @@ pub struct Record {
     pub found: Option<Vec<FoundLight>>,
     /// The direction in which a path that [receives](bilux_scene::Camera::receives) leaves its point.
     pub(crate) first: Option<Vec3>,
+    /// How many of the lights found are those that the point itself samples: theirs comes straight, or through panes.
+    pub(crate) straight: usize,
     /// The path from the camera, if the lengths of those that find light are wanted.
     pub(crate) way: Option<Way>,
 }

@@ -12,6 +12,8 @@ pub(crate) struct Through {
     /// Its length in metres; `None` to what is infinitely far away: beyond the last surface nothing absorbs, since the
     /// boundary of what does would have blocked the ray.
     pub(crate) distance: Option<f32>,
+    /// The number of panes that it may lead through.
+    pub(crate) panes: u32,
     /// The seed of the random numbers that estimate what passes media that vary.
     pub(crate) seed: u64,
 }
@@ -24,7 +26,7 @@ impl Through {
         if self.is_hidden(tracer.scene, ray) {
             return None;
         }
-        self.media.visible(tracer, ray, self.distance, n, self.seed)
+        self.media.visible(tracer, ray, (self.distance, n), self.panes, self.seed)
     }
 
     /// True where a surface is certain to block a ray.

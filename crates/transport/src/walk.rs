@@ -4,7 +4,7 @@ use crate::equiangular::{Departure, Equiangular, EquiangularSample};
 use crate::interaction::Interaction;
 use crate::limits::Events;
 use crate::media::{Media, MediumPart, Travelled};
-use crate::task::{SampleState, Task};
+use crate::task::{Context, SampleState, Task};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::media::{Flight, mean};
 use bilux_scene::{BsdfSample, Ray, Scene, Surface, Tracer, TransportMode};
@@ -63,6 +63,16 @@ impl Walk {
     pub(crate) fn events(&self) -> Events {
         let [inside, in_row] = self.inside;
         Events { counted: self.depth - inside, in_row }
+    }
+
+    /// The number of panes through which its next event, which may be behind a surface, is connected with a light: they count against the
+    /// depth, since paths that go that way have events there.
+    #[inline]
+    pub(crate) fn panes(&self, context: &Context, is_inside: bool) -> u32 {
+        if !context.scene.has_panes() {
+            return 0;
+        }
+        context.max_depth.saturating_sub(self.events().and(is_inside).counted)
     }
 
     /// The unit direction to where it comes from.

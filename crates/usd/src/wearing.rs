@@ -21,19 +21,14 @@ impl Scene<'_, '_> {
             return self.plain(stage, prim);
         };
         if let Some(known) = self.materials.get(&material) {
-            return match known.clone() {
-                Some(worn) => self.with_colours(stage, prim, worn),
-                None => self.plain(stage, prim),
-            };
+            let known = known.clone();
+            return self.of_material(stage, prim, known);
         }
         // Copies of a material have the same opinions.
         let said = self.said_below(stage, material);
         if let Some(known) = self.alike.get(&said).cloned() {
             self.materials.insert(material, known.clone());
-            return match known {
-                Some(worn) => self.with_colours(stage, prim, worn),
-                None => self.plain(stage, prim),
-            };
+            return self.of_material(stage, prim, known);
         }
         let Context { reading, sink, .. } = &mut self.context;
         let shaded = shading::material(stage, material, reading, sink)?;
@@ -54,15 +49,13 @@ impl Scene<'_, '_> {
         });
         self.materials.insert(material, worn.clone());
         self.alike.insert(said, worn.clone());
-        match worn {
-            Some(worn) => self.with_colours(stage, prim, worn),
-            None => self.plain(stage, prim),
-        }
+        self.of_material(stage, prim, worn)
     }
 
-    /// What a surface wears that has a material: if that uses the colours of vertices, and there are none, with the colour that
-    /// it states for that.
-    fn with_colours(&mut self, stage: &Stage, prim: u32, worn: Worn) -> Result<Worn, FormatError> {
+    /// What a surface wears that is bound to a material, which says nothing that is read if there is none: if it uses the colours
+    /// of vertices, and there are none, with the colour that it states for that.
+    fn of_material(&mut self, stage: &Stage, prim: u32, worn: Option<Worn>) -> Result<Worn, FormatError> {
+        let Some(worn) = worn else { return self.plain(stage, prim) };
         let Some(bits) = worn.without_colours.filter(|_| worn.uses_colours) else { return Ok(worn) };
         let colour = Rgb::from_array(bits.map(f32::from_bits));
         if self.shown(stage, prim)?[0].is_some() {

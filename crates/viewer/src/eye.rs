@@ -204,6 +204,23 @@ mod tests {
         Eye { position, pivot: DVec3::Y, zoom: 1.0, up: DVec3::Y, is_parallel: false, radius: 2.0 }
     }
 
+    /// Where a camera moves, the eye is at home where that is at the moment of the picture.
+    #[test]
+    fn at_home_a_moving_camera_is_where_it_is_then() {
+        let at = |x: f32| bilux::scene::Spec::new("", "perspective").with("position", Vec3::new(x, 1.0, 5.0));
+        let mut scene = bilux::generate(&bilux::scene::Spec::new("", "teapot")).unwrap();
+        let keyframes = [0.0, 2.0].map(|time| (time, at(3.0 * time).parameters)).into();
+        let spec = at(0.0).with("look_at", Vec3::new(0.0, 1.0, 0.0));
+        scene.cameras = vec![bilux::scene::cameras::CameraSpec { spec, keyframes }];
+        for (time, x) in [(0.0, 0.0), (1.0, 3.0), (2.0, 6.0)] {
+            let job = Job::new(&scene, bilux::JobRequest::new().set("time", time).spp(1)).unwrap();
+            let mut asked = Parameters::default();
+            asked.set("time", time);
+            let home = Eye::at_home(&job, &scene, &asked).unwrap();
+            assert!(home.position.distance(DVec3::new(x, 1.0, 5.0)) < 1e-6, "{time}: {home:?}");
+        }
+    }
+
     #[test]
     fn an_orbit_keeps_the_distance_and_never_reaches_the_pole() {
         let mut moved = eye();

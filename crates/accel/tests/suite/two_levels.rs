@@ -1,7 +1,9 @@
 //! Instances found by a tree give the same hits as instances tested one by one, bit for bit.
 
 use crate::support::{Numbers, Truth, build_variant, closed, meshes, rays, variants};
-use bilux_accel::{Accelerator, BuildOptions, Instance, Query, Ray, TopLevel, TriangleMesh, TwoLevel};
+use bilux_accel::{
+    Accelerator, BuildOptions, Counters, Hit, Instance, Query, Ray, TopLevel, TriangleMesh, TwoLevel,
+};
 use bilux_math::glam::{DMat4, Quat};
 use bilux_math::{Motion, MotionKey, Transform, Vec3};
 use bilux_testing::effort;
@@ -115,6 +117,37 @@ fn an_identity_transform_changes_no_bit() {
         let motion = Motion::still(Transform::IDENTITY);
         let world = TwoLevel::new(&[Instance::new(brute.clone(), motion)], SHUTTER, top);
         assert!(truth.differences(&world).is_empty());
+    }
+}
+
+/// What a filter is asked about is a hit of the instance that the ray meets, for every kind of query.
+#[test]
+fn filters_know_which_instance_is_hit() {
+    let mesh = Arc::new(closed::all().iter().find(|c| c.name == "sphere").expect("it is there").mesh());
+    let place = |x: f64| {
+        Motion::still(Transform::from_matrix(DMat4::from_translation([x, 0.0, 0.0].into())).unwrap())
+    };
+    for (accelerator, top) in [("bvh8", TopLevel::List), ("bvh8", TopLevel::Bvh), ("bsp", TopLevel::Bvh)] {
+        let tree = build_variant(accelerator, &BuildOptions::default(), &mesh);
+        let parts: Vec<_> = [0.0, 5.0, 10.0].map(|x| Instance::new(tree.clone(), place(x))).into();
+        let world = TwoLevel::new(&parts, SHUTTER, top);
+        let above = |x: f32| Ray::new([x + 0.1, 9.0, -0.2], [0.0, -1.0, 0.0]);
+        for wanted in 0..3 {
+            let only = |hit: &Hit| hit.instance == wanted;
+            let query = Query { filter: Some(&only), ..Query::default() };
+            for (i, x) in [0.0, 5.0, 10.0].into_iter().enumerate() {
+                let is_seen = i as u32 == wanted;
+                assert_eq!(
+                    world.closest_hit(&above(x), &query).is_some(),
+                    is_seen,
+                    "{accelerator} {top:?} {i}"
+                );
+                assert_eq!(world.any_hit(&above(x), &query), is_seen, "{accelerator} {top:?} {i}");
+                let mut counters = Counters::default();
+                assert_eq!(world.any_hit_counted(&above(x), &query, &mut counters), is_seen);
+                assert_eq!(world.all_hits(&above(x), &query).len(), if is_seen { 2 } else { 0 });
+            }
+        }
     }
 }
 

@@ -28,7 +28,7 @@ fn done(folder: &Path, command: &str) -> String {
 /// A ball and a lamp over a floor.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
-    let scene = "[camera]\nposition = [0, 2, 6]\nlook_at = [0, 0.5, 0]\n\n\
+    let scene = "[camera]\nposition = [0, 2, 6]\nlook_at = [0, 0.5, 0]\npixel_aspect = 1.25\n\n\
         [[model]]\nshape = \"floor\"\nname = \"ground\"\n\n\
         [[model]]\nshape = \"sphere\"\nname = \"ball\"\ntranslate = [0, 1, 0]\n\n\
         [[light]]\nname = \"lamp\"\nkind = \"point\"\nposition = [2, 4, 3]\n\n\
@@ -63,6 +63,7 @@ fn assert_same_in_parts(path: &Path, render: &str) {
     for (key, value) in &whole.metadata {
         assert_eq!(merged.metadata.get(key), Some(value), "{key}");
     }
+    assert!(whole.metadata.contains_key("pixelAspectRatio"));
     assert_eq!(whole.metadata["bilux.group_the_sky"], "the sky");
 }
 

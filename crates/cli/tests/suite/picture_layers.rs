@@ -80,6 +80,14 @@ fn without_a_main_picture_the_error_lists_the_layers() {
     assert!(code == 2 && said.contains("ViewLayer.Combined"), "{said}");
     let (code, said) = run(path, "render a.obj --env two.exr -o out.png --size 8x8 --spp 1");
     assert!(code == 1 && said.contains("ViewLayer.Combined") && said.contains("--env"), "{said}");
+    // Nor has a picture of bytes the layer that is asked for.
+    let mut plain = Picture::new(16, 8).unwrap();
+    for name in ["R", "G", "B"] {
+        plain.push_channel(name, vec![0.5; 128]).unwrap();
+    }
+    write(path.join("plain.png"), &plain, &Default::default()).unwrap();
+    let (code, said) = run(path, "convert plain.png -o plain.jpg --layer Glow");
+    assert!(code == 1 && said.contains("Glow") && !path.join("plain.jpg").exists(), "{code}: {said}");
     // With a single layer there is no doubt.
     let said = done(path, "convert one.exr -o out.png");
     assert!(said.contains("its only layer with colours, 'beauty', is used"), "{said}");

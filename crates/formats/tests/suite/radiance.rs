@@ -386,6 +386,14 @@ fn an_inverted_box_is_a_room() {
         .sum();
     let table = 1.0 - 0.005 * 9.6 - 8.0 * (0.001 - 0.001 / 6.0);
     assert!((volume + 72.0 + table).abs() < 1e-3, "{volume}");
+    // So does what has a direction of its own.
+    let lamps = files(&[
+        ("a.rad", "!xform lamp.rad\n!xform -I -t 0 0 5 lamp.rad"),
+        ("lamp.rad", "void light l 0 0 3 9 9 9\nl ring r 0 0 8  0 0 3  0 0 -1  .5 2"),
+    ]);
+    let lamps = built(lamps.unwrap(), "lamps");
+    at(front(&lamps.objects[0]), [0.0, -1.0, 0.0]);
+    at(front(&lamps.objects[1]), [0.0, 1.0, 0.0]);
 }
 
 fn sky(text: &str) -> (SceneBuilder, Spec) {
@@ -443,6 +451,11 @@ fn overcast_and_turned_skies_and_those_that_were_measured() {
     let sun = 4.977e6 * std::f32::consts::PI * square(sin(0.2665f32.to_radians())) * LUMENS;
     let found = light.colour("direct").unwrap();
     assert!((found.g / sun - 1.0).abs() < 2e-3, "{found:?}, not {sun}");
+    // Of level ground the sun gives the sine of its altitude of that.
+    let level = 600.0 * sin(light.number("elevation").unwrap().to_radians());
+    let (_, of_level) = sky(&format!("!gendaylit 6 21 10 -G {level} 150\n{DOME}"));
+    let direct = of_level.colour("direct").unwrap();
+    assert!(level < 595.0 && (direct.g / found.g - 1.0).abs() < 1e-3, "{direct:?}, not {found:?}");
     // Only half of the sky, and no sun.
     let (_, light) =
         sky("!gensky -ang 30 40 -s -b 10\nskyfunc glow g 0 0 4 1 2 3 0\ng source sky 0 0 4 0 0 1 180");
@@ -505,6 +518,9 @@ fn views_are_those_of_the_files_beside() {
     let found: Vec<_> = made.cameras.iter().map(|camera| (&*camera.spec.name, &*camera.spec.kind)).collect();
     assert_eq!(found, [("one", "orthographic"), ("two", "fisheye"), ("three", "perspective")]);
     assert_eq!(made.cameras[0].spec.number("height"), Some(3.0));
+    let wider = "scene= a.rad\nview= -vf a.vf -vh 90 -vv 70\n";
+    let made = files(&[("a.rif", wider), ("a.rad", &rad), ("a.vf", view)]).unwrap();
+    assert_eq!(made.cameras[0].spec.number("fov"), Some(70.0), "what comes after the file counts");
     let made = files(&[("a.rad", &rad), ("a.rif", rif), ("b.vf", view)]).unwrap();
     assert!(made.cameras.len() == 2 && warnings(&made).contains("a.vf"), "{}", warnings(&made));
 }

@@ -140,6 +140,31 @@ fn assemblies_have_places_colours_names_and_units() {
     );
 }
 
+/// [ISO 10303-46: an overriding styled item replaces the style of the item that it names.] In whatever order they stand.
+#[test]
+fn a_colour_that_overrides_another_counts() {
+    let text = seed("tessellated.step");
+    let style = |first: u32, [r, g, b]: [f32; 3]| {
+        let [a, b_, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|i| first + i);
+        format!(
+            "#{a}=COLOUR_RGB('',{r:?},{g:?},{b:?});\n#{b_}=FILL_AREA_STYLE_COLOUR('',#{a});\n\
+             #{c}=FILL_AREA_STYLE('',(#{b_}));\n#{d}=SURFACE_STYLE_FILL_AREA(#{c});\n\
+             #{e}=SURFACE_SIDE_STYLE('',(#{d}));\n#{f}=SURFACE_STYLE_USAGE(.BOTH.,#{e});\n"
+        )
+    };
+    let below = "#220=PRESENTATION_STYLE_ASSIGNMENT((#205));\n#221=PRESENTATION_STYLE_ASSIGNMENT((#215));\n";
+    let [plain, over] =
+        ["#230=STYLED_ITEM('',(#220),#11);\n", "#231=OVER_RIDING_STYLED_ITEM('',(#221),#11,#230);\n"];
+    let styles = [style(200, [1.0, 0.0, 0.0]), style(210, [0.0, 1.0, 0.0]), below.to_owned()].concat();
+    let base = text.lines().filter(|line| !line.contains("STYLED_ITEM")).collect::<Vec<_>>().join("\n");
+    for items in [[plain, over].concat(), [over, plain].concat()] {
+        let scene = scene(&base.replacen("DATA;", &format!("DATA;\n{styles}{items}"), 1));
+        let spec = &scene.materials[scene.objects[0].material];
+        let colour = spec.colour("base_color").or(spec.colour("kd"));
+        assert_eq!(colour, Some(Rgb::new(0.0, 1.0, 0.0)), "{spec:?}");
+    }
+}
+
 #[test]
 fn a_circle_of_assemblies_ends_with_a_warning() {
     let scene = scene(&seed("cycle.step"));

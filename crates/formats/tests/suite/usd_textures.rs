@@ -15,9 +15,11 @@ struct Of<'a> {
     depth: BitDepth,
     /// Whether the file says that it is sRGB.
     says: bool,
+    /// Whether it states a power.
+    has_gamma: bool,
 }
 
-const PLAIN: Of = Of { channels: &["R", "G", "B"], depth: BitDepth::Eight, says: false };
+const PLAIN: Of = Of { channels: &["R", "G", "B"], depth: BitDepth::Eight, says: false, has_gamma: false };
 
 /// A PNG of two texels: a half of what there can be, and a quarter, in each channel but alpha.
 fn png(of: Of) -> Vec<u8> {
@@ -31,7 +33,10 @@ fn png(of: Of) -> Vec<u8> {
     let options = WriteOptions { bit_depth: of.depth, ..WriteOptions::default() };
     let bytes = write_bytes("png", &picture, &options).unwrap();
     let srgb = bytes.windows(4).position(|name| name == b"sRGB").unwrap() - 4;
-    if of.says { bytes } else { [&bytes[..srgb], &bytes[srgb + 13..]].concat() }
+    // 1 / 2.2, as PNG writes it, and its checksum.
+    let gamma = b"\0\0\0\x04gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05";
+    let stated = if of.has_gamma { &gamma[..] } else { &[] };
+    if of.says { bytes } else { [&bytes[..srgb], stated, &bytes[srgb + 13..]].concat() }
 }
 
 /// A cube with a texture as an input of its surface.
@@ -78,6 +83,8 @@ fn pictures_of_16_bits_or_of_one_channel_are_numbers_unless_they_are_said_to_be_
         (Of { depth: deep, ..PLAIN }, "auto", raw),
         (Of { depth: deep, ..PLAIN }, "sRGB", srgb),
         (Of { depth: deep, says: true, ..PLAIN }, "auto", srgb),
+        (Of { depth: deep, has_gamma: true, ..PLAIN }, "auto", srgb),
+        (Of { channels: &["Y"], has_gamma: true, ..PLAIN }, "", srgb),
     ] {
         let node = match space {
             "" => String::new(),
@@ -124,6 +131,24 @@ fn beyond_its_edges_a_picture_can_be_black() {
             let found = at(&scene, u + across, v + down);
             assert_eq!(found == [0.0; 3], is_black, "{s} {t} beyond by {across}, {down}: {found:?}");
         }
+    }
+    // Where a transform places it, it is as large and as far as the transform says, on both axes.
+    let moved = |wrap: &str| {
+        let transform = "def Shader \"x\" { uniform token info:id = \"UsdTransform2d\"\n float2 inputs:scale = (2, 4)\n \
+                         float2 inputs:translation = (0.3, 0.1)\n float2 inputs:in = (0, 0)\n float2 outputs:result }";
+        let reads = "float2 inputs:st.connect = </m/t.outputs:result>";
+        let node = format!("{}\n {reads} }}\n {transform} def Scope \"n\" {{", node(wrap, "black"));
+        cube("diffuseColor", &node.replace("/m/t.outputs:result", "/m/x.outputs:result"), "", &bytes)
+    };
+    for wrap in ["black", "repeat"] {
+        let scene = moved(wrap);
+        for (x, y) in (0..3).flat_map(|x| (0..2).map(move |y| (x, y))) {
+            let [u, v] = middle(x, y);
+            let found = at(&scene, (u - 0.3) / 2.0, (v - 0.1) / 4.0);
+            let wanted = texels(x, y).to_array();
+            assert!(near(found, wanted), "{wrap} at {x}, {y}: {found:?}, not {wanted:?}");
+        }
+        assert_eq!(at(&scene, (0.5 - 0.3) / 2.0, (1.6 - 0.1) / 4.0), [0.0; 3], "{wrap}");
     }
     let scene = cube("diffuseColor", &node("repeat", "repeat"), "", &bytes);
     assert!(near(at(&scene, middle(1, 1)[0] + 4.0, middle(1, 1)[1] - 3.0), texels(1, 1).to_array()));

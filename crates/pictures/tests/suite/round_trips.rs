@@ -119,6 +119,45 @@ fn exr_keeps_matrices_as_numbers() {
     assert!(error.contains("'worldToNDC'"), "{error}");
 }
 
+/// Names of more than 31 bytes are allowed where the version of the file says so. [OpenEXR File Layout, version field: bit 10]
+#[test]
+fn exr_says_that_names_are_long() {
+    let flags = |key: &str, channel: &str| {
+        let mut picture = noise(2, 2, &["R", "G", "B"]);
+        picture.push_channel(channel, vec![0.25; 4]).unwrap();
+        picture.metadata.insert(key.to_owned(), "x".to_owned());
+        let bytes = write_bytes("exr", &picture, &WriteOptions::default()).unwrap();
+        assert_eq!(read_bytes(&bytes, None, &Limits::default()).unwrap().metadata[key], "x");
+        bytes[5] & 4
+    };
+    let (long, just) = ("k".repeat(32), "k".repeat(31));
+    assert_eq!([flags("short", "Z"), flags(&just, &just)], [0, 0]);
+    assert_eq!([flags(&long, "Z"), flags("short", &long)], [4, 4]);
+}
+
+/// Files of several strips have each row once, whatever their format.
+#[test]
+fn large_pictures_for_displays_have_all_of_their_rows() {
+    let (width, height) = (1031, 1100);
+    let mut picture = Picture::new(width, height).unwrap();
+    for (name, turn) in [("R", 1), ("G", 3), ("B", 7)] {
+        let row = |y: usize| (((y * turn / 4) % 500) as f32 - 250.0).abs() / 250.0;
+        picture.push_channel(name, (0..width * height).map(|i| row(i / width)).collect()).unwrap();
+    }
+    picture.colour_space = ColourSpace::Srgb;
+    for (format, off) in [("png", 3e-3), ("jpeg", 0.1), ("webp", 3e-3), ("ppm", 3e-3)] {
+        let options = WriteOptions { quality: 95, ..WriteOptions::default() };
+        let Ok(bytes) = write_bytes(format, &picture, &options) else { panic!("{format} is not written") };
+        let back = read_bytes(&bytes, Some(format), &Limits::default()).unwrap();
+        assert_eq!((back.width(), back.height()), (width, height), "{format}");
+        for y in (0..height).step_by(37) {
+            let (found, wanted) = (back.rgb(500, y), picture.rgb(500, y));
+            let is_near = (0..3).all(|c| (found[c] - wanted[c]).abs() < off);
+            assert!(is_near, "{format}, row {y}: {found:?}, not {wanted:?}");
+        }
+    }
+}
+
 /// Pictures of cameras whose pixels are no squares: programs that heed the attribute show them undistorted.
 #[test]
 fn exr_keeps_the_shape_of_pixels_and_says_it() {

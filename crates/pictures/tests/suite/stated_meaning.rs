@@ -21,9 +21,14 @@ fn near(got: [f32; 3], wanted: [f32; 3]) {
 
 /// A PNG of one grey pixel, 128 of 255, without the chunk `sRGB`, and with others.
 fn png(chunks: &[(&[u8], &[u8])]) -> Vec<u8> {
+    png_of([128.0; 3], chunks)
+}
+
+/// The same of a pixel of these samples, of 255.
+fn png_of(samples: [f32; 3], chunks: &[(&[u8], &[u8])]) -> Vec<u8> {
     let mut picture = Picture::new(1, 1).unwrap();
-    for name in ["R", "G", "B"] {
-        picture.push_channel(name, vec![128.0 / 255.0]).unwrap();
+    for (name, sample) in ["R", "G", "B"].into_iter().zip(samples) {
+        picture.push_channel(name, vec![sample / 255.0]).unwrap();
     }
     picture.colour_space = ColourSpace::Srgb;
     let plain = write_bytes("png", &picture, &WriteOptions::default()).unwrap();
@@ -86,6 +91,10 @@ fn the_curve_of_a_profile_counts() {
         (b"rTRC", power(2.2), srgb),
         (b"rTRC", function(0, &[1.0]), half),
         (b"rTRC", function(3, &[2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045]), srgb),
+        // Nothing below where it begins, or a constant there, which is added above too.
+        (b"rTRC", function(1, &[1.0, 0.6, 0.4 * 128.0 / 255.0]), half),
+        (b"rTRC", function(2, &[1.0, 0.6, 0.0, 0.4 * 128.0 / 255.0]), half),
+        (b"rTRC", function(2, &[1.0, 1.0, -0.7, 128.0 / 255.0]), half),
         // An offset above, and another one below the straight part.
         (b"rTRC", function(4, &[1.0, 0.6, 0.0, 1.0, 0.0, 0.2 - 0.6 / 510.0, 0.0]), half),
         // No curve at all, and a damaged one.
@@ -119,8 +128,8 @@ fn code_points_count_before_profiles_and_gammas() {
     assert!(read(&png(&[(b"cICP", &[1, 13, 0, 1])]), "png").warnings.is_empty());
 }
 
-/// Primaries of Rec. 2020 and of P3 are converted, by the tables of ITU-R BT.2087 and of SMPTE EG 432-1: of equal samples white.
-/// Not equal ones are tested by profiles, which share the matrix.
+/// Primaries of Rec. 2020 and of P3 are converted, by the tables of ITU-R BT.2087 and of SMPTE EG 432-1: of equal samples white, and
+/// of others by the rows of the matrix to Rec. 709. [ITU-R BT.2087, table 3: inverse of the matrix there]
 #[test]
 fn code_points_of_wide_primaries_are_converted() {
     for code in [9, 12] {
@@ -130,6 +139,11 @@ fn code_points_of_wide_primaries_are_converted() {
         assert_eq!(picture.colour_space, ColourSpace::LinearRec709);
         near(light(picture), [0.2159; 3]);
     }
+    let to_709 = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
+    let samples = [150.0, 128.0, 100.0].map(|byte| byte / 255.0);
+    let wanted = to_709.map(|row: [f32; 3]| row.iter().zip(samples).map(|(m, sample)| m * sample).sum());
+    let bytes = png_of([150.0, 128.0, 100.0], &[(b"cICP", &[9, 8, 0, 1])]);
+    near(light(read(&bytes, "png")), wanted);
 }
 
 fn hdr(header: &str, rgbe: [u8; 4]) -> Vec<u8> {

@@ -8,7 +8,7 @@
 
 use super::{Bsdf, BsdfSample, Lobe, TransportMode};
 use bilux_math::frame::reflect;
-use bilux_math::{Frame, Vec2, Vec3};
+use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use std::ops::Range;
 
 /// The events of a lobe about one normal: reflection, transmission.
@@ -40,6 +40,29 @@ impl Bsdf {
                 visit(BsdfSample { weight: sample.weight * share, pdf_solid_angle: 1.0, ..sample });
             }
         }
+    }
+
+    /// The fraction of radiance along `wo` that passes panes straight, without a change of direction. Black where the interpolated normal
+    /// does not work for it.
+    pub fn straight(&self, wo: Vec3) -> Rgb {
+        let mut sum = Rgb::BLACK;
+        match self.parts() {
+            Some(parts) => parts.each(|part| sum += part.straight_of_all(wo)),
+            None => sum = self.straight_of_all(wo),
+        }
+        sum
+    }
+
+    fn straight_of_all(&self, wo: Vec3) -> Rgb {
+        let local = self.frame.to_local(wo);
+        let works =
+            self.sees_side(wo) && reflect(wo, self.frame.n).dot(self.n_geom) * wo.dot(self.n_geom) > 0.0;
+        let panes = self.weighted().filter(|(_, lobe)| works && lobe.transmitted(local) == Some(-local));
+        let passed = panes.filter_map(|(weight, lobe)| {
+            let sample = self.sample_delta(lobe, wo, 1f32.next_down(), TransportMode::Radiance)?;
+            sample.transmits.then(|| sample.weight * (sample.pdf_solid_angle * weight))
+        });
+        passed.sum()
     }
 
     /// Samples a direction of a delta lobe.

@@ -218,6 +218,10 @@ impl Material for Glass {
         (!self.thin).then_some(self.inside())
     }
 
+    fn is_pane(&self) -> bool {
+        self.thin
+    }
+
     fn only_refracts(&self) -> bool {
         self.tint.texture.is_none() && self.tint.colour == Rgb::WHITE
     }

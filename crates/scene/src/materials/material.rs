@@ -102,6 +102,10 @@ pub trait Material: Send + Sync {
     fn is_interface(&self) -> bool {
         false
     }
+    /// True for panes: clear walls so thin that light passes them straight, as [`Bsdf::straight`] says.
+    fn is_pane(&self) -> bool {
+        false
+    }
     /// What its inside is filled with; `None` where there is no inside that light enters: behind opaque surfaces and thin walls.
     fn medium(&self) -> Option<Medium<'_>> {
         None

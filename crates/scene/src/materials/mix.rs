@@ -139,6 +139,10 @@ impl Material for Mix {
         self.a.in_contact().or(self.b.in_contact())
     }
 
+    fn is_pane(&self) -> bool {
+        (self.a.is_pane() || self.b.is_pane()) && self.medium().is_none()
+    }
+
     /// The interior does not depend on where light entered: use the denser of the two.
     fn medium(&self) -> Option<Medium<'_>> {
         let (a, b) = match (self.a.medium(), self.b.medium()) {

@@ -139,6 +139,10 @@ impl Material for ModifiedMaterial {
         self.glow.is_none() && self.material.only_refracts()
     }
 
+    fn is_pane(&self) -> bool {
+        self.material.is_pane()
+    }
+
     fn is_interface(&self) -> bool {
         self.material.is_interface()
     }

@@ -201,4 +201,25 @@ mod tests {
         let by_peak = Temperature::new(grid, 1.0, black_body_of_peak_one).colour(1000.0).luminance();
         assert!((by_peak / cool / 32.0 - 1.0).abs() < 1e-3, "{by_peak} {cool}");
     }
+
+    /// The hottest place has the radiance, whatever a unit of the grid is in kelvins, and others that of a black body beside it.
+    #[test]
+    fn the_hottest_place_has_the_radiance_at_any_scale() {
+        let fill = |_: [usize; 3], block: &mut crate::grid::Block| {
+            block[..3].copy_from_slice(&[0.5, 4.0, 2.0]);
+            true
+        };
+        let grid = Arc::new(Grid::new("heat", [3, 1, 1], &Transform::IDENTITY, fill).unwrap());
+        for scale in [1.0, 400.0, 700.0] {
+            let temperature = Temperature::new(grid.clone(), scale, black_body);
+            let hottest = black_body(4.0 * scale).luminance();
+            let found = temperature.colour(4.0).luminance();
+            assert!(hottest == 0.0 || (found - 1.0).abs() < 1e-5, "{scale}: {found}");
+            let (half, wanted) = (temperature.colour(2.0), black_body(2.0 * scale) / hottest.max(1e-30));
+            assert!(
+                (half.r - wanted.r).abs() < 1e-3 * wanted.r.max(1e-6),
+                "{scale}: {half:?}, not {wanted:?}"
+            );
+        }
+    }
 }

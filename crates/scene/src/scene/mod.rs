@@ -310,6 +310,12 @@ impl Scene {
         !self.parts.absorbs && !self.has_nested() && !self.parts.disperses
     }
 
+    /// True when light passes some surfaces straight: [`Material::is_pane`].
+    #[inline]
+    pub fn has_panes(&self) -> bool {
+        self.parts.has_panes
+    }
+
     /// The instruction set of the acceleration structures, which loops over many paths use too.
     pub fn cpu_level(&self) -> CpuLevel {
         self.cpu_level

@@ -44,6 +44,7 @@ pub(crate) struct SceneParts {
     pub(super) enclosures: Vec<Option<Enclosure>>,
     pub(super) clearance: Clearance,
     pub(super) disperses: bool,
+    pub(super) has_panes: bool,
     pub(super) absorbs: bool,
     pub(super) scatters: bool,
     pub(super) has_varying_media: bool,
@@ -109,6 +110,7 @@ impl SceneParts {
         let hides_backs = passes.iter().any(|passes| passes.is_one_sided || passes.hides_from_camera);
         let has_holes = passes.iter().any(|passes| passes.has_holes);
         let disperses = materials.iter().any(|material| material.disperses());
+        let has_panes = materials.iter().any(|material| material.is_pane());
         let media = || materials.iter().filter_map(|material| material.medium());
         let absorbs = media().any(|medium| !medium.is_clear());
         let scatters = media().any(|medium| medium.is_walked());
@@ -138,6 +140,7 @@ impl SceneParts {
             enclosures,
             clearance,
             disperses,
+            has_panes,
             absorbs,
             scatters,
             has_varying_media,

@@ -189,6 +189,21 @@ fn typed_specs_equal_handwritten_specs() {
     assert_eq!(builder.lights, [Spec::new("bulb", "point").with("position", Vec3::Y)]);
 }
 
+/// A mix has the fire of either of its parts.
+#[test]
+fn mixes_glow_by_either_part() {
+    let clear = Spec::new("clear", "interface").with("absorption", 0.5f32);
+    let fire = clear.clone().with("medium_emission", 3.0f32);
+    for (a, b, glows) in [(&fire, &clear, true), (&clear, &fire, true), (&clear, &clear, false)] {
+        let mut builder = builder();
+        let [a, b] = [a, b].map(|spec| bilux_scene::Value::Material(builder.add_material(spec.clone())));
+        let mix = builder.add_material(Spec::new("", "mix").with("a", a).with("b", b).with("amount", 0.3f32));
+        builder.objects[0].material = mix;
+        let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        assert_eq!(scene.material_of(0).medium().unwrap().glow.is_some(), glows);
+    }
+}
+
 /// What is placed, and then moves, is where both put it at each time while the shutter is open.
 #[test]
 fn what_is_placed_before_it_moves_is_seen_on_its_way() {

@@ -12,6 +12,7 @@ fn mesh() -> Mesh {
     Mesh {
         positions: vec![Vec3::NEG_X * 3.0, Vec3::ZERO, Vec3::X * 4.0],
         vertex_kd: vec![BLUE, RED, BLUE],
+        vertex_ks: vec![RED, Rgb::grey(0.8), Rgb::grey(0.4)],
         points: vec![0],
         lines: vec![[1, 2]],
         ..Mesh::default()
@@ -41,6 +42,8 @@ fn points_are_balls_and_lines_are_tubes_with_colours_between_their_ends() {
     assert_eq!((hit.p, hit.n_geom), (Vec3::new(1.0, 0.25, 0.0), Vec3::Y));
     let kd = hit.vertex_kd.unwrap();
     assert!((kd.r - 0.75).abs() < 1e-6 && (kd.b - 0.25).abs() < 1e-6, "{kd:?}");
+    let ks = hit.vertex_ks.unwrap();
+    assert!((ks.r - 0.7).abs() < 1e-6 && (ks.b - 0.7).abs() < 1e-6, "{ks:?}");
     assert!(from_above(&still, 1.0, 0.26).is_none() && from_above(&still, -3.0, 0.51).is_none());
     // A round end.
     assert!(from_above(&still, 4.2, 0.0).is_some() && from_above(&still, 4.26, 0.0).is_none());

@@ -104,8 +104,11 @@ pub(crate) fn to_camera<const N: usize>(
         odds: y.odds,
     };
     let distance = Some(seen.p.distance(y.at.p()));
-    let segment =
-        Segment { ray, n: Vec3::ZERO, through: Through { media, distance, seed: task.sample.seed() } };
+    let segment = Segment {
+        ray,
+        n: Vec3::ZERO,
+        through: Through { media, distance, panes: 0, seed: task.sample.seed() },
+    };
     Some((seen.film, Connection { join, segment }))
 }
 
@@ -164,7 +167,7 @@ pub(crate) fn to_light<const N: usize>(
         odds: z.odds,
     };
     let ray = z.at.spawn_to_light(&sample);
-    let through = Through { media, distance, seed: task.sample.seed() };
+    let through = Through { media, distance, panes: 0, seed: task.sample.seed() };
     Some(Connection { join, segment: Segment { ray, n: sample.n_light, through } })
 }
 
@@ -220,7 +223,7 @@ pub(crate) fn to_vertex<const N: usize>(
         in_medium,
         odds: z.odds * y.odds,
     };
-    let through = Through { media, distance: Some(distance2.sqrt()), seed: task.sample.seed() };
+    let through = Through { media, distance: Some(distance2.sqrt()), panes: 0, seed: task.sample.seed() };
     let segment = Segment { ray: spawn_between(&z.at, &y.at), n, through };
     Some(Connection { join, segment })
 }

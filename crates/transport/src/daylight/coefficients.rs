@@ -103,14 +103,16 @@ impl Sums {
             state.record = Some(Box::new(Record { found, ..Record::default() }));
             let mut task = Task { context: &eye.context, tracer: &mut tracer, sample: &mut state };
             integrator.radiance(&ray, &mut task);
-            let first = state.record.as_ref().and_then(|record| record.first);
-            memory = state.record.and_then(|record| record.found).unwrap_or_default();
+            let record = state.record.map(|record| *record).unwrap_or_default();
+            let Record { first, straight: sampled, found, .. } = record;
+            memory = found.unwrap_or_default();
             let own = &mut self.replicates[(sample % REPLICATES) as usize * patches.count()..];
-            for light in memory.drain(..) {
+            for (number, light) in memory.drain(..).enumerate() {
                 let part = f64::from(part_of_sky(eye.context.scene, &light));
                 if part.is_finite() {
                     // Where it left the point in the direction from which it came, nothing has turned it.
-                    let comes_straight = light.edges <= STRAIGHT
+                    let comes_straight = number < sampled
+                        || light.edges <= STRAIGHT
                         || first.is_some_and(|first| straight.is_same(first, light.towards))
                             && straight.passed(&mut tracer, light.towards) != Rgb::BLACK;
                     let [all, reflected] = &mut own[patches.number(light.towards)];

@@ -53,7 +53,7 @@ impl PixelIntegrator for Occlusion {
             .to_world(warp::sample_cosine_hemisphere(task.sample.sampler.next_2d()));
         let probe = Ray { t_max: self.distance, ..surface.spawn(wi) };
         let media = media.beyond(task.context.scene, &surface, -Vec3::from(ray.direction), wi);
-        let through = Through { media, distance: None, seed: 0 };
+        let through = Through { media, distance: None, panes: 0, seed: 0 };
         let open = through.visible(task.tracer, &probe, Vec3::ZERO).is_some();
         task.sample.note(0, || {
             format!("at {} the direction {wi} is {}", surface.p, if open { "open" } else { "closed" })

@@ -18,6 +18,8 @@ pub(crate) struct Passage {
     /// The densities of an event at its start, by a walk from its end, and at its end, by a walk from its start; per metre,
     /// where the walk comes so far.
     pub(crate) hazards: [f32; 2],
+    /// The panes on the way.
+    pub(crate) panes: u32,
     is_first: bool,
 }
 
@@ -63,6 +65,7 @@ impl Passage {
         survival: 1.0,
         survivals: Rgb::WHITE,
         hazards: [0.0; 2],
+        panes: 0,
         is_first: true,
     };
 
@@ -75,7 +78,14 @@ impl Passage {
             survivals: self.survivals * next.survivals,
             hazards: [if self.is_first { next.hazards[0] } else { self.hazards[0] }, next.hazards[1]],
             is_first: false,
+            ..self
         }
+    }
+
+    /// The same line, beyond a pane that lets this fraction of light straight through; `None` where that is nothing.
+    pub(super) fn beyond_pane(self, passed: Rgb) -> Option<Passage> {
+        let transmittance = self.transmittance * passed;
+        (!passed.is_black()).then_some(Passage { transmittance, panes: self.panes + 1, ..self })
     }
 
     /// The fraction of light that passes, as part of a path whose walks have these odds in each channel: over the mean density of

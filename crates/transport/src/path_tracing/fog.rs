@@ -33,7 +33,8 @@ impl PathTracing {
                 };
                 let (at, wo) = (Interaction::Medium(point), alike.wo());
                 let approach = Approach::of(&at, wo, walk.leaves_medium, passage.arriving(None));
-                let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach };
+                let panes = alike.panes(task.context, at.is_inside());
+                let from = Vertex { at: &at, wo, media: &alike.media, odds: alike.odds, approach, panes };
                 let seen = alike.seen(task.sample);
                 path.light += seen * self.light_sample(task, light, &from, u_light, (alike.depth, seen));
             },

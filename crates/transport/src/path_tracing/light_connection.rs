@@ -18,12 +18,12 @@ pub(super) struct LightConnection {
 }
 
 impl LightConnection {
-    /// What it brings.
+    /// What it brings, and the number of panes on the way.
     #[inline]
-    pub(super) fn trace(&self, tracer: &mut Tracer) -> Rgb {
-        let Some(passage) = self.segment.passage(tracer) else { return Rgb::BLACK };
+    pub(super) fn trace(&self, tracer: &mut Tracer) -> (Rgb, u32) {
+        let Some(passage) = self.segment.passage(tracer) else { return (Rgb::BLACK, 0) };
         let weight = self.pdf.map_or(1.0, |pdf| power_heuristic(self.light_pdf, pdf * passage.survival));
-        self.light * (weight / self.light_pdf) * passage.share(self.odds)
+        (self.light * (weight / self.light_pdf) * passage.share(self.odds), passage.panes)
     }
 
     /// Records the connection, if it brings light to the sample.

@@ -2,6 +2,7 @@
 //! [Kajiya 1986; Veach 1997, 9.2]
 
 mod fog;
+mod last_event;
 mod light_connection;
 pub(crate) mod sheet;
 
@@ -16,6 +17,8 @@ use crate::way::Way;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
 use bilux_scene::{Ray, Surface, TransportMode};
+pub(crate) use last_event::LastEvent;
+use last_event::passes_straight;
 use light_connection::LightConnection;
 pub(crate) use light_connection::power_heuristic;
 
@@ -36,6 +39,8 @@ struct Vertex<'a> {
     odds: Rgb,
     /// How its ray came here, where [equiangular points](equiangular) may be.
     approach: Option<Approach>,
+    /// [`Walk::panes`].
+    panes: u32,
 }
 
 /// How light is sampled where both techniques could find it.
@@ -51,11 +56,9 @@ pub(crate) struct Path {
     pub(crate) walk: Walk,
     /// What it has found.
     pub(crate) light: Rgb,
-    /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
-    /// where no light can be sampled.
-    pub(crate) last: Option<(Vec3, f32)>,
-    /// How its ray came to the last event, where [equiangular points](equiangular) may be.
-    pub(crate) approach: Option<Approach>,
+    /// The last event but for those of panes, which are passed straight. `None` after the camera and after other delta events, where no
+    /// light can be sampled.
+    pub(crate) last: Option<LastEvent>,
 }
 
 impl PathTracing {
@@ -78,8 +81,8 @@ impl PathTracing {
             }
             let (tracer, mode) = (&mut *task.tracer, TransportMode::Radiance);
             let travelled = path.walk.travel((first, ahead), tracer, task.sample, mode, |_| {});
-            if let Some((_, pdf)) = &mut path.last {
-                *pdf *= travelled.passage.survival;
+            if let Some(last) = &mut path.last {
+                last.pdf *= travelled.passage.survival;
             }
             if !travelled.emitted.is_black() {
                 self.glow(&mut path, travelled.emitted, task);
@@ -135,11 +138,11 @@ impl PathTracing {
         let by_walk = travelled.passage.arriving(None);
         let approach = Approach::of(&at, wo, path.walk.leaves_medium, by_walk)
             .filter(|approach| !approach.ray.leaves_medium || task.context.lights.has_beams());
-        let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach };
-        path.approach = approach;
+        let panes = path.walk.panes(task.context, at.is_inside());
+        let from = Vertex { at: &at, wo, media: &path.walk.media, odds: path.walk.odds, approach, panes };
         let seen = path.walk.seen(task.sample);
         path.light += seen * self.direct(task, &from, (path.walk.depth, seen));
-        self.scatter(path, &at, task)
+        self.scatter(path, &at, approach, task)
     }
 
     /// The first part of [`PathTracing::interact`]: collects the light that is emitted here; returns how light scatters here, or
@@ -167,9 +170,16 @@ impl PathTracing {
 
     /// The last part of [`PathTracing::interact`]: goes on in another direction, or ends.
     #[inline]
-    pub(crate) fn scatter(&self, path: &mut Path, at: &Interaction, task: &mut Task) -> bool {
+    pub(crate) fn scatter(
+        &self,
+        path: &mut Path,
+        at: &Interaction,
+        approach: Option<Approach>,
+        task: &mut Task,
+    ) -> bool {
         let u = (task.sample.sampler.next_1d(), task.sample.sampler.next_2d());
-        self.scatter_by(path, at, task, u) && self.survives(path, || task.sample.sampler.next_1d())
+        self.scatter_by(path, (at, approach), task, u)
+            && self.survives(path, || task.sample.sampler.next_1d())
     }
 
     /// Samples a direction by these random numbers; false where there is none.
@@ -177,7 +187,7 @@ impl PathTracing {
     pub(crate) fn scatter_by(
         &self,
         path: &mut Path,
-        at: &Interaction,
+        (at, approach): (&Interaction, Option<Approach>),
         task: &mut Task,
         (u_choice, u): (f32, Vec2),
     ) -> bool {
@@ -190,7 +200,11 @@ impl PathTracing {
         };
         let media = path.walk.media;
         path.walk.follow(task.context.scene, at, wo, &media, &sample, TransportMode::Radiance);
-        path.last = (!sample.is_delta).then_some((p, sample.pdf_solid_angle));
+        let is_in_medium = at.is_in_medium();
+        path.last = match sample.is_delta {
+            false => Some(LastEvent { p, pdf: sample.pdf_solid_angle, is_in_medium, approach }),
+            true => path.last.filter(|_| sample.transmits && passes_straight(task.context.scene, at, wo)),
+        };
         task.sample.note_vertex(path.walk.depth, || {
             let Some(surface) = at.surface() else {
                 let what = format!("scattered by a medium at {p} towards {}", sample.wi);
@@ -215,7 +229,7 @@ impl PathTracing {
         let mut sum = Rgb::BLACK;
         for (index, light) in task.context.scene.infinite_lights() {
             let found = match path.last {
-                Some((from, _)) => light.le_and_pdf(from, direction),
+                Some(last) => light.le_and_pdf(last.p, direction),
                 None => (light.le(direction), 0.0),
             };
             let seen = self.seen_of(task.context, path, (index, light), found);
@@ -245,8 +259,9 @@ impl PathTracing {
             return Rgb::BLACK;
         }
         match path.last {
-            Some((_, pdf)) if !light.is_backdrop() => {
-                radiance * self.scattering_weight(pdf, light_pdf * context.lights.probability(index, None))
+            Some(last) if !light.is_backdrop() => {
+                radiance
+                    * self.scattering_weight(last.pdf, light_pdf * context.lights.probability(index, None))
             }
             _ => radiance,
         }
@@ -260,13 +275,14 @@ impl PathTracing {
         }
         let index = task.context.scene.light_index_of(surface.object);
         let seen = match (path.last, index) {
-            (Some((from, pdf)), Some(index)) => {
+            (Some(last), Some(index)) => {
                 let light = &task.context.scene.lights()[index].light;
                 let direction = Vec3::from(path.walk.ray.direction);
-                let often = path.approach.map_or(1.0, |last| 1.0 + last.ratio(task.context.scene, index));
-                let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface)) * often;
-                let at = (!path.walk.leaves_medium).then_some(from);
-                radiance * self.scattering_weight(pdf, light_pdf * task.context.lights.probability(index, at))
+                let often = last.approach.map_or(1.0, |way| 1.0 + way.ratio(task.context.scene, index));
+                let light_pdf = light.li_pdf_solid_angle(last.p, direction, Some(surface)) * often;
+                let at = (!last.is_in_medium).then_some(last.p);
+                radiance
+                    * self.scattering_weight(last.pdf, light_pdf * task.context.lights.probability(index, at))
             }
             _ => radiance,
         };
@@ -311,10 +327,10 @@ impl PathTracing {
         (depth, seen): (u32, Rgb),
     ) -> Rgb {
         let Some(connection) = self.connection(task, chosen, from, u) else { return Rgb::BLACK };
-        let found = connection.trace(task.tracer);
+        let (found, panes) = connection.trace(task.tracer);
         connection.note(task.sample, depth, seen * found);
         let Segment { ray, through, .. } = &connection.segment;
-        task.sample.find(depth + 2, Some(chosen.0), ray.direction, seen * found, |way| {
+        task.sample.find(depth + 2 + panes, Some(chosen.0), ray.direction, seen * found, |way| {
             way.length_by(from.at.p(), ray.direction.into(), through.distance)
         });
         found
@@ -333,7 +349,7 @@ impl PathTracing {
         from: &Vertex,
         u: Vec2,
     ) -> Option<LightConnection> {
-        let Vertex { at, wo, media, odds, approach } = *from;
+        let Vertex { at, wo, media, odds, approach, panes } = *from;
         let light = &task.context.scene.lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
             return None;
@@ -350,6 +366,7 @@ impl PathTracing {
         let through = Through {
             media: media.towards(task.context.scene, at, wo, sample.wi),
             distance: sample.point.map(|point| point.distance(at.p())),
+            panes,
             seed: task.sample.seed(),
         };
         let segment = Segment { ray: at.spawn_to_light(&sample), n: sample.n_light, through };
@@ -375,6 +392,6 @@ impl PathTracing {
 impl Path {
     /// A path with only its camera ray, which travels in these media.
     pub(crate) fn new(ray: &Ray, media: Media) -> Path {
-        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None, approach: None }
+        Path { walk: Walk::new(ray, Rgb::WHITE, media), light: Rgb::BLACK, last: None }
     }
 }

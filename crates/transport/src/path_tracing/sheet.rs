@@ -5,6 +5,7 @@ use super::{Path, PathTracing, Vertex};
 use crate::interaction::{Interaction, NO_OBJECT};
 use crate::media::Media;
 use crate::task::Task;
+use crate::walk::Walk;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::bsdf::{Lambert, Lobe};
 use bilux_scene::surface::gamma;
@@ -19,11 +20,15 @@ impl PathTracing {
         let mut path = Path::new(&seen_from, Media::at_start(task.tracer, ray));
         task.sample.reach(|| at.place(normal));
         task.sample.sampler.enter(1);
-        let from =
-            Vertex { at: &at, wo: normal, media: &path.walk.media, odds: path.walk.odds, approach: None };
+        let panes = path.walk.panes(task.context, false);
+        let Walk { media, odds, .. } = path.walk;
+        let from = Vertex { at: &at, wo: normal, media: &media, odds, approach: None, panes };
         let seen = path.walk.seen(task.sample);
         path.light = seen * self.direct(task, &from, (0, seen));
-        match self.scatter(&mut path, &at, task) {
+        if let Some(record) = task.sample.record.as_deref_mut() {
+            record.straight = record.found.as_ref().map_or(0, Vec::len);
+        }
+        match self.scatter(&mut path, &at, None, task) {
             true => {
                 if let Some(record) = task.sample.record.as_deref_mut() {
                     record.first = Some(Vec3::from(path.walk.ray.direction));

@@ -22,7 +22,7 @@ impl Paths {
             e.rays.clear();
             e.rays.extend(chunk.iter().map(|&index| {
                 let path = &self.paths[index as usize].path;
-                (path.last.map(|(from, _)| from), Vec3::from(path.walk.ray.direction))
+                (path.last.map(|last| last.p), Vec3::from(path.walk.ray.direction))
             }));
             e.sums.clear();
             e.sums.resize(chunk.len(), Rgb::BLACK);

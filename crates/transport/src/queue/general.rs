@@ -85,7 +85,7 @@ impl Paths {
             if at.is_delta() {
                 let (path, mut task) = one.parts(context, tracer);
                 tracing.skip_lights(&mut task);
-                if tracing.scatter(path, at, &mut task) {
+                if tracing.scatter(path, at, None, &mut task) {
                     self.next.push(*index);
                 }
                 g.interactions.truncate(v.count);
@@ -116,7 +116,7 @@ impl Paths {
         for (i, at) in g.interactions.iter().enumerate() {
             let (path, mut task) = self.paths[v.paths[i] as usize].parts(context, tracer);
             let point = Vec2::new(u[0].0[i], u[1].0[i]);
-            let goes_on = tracing.scatter_by(path, at, &mut task, (u_choice.0[i], point))
+            let goes_on = tracing.scatter_by(path, (at, None), &mut task, (u_choice.0[i], point))
                 && tracing.survives(path, || v.u[0].0[i]);
             if goes_on {
                 self.next.push(v.paths[i]);

@@ -6,7 +6,7 @@
 use super::lanes::{Column, Columns3, LANES, Stage, ZERO3, put, rgb, run_at, vec3};
 use super::paths::{Paths, QueuedPath};
 use super::vertices::{NO_PATH, Vertices};
-use crate::path_tracing::{Path, PathTracing};
+use crate::path_tracing::{LastEvent, Path, PathTracing};
 use crate::walk::{MOST, survival};
 use bilux_math::Vec3;
 use bilux_scene::CpuLevel;
@@ -76,7 +76,8 @@ impl Paths {
         let NextRays { pdf, .. } = &*next;
         self.set_rays(v, next, |path, i| {
             path.walk.specular = false;
-            path.last = Some((vec3(&v.p, i), pdf.0[i]));
+            let (p, pdf) = (vec3(&v.p, i), pdf.0[i]);
+            path.last = Some(LastEvent { p, pdf, is_in_medium: false, approach: None });
         });
     }
 

@@ -12,6 +12,7 @@ use crate::path_tracing::PathTracing;
 use crate::task::Context;
 use bilux_accel::Hit;
 use bilux_math::Frame;
+use bilux_math::frame::reflect;
 use bilux_scene::TransportMode;
 use bilux_scene::bsdf::SmoothLobe;
 
@@ -22,6 +23,8 @@ pub(super) struct Smooth {
     lobes: [Column; SmoothLobe::NUMBERS],
     /// 1 where a direction about the shading normal does not work, otherwise 0.
     fails: Column,
+    /// 1 where light passes a pane straight, as [`bilux_scene::Bsdf::straight`] says, otherwise 0.
+    straight: Column,
     /// The place of each lane's hit in its chunk.
     hits: [usize; LANES],
     next: NextRays,
@@ -34,6 +37,7 @@ impl Default for Smooth {
             n_shade: ZERO3,
             lobes: [Column::ZERO; SmoothLobe::NUMBERS],
             fails: Column::ZERO,
+            straight: Column::ZERO,
             hits: [0; LANES],
             next: NextRays::default(),
         }
@@ -65,7 +69,7 @@ impl Paths {
             self.play_roulette(v, &mut s.next, tracing, level);
             self.set_rays(v, &s.next, |path, i| {
                 path.walk.eta_scale = s.next.eta_scale.0[i];
-                path.last = None;
+                path.last = path.last.filter(|_| s.straight.0[i] != 0.0);
             });
         }
         self.smooth_hits = hits;
@@ -121,7 +125,7 @@ impl Stage for Bounce<'_> {
     #[inline(always)]
     fn run(self) {
         let Vertices { n_geom, wo, u, .. } = self.v;
-        let Smooth { n_shade, lobes, fails, next, .. } = self.s;
+        let Smooth { n_shade, lobes, fails, straight, next, .. } = self.s;
         for i in 0..LANES {
             let (wo, n_geom) = (vec3(wo, i), vec3(n_geom, i));
             let frame = Frame::from_normal(vec3(n_shade, i));
@@ -135,6 +139,8 @@ impl Stage for Bounce<'_> {
             let beta = rgb(&next.beta, i) * lobe.weight(&sample, TransportMode::Radiance);
             let is_black = (beta.r == 0.0) & (beta.g == 0.0) & (beta.b == 0.0);
             fails.0[i] = if (strength > 0.0) & !(sees_side & keeps_side) { 1.0 } else { 0.0 };
+            let works = reflect(wo, frame.n).dot(n_geom) * wo.dot(n_geom) > 0.0;
+            straight.0[i] = if lobe.thin & sample.transmits & works { 1.0 } else { 0.0 };
             next.goes_on.0[i] = if (strength > 0.0) & !is_black { 1.0 } else { 0.0 };
             next.eta_scale.0[i] *= sample.eta * sample.eta;
             put(&mut next.beta, i, beta.to_array());

@@ -13,7 +13,7 @@ use crate::task::Context;
 use crate::through::Through;
 use bilux_math::Vec3;
 use bilux_scene::surface::{leaving, offset_origin};
-use bilux_scene::{CpuLevel, Primitive, Ray, Scene, Surface};
+use bilux_scene::{CpuLevel, Primitive, Ray, Surface};
 
 /// Stands for a lane whose path is shaded elsewhere.
 pub(super) const NO_PATH: u32 = u32::MAX;
@@ -182,7 +182,7 @@ impl Paths {
             }
             eval(v, level);
             run_at(level, Weigh { v });
-            self.list_shadow_rays(v, &picked, context.scene, &media);
+            self.list_shadow_rays(v, &picked, context, &media);
         }
     }
 
@@ -190,10 +190,11 @@ impl Paths {
         &mut self,
         v: &Vertices,
         picked: &[(usize, f32); LANES],
-        scene: &Scene,
+        context: &Context,
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
-        let is_clear = scene.has_clear_media();
+        let scene = context.scene;
+        let is_plain = scene.has_clear_media() && !scene.has_panes();
         for (i, &(light, _)) in picked.iter().enumerate().take(v.count) {
             let contribution = rgb(&v.shadow.light, i);
             if contribution.is_black() || v.paths[i] == NO_PATH {
@@ -202,11 +203,11 @@ impl Paths {
             let ray = v.leaving(i, vec3(&v.shadow.origin, i), vec3(&v.shadow.direction, i));
             let contribution = Unoccluded { path: v.paths[i], light: contribution };
             let ray = Ray { t_max: v.shadow.t_max.0[i], ..ray };
-            let media = (!is_clear).then(|| {
+            let media = (!is_plain).then(|| {
                 let path = &self.paths[v.paths[i] as usize].path;
                 // Columns follow no walks through media that vary.
                 let media = media(path, i, vec3(&v.light.wi, i));
-                Through { media, distance: v.distance(i), seed: 0 }
+                Through { media, distance: v.distance(i), panes: path.walk.panes(context, false), seed: 0 }
             });
             let n_light = vec3(&v.light.n_light, i);
             self.connections.with(light).push(ray, n_light, media, contribution);

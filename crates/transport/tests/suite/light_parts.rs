@@ -4,7 +4,7 @@ use crate::common::{built, diffuse, floor, integrator, look, mixed, put, shoot};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{
-    Film, LightDivision, LightParts, RenderSettings, Silent, Window, integrators, light_parts,
+    Film, LengthBins, LightDivision, LightParts, RenderSettings, Silent, Window, integrators, light_parts,
 };
 
 /// By scattering events, and each light for itself; what shines otherwise belongs to one more group.
@@ -13,7 +13,7 @@ fn division(scene: &Scene) -> LightDivision {
     LightDivision { by_events: true, groups: (0..lights).collect(), group_count: lights + 1, by_length: None }
 }
 
-fn parts(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> LightParts {
+pub(crate) fn parts(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> LightParts {
     let integrator = integrators::build(integrator).unwrap();
     let (camera, division) = (&*scene.cameras()[0].1, division(scene));
     light_parts(scene, camera, &*integrator, settings, &division, &Silent).unwrap().unwrap()
@@ -190,6 +190,26 @@ fn what_a_path_meets_by_chance_is_direct_after_one_event() {
         assert!(off(&twice, std::slice::from_ref(&once)) > 0.01, "{sampling}: two events bring light");
         assert!(off(&twice, &[once, indirect]) > 1e-4, "{sampling}: more than two, too");
     }
+}
+
+/// What is divided in several ways at once is divided in each as by that alone.
+#[test]
+fn groups_and_lengths_together_are_those_of_each_alone() {
+    let scene = lit_from(&[[0.0, 2.0, 0.0], [1.5, 1.0, 0.5]]);
+    let settings = RenderSettings::new(12, 8, 8);
+    let bins = LengthBins { begin: 0.5, width: 0.7, count: 9 };
+    let of = |division: LightDivision| {
+        let (camera, path) = (&*scene.cameras()[0].1, integrator("path"));
+        light_parts(&scene, camera, &*path, &settings, &division, &Silent).unwrap().unwrap()
+    };
+    let groups = division(&scene);
+    let lengths = LightDivision { by_length: Some(bins), ..LightDivision::default() };
+    let both = of(LightDivision { by_length: Some(bins), ..groups.clone() });
+    let (groups, lengths) = (of(groups), of(lengths).by_length);
+    assert!(both.by_events.unwrap() == groups.by_events.unwrap());
+    assert!(both.groups == groups.groups && both.by_length == lengths);
+    let is_lit = |film: &&Film| film.to_rgb().iter().any(|light| !light.is_black());
+    assert!(groups.groups.iter().filter(is_lit).count() > 1 && lengths.iter().filter(is_lit).count() > 1);
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod nested;
 mod nesting;
 mod occlusion;
 mod one_picture;
+mod panes;
 mod path_tracing;
 mod points;
 mod queue;

@@ -14,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Irradiance and standard error of a point.
-fn measured(scene: &Scene, [p, normal]: [Vec3; 2], spp: u32) -> [f64; 2] {
+pub(crate) fn measured(scene: &Scene, [p, normal]: [Vec3; 2], spp: u32) -> [f64; 2] {
     let points = SensorPoints::new(vec![SensorPoint { p, normal: normal.normalize() }]);
     let settings = RenderSettings::new(1, 1, spp);
     let found = received(scene, &points, &*integrator("path"), &settings, &Silent);
@@ -125,7 +125,12 @@ fn tregenza() -> SkyPatches {
     SkyPatches::new((0..).map(|row| sin((12.0 * row as f32).to_radians())).zip(rows))
 }
 
-fn measured_parts(scene: &Scene, [p, normal]: [Vec3; 2], count: usize, spp: u32) -> DaylightCoefficients {
+pub(crate) fn measured_parts(
+    scene: &Scene,
+    [p, normal]: [Vec3; 2],
+    count: usize,
+    spp: u32,
+) -> DaylightCoefficients {
     let points = SensorPoints::new(vec![SensorPoint { p, normal }; count]);
     let settings = RenderSettings::new(points.size()[0], points.size()[1], spp);
     let all = daylight_coefficients(scene, &points, &*integrator("path"), &settings, &tregenza(), &Silent);

@@ -257,3 +257,19 @@ fn differences(
     let map = if is_wanted { Some(map_of(a, b, options)?) } else { None };
     Ok((squared.filter(|x| x.is_finite()).map(f64::sqrt), map))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux::math::Rgb;
+
+    /// A tenth more light everywhere is a difference of a tenth.
+    #[test]
+    fn differences_are_relative_to_light_and_not_to_its_square() {
+        let grey = |light: f32| Picture::from_rgb(8, 8, vec![Rgb::grey(light); 64]).unwrap();
+        let options = WriteOptions::default();
+        let (found, map) = differences(&grey(5.5), &grey(5.0), &options, true).unwrap();
+        assert!((found.unwrap() - 0.1).abs() < 1e-3 && map.is_some(), "{found:?}");
+        assert_eq!(differences(&grey(5.0), &grey(5.0), &options, false).unwrap().0, Some(0.0));
+    }
+}

@@ -165,6 +165,15 @@ fn cameras_look_along_x_with_the_angle_of_their_lens() {
     assert!((spec.number("fov").unwrap() - 26.99).abs() < 0.02, "{spec:?}");
     let spec = camera(vec![p("ApertureMode", &[2.0]), p("FieldOfView", &[33.0])]);
     assert_eq!(spec.number("fov"), Some(33.0));
+    // A fixed side in pixels, and the other as a factor on it: 640 by 480, and 800 by 200.
+    for (mode, width, height, aspect) in [(3.0, 640.0, 0.75, 4.0 / 3.0), (4.0, 4.0, 200.0, 4.0)] {
+        let sides =
+            vec![p("AspectRatioMode", &[mode]), p("AspectWidth", &[width]), p("AspectHeight", &[height])];
+        let angle = vec![p("ApertureMode", &[1.0]), p("FieldOfView", &[60.0])];
+        let spec = camera([sides, angle].concat());
+        let half = (30f32.to_radians().tan() / aspect).atan().to_degrees();
+        assert!((spec.number("fov").unwrap() - 2.0 * half).abs() < 0.01, "{mode}: {spec:?}");
+    }
 }
 
 /// A factor that is stated alone is the transparency, as Blender and three.js read it; with a colour it is a factor on that.

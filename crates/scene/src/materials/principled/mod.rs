@@ -374,6 +374,10 @@ impl Material for Principled {
         self.inside.medium.map(|_| self.body())
     }
 
+    fn is_pane(&self) -> bool {
+        self.maps.thin && is_there(&self.maps.transmission_weight) && !self.disperses()
+    }
+
     fn only_refracts(&self) -> bool {
         self.maps.only_refract()
     }

@@ -64,3 +64,18 @@ impl Density for Height {
         Vec3::AXES[self.up.index()] * (FINENESS / self.falloff)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fog_thins_out_upwards_wherever_up_is() {
+        let p = Vec3::new(3.0, 5.0, -7.0);
+        for (up, height) in [("x", 3.0), ("y", 5.0), ("z", -7.0), ("-x", -3.0), ("-y", -5.0), ("-z", 7.0)] {
+            let fog = Height { falloff: 4.0, base: 1.0, up: Axis::from_name(up).unwrap() };
+            let wanted = if height > 1.0 { exp(-(height - 1.0) / 4.0) } else { 1.0 };
+            assert_eq!(fog.at(p), wanted, "{up}");
+        }
+    }
+}
