@@ -12,7 +12,7 @@ fn rays_from_inside_closed_meshes_always_hit() {
         let mesh = Arc::new(closed.mesh());
         variants().par_iter().for_each(|(name, accelerator, options)| {
             let rays =
-                if accelerator.starts_with("brute") { effort(100, 500) } else { effort(2_000, 15_000) };
+                if accelerator.starts_with("brute") { effort(100, 500) } else { effort(1_000, 15_000) };
             let structure = build_variant(accelerator, options, &mesh);
             for index in 0..rays {
                 let ray = closed::ray(closed, 1, index);

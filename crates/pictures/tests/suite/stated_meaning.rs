@@ -140,9 +140,9 @@ fn code_points_of_wide_primaries_are_converted() {
         near(light(picture), [0.2159; 3]);
     }
     let to_709 = [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
-    let samples = [150.0, 128.0, 100.0].map(|byte| byte / 255.0);
+    let samples = [180.0, 150.0, 25.0].map(|byte| byte / 255.0);
     let wanted = to_709.map(|row: [f32; 3]| row.iter().zip(samples).map(|(m, sample)| m * sample).sum());
-    let bytes = png_of([150.0, 128.0, 100.0], &[(b"cICP", &[9, 8, 0, 1])]);
+    let bytes = png_of([180.0, 150.0, 25.0], &[(b"cICP", &[9, 8, 0, 1])]);
     near(light(read(&bytes, "png")), wanted);
 }
 
