@@ -21,6 +21,9 @@ use std::sync::Arc;
 /// What making a generated mesh takes, in sizes of that mesh.
 const MAKING: u64 = 3;
 
+/// Bytes of a mesh for each of its triangles, with the half of a vertex that it has.
+const TRIANGLE: u64 = 24;
+
 /// The keys of every model except those that place it; exactly one of the first three is its source.
 pub(super) const KEYS: [&str; 11] = [
     "file",
@@ -202,13 +205,18 @@ impl Native<'_, '_> {
         if let Some(known) = self.generated.get(&key) {
             return Ok(known.clone());
         }
-        let model = (row.generate)(&Reader::new(&spec, &row.entry)?)?;
+        let reader = Reader::new(&spec, &row.entry)?;
+        // Making it takes more than it takes, and time: a file could ask for many.
+        let mut making = MAKING * TRIANGLE * (row.triangles)(&reader);
+        self.reading.budget.take_bytes(making, &table.at.file)?;
+        let model = (row.generate)(&reader)?;
         let mut last: Option<&Arc<Mesh>> = None;
         for object in &model.objects {
             if !last.is_some_and(|mesh| Arc::ptr_eq(mesh, &object.mesh)) {
                 self.charge_mesh(&object.mesh, table)?;
-                // Making it took more than it takes: a file could ask for many.
-                self.reading.budget.take_bytes(MAKING * object.mesh.size(), &table.at.file)?;
+                let made = MAKING * object.mesh.size();
+                self.reading.budget.take_bytes(made.saturating_sub(making), &table.at.file)?;
+                making = making.saturating_sub(made);
             }
             last = Some(&object.mesh);
         }

@@ -66,6 +66,15 @@ fn generators_of_a_file_are_bounded() {
     let read = |text: String| read_bytes(text.as_bytes(), "toml", None, "a.toml", &options);
     let message = read(models(|i| 150 + i)).unwrap_err().to_string();
     assert!(message.contains("allowed"), "{message}");
+    // Before the first is made, which would take minutes.
+    let before = std::time::Instant::now();
+    for large in
+        ["\"scan\"\ndetail = 800", "\"teapot\"\ntessellation = 256", "\"cornell-spheres\"\nlevel = 7"]
+    {
+        let message = read(format!("[[model]]\ngenerate = {large}\n")).unwrap_err().to_string();
+        assert!(message.contains("allowed"), "{large}: {message}");
+    }
+    assert!(before.elapsed().as_secs_f64() < 5.0);
     let same = read(models(|_| 150)).unwrap();
     let statues: Vec<_> = same.objects.iter().filter(|object| object.name == "statue").collect();
     assert_eq!(statues.len(), 40);

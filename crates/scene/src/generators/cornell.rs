@@ -17,6 +17,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         source: "Cornell 1998",
         parameters: &[],
     },
+    triangles: |_| 0,
     generate: |_| {
         let (mut room, white) = empty_room();
         let short = [[130.0, 65.0], [82.0, 225.0], [240.0, 272.0], [290.0, 114.0]];
@@ -35,6 +36,7 @@ pub(super) const SPHERES: GeneratorEntry = GeneratorEntry {
         source: "Cornell 1998",
         parameters: &[integer("level", "subdivision of the spheres: 20 · 4^level triangles", 0, 7, "5")],
     },
+    triangles: |reader| 40 << (2 * reader.integer("level")),
     generate: |reader| {
         let (mut room, _) = empty_room();
         let mirror = room.add_material(Spec::new("mirror", "mirror"));

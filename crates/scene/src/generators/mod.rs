@@ -36,6 +36,8 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 pub struct GeneratorEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
+    /// About how many triangles its meshes have where a parameter decides that; otherwise 0, for few.
+    pub triangles: fn(&Reader) -> u64,
     /// Makes the scene, with its camera and its lights.
     pub generate: fn(&Reader) -> Result<SceneBuilder, SceneError>,
 }

@@ -23,6 +23,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
             switch("bottom", "whether it has a bottom, which Newell's original lacks", "true"),
         ],
     },
+    triangles: |reader| 64 * (reader.integer("tessellation") as u64).pow(2),
     generate: |reader| {
         let teapot = Teapot {
             tessellation: reader.integer("tessellation") as u32,

@@ -46,6 +46,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
             },
         ],
     },
+    triangles: |reader| 64 * (reader.integer("tessellation") as u64).pow(2),
     generate: |reader| {
         let mut scene = SceneBuilder::default();
         let places = places(reader);

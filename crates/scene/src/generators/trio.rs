@@ -18,6 +18,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         source: "Newell 1975",
         parameters: &[Parameter { default: "24", ..TESSELLATION }],
     },
+    triangles: |reader| 3 * 64 * (reader.integer("tessellation") as u64).pow(2),
     generate: |reader| {
         let tessellation = reader.integer("tessellation") as u32;
         let mut scene = SceneBuilder::default();

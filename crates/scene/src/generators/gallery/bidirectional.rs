@@ -18,6 +18,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
             "a lamp that faces the wall, a lamp in a covered shade, a glass egg on a table",
         )
     },
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -12,6 +12,7 @@ use std::f32::consts::TAU;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("campfire", "fire and smoke between stones, at night"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -11,6 +11,7 @@ use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("caustics", "a goblet, a ball and a teapot of glass under a small lamp"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -11,6 +11,7 @@ use bilux_math::{Aabb, Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("cloud", "a cumulus over hills in the evening sun"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -14,6 +14,7 @@ use std::f32::consts::TAU;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("daylight", "a giant teapot among columns, in open daylight"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

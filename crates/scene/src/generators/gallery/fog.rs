@@ -8,6 +8,7 @@ use bilux_math::{Aabb, Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("fog", "a ball of glass in the beam of a lamp, in fog"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

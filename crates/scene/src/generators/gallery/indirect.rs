@@ -10,6 +10,7 @@ use bilux_math::Vec3;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("indirect", "a reading corner where all light is reflected off the ceiling"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

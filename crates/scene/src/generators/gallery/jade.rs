@@ -11,6 +11,7 @@ use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("jade", "a dragon of jade, a burning candle and an egg of marble, lit from behind"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

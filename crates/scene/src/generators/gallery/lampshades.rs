@@ -11,6 +11,7 @@ use bilux_math::Vec3;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("lampshades", "a laid table under lamps in shades of clear glass"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -12,6 +12,7 @@ use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("many-lights", "a supper in a garden at night, under 600 small bulbs"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -16,6 +16,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("milk", "a drop that falls into a glass of milk, skim milk and cookies, before a window"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -14,6 +14,7 @@ use std::f32::consts::TAU;
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("piglet", "a piglet in the straw, whose ears glow against the sun"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

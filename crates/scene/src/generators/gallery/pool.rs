@@ -12,6 +12,7 @@ use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: about("pool", "a tiled basin under rippled water, lit by a lamp like a low sun"),
+    triangles: |_| 0,
     generate: |_| Ok(build()),
 };
 

@@ -30,6 +30,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
             "1",
         )],
     },
+    triangles: |reader| 50_000 * (reader.integer("detail") as u64).pow(2),
     generate: |reader| {
         let n = reader.integer("detail") as u32;
         let mut room = Room { scene: SceneBuilder::default() };

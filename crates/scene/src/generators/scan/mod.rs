@@ -31,6 +31,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
             "64",
         )],
     },
+    triangles: |reader| 14 * (reader.integer("detail") as u64).pow(2),
     generate: |reader| {
         let mut scene = SceneBuilder::default();
         let clay = Spec::new("fired clay", "diffuse").with("reflectance", Rgb::new(0.62, 0.34, 0.20));
