@@ -4,7 +4,7 @@ use super::writer::ps;
 use super::*;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
-use bilux_math::transcendental::atan2_f64;
+use bilux_math::transcendental::{atan, atan2_f64, tan};
 use std::f32::consts::PI;
 
 /// A quad with a material, or what else is connected to its node (2) or to the material (3).
