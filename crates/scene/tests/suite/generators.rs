@@ -6,7 +6,7 @@ use bilux_math::{Aabb, Vec3};
 use bilux_scene::generators::teapot::{Teapot, patches};
 use bilux_scene::generators::vessel::Vessel;
 use bilux_scene::generators::{GENERATORS, copies, generate, shapes};
-use bilux_scene::{AccelChoice, Mesh, Object, SceneBuilder, Spec, Value};
+use bilux_scene::{AccelChoice, Mesh, Object, Reader, SceneBuilder, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -363,4 +363,29 @@ fn the_interior_grows_with_its_detail_and_everything_is_in_the_room() {
     };
     assert!((50_000..100_000).contains(&triangles(1)));
     assert!((200_000..300_000).contains(&triangles(2)));
+}
+
+/// What is charged before a scene is made is about what it then has, with each mesh once.
+#[test]
+fn generators_know_how_many_triangles_they_make() {
+    let sized = |name: &str, key: &str, size: i64| Spec::new("", name).with(key, Value::Integer(size));
+    let small = GENERATORS.iter().map(|row| Spec::new("", row.entry.name));
+    let large = [
+        sized("trio", "tessellation", 40),
+        sized("teapots", "tessellation", 20),
+        sized("teapot", "tessellation", 30),
+        sized("cornell-spheres", "level", 6),
+        sized("interior", "detail", 2),
+        sized("scan", "detail", 100),
+    ];
+    for spec in small.chain(large) {
+        let row = GENERATORS.iter().find(|row| row.entry.name == spec.kind).unwrap();
+        let scene = generate(&spec).unwrap();
+        let mut meshes: Vec<_> = scene.objects.iter().map(|object| &object.mesh).collect();
+        meshes.dedup_by(|a, b| Arc::ptr_eq(a, b));
+        let made: u64 = meshes.iter().map(|mesh| mesh.triangles.len() as u64).sum();
+        let said = (row.triangles)(&Reader::new(&spec, &row.entry).unwrap());
+        let is_near = said > made / 2 && said < 2 * made;
+        assert!(is_near || said == 0 && made < 1_000_000, "{spec:?}: {said}, not {made}");
+    }
 }

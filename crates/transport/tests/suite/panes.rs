@@ -95,6 +95,10 @@ fn two_panes_of_which_one_is_principled_let_their_product_through() {
     let wanted = TINT * colour * (0.5 / PI * 3.0 * 0.8 * 0.8 * both);
     assert_near("two events more", mean(&scene, &*integrator("path"), 3, 1), wanted, 1e-4);
     assert_eq!(mean(&scene, &*integrator("path"), 2, 1), Rgb::BLACK, "each pane is an event");
+    square(&mut builder, Vec3::Y * 5.0, Vec3::Y, 14.0, pane(Rgb::grey(0.5)));
+    let scene = built(&builder);
+    assert_eq!(mean(&scene, &*integrator("path"), 3, 1), Rgb::BLACK, "and so is the third");
+    assert_near("three", mean(&scene, &*integrator("path"), 4, 1), wanted * (0.5 * passed(1.5, 0.8)), 1e-4);
 }
 
 /// A panel beyond a pane, which paths also meet by chance: both samplings find the same, and what is weighted adds up, at any depth.
