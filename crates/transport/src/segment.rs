@@ -23,19 +23,19 @@ impl Segment {
         self.through.visible(tracer, &self.ray, self.n)
     }
 
-    /// Adds its ray to a list, with what it brings, unless that can bring nothing. Where no medium changes light, as `is_clear` says, none
-    /// is stored.
+    /// Adds its ray to a list, with what it brings, unless that can bring nothing. Where shadows are [plain](Scene::has_plain_shadows), no
+    /// media are stored.
     #[inline]
     pub(crate) fn list<T>(
         &self,
         shadow_rays: &mut ShadowRays<T>,
         scene: &Scene,
-        is_clear: bool,
+        is_plain: bool,
         contribution: T,
     ) {
-        if !is_clear && self.through.is_hidden(scene, &self.ray) {
+        if !is_plain && self.through.is_hidden(scene, &self.ray) {
             return;
         }
-        shadow_rays.push(self.ray, self.n, (!is_clear).then_some(self.through), contribution);
+        shadow_rays.push(self.ray, self.n, (!is_plain).then_some(self.through), contribution);
     }
 }

@@ -5,6 +5,7 @@ mod clearance;
 mod contact;
 mod enclosure;
 mod may_pass;
+mod media;
 mod mesh_lights;
 mod nesting;
 mod open_boundaries;
@@ -253,67 +254,6 @@ impl Scene {
         let placed = self.parts.geometry.objects().get(object as usize);
         let to_world = || placed.map_or(Transform::IDENTITY, |placed| placed.motion.at(ray.time));
         medium.line(to_world, origin, direction)
-    }
-
-    /// The boundary of what scatters inside an object, if nothing leaves that unseen.
-    #[inline]
-    pub fn enclosure(&self, object: u32) -> Option<&Enclosure> {
-        self.parts.enclosures.get(object as usize)?.as_ref()
-    }
-
-    /// Whether the inside of an object is a dense medium whose [clearance](Scene::clearance) is known.
-    #[inline]
-    pub fn is_dense(&self, object: u32) -> bool {
-        self.parts.clearance.is_dense(object)
-    }
-
-    /// The distance in metres from a point of a dense medium, inside this object, to the nearest triangle of anything that does not move, or
-    /// `within` where that is less. `None` where the medium is not dense, or moves.
-    #[inline]
-    pub fn clearance(&self, object: u32, p: Vec3, within: f32) -> Option<f32> {
-        self.is_dense(object).then(|| self.parts.clearance.at(p, within))
-    }
-
-    /// True when some object is the boundary of a medium without a surface of its own: of fog, smoke, a cloud.
-    pub fn has_interfaces(&self) -> bool {
-        self.parts.materials.iter().any(|material| material.is_interface())
-    }
-
-    /// True when some medium emits light.
-    pub fn has_glowing_media(&self) -> bool {
-        self.parts
-            .materials
-            .iter()
-            .any(|material| material.medium().is_some_and(|medium| medium.glow.is_some()))
-    }
-
-    /// True when some medium scatters light, and distances in it are not the same in all channels.
-    #[inline]
-    pub fn has_coloured_distances(&self) -> bool {
-        self.parts.has_coloured_distances
-    }
-
-    /// True when some medium scatters light, or varies: walks have to ask what they meet in it.
-    #[inline]
-    pub fn scatters(&self) -> bool {
-        self.parts.scatters
-    }
-
-    /// True when a grid varies some medium.
-    pub fn has_varying_media(&self) -> bool {
-        self.parts.has_varying_media
-    }
-
-    /// True when no medium changes what light carries: none absorbs, scatters, has a priority or disperses.
-    #[inline]
-    pub fn has_clear_media(&self) -> bool {
-        !self.parts.absorbs && !self.has_nested() && !self.parts.disperses
-    }
-
-    /// True when light passes some surfaces straight: [`Material::is_pane`].
-    #[inline]
-    pub fn has_panes(&self) -> bool {
-        self.parts.has_panes
     }
 
     /// The instruction set of the acceleration structures, which loops over many paths use too.

@@ -90,7 +90,9 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
             tally.add_sample(technique, &Contribution::only(glow));
         }
         from_infinity(task, subpath, |hit| {
-            tally.add_sample(technique, &hit.by(subpath.walk.seen(task.sample), &subpath.partial))
+            let through_panes = subpath.sampled_through_panes(task.context, hit.light, None);
+            let seen = subpath.walk.seen(task.sample);
+            tally.add_sample(technique, &hit.by(seen, &subpath.partial, through_panes));
         });
     }
 
@@ -116,7 +118,8 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
         {
             let (seen, technique) =
                 (subpath.walk.seen(task.sample), Technique::Connected { s: 0, t: z.count() });
-            let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial) };
+            let through_panes = subpath.sampled_through_panes(task.context, hit.light, z.at.surface());
+            let found = if z.depth == 0 { hit.alone(seen) } else { hit.by(seen, &z.partial, through_panes) };
             tally.add_sample(technique, &found);
         }
         if !z.events().are_within(task.context.max_depth) {
@@ -192,7 +195,8 @@ impl<const N: usize> CameraSubpath<N> for BothEnds<'_, N> {
                 if let Some(passage) = segment.passage(task.tracer) {
                     let join = join.equiangular(points.density(distance) / z.arriving);
                     tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
-                    tally.add_sample(join.technique, &join.along(&passage));
+                    let (technique, found) = join.along(&passage);
+                    tally.add_sample(technique, &found);
                 }
             },
         );

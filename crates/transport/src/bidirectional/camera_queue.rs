@@ -113,7 +113,7 @@ impl<const N: usize> CameraQueue<N> {
     ) {
         let Subpaths { events, samples, tallies, .. } = paths;
         self.shadow_rays.iter_mut().for_each(ShadowRays::clear);
-        let is_clear = context.scene.has_clear_media();
+        let is_plain = context.scene.has_plain_shadows();
         for (z, sample) in self.vertices.iter().zip(&self.samples) {
             let state = &mut samples[*sample as usize].state;
             let mut task = Task { context, tracer: &mut *tracer, sample: state };
@@ -125,12 +125,13 @@ impl<const N: usize> CameraQueue<N> {
                 let is_between_subpaths = matches!(join.technique, Technique::Connected { s: 2.., .. });
                 let unoccluded = Unoccluded { sample: *sample, join };
                 let shadow_rays = &mut self.shadow_rays[usize::from(is_between_subpaths)];
-                segment.list(shadow_rays, context.scene, is_clear, unoccluded);
+                segment.list(shadow_rays, context.scene, is_plain, unoccluded);
             });
         }
         for shadow_rays in &mut self.shadow_rays {
             shadow_rays.trace(tracer, |Unoccluded { sample, join }, passage| {
-                tallies[*sample as usize].add_sample(join.technique, &join.along(passage));
+                let (technique, found) = join.along(passage);
+                tallies[*sample as usize].add_sample(technique, &found);
             });
         }
     }

@@ -73,11 +73,11 @@ pub(crate) trait CameraSubpath<const N: usize = 1> {
             self.connect(&z, light_path.iter(), task, |task, step, connection| {
                 tally.spend(step, 1);
                 if let Some(connection) = connection
-                    && let Some(found) = connection.trace(task.tracer)
+                    && let Some((technique, found)) = connection.trace(task.tracer)
                 {
-                    let Connection { join, segment } = &connection;
+                    let segment = &connection.segment;
                     tally.join(z.at.p(), segment.ray.direction.into(), segment.through.distance);
-                    tally.add_sample(join.technique, &found);
+                    tally.add_sample(technique, &found);
                 }
             });
             self.merge(&z, task, tally);

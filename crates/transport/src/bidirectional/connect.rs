@@ -20,12 +20,15 @@ pub(crate) struct Connection<const N: usize = 1> {
 
 /// What joins the ends of a connection, if nothing blocks it.
 pub(crate) struct Join<const N: usize = 1> {
+    /// If no panes are on the way.
     pub(crate) technique: Technique,
     /// What it contributes, but for other techniques and what absorbs on the way.
     found: Contribution<N>,
     /// How often other techniques find the path that go on along the segment to its end, and those that come back to its start,
     /// if no medium is on the way.
     others: [PerSet<N>; 2],
+    /// The last number, if panes are on the way.
+    beyond_panes: PerSet<N>,
     /// How often those find it that do not depend on what lies along the segment.
     alike: PerSet<N>,
     /// How often the camera subpath hits the light by chance, if the segment ends on one.
@@ -37,9 +40,9 @@ pub(crate) struct Join<const N: usize = 1> {
 }
 
 impl<const N: usize> Connection<N> {
-    /// What it contributes; `None` where something blocks it.
+    /// By which technique it contributes what; `None` where something blocks it.
     #[inline]
-    pub(crate) fn trace(&self, tracer: &mut Tracer) -> Option<Contribution<N>> {
+    pub(crate) fn trace(&self, tracer: &mut Tracer) -> Option<(Technique, Contribution<N>)> {
         Some(self.join.along(&self.segment.passage(tracer)?))
     }
 }
@@ -50,21 +53,27 @@ impl<const N: usize> Join<N> {
         Join { found: Contribution { own: PerSet::ONE * ratio, ..self.found }, alike: PerSet::ONE, ..self }
     }
 
-    /// What it contributes along this.
+    /// By which technique it contributes what along this. Each pane is one more vertex on the side of the light.
     #[inline]
-    pub(crate) fn along(&self, passage: &Passage) -> Contribution<N> {
-        let [on, back] = self.others;
+    pub(crate) fn along(&self, passage: &Passage) -> (Technique, Contribution<N>) {
+        let ([on, back], technique) = match (passage.panes, self.technique) {
+            (panes @ 1.., Technique::Connected { s, t }) => {
+                ([self.others[0], self.beyond_panes], Technique::Connected { s: s + panes, t })
+            }
+            (_, technique) => (self.others, technique),
+        };
         let [leaves_medium, ends_in_medium] = self.in_medium;
         let on_by = passage.arriving((!ends_in_medium).then_some(1.0));
         let back = back * passage.returning(leaves_medium);
         let picked = self.picked.map(|picked| picked * on_by);
         let together = self.found.own.0[0] + self.alike.0[0];
-        Contribution {
+        let found = Contribution {
             light: self.found.light * passage.share(self.odds),
             others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back + self.alike,
             power_factor: picked.map_or(1.0, |picked| power_factor(picked / together)),
             ..self.found
-        }
+        };
+        (technique, found)
     }
 }
 
@@ -98,6 +107,7 @@ pub(crate) fn to_camera<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: 1 },
         found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },
         others: [PerSet::ZERO, others],
+        beyond_panes: PerSet::ZERO,
         alike: y.lit_from(task.context.scene, seen.p) * arriving,
         picked: None,
         in_medium: [y.at.is_in_medium(), false],
@@ -149,25 +159,25 @@ pub(crate) fn to_light<const N: usize>(
     let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.at.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
-    let from_light = z.partial.others_of_direct(
-        arriving,
-        back,
-        z.at.sine(z.wo, sample.wi, techniques),
-        z.at.direct_light(techniques),
-    );
+    let sine = z.at.sine(z.wo, sample.wi, techniques);
+    let from_light = z.partial.others_of_direct(arriving, back, sine, z.at.direct_light(techniques));
+    let panes = z.panes(task.context);
+    // Light that comes through panes is not direct.
+    let beyond_panes = if panes > 0 { z.partial.others(arriving, back, sine) } else { PerSet::ZERO };
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());
     let join = Join {
         technique: Technique::Connected { s: 1, t: z.count() },
         found: Contribution { origin: light_number(index), ..Contribution::only(light) },
         others: [PerSet::ZERO, from_light],
+        beyond_panes,
         alike: z.approach.map_or(PerSet::ZERO, |approach| PerSet::ONE * approach.ratio(scene, index)),
         picked: Some(ratio),
         in_medium: [z.at.is_in_medium(), false],
         odds: z.odds,
     };
     let ray = z.at.spawn_to_light(&sample);
-    let through = Through { media, distance, panes: 0, seed: task.sample.seed() };
+    let through = Through { media, distance, panes, seed: task.sample.seed() };
     Some(Connection { join, segment: Segment { ray, n: sample.n_light, through } })
 }
 
@@ -214,6 +224,7 @@ pub(crate) fn to_vertex<const N: usize>(
         technique: Technique::Connected { s: y.count(), t: z.count() },
         found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
         others: [from_camera, from_light],
+        beyond_panes: PerSet::ZERO,
         alike: if z.at.is_in_medium() {
             PerSet::ZERO
         } else {

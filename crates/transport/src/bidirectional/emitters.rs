@@ -16,25 +16,31 @@ pub(crate) struct EmitterHit {
     /// Over area; from infinity, over solid angle.
     pdf_direct: f32,
     pdf_emission: f32,
-    /// [`light_number`].
-    light: u16,
+    /// The index of the light that emits it.
+    pub(crate) light: Option<usize>,
 }
 
 impl EmitterHit {
     /// What no other technique finds.
     fn only(radiance: Rgb, light: Option<usize>) -> EmitterHit {
-        let light = light.map_or(NO_LIGHT, light_number);
         EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0, light }
     }
 
     /// The contribution along a camera subpath with the throughput `beta`, where no other technique finds it.
     pub(crate) fn alone<const N: usize>(&self, beta: Rgb) -> Contribution<N> {
-        Contribution { origin: self.light, ..Contribution::only(beta * self.radiance) }
+        let origin = self.light.map_or(NO_LIGHT, light_number);
+        Contribution { origin, ..Contribution::only(beta * self.radiance) }
     }
 
-    /// The contribution along a camera subpath with the throughput `beta`.
-    pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
-        let picked = partial.d_vcm * self.pdf_direct;
+    /// The contribution along a camera subpath with the throughput `beta`, of which a vertex samples the light so often through panes, for each time
+    /// that it comes here.
+    pub(crate) fn by<const N: usize>(
+        &self,
+        beta: Rgb,
+        partial: &Partial<N>,
+        through_panes: f32,
+    ) -> Contribution<N> {
+        let picked = partial.d_vcm * self.pdf_direct + through_panes;
         let others = PerSet::ONE * picked + partial.d_vc * self.pdf_emission;
         Contribution { power_factor: power_factor(picked), others, ..self.alone(beta) }
     }
@@ -62,7 +68,7 @@ pub(crate) fn from_infinity<const N: usize>(
         }
         let pdf_emission = task.context.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
         let pdf_direct = pdf * task.context.lights.probability(index, None);
-        visit(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) });
+        visit(EmitterHit { radiance, pdf_direct, pdf_emission, light: Some(index) });
     }
 }
 
@@ -93,5 +99,5 @@ pub(crate) fn emitted(
     let often = approach.map_or(1.0, |approach| 1.0 + approach.ratio(scene, index));
     let pdf_direct =
         pdf_area * task.context.lights.probability(index, (!leaves_medium).then_some(from)) * often;
-    Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: light_number(index) })
+    Some(EmitterHit { radiance, pdf_direct, pdf_emission, light: Some(index) })
 }

@@ -79,13 +79,13 @@ pub(crate) fn connect_to_camera<const N: usize>(
         task.sample.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, connection)) = to_camera(task, y, techniques)
-            && let Some(found) = connection.trace(task.tracer)
+            && let Some((technique, found)) = connection.trace(task.tracer)
         {
             let Segment { ray, through, .. } = &connection.segment;
             // The ray ends at the camera at t = 1.
             tally.join(y.at.p(), ray.direction.into(), through.distance);
             for film in places_on_film(task.context, film) {
-                tally.add_splat(film, connection.join.technique, &found);
+                tally.add_splat(film, technique, &found);
             }
         }
     }
@@ -261,7 +261,7 @@ impl<const N: usize> LightPaths<N> {
     ) {
         let mut shadow_rays = std::mem::take(&mut self.shadow_rays);
         shadow_rays.clear();
-        let is_clear = context.scene.has_clear_media();
+        let is_plain = context.scene.has_plain_shadows();
         for (i, sample) in samples.iter_mut().enumerate() {
             let mut task = Task { context, tracer: &mut *tracer, sample: &mut sample.state };
             for y in self.connectible(i, techniques) {
@@ -269,13 +269,13 @@ impl<const N: usize> LightPaths<N> {
                 let Some((film, connection)) = to_camera(&mut task, y, techniques) else { continue };
                 let Connection { join, segment } = connection;
                 let splat = Splat { sample: i as u32, film, join };
-                segment.list(&mut shadow_rays, context.scene, is_clear, splat);
+                segment.list(&mut shadow_rays, context.scene, is_plain, splat);
             }
         }
         shadow_rays.trace(tracer, |Splat { sample, film, join }, passage| {
-            let found = join.along(passage);
+            let (technique, found) = join.along(passage);
             for film in places_on_film(context, *film) {
-                add(*sample as usize, film, join.technique, &found);
+                add(*sample as usize, film, technique, &found);
             }
         });
         self.shadow_rays = shadow_rays;

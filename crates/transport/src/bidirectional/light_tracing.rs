@@ -34,7 +34,7 @@ impl LightTracing {
         for vertex in light_vertices(task, time, self.roulette_depth, &TECHNIQUES, |_| {}) {
             task.sample.enter_light_vertex(vertex.depth);
             if let Some((film, connection)) = to_camera(task, &vertex, &TECHNIQUES)
-                && let Some(found) = connection.trace(task.tracer)
+                && let Some((_, found)) = connection.trace(task.tracer)
             {
                 for film in places_on_film(task.context, film) {
                     add_splat(film, found.light);

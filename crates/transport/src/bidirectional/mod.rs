@@ -11,6 +11,7 @@
 //! that weights need is to be the same for all techniques.
 
 mod batches;
+mod behind_panes;
 mod both_ends;
 mod camera_queue;
 mod camera_subpath;

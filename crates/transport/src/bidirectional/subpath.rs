@@ -1,5 +1,6 @@
 //! Subpaths while they grow, from either end.
 
+use super::behind_panes::BehindPanes;
 use super::vertex::{Vertex, count, kept_share};
 use crate::beam::{Beam, Leaving};
 use crate::emission::Start;
@@ -7,12 +8,13 @@ use crate::equiangular::{self, Approach, Lit};
 use crate::interaction::Interaction;
 use crate::media::{Media, MediumPart, Travelled};
 use crate::mis::{Edge, Partial};
+use crate::path_tracing::passes_straight;
 use crate::task::{Context, PathVertex, SampleState, Task, VertexKind};
 use crate::techniques::{DirectLight, PerSet, TechniqueCounts};
 use crate::walk::Walk;
 use bilux_math::Rgb;
 use bilux_scene::media::Flight;
-use bilux_scene::{Ray, Scene, Surface, TransportMode};
+use bilux_scene::{BsdfSample, Ray, Scene, Surface, TransportMode};
 
 /// A subpath on its way to the next vertex.
 pub(crate) struct Subpath<'w, const N: usize = 1> {
@@ -42,6 +44,8 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     /// Its last vertex, if it is a camera subpath, and a light subpath, where equiangular points may be.
     approach: Option<Approach>,
     lit: Option<Lit<N>>,
+    /// Where it comes from straight, in a scene with panes.
+    straight: Option<BehindPanes>,
     /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
@@ -80,6 +84,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             before: None,
             approach: None,
             lit: None,
+            straight: None,
             techniques,
         }
     }
@@ -157,6 +162,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             let is_far = self.start.is_some_and(|start| lights[start.light].light.is_infinite());
             let at_start = if is_far { Media::from_infinity } else { Media::at_start };
             walk.media = at_start(tracer, &walk.ray);
+            self.straight = self.start.filter(|_| context.scene.has_panes()).map(BehindPanes::light);
         }
         if let Some(first) = first
             && self.is_equiangular
@@ -204,6 +210,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let media = walk.media;
         let back = passage.returning(walk.leaves_medium);
+        self.straight = self.straight.map(|straight| straight.arriving(passage.survival));
         let Some(at) = media.interaction(context.scene, arrival, &sample.wavelength) else {
             self.partial.pass(1.0, Edge { forward: passage.survival, back });
             return None;
@@ -219,6 +226,10 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel, ball) };
         let distance2 = distance2 * self.light_sampling_ratio(context, &at);
         self.partial.arrive(distance2, edge, connections, merged);
+        if let (Some(straight), Some(cos)) = (&self.straight, at.cos(wo)) {
+            let often = PerSet::ONE * straight.sampled_from(context, &at, cos);
+            self.partial.connected = self.partial.connected + often;
+        }
         if let Some(lit) = self.lit.filter(|_| !at.is_in_medium()) {
             self.partial.d_vc = self.partial.d_vc + lit.picked(context.scene, wo, t) * (1.0 / edge.forward);
         }
@@ -270,9 +281,34 @@ impl<'w, const N: usize> Subpath<'w, N> {
         self.partial.leave(cos, at.sine(*wo, sample.wi, self.techniques), pdfs, direct, vertex.events.in_row);
         self.approach = vertex.approach;
         self.lit = vertex.lit(1.0 / sample.pdf_solid_angle);
+        if task.context.scene.has_panes() {
+            self.straight = self.straight_on(vertex, &sample, task.context.scene);
+        }
         self.walk.is_split = vertex.is_split();
         self.walk.follow(task.context.scene, at, *wo, media, &sample, self.mode);
         self.walk.survives(roulette_depth, self.full, || u_survival)
+    }
+
+    /// Where it comes from straight after this event.
+    fn straight_on(&self, from: &Vertex<N>, sample: &BsdfSample, scene: &Scene) -> Option<BehindPanes> {
+        let Vertex { at, wo, .. } = from;
+        if sample.is_delta {
+            let is_straight = sample.transmits && passes_straight(scene, at, *wo);
+            return self.straight.filter(|_| is_straight).map(BehindPanes::beyond);
+        }
+        let samples_lights = self.mode == TransportMode::Radiance && !at.is_in_medium();
+        samples_lights.then(|| BehindPanes::vertex(at.p(), sample.pdf_solid_angle))
+    }
+
+    /// How often a vertex samples through panes what it sees of a light, at a surface or where it leaves the scene, for each time that it comes there.
+    pub(super) fn sampled_through_panes(
+        &self,
+        context: &Context,
+        light: Option<usize>,
+        surface: Option<&Surface>,
+    ) -> f32 {
+        let (Some(straight), Some(light)) = (&self.straight, light) else { return 0.0 };
+        straight.samples(context, (light, surface), self.walk.ray.direction.into())
     }
 
     /// The walk as it was before its last ray, if that has equiangular points.

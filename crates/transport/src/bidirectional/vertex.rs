@@ -8,6 +8,7 @@ use crate::media::Media;
 use crate::mis::Partial;
 use crate::photon_grid::PhotonPosition;
 use crate::photons::{MediumPhoton, Photon, PhotonWalk};
+use crate::task::Context;
 use crate::techniques::PerSet;
 use crate::way::Way;
 use bilux_math::{Rgb, Vec3};
@@ -59,6 +60,14 @@ impl<const N: usize> Vertex<N> {
     /// True where it can be connected.
     pub(crate) fn is_open(&self) -> bool {
         self.is_kept && !self.at.is_delta()
+    }
+
+    /// The number of panes through which it samples lights, if it is on a surface: they count against the depth.
+    pub(super) fn panes(&self, context: &Context) -> u32 {
+        if self.at.is_in_medium() || !context.scene.has_panes() {
+            return 0;
+        }
+        context.max_depth.saturating_sub(self.events.counted)
     }
 
     /// True where a path through here carries a single wavelength.

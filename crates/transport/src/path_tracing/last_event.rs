@@ -18,7 +18,7 @@ pub(crate) struct LastEvent {
 
 /// True where light passes a pane straight from a vertex that is beyond it along `wo`, so that [connections](crate::through::Through) lead
 /// through it too.
-pub(super) fn passes_straight(scene: &Scene, at: &Interaction, wo: Vec3) -> bool {
+pub(crate) fn passes_straight(scene: &Scene, at: &Interaction, wo: Vec3) -> bool {
     let Interaction::Surface(surface, bsdf) = at else { return false };
     scene.has_panes() && scene.material(surface).is_pane() && !bsdf.straight(wo).is_black()
 }

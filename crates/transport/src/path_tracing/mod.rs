@@ -17,8 +17,7 @@ use crate::way::Way;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::lights::Light;
 use bilux_scene::{Ray, Surface, TransportMode};
-pub(crate) use last_event::LastEvent;
-use last_event::passes_straight;
+pub(crate) use last_event::{LastEvent, passes_straight};
 use light_connection::LightConnection;
 pub(crate) use light_connection::power_heuristic;
 

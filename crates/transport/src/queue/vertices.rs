@@ -194,7 +194,7 @@ impl Paths {
         media: impl Fn(&Path, usize, Vec3) -> Media,
     ) {
         let scene = context.scene;
-        let is_plain = scene.has_clear_media() && !scene.has_panes();
+        let is_plain = scene.has_plain_shadows();
         for (i, &(light, _)) in picked.iter().enumerate().take(v.count) {
             let contribution = rgb(&v.shadow.light, i);
             if contribution.is_black() || v.paths[i] == NO_PATH {

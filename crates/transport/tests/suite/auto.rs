@@ -2,7 +2,7 @@
 
 use crate::common::statistics::{SUITE, UNLIKELY, agreement, blocks};
 use crate::common::{
-    ball, built, diffuse, effort, floor, integrator, look, mixed, put, shoot, sky, still_life,
+    ball, built, diffuse, effort, floor, integrator, look, mixed, put, quad, shoot, sky, still_life,
     without_mirrors,
 };
 use bilux_math::{Rgb, Vec3};
@@ -86,6 +86,31 @@ fn the_noise_of_every_set_is_predicted() {
         let measured = measured(set, &scene, &*reported(set, false), pictures);
         let ratio = predicted / measured;
         assert!((0.8..1.25).contains(&ratio), "{set}: predicted {predicted}, measured {measured}");
+    }
+}
+
+/// Paths sample lights through panes, and what they meet behind them by chance is weighted so; light paths find the same light with more noise.
+#[test]
+fn the_noise_of_paths_behind_a_pane_is_predicted() {
+    let mut panel = corner();
+    let tilted = quad(Vec3::new(-2.5, 1.9, -2.0), Vec3::X * 5.0, Vec3::new(0.0, 0.2, 4.0));
+    let pane = Spec::new("", "dielectric").with("thin", true).with("tint", Rgb::new(0.9, 0.6, 0.2));
+    put(&mut panel, "pane", tilted, pane);
+    let mut sun = panel.clone();
+    let day = Spec::new("", "directional").with("direction", Vec3::new(0.2, -1.0, 0.1));
+    sun.lights = vec![day.with("irradiance", 5.0f32)];
+    for (name, builder) in [("panel", panel), ("sun", sun)] {
+        let scene = built(&builder);
+        let case = format!("{name} behind a pane");
+        let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
+        let pilots: Vec<Choice> = (0..8).map(|seed| choice(&scene, &spec, &film(seed))).collect();
+        let predicted = pilots.iter().map(|choice| choice.candidates[0].error).sum::<f64>() / 8.0;
+        let found = measured(&case, &scene, &*reported("path", false), 24);
+        assert!(
+            (0.75..1.6).contains(&(predicted / found)),
+            "{case}: predicted {predicted}, measured {found}"
+        );
+        assert_eq!(pilots[0].best().name, "path", "{case}: {}", pilots[0]);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Light that passes panes straight: what paths sample through them, what they meet behind them, and what paths from lights find.
 
-use crate::common::{ball, built, diffuse, floor, integrator, put, quad, shoot};
+use crate::common::statistics::{UNLIKELY, agreement, blocks};
+use crate::common::{ball, built, diffuse, floor, integrator, put, quad, shoot, sky, without_mirrors};
 use crate::light_parts::parts;
 use crate::receiving::{measured, measured_parts};
 use bilux_math::{Rgb, Vec3};
@@ -155,6 +156,56 @@ fn lamps_shine_through_panes_into_fog() {
     let scene = built(&builder);
     let wanted = mean(&scene, &*integrator("bdpt"), 5, 1024);
     assert_near("path", mean(&scene, &*integrator("path"), 5, 1024), wanted, 0.03);
+}
+
+/// A still life behind a pane, under a panel and the sky, and a lamp in a bulb; with `many` more lamps that only light some of it.
+fn shop_window(many: i32) -> SceneBuilder {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.6, 0.0)).with("intensity", 6.0f32);
+    let mut builder = without_mirrors(panel);
+    let tilted = quad(Vec3::new(-2.5, 1.9, -2.0), Vec3::X * 5.0, Vec3::new(0.0, 0.2, 4.0));
+    put(&mut builder, "pane", tilted, pane(TINT));
+    put(&mut builder, "bulb", ball(Vec3::new(0.2, 0.9, 1.2), 0.25, 6, true), pane(Rgb::new(0.4, 0.7, 0.9)));
+    let lamp = Spec::new("", "sphere").with("position", Vec3::new(0.2, 0.9, 1.2)).with("radius", 0.1f32);
+    builder.lights.push(lamp.with("intensity", Rgb::new(0.4, 0.3, 0.1)));
+    sky(&mut builder, 0.3);
+    for i in 0..many {
+        let p = Vec3::new(0.7 * (i % 4) as f32 - 1.0, 2.4 + 0.1 * i as f32, 0.6 * (i / 4) as f32 - 0.5);
+        let lamp = Spec::new("", "sphere").with("position", p).with("radius", 0.03f32);
+        builder.lights.push(lamp.with("intensity", 0.1 * (1 + i) as f32));
+    }
+    builder
+}
+
+/// By few lights, which are all sampled, and by many; `vcm` merges what comes through panes, as light that is not direct.
+#[test]
+fn both_ends_find_the_same_behind_panes() {
+    for (many, name) in [(0, "bdpt"), (9, "bdpt"), (0, "vcm")] {
+        let scene = built(&shop_window(many));
+        let case = format!("{name}, {many} more lamps");
+        let [paths, both] =
+            [("path", 0), (name, 100)].map(|(name, seed)| blocks(&scene, integrator(name), seed));
+        let p = agreement(&case, &paths, &both);
+        assert!(p > UNLIKELY, "{case}: p = {p}");
+    }
+}
+
+/// Points of fog choose lights by power, and here next to never a panel behind a pane: paths meet it by chance, whatever is nearest to the pane.
+#[test]
+fn fog_meets_lamps_behind_panes_that_it_rarely_samples() {
+    let mut builder = room();
+    let fog = Spec::new("", "interface").with("scattering", 0.8f32).with("scattering_anisotropy", 0.5f32);
+    put(&mut builder, "fog", ball(Vec3::ZERO, 8.0, 40, false), fog);
+    square(&mut builder, Vec3::Y, tilted(), 6.0, pane(TINT));
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-2.0, 1.8, -2.0)).with("radiance", 1.0f32);
+    builder.lights.push(panel.with("edge_u", Vec3::X * 4.0).with("edge_v", Vec3::Z * 4.0));
+    for i in 0..9 {
+        let below = Vec3::new(20.0 * i as f32, -3000.0, 30.0);
+        builder.lights.push(Spec::new("", "point").with("position", below).with("intensity", 1e6f32));
+    }
+    square(&mut builder, -Vec3::Y * 3.0, Vec3::Y, 20.0, diffuse(0.0f32));
+    let scene = built(&builder);
+    let wanted = mean(&scene, &*path("scattering"), 5, 1024);
+    assert_near("mis", mean(&scene, &*path("mis"), 5, 1024), wanted, 0.03);
 }
 
 #[test]

@@ -9,10 +9,13 @@
 //! weights of one path add up to 1.
 
 mod banks;
+mod fog;
+mod panes;
 mod path;
 mod samples;
 
-use self::path::{Flaw, Fog, Path};
+use self::fog::Fog;
+use self::path::{Flaw, Path};
 use crate::failures::SamplePlace;
 use crate::integrators;
 use crate::settings::RenderSettings;
@@ -41,8 +44,8 @@ struct Verdict {
     wrong: usize,
     worst: f64,
     /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
-    /// merge, crossed beams, equiangular point.
-    telling: [usize; 7],
+    /// merge, crossed beams, equiangular point, light sample through panes.
+    telling: [usize; 8],
 }
 
 impl Verdict {
@@ -70,6 +73,7 @@ impl Verdict {
             (true, 1) => 6,
             (true, i) => 4 + usize::from(path.nodes[i - 2].at.is_in_medium()),
             (_, s) if s < 2 => s,
+            (_, s) if path.nodes[s - 2].is_delta => 7,
             (_, s) if s == path.nodes.len() + 1 => 2,
             _ => 3,
         };
@@ -105,7 +109,7 @@ fn verdict_in(
         compared: 0,
         wrong: 0,
         worst: 0.0,
-        telling: [0; 7],
+        telling: [0; 8],
     };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut state) = eye.sample(SamplePlace { x: i % 24, y: i / 24 % 24, sample: i / 576 });
@@ -129,12 +133,16 @@ const FOG: [Rgb; 2] = [Rgb::new(0.02, 0.05, 0.01), Rgb::new(0.25, 0.15, 0.1)];
 const GREY_FOG: [Rgb; 2] = [Rgb::grey(0.02), Rgb::grey(0.2)];
 
 /// The same bodies inside a ball of what scatters, with mirrors in place of glass, so that fog fills every edge.
-fn foggy(lights: &[&str], camera: &Spec, fog: Spec, [absorption, scattering]: [Rgb; 2]) -> Scene {
-    let mut builder = filled(lights, camera.clone(), &Spec::new("", "mirror"));
+fn foggy(lights: &[&str], camera: &Spec, fog: Spec, coefficients: [Rgb; 2]) -> Scene {
+    shapes::built(&foggy_of(filled(lights, camera.clone(), &Spec::new("", "mirror")), fog, coefficients))
+}
+
+/// The same of any bodies.
+fn foggy_of(mut builder: SceneBuilder, fog: Spec, [absorption, scattering]: [Rgb; 2]) -> SceneBuilder {
     let fog = fog.with("absorption", absorption).with("scattering", scattering);
     let fog = fog.with("scattering_anisotropy", 0.4f32);
     shapes::put(&mut builder, "fog", shapes::ball(Vec3::ZERO, 9.0, 8, false), fog);
-    shapes::built(&builder)
+    builder
 }
 
 fn filled(lights: &[&str], camera: Spec, glass: &Spec) -> SceneBuilder {

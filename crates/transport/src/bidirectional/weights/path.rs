@@ -1,12 +1,14 @@
 //! A whole path, and how often each technique finds it by the definition.
 
+use super::fog::Fog;
 use super::{PANEL_AREA, is_dense};
 use crate::interaction::{Interaction, MediumPoint};
 use crate::limits::MAX_CONNECTED_ROW;
+use crate::path_tracing::passes_straight;
 use crate::task::Task;
 use crate::techniques::{PerSet, TechniqueCounts};
 use bilux_math::transcendental::{atan2_f64, exp_f64};
-use bilux_math::{Aabb, Vec2, Vec3};
+use bilux_math::{Vec2, Vec3};
 use bilux_scene::TransportMode;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -43,32 +45,6 @@ pub(super) struct Path {
     pub(super) fog: Option<Fog>,
 }
 
-/// Fog that is the same wherever it is.
-#[derive(Clone, Copy)]
-pub(super) struct Fog {
-    /// The extinction coefficient, in the sample's channel.
-    pub(super) extinction: f32,
-    /// Where it is; none if it fills the scene.
-    pub(super) parts: &'static [Aabb],
-}
-
-impl Fog {
-    /// How much of the line between two points is in it, in metres.
-    fn between(&self, a: Vec3, b: Vec3) -> f64 {
-        let [a, b] = [a, b].map(Vec3::as_dvec3);
-        let length = a.distance(b);
-        if self.parts.is_empty() {
-            return length;
-        }
-        let within = |part: &Aabb| {
-            let [low, high] = [part.min, part.max].map(|corner| (corner.as_dvec3() - a) / (b - a));
-            let (begin, end) = (low.min(high).max_element().max(0.0), low.max(high).min_element().min(1.0));
-            (end - begin).max(0.0)
-        };
-        self.parts.iter().map(within).sum::<f64>() * length
-    }
-}
-
 /// A factor that is left out of the densities, or a mistake in them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Flaw {
@@ -96,6 +72,9 @@ pub(super) enum Flaw {
     WalkedPoints,
     /// Splats of light straight from a light are left out.
     UnseenCones,
+    /// Lights are not sampled through panes, or are chosen there by the pane's place.
+    Panes,
+    ChoiceAtPane,
 }
 
 impl Path {
@@ -139,6 +118,9 @@ impl Path {
                 all.push(((false, s), copies * light[s] * camera[t]));
             }
         }
+        if let Some((panes, picked)) = self.picked_through_panes(task, flaw) {
+            all.push(((false, 1 + panes), picked * camera[count + 1 - panes]));
+        }
         if let Some(ratio) = self.equiangular(task, flaw) {
             all.push(((true, 1), light[1] * camera[count + 1] * ratio));
         }
@@ -156,6 +138,36 @@ impl Path {
             all.push(((true, i + 1), copies * light[i + 1] * camera[count + 2 - i]));
         }
         all
+    }
+
+    /// The number of panes next to the light, and how often the vertex behind them samples the light, over the density 1 per solid angle of passing each
+    /// pane; `None` where there are none, or where it does not.
+    fn picked_through_panes(&self, task: &Task, flaw: Flaw) -> Option<(usize, f64)> {
+        let panes = self.nodes.iter().take_while(|node| node.is_pane(task)).count();
+        let vertex = self.nodes.get(panes).filter(|node| !node.is_delta && !node.at.is_in_medium())?;
+        if panes == 0 || flaw == Flaw::Panes {
+            return None;
+        }
+        let at = if flaw == Flaw::ChoiceAtPane { &self.nodes[panes - 1] } else { vertex };
+        let cosines = self.nodes[..panes].iter().map(|pane| cosine(pane.from_light.1, pane.to_light, flaw));
+        let lengths = self.nodes[..=panes].windows(2).map(|pair| 1.0 / edge(&pair[0], &pair[1], flaw));
+        let passing: f64 = cosines.chain(lengths).product();
+        let p = vertex.from_light.0;
+        let straight = self.start.p.map_or(1.0, |start| {
+            distance2(start, p, flaw) / distance2(start, self.nodes[0].from_light.0, flaw)
+        });
+        let chosen = task.context.lights.probability(self.start.index, Some(at.from_light.0));
+        Some((panes, self.direct(task, p) * f64::from(chosen) * passing * straight))
+    }
+
+    /// The density with which a point samples the start on the light: over area, or over solid angle where that is infinitely far away.
+    fn direct(&self, task: &Task, from: Vec3) -> f64 {
+        let light = &task.context.scene.lights()[self.start.index].light;
+        f64::from(match (light.is_delta(), light.is_infinite()) {
+            (true, _) => 1.0,
+            (false, true) => light.li_pdf_solid_angle(from, self.nodes[0].to_light, None),
+            (false, false) => 1.0 / PANEL_AREA,
+        })
     }
 
     /// The number of points in a row in media around the edge that connects `s` vertices from the light with the rest; 0 where one
@@ -230,12 +242,8 @@ impl Path {
     fn light_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
         let (scene, first) = (task.context.scene, &self.nodes[0]);
         let light = &scene.lights()[self.start.index].light;
-        let direct = match (light.is_delta(), light.is_infinite()) {
-            (true, _) => 1.0,
-            (false, true) => light.li_pdf_solid_angle(first.from_light.0, first.to_light, None),
-            (false, false) => 1.0 / PANEL_AREA,
-        };
-        let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
+        let direct = self.direct(task, first.from_light.0);
+        let emission = light.emission_pdf(&scene.bounds(), direct as f32, -first.to_light, self.start.cos);
         let choice =
             if flaw == Flaw::LightChoice { 1.0 } else { task.context.emission.probability(self.start.index) };
         let lights = &task.context.lights;
@@ -248,7 +256,7 @@ impl Path {
             // Where the light subpath has come to, of two vertices that are merged.
             _ => lights.probability(self.start.index, first.at.lit_at().map(|_| first.from_light.0)),
         };
-        let picked = f64::from(direct) * f64::from(chosen);
+        let picked = direct * f64::from(chosen);
         let mut product = f64::from(emission)
             * f64::from(choice)
             * self.arriving(first, first.from_light.1, first.to_light, flaw);
@@ -354,6 +362,12 @@ impl Path {
 }
 
 impl PathVertex {
+    /// Whether light passes it straight.
+    fn is_pane(&self, task: &Task) -> bool {
+        let is_straight = self.to_light.dot(self.to_camera) < -0.9999;
+        self.is_delta && is_straight && passes_straight(task.context.scene, &self.at, self.to_camera)
+    }
+
     fn density(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f64 {
         if self.is_delta { 1.0 } else { f64::from(self.at.pdf_solid_angle(wo, wi, mode)) }
     }

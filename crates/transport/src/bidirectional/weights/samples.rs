@@ -7,6 +7,7 @@ use crate::bidirectional::connect::{Connection, to_camera, to_light, to_vertex};
 use crate::bidirectional::light_paths::{LIGHT_STREAM, begin_at_light};
 use crate::bidirectional::*;
 use crate::equiangular::{Departure, Equiangular};
+use crate::media::Arrival;
 use crate::mis::Partial;
 use crate::photon_beams::PhotonBeams;
 use crate::photon_grid::PhotonPosition;
@@ -47,7 +48,7 @@ fn seen_by_camera(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Trac
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.sample.enter_light_vertex(vertex.depth);
         let Some((_, connection)) = to_camera(task, vertex, techniques) else { continue };
-        let Some(found) = connection.trace(task.tracer) else { continue };
+        let Some((_, found)) = connection.trace(task.tracer) else { continue };
         task.sample.enter_light_vertex(vertex.depth);
         let u = task.sample.sampler.next_2d();
         let lens = if task.context.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
@@ -70,7 +71,7 @@ fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
         ) else {
             continue;
         };
-        let found = found.by(vertex.beta, &vertex.partial);
+        let found = found.by(vertex.beta, &vertex.partial, z.through_panes[i]);
         let index = task.context.scene.light_index_of(surface.object).unwrap();
         let start = Start { index, p: Some(surface.p), cos: surface.n_geom.dot(vertex.wo).abs() };
         let nodes = z.nodes(i - 1, false, -vertex.wo, z.is_delta[i - 1]);
@@ -83,7 +84,10 @@ fn hit_emitters(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
         return;
     };
     let mut founds = Vec::new();
-    from_infinity(task, subpath, |hit| founds.push(hit.by(subpath.walk.beta, &subpath.partial)));
+    from_infinity(task, subpath, |hit| {
+        let through_panes = subpath.sampled_through_panes(task.context, hit.light, None);
+        founds.push(hit.by(subpath.walk.beta, &subpath.partial, through_panes));
+    });
     for found in founds {
         let nodes = z.nodes(last, false, subpath.walk.ray.direction.into(), z.is_delta[last]);
         let path = Path {
@@ -103,15 +107,33 @@ fn sampled_lights(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
             let u = task.sample.sampler.next_2d();
             let chosen = (index, task.context.lights.probability(index, vertex.at.lit_at()));
             let Some(connection) = to_light(task, vertex, chosen, u, techniques) else { continue };
-            let Some(found) = connection.trace(task.tracer) else { continue };
+            let Some((technique, found)) = connection.trace(task.tracer) else { continue };
             let light = &task.context.scene.lights()[index].light;
             let sample = light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
             let start = light_start(index, &sample);
-            let nodes = z.nodes(i, false, sample.wi, false);
+            let mut nodes = z.nodes(i, false, sample.wi, false);
+            let Technique::Connected { s, .. } = technique else { unreachable!() };
+            for pane in panes(task, vertex, sample.wi, s - 1) {
+                nodes.insert(0, pane);
+            }
             let path = Path { start, nodes, camera_density: z.camera_density, fog: verdict.fog_of(task) };
-            verdict.look(task, &found, (false, 1), &path);
+            verdict.look(task, &found, (false, s as usize), &path);
         }
     }
+}
+
+/// So many panes in this direction from a vertex.
+fn panes(task: &mut Task, vertex: &Vertex, wi: Vec3, count: u32) -> Vec<PathVertex> {
+    let (mut ray, media) = (vertex.at.spawn(wi), vertex.media_towards(task.context.scene, wi));
+    let mut pane = || {
+        let surface = task.tracer.closest(&ray).unwrap();
+        ray = surface.spawn(wi);
+        let place = (surface.p, surface.n_geom);
+        let arrival = Arrival::Surface(surface);
+        let at = media.interaction(task.context.scene, &arrival, &task.sample.wavelength).unwrap();
+        PathVertex { from_light: place, from_camera: place, at, to_light: wi, to_camera: -wi, is_delta: true }
+    };
+    (0..count).map(|_| pane()).collect()
 }
 
 /// Connects equiangular points with their lights.
@@ -124,7 +146,7 @@ fn sampled_equiangularly(task: &mut Task, verdict: &mut Verdict, z: &Traced) {
             continue;
         };
         let Some(passage) = segment.passage(task.tracer) else { continue };
-        let found = join.equiangular(*ratio).along(&passage);
+        let (_, found) = join.equiangular(*ratio).along(&passage);
         let sample =
             task.context.scene.lights()[*light].light.sample_li(vertex.at.p(), vertex.at.time(), u).unwrap();
         let start = light_start(*light, &sample);
@@ -158,7 +180,7 @@ fn connected(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Tra
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
         let Some(connection) = to_vertex(task, camera_end, light_end, techniques) else { continue };
-        let Some(found) = connection.trace(task.tracer) else { continue };
+        let Some((_, found)) = connection.trace(task.tracer) else { continue };
         let direction = (light_end.at.p() - camera_end.at.p()).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));
@@ -268,6 +290,8 @@ struct Traced<'w> {
     left: Option<Subpath<'w>>,
     camera_density: f32,
     points: Vec<EquiangularPoint>,
+    /// How often the emitter at each vertex is sampled through panes.
+    through_panes: Vec<f32>,
 }
 
 /// An equiangular point on the ray that leaves the last of so many vertices before.
@@ -307,7 +331,7 @@ fn followed<'w>(
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
     let (mut rays, mut beams) = (Vec::new(), Vec::new());
     subpath = subpath.keeping_beams(techniques.beams != PerSet::ZERO);
-    let mut points = Vec::new();
+    let (mut points, mut through_panes) = (Vec::new(), Vec::new());
     if is_camera {
         subpath = subpath.with_equiangular_points();
     }
@@ -338,6 +362,8 @@ fn followed<'w>(
             break;
         };
         beams.push(std::mem::take(&mut subpath.beams));
+        let light = vertex.at.surface().and_then(|hit| task.context.scene.light_index_of(hit.object));
+        through_panes.push(subpath.sampled_through_panes(task.context, light, vertex.at.surface()));
         if is_camera && vertex.depth == 0 {
             camera_density = task.context.camera.density(&subpath.walk.ray, vertex.at.t());
             vertex.partial =
@@ -353,5 +379,5 @@ fn followed<'w>(
             break;
         }
     }
-    Traced { vertices, rays, beams, is_delta, left, camera_density, points }
+    Traced { vertices, rays, beams, is_delta, left, camera_density, points, through_panes }
 }
