@@ -4,7 +4,6 @@
 //! No density has the odds of passing a pane, since all techniques pass it.
 
 use crate::emission::Start;
-use crate::interaction::Interaction;
 use crate::task::Context;
 use bilux_math::Vec3;
 use bilux_scene::Surface;
@@ -12,33 +11,27 @@ use bilux_scene::Surface;
 /// Where a subpath comes from, straight through panes if there have been any.
 #[derive(Clone, Copy)]
 pub(super) struct BehindPanes {
-    from: From,
-    /// The probability of no event in the media on the way.
-    survival: f32,
+    /// On a light, or a vertex on a surface.
+    p: Vec3,
+    /// The density with which it left, over solid angle and on a light over area too, times the probability of no event in the media since.
+    pdf: f32,
     panes: u32,
-}
-
-#[derive(Clone, Copy)]
-enum From {
-    Light(Start),
-    /// A vertex of a camera subpath on a surface, and the density of the direction, over solid angle.
-    Vertex(Vec3, f32),
 }
 
 impl BehindPanes {
     /// A subpath that leaves a light.
-    pub(super) fn light(start: Start) -> BehindPanes {
-        BehindPanes { from: From::Light(start), survival: 1.0, panes: 0 }
+    pub(super) fn light(start: &Start) -> BehindPanes {
+        BehindPanes { p: start.ray.p, pdf: start.ray.pdf_emission, panes: 0 }
     }
 
-    /// A camera subpath that leaves a vertex on a surface in a direction of this density over solid angle.
+    /// A camera subpath that leaves a vertex on a surface in a direction of this density.
     pub(super) fn vertex(p: Vec3, pdf: f32) -> BehindPanes {
-        BehindPanes { from: From::Vertex(p, pdf), survival: 1.0, panes: 0 }
+        BehindPanes { p, pdf, panes: 0 }
     }
 
-    /// The same at the end of its ray, where it comes with this probability.
-    pub(super) fn arriving(self, survival: f32) -> BehindPanes {
-        BehindPanes { survival: self.survival * survival, ..self }
+    /// Comes to the end of its ray with this probability.
+    pub(super) fn arrive(&mut self, survival: f32) {
+        self.pdf *= survival;
     }
 
     /// The same beyond a pane.
@@ -46,15 +39,17 @@ impl BehindPanes {
         BehindPanes { panes: self.panes + 1, ..self }
     }
 
-    /// How often a vertex on a surface, which this light subpath meets under this cosine, samples where it began, for each time that it comes
-    /// there; 0 unless there are panes between.
-    pub(super) fn sampled_from(&self, context: &Context, at: &Interaction, cos: f32) -> f32 {
-        let (From::Light(start), 1..) = (&self.from, self.panes) else { return 0.0 };
+    /// How often a point on a surface, which the light subpath that began so meets under this cosine, samples where it began, for each time that
+    /// it comes there; 0 unless there are panes between.
+    pub(super) fn sampled_from(&self, start: &Start, context: &Context, p: Vec3, cos: f32) -> f32 {
+        if self.panes == 0 {
+            return 0.0;
+        }
         let light = &context.scene.lights()[start.light].light;
-        let probability = context.lights.probability(start.light, at.lit_at());
-        let pdf_direct = light.direct_pdf(&start.ray, at.p()) * probability;
-        let distance2 = if light.is_infinite() { 1.0 } else { at.p().distance_squared(start.ray.p) };
-        pdf_direct * distance2 / (start.ray.pdf_emission * self.survival * cos)
+        let probability = context.lights.probability(start.light, Some(p));
+        let pdf_direct = light.direct_pdf(&start.ray, p) * probability;
+        let distance2 = if light.is_infinite() { 1.0 } else { p.distance_squared(self.p) };
+        pdf_direct * distance2 / (self.pdf * cos)
     }
 
     /// How often the vertex samples what this camera subpath sees of a light, at a surface or in this direction, for each time that it does; 0
@@ -65,9 +60,11 @@ impl BehindPanes {
         (light, surface): (usize, Option<&Surface>),
         direction: Vec3,
     ) -> f32 {
-        let (From::Vertex(p, pdf), 1..) = (self.from, self.panes) else { return 0.0 };
-        let probability = context.lights.probability(light, surface.map(|_| p));
+        if self.panes == 0 {
+            return 0.0;
+        }
+        let probability = context.lights.probability(light, surface.map(|_| self.p));
         let source = &context.scene.lights()[light].light;
-        source.li_pdf_solid_angle(p, direction, surface) * probability / (pdf * self.survival)
+        source.li_pdf_solid_angle(self.p, direction, surface) * probability / self.pdf
     }
 }

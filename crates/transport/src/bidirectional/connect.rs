@@ -24,19 +24,27 @@ pub(crate) struct Join<const N: usize = 1> {
     pub(crate) technique: Technique,
     /// What it contributes, but for other techniques and what absorbs on the way.
     found: Contribution<N>,
-    /// How often other techniques find the path that go on along the segment to its end, and those that come back to its start,
-    /// if no medium is on the way.
-    others: [PerSet<N>; 2],
-    /// The last number, if panes are on the way.
-    beyond_panes: PerSet<N>,
+    /// How often other techniques find the path that come back along the segment to its start, if no medium is on the way.
+    back: PerSet<N>,
+    end: End<N>,
     /// How often those find it that do not depend on what lies along the segment.
     alike: PerSet<N>,
-    /// How often the camera subpath hits the light by chance, if the segment ends on one.
-    picked: Option<f32>,
     /// Whether each end is a point of a medium.
     in_medium: [bool; 2],
     /// The odds of both subpaths together.
     odds: Rgb,
+}
+
+/// What other techniques do that go on along the segment to its end, if no medium is on the way.
+enum End<const N: usize> {
+    /// They find the path so often.
+    Vertex(PerSet<N>),
+    /// The camera subpath hits the light by chance.
+    Light {
+        by_chance: f32,
+        /// [`Join::back`], if panes are on the way.
+        back_beyond_panes: PerSet<N>,
+    },
 }
 
 impl<const N: usize> Connection<N> {
@@ -56,21 +64,25 @@ impl<const N: usize> Join<N> {
     /// By which technique it contributes what along this. Each pane is one more vertex on the side of the light.
     #[inline]
     pub(crate) fn along(&self, passage: &Passage) -> (Technique, Contribution<N>) {
-        let ([on, back], technique) = match (passage.panes, self.technique) {
-            (panes @ 1.., Technique::Connected { s, t }) => {
-                ([self.others[0], self.beyond_panes], Technique::Connected { s: s + panes, t })
-            }
-            (_, technique) => (self.others, technique),
-        };
         let [leaves_medium, ends_in_medium] = self.in_medium;
         let on_by = passage.arriving((!ends_in_medium).then_some(1.0));
-        let back = back * passage.returning(leaves_medium);
-        let picked = self.picked.map(|picked| picked * on_by);
         let together = self.found.own.0[0] + self.alike.0[0];
+        let (on, power_factor, back) = match self.end {
+            End::Vertex(on) => (on * on_by, 1.0, self.back),
+            End::Light { by_chance, back_beyond_panes } => {
+                let by_chance = by_chance * on_by;
+                let back = if passage.panes > 0 { back_beyond_panes } else { self.back };
+                (PerSet::ONE * by_chance, power_factor(by_chance / together), back)
+            }
+        };
+        let technique = match self.technique {
+            Technique::Connected { s, t } => Technique::Connected { s: s + passage.panes, t },
+            merged => merged,
+        };
         let found = Contribution {
             light: self.found.light * passage.share(self.odds),
-            others: picked.map_or(on * on_by, |picked| PerSet::ONE * picked) + back + self.alike,
-            power_factor: picked.map_or(1.0, |picked| power_factor(picked / together)),
+            others: on + back * passage.returning(leaves_medium) + self.alike,
+            power_factor,
             ..self.found
         };
         (technique, found)
@@ -106,10 +118,9 @@ pub(crate) fn to_camera<const N: usize>(
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: 1 },
         found: Contribution { own: techniques.splats, origin: y.origin, ..Contribution::only(light) },
-        others: [PerSet::ZERO, others],
-        beyond_panes: PerSet::ZERO,
+        back: others,
+        end: End::Vertex(PerSet::ZERO),
         alike: y.lit_from(task.context.scene, seen.p) * arriving,
-        picked: None,
         in_medium: [y.at.is_in_medium(), false],
         odds: y.odds,
     };
@@ -155,7 +166,7 @@ pub(crate) fn to_light<const N: usize>(
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
     let pdf_start = sample.pdf_start.unwrap_or(pdf_direct / area_to_angle);
     let pdf_emission = task.context.emission.pdf(scene, index, z.at.p(), pdf_start, -sample.wi, cos_light);
-    let ratio = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
+    let by_chance = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.at.cos(sample.wi).unwrap_or(1.0);
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.at.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
@@ -163,16 +174,15 @@ pub(crate) fn to_light<const N: usize>(
     let from_light = z.partial.others_of_direct(arriving, back, sine, z.at.direct_light(techniques));
     let panes = z.panes(task.context);
     // Light that comes through panes is not direct.
-    let beyond_panes = if panes > 0 { z.partial.others(arriving, back, sine) } else { PerSet::ZERO };
+    let back_beyond_panes = if panes > 0 { z.partial.others(arriving, back, sine) } else { PerSet::ZERO };
     let light = z.beta * scattered * sample.li / (sample.pdf_solid_angle * probability);
     let light = task.sample.seen(light, z.is_split());
     let join = Join {
         technique: Technique::Connected { s: 1, t: z.count() },
         found: Contribution { origin: light_number(index), ..Contribution::only(light) },
-        others: [PerSet::ZERO, from_light],
-        beyond_panes,
+        back: from_light,
+        end: End::Light { by_chance, back_beyond_panes },
         alike: z.approach.map_or(PerSet::ZERO, |approach| PerSet::ONE * approach.ratio(scene, index)),
-        picked: Some(ratio),
         in_medium: [z.at.is_in_medium(), false],
         odds: z.odds,
     };
@@ -223,14 +233,13 @@ pub(crate) fn to_vertex<const N: usize>(
     let join = Join {
         technique: Technique::Connected { s: y.count(), t: z.count() },
         found: Contribution { own: techniques.connections, origin: y.origin, ..Contribution::only(light) },
-        others: [from_camera, from_light],
-        beyond_panes: PerSet::ZERO,
+        back: from_light,
+        end: End::Vertex(from_camera),
         alike: if z.at.is_in_medium() {
             PerSet::ZERO
         } else {
             y.lit_from(task.context.scene, z.at.p()) * (pdf_z / distance2)
         },
-        picked: None,
         in_medium,
         odds: z.odds * y.odds,
     };

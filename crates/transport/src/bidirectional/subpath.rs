@@ -26,7 +26,7 @@ pub(crate) struct Subpath<'w, const N: usize = 1> {
     by_area: bool,
     /// The maximum channel at the start; Russian roulette measures the survival of light subpaths against it.
     full: f32,
-    /// The light that it comes from and how it left, until it has a vertex.
+    /// The light that it comes from and how it left.
     start: Option<Start>,
     origin: u16,
     /// What media on the way to the next vertex emit, over the density of finding it.
@@ -162,7 +162,9 @@ impl<'w, const N: usize> Subpath<'w, N> {
             let is_far = self.start.is_some_and(|start| lights[start.light].light.is_infinite());
             let at_start = if is_far { Media::from_infinity } else { Media::at_start };
             walk.media = at_start(tracer, &walk.ray);
-            self.straight = self.start.filter(|_| context.scene.has_panes()).map(BehindPanes::light);
+            if context.scene.has_panes() {
+                self.straight = self.start.as_ref().map(BehindPanes::light);
+            }
         }
         if let Some(first) = first
             && self.is_equiangular
@@ -178,7 +180,7 @@ impl<'w, const N: usize> Subpath<'w, N> {
             leaves_medium: walk.leaves_medium,
             by_area: self.by_area,
             partial: self.partial,
-            start: self.start,
+            start: self.start.filter(|_| walk.depth == 0),
             depth: walk.depth,
             events: walk.events(),
             beta: walk.beta,
@@ -210,7 +212,9 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let is_at_light = walk.depth == 0 && self.mode == TransportMode::Importance;
         let media = walk.media;
         let back = passage.returning(walk.leaves_medium);
-        self.straight = self.straight.map(|straight| straight.arriving(passage.survival));
+        if let Some(straight) = &mut self.straight {
+            straight.arrive(passage.survival);
+        }
         let Some(at) = media.interaction(context.scene, arrival, &sample.wavelength) else {
             self.partial.pass(1.0, Edge { forward: passage.survival, back });
             return None;
@@ -226,8 +230,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
         let merged = if is_left { PerSet::ZERO } else { at.merged(self.techniques, sample.channel, ball) };
         let distance2 = distance2 * self.light_sampling_ratio(context, &at);
         self.partial.arrive(distance2, edge, connections, merged);
-        if let (Some(straight), Some(cos)) = (&self.straight, at.cos(wo)) {
-            let often = PerSet::ONE * straight.sampled_from(context, &at, cos);
+        if let (Some(straight), Some(start), Some(cos)) = (&self.straight, &self.start, at.cos(wo)) {
+            let often = PerSet::ONE * straight.sampled_from(start, context, at.p(), cos);
             self.partial.connected = self.partial.connected + often;
         }
         if let Some(lit) = self.lit.filter(|_| !at.is_in_medium()) {
@@ -353,8 +357,8 @@ impl<'w, const N: usize> Subpath<'w, N> {
     }
 
     /// The factor by which the first vertex of a light subpath would sample its start more often than assumed so far.
-    fn light_sampling_ratio(&mut self, context: &Context, at: &Interaction) -> f32 {
-        let Some(start) = self.start.take() else { return 1.0 };
+    fn light_sampling_ratio(&self, context: &Context, at: &Interaction) -> f32 {
+        let Some(start) = self.start.filter(|_| self.walk.depth == 0) else { return 1.0 };
         let ratio = start.light_sampling_ratio(context.scene, at.p());
         let Some(p) = at.lit_at().filter(|_| !context.lights.takes_all()) else { return ratio };
         let [there, assumed] = [Some(p), None].map(|at| context.lights.probability(start.light, at));
